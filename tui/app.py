@@ -56,7 +56,7 @@ def _commands() -> type[Provider]:
     return Commands
 
 
-class Surroundings(Protocol):
+class AppEnvironment(Protocol):
     """The environment of an app on a real terminal; without a terminal these methods do nothing."""
 
     @property
@@ -81,7 +81,7 @@ class DeckApp(App[int], Acting):
     ENABLE_COMMAND_PALETTE = False
     """Disables Textual's own key for it; Deck's palette is in the language of the screen."""
 
-    _surroundings: Surroundings | None = None
+    _environment: AppEnvironment | None = None
 
     def __init__(
         self,
@@ -91,14 +91,14 @@ class DeckApp(App[int], Acting):
         driver_class: type[Driver] | None = None,
         journal: Journal | None = None,
         bandwidth: Bandwidth | None = None,
-        surroundings: Surroundings | None = None,
+        environment: AppEnvironment | None = None,
     ) -> None:
         """Start with `opener`, which lists and opens sessions; an empty `request` shows the picker.
 
         With a `journal`, the app survives exceptions raised by its widgets, see `tui.faults`.
         """
         super().__init__(driver_class=driver_class)
-        self._surroundings = surroundings
+        self._environment = environment
         self.faults = Faults(self, self, journal)
         self.has_begun = False
         """Whether the first frame has been drawn."""
@@ -133,8 +133,8 @@ class DeckApp(App[int], Acting):
 
     def on_mount(self) -> None:
         """Continue once the first frame has been drawn."""
-        if self._surroundings is not None:
-            self._surroundings.arrive(self)
+        if self._environment is not None:
+            self._environment.arrive(self)
         self.stall_detector.watch()
         # A short pause lets the threads that write to the terminal run.
         self.call_after_refresh(self.set_timer, 0.01, self._begin)
@@ -319,7 +319,7 @@ class DeckApp(App[int], Acting):
     @property
     def terminal_fd(self) -> int:
         """The descriptor that the driver writes to; standard output without a real terminal."""
-        return 1 if self._surroundings is None else self._surroundings.terminal_fd
+        return 1 if self._environment is None else self._environment.terminal_fd
 
     def terminal_is_gone(self) -> bool:
         """Record that the terminal is gone; nothing is written to it from now on."""
@@ -342,8 +342,8 @@ class DeckApp(App[int], Acting):
         self._remember(lesson=message.name)
 
     def _remember(self, **values: str) -> None:
-        if self._surroundings is not None:
-            self._surroundings.remember(**values)
+        if self._environment is not None:
+            self._environment.remember(**values)
 
     def get_key_display(self, binding: Binding) -> str:
         """Return how a key is written in the current language."""

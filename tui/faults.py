@@ -165,7 +165,7 @@ class Faults:
             self._app.call_later(self._net.show_safe_screen, screen)
 
 
-def bear(widget: Widget, error: Exception) -> str:
+def report_fault(widget: Widget, error: Exception) -> str:
     """Report a failure in `widget`, and return the text to be shown in its place.
 
     Raises the exception where faults are not isolated.

@@ -17,7 +17,7 @@ from textual.message_pump import MessagePump
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tui.faults import bear, faults_of
+from tui.faults import faults_of, report_fault
 
 if TYPE_CHECKING:
     from textual.geometry import Region
@@ -57,7 +57,7 @@ def _guarded_lines(self: Widget, crop: Region) -> list[Strip]:
     try:
         strips = _render_lines(self, crop)
     except Exception as error:  # noqa: BLE001 - raised again where faults are not isolated
-        words = bear(self, error)
+        words = report_fault(self, error)
         _failed.add(self)
         return _in_its_place(self, words, crop)
     if self in _failed:

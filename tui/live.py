@@ -179,7 +179,7 @@ def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = Non
             driver_class=DeckDriver,
             journal=terminal.note_fault,
             bandwidth=Bandwidth(limit),
-            surroundings=terminal,
+            environment=terminal,
         )
         app.run()
     if app.sessions.parting_words:

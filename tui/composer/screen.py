@@ -21,7 +21,7 @@ from tui.composer.sent import Sent, sent_path
 from tui.composer.templates import TEMPLATES, TemplatesDialog
 from tui.composer.verdict import JsonVerdict
 from tui.frame.screen import DeckScreen
-from tui.outcome.story import FOLLOWED, Story
+from tui.outcome.trail import FOLLOWED, OutcomeTrail
 from tui.outcome.view import Outcome
 from tui.widgets.marked_editor import TextPlace
 from tui.widgets.trouble import names
@@ -78,7 +78,7 @@ class ComposerScreen(DeckScreen):
         super().__init__()
         self._sent = Sent(sent_path())
         self._response: LlmResponse | None = None
-        self._story: Story | None = None
+        self._trail: OutcomeTrail | None = None
         self._newest: dict[str, Sample] = {}
         self._listener: TopicRow | None = None
         self._checking: Timer | None = None
@@ -116,7 +116,7 @@ class ComposerScreen(DeckScreen):
 
     def follow_topics(self) -> set[str]:
         """All topics that a message may affect, while this screen is in front or one is recent."""
-        tracing = self._story is not None and not self._story.over(clock.now())
+        tracing = self._trail is not None and not self._trail.over(clock.now())
         return set(FOLLOWED) if tracing or self.is_current else set()
 
     def on_mount(self) -> None:
@@ -133,7 +133,7 @@ class ComposerScreen(DeckScreen):
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget everything of the previous session."""
         del message
-        self._story, self._listener = None, None
+        self._trail, self._listener = None, None
         self._newest.clear()
         if self.is_current and self.feed.graph is not None:
             self.feed.graph.prepare_publisher(LLM_RAW_JSON, TYPE)
@@ -143,8 +143,8 @@ class ComposerScreen(DeckScreen):
         """Follow the outcome of the message."""
         update = message.update
         self._listener = next((row for row in update.topics if row.name == LLM_RAW_JSON), None)
-        if self._story is not None and not self._story.over(clock.now()):
-            self._story.see(update.samples)
+        if self._trail is not None and not self._trail.over(clock.now()):
+            self._trail.see(update.samples)
         for topic in FOLLOWED & update.samples.keys():
             self._newest[topic] = update.samples[topic][-1]
         self._say()
@@ -200,23 +200,23 @@ class ComposerScreen(DeckScreen):
             return
         text = self.editor.text
         self._sent.add(text)
-        self._story = Story(clock.now(), self._listeners(), self._response, self._newest)
+        self._trail = OutcomeTrail(clock.now(), self._listeners(), self._response, self._newest)
         self.topics_changed()
         future = graph.publish(LLM_RAW_JSON, TYPE, {"data": text})
         # Not awaited here: further keys wait until the action of a key has finished.
-        self.run_worker(self._confirm(self._story, future), group="send")
+        self.run_worker(self._confirm(self._trail, future), group="send")
         self._say()
 
-    async def _confirm(self, story: Story, future: Future[int]) -> None:
+    async def _confirm(self, trail: OutcomeTrail, future: Future[int]) -> None:
         try:
             await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
         except asyncio.TimeoutError:
-            story.failure = _("ROS did not accept it within {n} s").format(
+            trail.failure = _("ROS did not accept it within {n} s").format(
                 n=decimal(f"{SENT_WITHIN_S:g}")
             )
             self._say()
         except Exception as error:  # noqa: BLE001 - any failure is reported
-            story.failure = reason_words(error)
+            trail.failure = reason_words(error)
             self._say()
 
     def choose_template(self) -> None:
@@ -258,16 +258,16 @@ class ComposerScreen(DeckScreen):
         listening = ", ".join(self._listeners()) or _("nobody listens")
         self._title("#composer-to", f"{LLM_RAW_JSON} → {listening}")
         self._title("#composer-came", _("What happened"))
-        story, now_s = self._story, clock.now()
-        if story is None:
+        trail, now_s = self._trail, clock.now()
+        if trail is None:
             hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(Send)[0])
             if self.feed.replay is not None:
                 hint = _("This is a recording: nobody can hear it.")
             nothing = _("Nothing has been sent yet.")
             self.outcome.show(f"{nothing} {hint}", ())
             return
-        at = clock.time_of_day(story.sent_s)
-        self.outcome.show(_("Sent at {time}").format(time=at), story.entries(now_s))
+        at = clock.time_of_day(trail.sent_s)
+        self.outcome.show(_("Sent at {time}").format(time=at), trail.entries(now_s))
 
     def _title(self, selector: str, words: str) -> None:
         title = self.query_one(selector, Static)

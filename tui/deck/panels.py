@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate
     from tui.panels.panel import Panel
-    from tui.panels.shelf import Shelf
+    from tui.panels.panel_grid import PanelGrid
 
 SMALL = (60, 18)
 """Columns and rows of the terminal below which panels are hidden."""
@@ -26,30 +26,31 @@ SMALL = (60, 18)
 class DeckPanels:
     """Puts panels onto the `#board` of a screen, or says why there are none.
 
-    The screen has the class `-shelved` while there are panels, and `-small` while they do not fit.
+    The screen has the class `-with-panels` while there are panels, and `-small` while they do not
+    fit.
     """
 
     def __init__(self, screen: Screen[None]) -> None:
         """Start without panels."""
         self._screen = screen
-        self._shelf: Shelf | None = None
+        self._grid: PanelGrid | None = None
         self._put: set[str] = set()
         """Panels that were added for topics that others publish."""
 
     @property
     def all(self) -> Sequence[Panel]:
         """All panels, shown or not."""
-        return () if self._shelf is None else self._shelf.panels
+        return () if self._grid is None else self._grid.panels
 
     @property
     def pages(self) -> int:
         """Number of pages of panels."""
-        return 0 if self._shelf is None or self._screen.has_class("-small") else self._shelf.pages
+        return 0 if self._grid is None or self._screen.has_class("-small") else self._grid.pages
 
     def turn_page(self) -> None:
         """Show the next page of panels."""
-        if self._shelf is not None:
-            self._shelf.turn()
+        if self._grid is not None:
+            self._grid.turn()
 
     def watched(self) -> set[str]:
         """Return the topics that the panels show."""
@@ -98,21 +99,21 @@ class DeckPanels:
         """Redraw in the current language."""
         for panel in self.all:
             panel.words_changed()
-        if self._shelf is not None:
-            self._shelf.words_changed()
+        if self._grid is not None:
+            self._grid.words_changed()
         self._say_small()
 
     async def _put_up(self, names: Iterable[str]) -> None:
-        if self._shelf is not None:
-            await self._shelf.remove()
-            self._shelf = None
+        if self._grid is not None:
+            await self._grid.remove()
+            self._grid = None
         panels = [make_panel(name) for name in names if name in PANELS]
-        self._screen.set_class(bool(panels), "-shelved")
+        self._screen.set_class(bool(panels), "-with-panels")
         if panels:
-            from tui.panels.shelf import Shelf
+            from tui.panels.panel_grid import PanelGrid
 
-            self._shelf = Shelf(panels, id="shelf")
-            await self._screen.query_one("#board").mount(self._shelf, after="#nodes")
+            self._grid = PanelGrid(panels, id="panel-grid")
+            await self._screen.query_one("#board").mount(self._grid, after="#nodes")
         self._say_small()
 
     def _say_small(self) -> None:

@@ -71,28 +71,28 @@ class LessonDeck(DeckScreen):
     DEFAULT_CSS = """
     LessonDeck {
         #board { layout: grid; height: 1fr; grid-size: 1; grid-gutter: 0 1; }
-        &.-shelved #board { grid-size: 2; grid-columns: 11fr 9fr; }
+        &.-with-panels #board { grid-size: 2; grid-columns: 11fr 9fr; }
         #nodes { height: 1fr; }
         #nodes NameHead { display: none; max-height: 100%; }
-        #shelf { height: 1fr; }
+        #panel-grid { height: 1fr; }
         #talk { height: 1fr; }
         &.-flat #teleop { height: 4; }
         #command { display: none; padding: 0 1; border-top: none; background: $panel; }
         &.-driven #command { display: block; }
-        &.-home.-shelved #shelf, &.-wide.-shelved #shelf { row-span: 2; }
-        &.-recorded.-shelved #shelf { row-span: 1; }
-        &.-compact.-shelved #nodes { column-span: 2; }
-        &.-compact.-shelved #board { grid-columns: 2fr 3fr; }
+        &.-home.-with-panels #panel-grid, &.-wide.-with-panels #panel-grid { row-span: 2; }
+        &.-recorded.-with-panels #panel-grid { row-span: 1; }
+        &.-compact.-with-panels #nodes { column-span: 2; }
+        &.-compact.-with-panels #board { grid-columns: 2fr 3fr; }
         #small { display: none; height: 1; width: 1fr; color: $text-warning; }
-        &.-small #shelf { display: none; }
+        &.-small #panel-grid { display: none; }
         &.-small #board { grid-size: 1; }
-        &.-small.-shelved #small { display: block; }
+        &.-small.-with-panels #small { display: block; }
         &.-recorded #nodes, &.-recorded #talk { display: none; }
         #watched { display: none; height: auto; padding: 0 1; color: $text-muted; }
         &.-watching #watched { display: block; }
         &.-watching #nodes { display: none; }
-        &.-watching.-shelved #shelf { row-span: 1; }
-        &.-recorded.-shelved #board { grid-size: 1; grid-columns: 1fr; }
+        &.-watching.-with-panels #panel-grid { row-span: 1; }
+        &.-recorded.-with-panels #board { grid-size: 1; grid-columns: 1fr; }
     }
     """
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tui.terminal.stall_detector import KeyStallDetector
 
 
-class SessionDoor(Protocol):
+class SessionControl(Protocol):
     """Opens and closes sessions."""
 
     request: OpenRequest
@@ -73,7 +73,7 @@ class Host(KeyNames, Protocol):
         """The session and its graph."""
 
     @property
-    def sessions(self) -> SessionDoor:
+    def sessions(self) -> SessionControl:
         """Opens and closes sessions."""
 
     @property

@@ -16,7 +16,7 @@ from tui.graph.places import GraphKind, GraphPlace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tui.graph.neighbours import Neighbours, Way
+    from tui.graph.neighbours import Connection, Neighbours
 
 LEFT, CENTRE, RIGHT = 0, 1, 2
 ROOMY = 52
@@ -36,7 +36,7 @@ class MapPiece(NamedTuple):
     x: int
     text: str
     look: str = ""
-    """`name` of a way, `node`, `box`, `line`, `dim`."""
+    """`name` of a connection, `node`, `box`, `line`, `dim`."""
 
 
 class MapStop(NamedTuple):
@@ -80,10 +80,10 @@ def drawing(name: str, around: Neighbours, width: int, height: int, top: int = 0
     return drawn
 
 
-def _heights(ways: Sequence[Way], side: int, height: int) -> list[int]:
-    """Return the number of rows for each way; one more each if there is room for all."""
+def _heights(connections: Sequence[Connection], side: int, height: int) -> list[int]:
+    """Return the number of rows for each connection; one more each if there is room for all."""
     above = 0 if side >= ROOMY else 1
-    heights = [above + max(1, len(way.nodes)) for way in ways]
+    heights = [above + max(1, len(connection.nodes)) for connection in connections]
     roomy = sum(heights) + len(heights) <= height
     return [rows + 1 for rows in heights] if roomy else heights
 
@@ -102,31 +102,31 @@ def _box(drawn: MapDrawing, name: str, x: int, width: int, middle: int) -> None:
 
 def _side(
     drawn: MapDrawing,
-    ways: Sequence[Way],
+    connections: Sequence[Connection],
     heights: Sequence[int],
     side: int,
     middle: int,
     column: int,
     x: int = 0,
 ) -> None:
-    """Draw the ways of one side; on the right side, `x` is where the box ends."""
-    if not ways:
+    """Draw the connections of one side; on the right side, `x` is where the box ends."""
+    if not connections:
         words = _("hears nothing") if column == LEFT else _("says nothing")
         at = max(0, side - cell_len(words)) if column == LEFT else x + 3
         drawn.put(MapPiece(middle, at, ended(words, side), "dim"))
         return
     row = max(0, min(middle - sum(heights) // 2, drawn.height - sum(heights)))
     rows = []
-    for way, height in zip(ways, heights, strict=True):
+    for connection, height in zip(connections, heights, strict=True):
         rows.append(row)
         place = _wide if side >= ROOMY else _narrow
-        place(drawn, way, row, side, column, 0 if column == LEFT else x + 4)
+        place(drawn, connection, row, side, column, 0 if column == LEFT else x + 4)
         row += height
     _trunk(drawn, rows, middle, side if column == LEFT else x + 1, column)
 
 
 def _trunk(drawn: MapDrawing, rows: Sequence[int], middle: int, x: int, column: int) -> None:
-    """Draw the line that joins the ways of a side, and leads to the box or away from it."""
+    """Draw the line that joins the connections of a side, and leads to the box or away from it."""
     towards, away = (WEST, EAST) if column == LEFT else (EAST, WEST)
     first, last = min(*rows, middle), max(*rows, middle)
     for row in range(first, last + 1):
@@ -141,44 +141,50 @@ def _trunk(drawn: MapDrawing, rows: Sequence[int], middle: int, x: int, column: 
             drawn.put(MapPiece(row, x + 1, "▶", "line"))
 
 
-def _narrow(drawn: MapDrawing, way: Way, row: int, side: int, column: int, x: int) -> None:
-    """Draw the way, and below it the nodes at its other end."""
-    name = ended(_named(way), side - 2)
-    drawn.put(MapPiece(row, x, name, "name"), way.place, column)
+def _narrow(
+    drawn: MapDrawing, connection: Connection, row: int, side: int, column: int, x: int
+) -> None:
+    """Draw the connection, and below it the nodes at its other end."""
+    name = ended(_named(connection), side - 2)
+    drawn.put(MapPiece(row, x, name, "name"), connection.place, column)
     if column == LEFT:
         line = " " + "─" * (side - cell_len(name) - 1)
         drawn.put(MapPiece(row, cell_len(name), line, "line"))
-    for below, node in enumerate(way.nodes):
+    for below, node in enumerate(connection.nodes):
         text = ended(short(node), side - 3)
         drawn.put(
             MapPiece(row + 1 + below, x + 2, text, "node"), GraphPlace(GraphKind.NODE, node), column
         )
-    if not way.nodes:
+    if not connection.nodes:
         drawn.put(MapPiece(row + 1, x + 2, _("nobody"), "dim"))
 
 
-def _wide(drawn: MapDrawing, way: Way, row: int, side: int, column: int, x: int) -> None:
-    """Draw the way beside the nodes at its other end, each node in a row of its own."""
-    name = ended(_named(way), side // 2 - 4)
+def _wide(
+    drawn: MapDrawing, connection: Connection, row: int, side: int, column: int, x: int
+) -> None:
+    """Draw the connection beside the nodes at its other end, each node in a row of its own."""
+    name = ended(_named(connection), side // 2 - 4)
     room = side // 2 - 2
     at = x + side - side // 2 if column == LEFT else x
     if column == LEFT:
-        _nodes(drawn, way, row, x, room, column)
-    drawn.put(MapPiece(row, at, name, "name"), way.place, column)
+        _nodes(drawn, connection, row, x, room, column)
+    drawn.put(MapPiece(row, at, name, "name"), connection.place, column)
     rest = side // 2 - cell_len(name)
     if column == LEFT:
         drawn.put(MapPiece(row, at + cell_len(name), " " + "─" * (rest - 1), "line"))
     else:
-        if way.nodes:
+        if connection.nodes:
             drawn.put(MapPiece(row, at + cell_len(name), " " + "─" * (rest - 1), "line"))
-        _nodes(drawn, way, row, x + side // 2, room, column)
+        _nodes(drawn, connection, row, x + side // 2, room, column)
 
 
-def _nodes(drawn: MapDrawing, way: Way, row: int, x: int, room: int, column: int) -> None:
-    if not way.nodes:
+def _nodes(
+    drawn: MapDrawing, connection: Connection, row: int, x: int, room: int, column: int
+) -> None:
+    if not connection.nodes:
         drawn.put(MapPiece(row, x, _("nobody"), "dim"))
-    last = len(way.nodes) - 1
-    for number, node in enumerate(way.nodes):
+    last = len(connection.nodes) - 1
+    for number, node in enumerate(connection.nodes):
         at, place = row + number, GraphPlace(GraphKind.NODE, node)
         bend = (UP if number else 0) | (DOWN if number < last else 0)
         name = ended(short(node), room - 3)
@@ -195,5 +201,5 @@ def _nodes(drawn: MapDrawing, way: Way, row: int, x: int, room: int, column: int
             drawn.put(MapPiece(at, x + 3, name, "node"), place, column)
 
 
-def _named(way: Way) -> str:
-    return plain(way.place.name, LONGEST) + SIGNS.get(way.place.kind, "")
+def _named(connection: Connection) -> str:
+    return plain(connection.place.name, LONGEST) + SIGNS.get(connection.place.kind, "")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Way:
+class Connection:
     """A topic, a service or an action, and the nodes at its other end."""
 
     place: GraphPlace
@@ -24,27 +24,27 @@ class Way:
 
 @dataclass(frozen=True)
 class Neighbours:
-    """The ways that lead to a node, and those that lead away from it.
+    """The connections that lead to a node, and those that lead away from it.
 
     What it subscribes to, serves, and receives goals for leads to it; what it publishes, calls, and
     sends goals to leads away from it.
     """
 
-    heard: tuple[Way, ...] = ()
-    served: tuple[Way, ...] = ()
-    goals_taken: tuple[Way, ...] = ()
-    said: tuple[Way, ...] = ()
-    called: tuple[Way, ...] = ()
-    goals_sent: tuple[Way, ...] = ()
+    heard: tuple[Connection, ...] = ()
+    served: tuple[Connection, ...] = ()
+    goals_taken: tuple[Connection, ...] = ()
+    said: tuple[Connection, ...] = ()
+    called: tuple[Connection, ...] = ()
+    goals_sent: tuple[Connection, ...] = ()
 
     @property
-    def coming(self) -> tuple[Way, ...]:
-        """All ways to it."""
+    def coming(self) -> tuple[Connection, ...]:
+        """All connections to it."""
         return (*self.heard, *self.served, *self.goals_taken)
 
     @property
-    def going(self) -> tuple[Way, ...]:
-        """All ways from it."""
+    def going(self) -> tuple[Connection, ...]:
+        """All connections from it."""
         return (*self.said, *self.called, *self.goals_sent)
 
 
@@ -57,20 +57,20 @@ def node_called(update: GraphUpdate | None, name: str) -> NodeRow | None:
 def neighbours(update: GraphUpdate, node: NodeRow, *, everything: bool = False) -> Neighbours:
     """Return the neighbours of a node; with ROS's own topics and services if `everything`."""
 
-    def ways(kind: GraphKind, names: Iterable[str], end: str) -> tuple[Way, ...]:
+    def connections(kind: GraphKind, names: Iterable[str], end: str) -> tuple[Connection, ...]:
         return tuple(
-            Way(GraphPlace(kind, name), _with(update, end, name))
+            Connection(GraphPlace(kind, name), _with(update, end, name))
             for name in sorted(names)
             if everything or not is_housekeeping(name)
         )
 
     return Neighbours(
-        heard=ways(GraphKind.TOPIC, node.subscribes, "publishes"),
-        served=ways(GraphKind.SERVICE, node.services, "clients"),
-        goals_taken=ways(GraphKind.ACTION, node.action_servers, "action_clients"),
-        said=ways(GraphKind.TOPIC, node.publishes, "subscribes"),
-        called=ways(GraphKind.SERVICE, node.clients, "services"),
-        goals_sent=ways(GraphKind.ACTION, node.action_clients, "action_servers"),
+        heard=connections(GraphKind.TOPIC, node.subscribes, "publishes"),
+        served=connections(GraphKind.SERVICE, node.services, "clients"),
+        goals_taken=connections(GraphKind.ACTION, node.action_servers, "action_clients"),
+        said=connections(GraphKind.TOPIC, node.publishes, "subscribes"),
+        called=connections(GraphKind.SERVICE, node.clients, "services"),
+        goals_sent=connections(GraphKind.ACTION, node.action_clients, "action_servers"),
     )
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate, NodeRow
     from launcher.status import NodeStatus
-    from tui.graph.neighbours import Way
+    from tui.graph.neighbours import Connection
     from tui.widgets.rows import Row
 
 
@@ -146,7 +146,7 @@ def _gone_words(ours: bool) -> str:
 def node_rows(update: GraphUpdate, node: NodeRow, *, everything: bool) -> list[Row]:
     """Return a section for each kind of connection that the node has."""
     around = neighbours(update, node, everything=everything)
-    sections: tuple[tuple[str, str, tuple[Way, ...], str], ...] = (
+    sections: tuple[tuple[str, str, tuple[Connection, ...], str], ...] = (
         ("says", _("Publishes"), around.said, "→"),
         ("hears", _("Subscribes to"), around.heard, "←"),
         ("serves", _("Serves"), around.served, "←"),
@@ -155,16 +155,19 @@ def node_rows(update: GraphUpdate, node: NodeRow, *, everything: bool) -> list[R
         ("sends", _("Sends goals to"), around.goals_sent, "→"),
     )
     rows: list[Row] = []
-    for section, title, ways, arrow in sections:
-        if ways:
+    for section, title, connections, arrow in sections:
+        if connections:
             rows.append(heading(title))
-            rows += [link(way.place, section, _with(way, arrow)) for way in ways]
+            rows += [
+                link(connection.place, section, _with(connection, arrow))
+                for connection in connections
+            ]
     return rows
 
 
-def _with(way: Way, arrow: str) -> str:
+def _with(connection: Connection, arrow: str) -> str:
     """Return who is at the other end; for a topic, say so if there is nobody."""
-    names = ", ".join(short(name) for name in way.nodes)
+    names = ", ".join(short(name) for name in connection.nodes)
     return f"{arrow} {names}" if names else _("nobody")
 
 

@@ -17,7 +17,7 @@ from text.i18n import _
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tui.outcome.story import OutcomeEntry
+    from tui.outcome.trail import OutcomeEntry
 
 DELAY, MARK, TOPIC = 8, 3, 18
 """Cells for the delay, for the mark between its blanks, and for the name of the topic."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from text.i18n import _
 from text.plain import plain
 from tui.panels.other_type import other_type
-from tui.widgets.drawing import Instead
+from tui.widgets.drawing import Placeholder
 
 if TYPE_CHECKING:
     from graph.data import Sample
@@ -37,7 +37,7 @@ class Joints:
             self._other = sample
 
     @property
-    def instead(self) -> Instead | None:
+    def placeholder(self) -> Placeholder | None:
         """What to show instead of values: which joints are received, and which are expected."""
         sample = self._other
         if sample is None:
@@ -53,4 +53,4 @@ class Joints:
         else:
             came = _("{topic}: {names} have come").format(topic=self._topic, names=names)
         awaited = _("expected: {names}").format(names=", ".join(self._awaited))
-        return Instead(_("messages come, but with other joint names"), f"{came}; {awaited}")
+        return Placeholder(_("messages come, but with other joint names"), f"{came}; {awaited}")

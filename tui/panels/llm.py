@@ -9,7 +9,7 @@ from text.i18n import N_, _
 from tui import clock
 from tui.frame.actions.app import ShowComposer
 from tui.frame.host import host_of
-from tui.outcome.story import FOLLOWED, Story
+from tui.outcome.trail import FOLLOWED, OutcomeTrail
 from tui.outcome.view import Outcome
 from tui.panels.panel import Panel, row_of
 
@@ -30,7 +30,7 @@ class LlmPanel(Panel):
 
     def __init__(self) -> None:
         super().__init__()
-        self._story: Story | None = None
+        self._trail: OutcomeTrail | None = None
         self._newest: dict[str, Sample] = {}
 
     def compose(self) -> ComposeResult:
@@ -51,9 +51,9 @@ class LlmPanel(Panel):
             row = row_of(update, LLM_RAW_JSON)
             listeners = [str(row.subscribers)] if row is not None and row.subscribers else []
             expected = _read(str(sample.value.get("data", "")))
-            self._story = Story(sample.received_s, listeners, expected, self._newest)
-        if self._story is not None and not self._story.over(clock.now()):
-            self._story.see(update.samples)
+            self._trail = OutcomeTrail(sample.received_s, listeners, expected, self._newest)
+        if self._trail is not None and not self._trail.over(clock.now()):
+            self._trail.see(update.samples)
         self._newest.update(
             {topic: update.samples[topic][-1] for topic in FOLLOWED & update.samples.keys()}
         )
@@ -65,14 +65,14 @@ class LlmPanel(Panel):
         self._say()
 
     def _say(self) -> None:
-        trail = self.query_one(Outcome)
-        if self._story is None:
+        outcome = self.query_one(Outcome)
+        if self._trail is None:
             key = host_of(self).keys_of(ShowComposer)[0]
-            trail.show(_("Nothing has come yet; {key} opens the Composer.").format(key=key), ())
+            outcome.show(_("Nothing has come yet; {key} opens the Composer.").format(key=key), ())
             return
-        at = clock.time_of_day(self._story.sent_s)
-        entries = self._story.entries(clock.now())
-        trail.show(_("Came at {time}").format(time=at), entries)
+        at = clock.time_of_day(self._trail.sent_s)
+        entries = self._trail.entries(clock.now())
+        outcome.show(_("Came at {time}").format(time=at), entries)
 
 
 def _read(text: str) -> LlmResponse | None:

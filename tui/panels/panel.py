@@ -12,7 +12,7 @@ from textual.content import Content
 from graph.data import Trouble
 from text.i18n import _
 from text.plain import plain
-from tui.faults import bear
+from tui.faults import report_fault
 
 if TYPE_CHECKING:
     from textual.visual import VisualType
@@ -43,7 +43,7 @@ class Panel(Vertical):
     weight: ClassVar[int] = 2
     """Its share of the remaining rows."""
     across_below: ClassVar[int] = 0
-    """Width of the shelf below which the panel has a row to itself."""
+    """Width of the grid below which the panel has a row to itself."""
 
     _source = ""
     _pages: Sequence[str] = ()
@@ -108,7 +108,7 @@ class Panel(Vertical):
         try:
             (self.show if seen else self.keep)(update)
         except Exception as error:  # noqa: BLE001 - raised again where faults are not isolated
-            self.show_fault(bear(self, error))
+            self.show_fault(report_fault(self, error))
         else:
             self.show_fault("")
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 MARK = 2
 MOST_PAIRS = 12
 LONGEST = 400
-FITS, MISFIT = "✓", "✗"
+FITS, MISMATCH = "✓", "✗"
 LONGEST_NAME = 256
 WIDEST_NODE = 44
 
@@ -38,7 +38,7 @@ class Pair:
     mismatch: Mismatch
 
 
-def misfits(row: TopicRow) -> list[Pair]:
+def mismatched_pairs(row: TopicRow) -> list[Pair]:
     """Return every incompatible pair of the same type."""
     return [
         Pair(publisher, subscriber, found)
@@ -51,7 +51,7 @@ def misfits(row: TopicRow) -> list[Pair]:
 
 def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
     """Return the topic's endpoints in this width: what to fix, publishers, subscribers."""
-    pairs = misfits(row)
+    pairs = mismatched_pairs(row)
     disagree = len(_types(row)) > 1
     columns = columns_for(width - MARK)
     lines = [*_types_lines(row, width)] if disagree else []
@@ -89,7 +89,7 @@ def _types(row: TopicRow) -> list[str]:
 
 def _types_lines(row: TopicRow, width: int) -> Iterator[Line]:
     words = _("Peers disagree about the type; a message passes only where both have the same.")
-    yield from _wrapped(MISFIT, words, width, "bad")
+    yield from _wrapped(MISMATCH, words, width, "bad")
     for type_name in _types(row):
         publishers = [end for end in row.published_by if end.type_name == type_name]
         subscribers = [end for end in row.subscribed_by if end.type_name == type_name]
@@ -106,7 +106,7 @@ def _pair_lines(pairs: Sequence[Pair], width: int) -> list[Line]:
     told = list(dict.fromkeys(pair_words(pair.mismatch.facts()) for pair in pairs))
     lines: list[Line] = []
     for words in told[:MOST_PAIRS]:
-        lines += _wrapped(MISFIT, words, width, "bad")
+        lines += _wrapped(MISMATCH, words, width, "bad")
     rest = len(told) - MOST_PAIRS
     if rest > 0:
         more = ngettext("… and {n} more pair", "… and {n} more pairs", rest).format(n=rest)
@@ -128,7 +128,7 @@ def _end_lines(
     *,
     with_type: bool,
 ) -> Iterator[Line]:
-    mark = Ink(f"{MISFIT} ", "bad") if bad else Ink(" " * MARK)
+    mark = Ink(f"{MISMATCH} ", "bad") if bad else Ink(" " * MARK)
     looks = ["bad" if column.id in bad else "" for column in columns]
     texts = [column.text(end) for column in columns]
     yield [mark, *_cells(texts, columns, looks)]

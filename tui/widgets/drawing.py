@@ -19,7 +19,7 @@ from textual.widget import Widget
 from graph.data import Trouble
 from text.i18n import _
 from text.plain import plain
-from tui.faults import bear
+from tui.faults import report_fault
 from tui.widgets.one_style import OneStyle
 from tui.widgets.trouble import no_data_words, trouble_words
 from tui.widgets.words import word_strips
@@ -39,7 +39,7 @@ class Ink(NamedTuple):
 Line = list[Ink]
 
 
-class Instead(NamedTuple):
+class Placeholder(NamedTuple):
     """Words in place of values, when messages arrive but do not contain them."""
 
     headline: str
@@ -75,7 +75,7 @@ class Drawing(OneStyle, Widget):
         self._trouble: Trouble | None = None
         self._detail = ""
         self._age_s: float | None = None
-        self._instead: Instead | None = None
+        self._placeholder: Placeholder | None = None
         self._styles: dict[str, Style] = {}
         self._drawn_in = Size(0, 0)
         """The size for which the lines were drawn."""
@@ -101,16 +101,16 @@ class Drawing(OneStyle, Widget):
             self._trouble, self._detail, self._age_s = state
             self.redraw()
 
-    def show_instead(self, words: Instead | None) -> None:
+    def show_placeholder(self, words: Placeholder | None) -> None:
         """Show these words in place of outdated values; if empty, show values again."""
-        if words != self._instead:
-            self._instead = words
+        if words != self._placeholder:
+            self._placeholder = words
             self.redraw()
 
     @property
     def draws(self) -> bool:
         """Whether values are drawn, rather than words in place of them."""
-        return self.has_value and self._instead is None
+        return self.has_value and self._placeholder is None
 
     @property
     def stale(self) -> bool:
@@ -152,7 +152,7 @@ class Drawing(OneStyle, Widget):
         try:
             lines = self.draw(width, height)[:height]
         except Exception as error:  # noqa: BLE001 - raised again where faults are not isolated
-            self._fault = bear(self, error)
+            self._fault = report_fault(self, error)
             return []
         return [_greyed(line) for line in lines] if self.stale else lines
 
@@ -196,8 +196,8 @@ class Drawing(OneStyle, Widget):
         if self._trouble is not None:
             headline = trouble_words(self._trouble, self._age_s)
         words = (headline, plain(self._detail, 400))
-        if self._instead is not None and self._trouble is None:
-            words = self._instead
+        if self._placeholder is not None and self._trouble is None:
+            words = self._placeholder
         if self._fault:
             words = (self._fault, "")
         strips = word_strips(words, width, self.rich_style, self.app.console, centred=True)

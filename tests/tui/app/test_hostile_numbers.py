@@ -25,7 +25,7 @@ from tui.frame.screen import DeckScreen
 from tui.outcome.view import delay_text
 from tui.panels.head.reading import HeadReading, head_in
 from tui.panels.head.widget import HeadView
-from tui.panels.map.reading import goal_in, ground_in, pose_in
+from tui.panels.map.reading import goal_in, occupancy_in, pose_in
 from tui.panels.map.widget import RoomMap
 from tui.panels.registry import PANELS
 from tui.panels.sonar.widget import Sonar
@@ -119,9 +119,9 @@ def test_maps_are_drawn(poses: list[Any], room: Any, goal: Any, rays: list[float
         if found is not None:
             view.show_pose(*found)
             view.show_truth(found[0])
-        ground = ground_in(room)
-        if ground is not None:
-            view.show_ground(ground)
+        occupancy = occupancy_in(room)
+        if occupancy is not None:
+            view.show_occupancy(occupancy)
         view.show_goal(goal_in(goal))
         for place, metres in zip(("front", "rear"), rays, strict=False):
             view.show_ray(place, metres)

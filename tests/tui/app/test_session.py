@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from textual.pilot import Pilot
 
 
-class Surroundings:
+class AppEnvironment:
     """Notes what it is to remember."""
 
     terminal_fd = 1
@@ -145,8 +145,8 @@ async def test_one_that_is_opened_while_another_is_closed_waits_for_that() -> No
 async def test_the_lesson_that_was_started_is_remembered_one_attached_to_is_not(
     order: OpenRequest, lesson: str | None
 ) -> None:
-    around = Surroundings()
-    app = DeckApp(RecordedOpener(), order, "deck", surroundings=around)
+    around = AppEnvironment()
+    app = DeckApp(RecordedOpener(), order, "deck", environment=around)
     async with app.run_test() as pilot:
         await settle(pilot)
         assert app.feed.session is SESSION

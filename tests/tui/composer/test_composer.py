@@ -19,7 +19,7 @@ from tui import clock
 from tui.composer.screen import ComposerScreen
 from tui.composer.sent import KEPT, Sent, sent_path
 from tui.composer.templates import TEMPLATES, TemplatesDialog
-from tui.outcome.story import FOLLOWED
+from tui.outcome.trail import FOLLOWED
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,7 +13,7 @@ from graph.data import Sample
 from robot.commands.schema import parse_llm
 from tests.tui.recorded import NOW_S, joints, sample
 from text.i18n import set_language
-from tui.outcome.story import OutcomeEntry, Story
+from tui.outcome.trail import OutcomeEntry, OutcomeTrail
 from tui.outcome.view import Outcome, delay_text
 
 SENT_S = NOW_S + 100
@@ -54,19 +54,19 @@ def safety(message: str) -> Sample:
     return sample("/safety_state", "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
 
 
-def told(story: Story, after_s: float = 1.0) -> list[tuple[str, str, str]]:
-    return [(entry.mark, entry.topic, entry.text) for entry in story.entries(SENT_S + after_s)]
+def told(trail: OutcomeTrail, after_s: float = 1.0) -> list[tuple[str, str, str]]:
+    return [(entry.mark, entry.topic, entry.text) for entry in trail.entries(SENT_S + after_s)]
 
 
 def begun(
     before: dict[str, Sample] | None = None, listeners: tuple[str, ...] = ("llm_parser",)
-) -> Story:
-    return Story(SENT_S, listeners, LOOK_AND_DRIVE, before or {})
+) -> OutcomeTrail:
+    return OutcomeTrail(SENT_S, listeners, LOOK_AND_DRIVE, before or {})
 
 
 def test_the_trail_of_a_message_is_told_in_order_with_its_delays() -> None:
-    story = begun({"/wheel_commands": wheels(0.0, 0.0)})
-    story.see(
+    trail = begun({"/wheel_commands": wheels(0.0, 0.0)})
+    trail.see(
         {
             "/wheel_commands": [at(0.005, wheels(0.0, 0.0)), at(0.031, wheels(6.2, 5.1))],
             "/drive": [at(0.015, drive("/drive", 0.2, -0.3))],
@@ -74,14 +74,14 @@ def test_the_trail_of_a_message_is_told_in_order_with_its_delays() -> None:
             "/llm_result": [at(0.012, result(event="accepted", commands=2, thought="I look"))],
         }
     )
-    story.see(
+    trail.see(
         {
             "/head_state": [at(0.5, head(-0.3, 0.1)), at(1.01, head(-0.785, 0.175))],
             "/llm_result": [at(1.043, result(event="head", pan=-45, tilt=10, sum=1))],
         }
     )
-    entries = story.entries(SENT_S + 2)
-    assert told(story) == [
+    entries = trail.entries(SENT_S + 2)
+    assert told(trail) == [
         ("✓", "/llm_result", "accepted: 2 commands “I look”"),
         ("→", "/drive", "0.20 m/s, -0.30 rad, to the right"),
         ("✓", "/drive_safe", "let through"),
@@ -95,10 +95,10 @@ def test_the_trail_of_a_message_is_told_in_order_with_its_delays() -> None:
 
 
 def test_a_refusal_names_every_place_and_nothing_is_awaited() -> None:
-    story = Story(SENT_S, ("llm_parser",), None, {})
+    trail = OutcomeTrail(SENT_S, ("llm_parser",), None, {})
     problem = {"field": "commands[0].speed", "line": 4, "column": 33, "message": "must be small"}
-    story.see({"/llm_result": [at(0.01, result(event="refused", problems=[problem]))]})
-    assert told(story, 10.0) == [
+    trail.see({"/llm_result": [at(0.01, result(event="refused", problems=[problem]))]})
+    assert told(trail, 10.0) == [
         ("✗", "/llm_result", "refused: nothing of it is executed"),
         ("✗", "/llm_result", "line 4, column 33: commands[0].speed: must be small"),
     ]
@@ -106,20 +106,20 @@ def test_a_refusal_names_every_place_and_nothing_is_awaited() -> None:
 
 def test_a_refusal_is_said_in_the_language_of_the_screen() -> None:
     set_language("ru")
-    story = Story(SENT_S, ("llm_parser",), None, {})
+    trail = OutcomeTrail(SENT_S, ("llm_parser",), None, {})
     problem = {
         "field": "commands[0].speed", "line": 4, "column": 33, "message": "must be a number",
         "code": "number", "args": {},
     }  # fmt: skip
-    story.see({"/llm_result": [at(0.01, result(event="refused", problems=[problem]))]})
-    assert told(story)[1][2].startswith("строка 4, столбец 33: commands[0].speed: ")
-    assert "must" not in told(story)[1][2]
+    trail.see({"/llm_result": [at(0.01, result(event="refused", problems=[problem]))]})
+    assert told(trail)[1][2].startswith("строка 4, столбец 33: commands[0].speed: ")
+    assert "must" not in told(trail)[1][2]
 
 
 def test_silence_is_awaited_for_three_seconds_and_then_told() -> None:
-    story = begun()
-    assert told(story, 2.9) == [("·", "/llm_result", "waiting for an answer")]
-    mark, _topic, text = told(story, 3.0)[0]
+    trail = begun()
+    assert told(trail, 2.9) == [("·", "/llm_result", "waiting for an answer")]
+    mark, _topic, text = told(trail, 3.0)[0]
     assert mark == "✗"
     assert text == "no answer within 3 s: is llm_parser running? Listening: llm_parser"
 
@@ -131,16 +131,16 @@ def test_nobody_who_listens_is_told_at_once() -> None:
 
 
 def test_a_parser_that_does_not_report_is_no_silence() -> None:
-    story = begun()
-    story.see({"/drive": [at(0.02, drive("/drive", 0.2, -0.3))]})
-    assert told(story, 4.0)[-1] == (
+    trail = begun()
+    trail.see({"/drive": [at(0.02, drive("/drive", 0.2, -0.3))]})
+    assert told(trail, 4.0)[-1] == (
         "·", "/llm_result", "no reply: this parser does not report",
     )  # fmt: skip
 
 
 def test_what_safety_holds_back_is_told_with_its_reason() -> None:
-    story = begun({"/drive_safe": drive("/drive_safe", 0.0, 0.0)})
-    story.see(
+    trail = begun({"/drive_safe": drive("/drive_safe", 0.0, 0.0)})
+    trail.see(
         {
             "/drive": [at(0.02, drive("/drive", 0.2, -0.3))],
             "/drive_safe": [
@@ -150,23 +150,23 @@ def test_what_safety_holds_back_is_told_with_its_reason() -> None:
             "/safety_state": [at(0.41, safety("obstacle at 0.3 m"))],
         }
     )
-    assert ("!", "/drive_safe", "held back to 0.00 m/s, -0.30 rad, to the right") in told(story)
-    assert ("!", "/safety_state", "obstacle at 0.3 m") in told(story)
+    assert ("!", "/drive_safe", "held back to 0.00 m/s, -0.30 rad, to the right") in told(trail)
+    assert ("!", "/safety_state", "obstacle at 0.3 m") in told(trail)
 
 
 def test_the_same_command_again_is_not_taken_for_silence_of_the_wheels() -> None:
-    story = begun({"/wheel_commands": wheels(6.2, 5.1)})
-    story.see({"/drive": [at(0.02, drive("/drive", 0.2, -0.3))]})
-    story.see({"/wheel_commands": [at(delay, wheels(6.2, 5.1)) for delay in (0.1, 0.2, 0.4)]})
+    trail = begun({"/wheel_commands": wheels(6.2, 5.1)})
+    trail.see({"/drive": [at(0.02, drive("/drive", 0.2, -0.3))]})
+    trail.see({"/wheel_commands": [at(delay, wheels(6.2, 5.1)) for delay in (0.1, 0.2, 0.4)]})
     assert [
-        entry.delay_s for entry in story.entries(SENT_S) if entry.topic == "/wheel_commands"
+        entry.delay_s for entry in trail.entries(SENT_S) if entry.topic == "/wheel_commands"
     ] == [pytest.approx(0.4)]
 
 
 def test_what_came_before_the_sending_is_no_part_of_it() -> None:
-    story = begun()
-    story.see({"/drive": [at(-0.2, drive("/drive", 0.5, 0.0))]})
-    assert told(story) == [("·", "/llm_result", "waiting for an answer")]
+    trail = begun()
+    trail.see({"/drive": [at(-0.2, drive("/drive", 0.5, 0.0))]})
+    assert told(trail) == [("·", "/llm_result", "waiting for an answer")]
 
 
 @pytest.mark.parametrize(
@@ -176,17 +176,17 @@ def test_what_came_before_the_sending_is_no_part_of_it() -> None:
      '{"event": "accepted", "commands": "many"}', '{"event": "head"}', "[" * 100_000],
 )  # fmt: skip
 def test_any_words_on_the_result_topic_are_survived(data: str) -> None:
-    story = begun()
-    story.see({"/llm_result": [at(0.1, sample("/llm_result", "", {"data": data}))]})
-    assert story.entries(SENT_S + 9)
+    trail = begun()
+    trail.see({"/llm_result": [at(0.1, sample("/llm_result", "", {"data": data}))]})
+    assert trail.entries(SENT_S + 9)
 
 
 def test_messages_of_another_shape_are_survived() -> None:
-    story = begun()
+    trail = begun()
     odd: dict[str, Any] = {"drive": 5, "name": None, "velocity": "x", "status": 3}
     topics = ("/drive", "/drive_safe", "/wheel_commands", "/head_state", "/safety_state")
-    story.see({topic: [at(0.1 * n, sample(topic, "", odd))] for n, topic in enumerate(topics, 1)})
-    assert story.entries(SENT_S + 9)
+    trail.see({topic: [at(0.1 * n, sample(topic, "", odd))] for n, topic in enumerate(topics, 1)})
+    assert trail.entries(SENT_S + 9)
 
 
 class OutcomeApp(App[None]):

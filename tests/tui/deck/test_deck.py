@@ -36,7 +36,7 @@ from tui.outcome.view import Outcome
 from tui.panels.camera import CameraPanel
 from tui.panels.head.panel import HeadPanel
 from tui.panels.llm import LlmPanel
-from tui.panels.shelf import Shelf, heights, in_rows, paged
+from tui.panels.panel_grid import PanelGrid, heights, in_rows, paged
 from tui.panels.sonar.panel import SonarPanel
 from tui.panels.sonar.widget import Sonar, SonarView
 from tui.panels.voice.panel import VoicePanel
@@ -281,17 +281,17 @@ async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_field() -> 
 
 async def test_on_a_small_terminal_the_panels_come_page_by_page() -> None:
     async with opened(size=(80, 24)) as (app, pilot):
-        shelf = app.screen.query_one(Shelf)
+        grid = app.screen.query_one(PanelGrid)
 
         def shown() -> list[str]:
-            return [type(panel).__name__ for panel in shelf.panels if panel.display]
+            return [type(panel).__name__ for panel in grid.panels if panel.display]
 
         first = shown()
         assert 0 < len(first) < 5
         await pilot.press("v")
         await pilot.pause()
         assert set(first).isdisjoint(shown())
-        await pilot.click(Shelf, offset=(5, 0))
+        await pilot.click(PanelGrid, offset=(5, 0))
         await pilot.pause()
         assert shown() == first
 
@@ -342,7 +342,7 @@ async def test_panels_of_a_window_that_grew_lie_as_in_one_that_was_large(
     first: tuple[int, int],
 ) -> None:
     def places(app: DeckApp) -> list[object]:
-        return [panel.region for panel in app.screen.query_one(Shelf).panels]
+        return [panel.region for panel in app.screen.query_one(PanelGrid).panels]
 
     async with opened(size=(200, 60)) as (app, _pilot):
         large = places(app)
@@ -364,7 +364,7 @@ async def test_any_size_is_survived() -> None:
 async def test_a_terminal_too_small_for_panels_says_so() -> None:
     async with opened(size=(50, 30)) as (app, _pilot):
         assert app.screen.query_one("#small").display
-        assert not app.screen.query_one(Shelf).display
+        assert not app.screen.query_one(PanelGrid).display
 
 
 @pytest.mark.parametrize(

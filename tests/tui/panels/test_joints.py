@@ -104,23 +104,23 @@ async def test_a_sonar_of_another_type_is_told_and_not_waited_for() -> None:
 
 
 def test_a_joint_state_of_another_type_is_told() -> None:
-    told = heard((sample(TOPIC, "std_msgs/msg/String", {"data": "x"}), 5.0)).instead
+    told = heard((sample(TOPIC, "std_msgs/msg/String", {"data": "x"}), 5.0)).placeholder
     assert told is not None
     assert told.detail == f"{TOPIC}: std_msgs/String comes; expected: sensor_msgs/JointState"
 
 
 def test_values_give_way_once_nothing_but_other_joints_comes() -> None:
-    assert heard((READ, 5.0)).instead is None
-    assert heard((READ, 5.0), (OTHER, 5.0 + ANOTHER_S / 2)).instead is None
-    told = heard((READ, 5.0), (OTHER, 5.0 + ANOTHER_S)).instead
+    assert heard((READ, 5.0)).placeholder is None
+    assert heard((READ, 5.0), (OTHER, 5.0 + ANOTHER_S / 2)).placeholder is None
+    told = heard((READ, 5.0), (OTHER, 5.0 + ANOTHER_S)).placeholder
     assert told is not None
     assert "left_wheel" in told.detail
-    assert heard((OTHER, 5.0), (READ, 5.1)).instead is None
+    assert heard((OTHER, 5.0), (READ, 5.1)).placeholder is None
 
 
 @pytest.mark.parametrize("names", [None, 7, "text", ["\x1b[31mred", "[b]bold[/b]"]])
 def test_hostile_names_do_no_harm(names: Any) -> None:
     bad = replace(OTHER, value={"name": names})
-    told = heard((bad, 5.0)).instead
+    told = heard((bad, 5.0)).placeholder
     assert told is not None
     assert "\x1b" not in told.detail

@@ -17,7 +17,7 @@ from tui.panels.map.canvas import Canvas
 from tui.panels.map.driven_path import LEAST_M, MOST, DrivenPath
 from tui.panels.map.layers import Layers
 from tui.panels.map.legend import column, entries, rows, scale_bar
-from tui.panels.map.reading import Ground, goal_in, ground_in, pose_in
+from tui.panels.map.reading import OccupancyGrid, goal_in, occupancy_in, pose_in
 from tui.panels.map.scene import FRONT, REAR, Scene, draw_scene, robot_corners
 from tui.panels.map.viewport import Extent, Viewport, bar_length_m, fitted
 from tui.widgets.drawing import Line, cells_of
@@ -132,11 +132,11 @@ def test_nothing_in_range_is_an_open_cone_and_no_reading_a_broken_mark() -> None
 
 @pytest.mark.parametrize("size", [(12, 5), (40, 16), (180, 80)])
 def test_the_walls_are_where_the_room_has_them(size: tuple[int, int]) -> None:
-    ground = ground_in(grid_message())
-    assert ground is not None
-    assert ground.extent is not None
-    view = fitted(ground.extent, *size)
-    lines = Layers().canvas(view, ground, DrivenPath()).lines()
+    occupancy = occupancy_in(grid_message())
+    assert occupancy is not None
+    assert occupancy.extent is not None
+    view = fitted(occupancy.extent, *size)
+    lines = Layers().canvas(view, occupancy, DrivenPath()).lines()
     texts = ["".join(ink.text for ink in line) for line in lines]
     for x_m, y_m, stands in (
         (4.0, 0.0, True),
@@ -155,11 +155,12 @@ def test_a_turned_map_is_turned() -> None:
     }
     cells = np.array([[0, 0, 100]], dtype=np.int8)
     info = {"height": 1, "width": 3, "resolution": 1.0, "origin": turned}
-    ground = ground_in({"header": {"frame_id": "map"}, "info": info, "data": cells.ravel()})
-    assert ground is not None
-    assert ground.extent is not None
-    assert (ground.extent.left_m, ground.extent.top_m) == pytest.approx((-1.0, 3.0))
-    assert ground.occupied_at(np.array([-0.5, 2.5]), np.array([2.5, 0.5])).tolist() == [True, False]
+    occupancy = occupancy_in({"header": {"frame_id": "map"}, "info": info, "data": cells.ravel()})
+    assert occupancy is not None
+    assert occupancy.extent is not None
+    assert (occupancy.extent.left_m, occupancy.extent.top_m) == pytest.approx((-1.0, 3.0))
+    occupied = occupancy.occupied_at(np.array([-0.5, 2.5]), np.array([2.5, 0.5]))
+    assert occupied.tolist() == [True, False]
 
 
 def test_the_path_is_drawn_on_as_it_would_be_drawn_at_once() -> None:
@@ -229,19 +230,19 @@ def test_what_is_no_place_is_none(value: dict[str, Any]) -> None:
     [{"resolution": 0.0}, {"resolution": math.nan}, {"width": 3}, {"height": -1}, {"origin": {}}],
 )
 def test_a_map_that_makes_no_sense_is_none(more: dict[str, Any]) -> None:
-    assert ground_in(grid_message(**more)) is None
-    assert ground_in({}) is None
-    assert isinstance(ground_in(grid_message()), Ground)
+    assert occupancy_in(grid_message(**more)) is None
+    assert occupancy_in({}) is None
+    assert isinstance(occupancy_in(grid_message()), OccupancyGrid)
 
 
 def test_a_huge_map_is_looked_at_coarsely_and_one_of_nothing_has_no_extent() -> None:
     cells = np.full(3000 * 3000, -1, dtype=np.int8)
     info = {"height": 3000, "width": 3000, "resolution": 0.1, "origin": NEST}
-    ground = ground_in({"header": {"frame_id": "map"}, "info": info, "data": cells})
-    assert ground is not None
-    assert ground.extent is None
-    assert ground.cell_m == pytest.approx(0.2)
-    assert ground.cells.size <= 4_000_000
+    occupancy = occupancy_in({"header": {"frame_id": "map"}, "info": info, "data": cells})
+    assert occupancy is not None
+    assert occupancy.extent is None
+    assert occupancy.cell_m == pytest.approx(0.2)
+    assert occupancy.cells.size <= 4_000_000
 
 
 # ---------------------------------------------------------------- the legend

@@ -50,7 +50,7 @@ class HeadPanel(Panel):
             if pose is not None:
                 drawing.show(pose)
             self._joints.hear(sample, read=pose is not None)
-        drawing.show_instead(self._joints.instead)
+        drawing.show_placeholder(self._joints.placeholder)
         for sample in update.samples.get(LLM_RESULT, ()):
             self._hear(str(sample.value.get("data", "")))
         drawing.show_trouble(*trouble_of(update, HEAD_STATE))

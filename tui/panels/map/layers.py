@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tui.panels.map.canvas import Canvas
-from tui.panels.map.scene import draw_grid, draw_ground, draw_path, grid_step_m
+from tui.panels.map.scene import draw_grid, draw_occupancy, draw_path, grid_step_m
 
 if TYPE_CHECKING:
     from tui.panels.map.driven_path import DrivenPath
-    from tui.panels.map.reading import Ground
+    from tui.panels.map.reading import OccupancyGrid
     from tui.panels.map.viewport import Viewport
 
 
@@ -18,19 +18,19 @@ class Layers:
 
     def __init__(self) -> None:
         self._canvas = Canvas(1, 1)
-        self._drawn: tuple[Viewport, Ground | None, DrivenPath, int] | None = None
+        self._drawn: tuple[Viewport, OccupancyGrid | None, DrivenPath, int] | None = None
         self._done = (0, 0)
         """Number of pieces of the path that have been drawn, and of points in the last of them."""
 
-    def canvas(self, view: Viewport, ground: Ground | None, trail: DrivenPath) -> Canvas:
+    def canvas(self, view: Viewport, occupancy: OccupancyGrid | None, trail: DrivenPath) -> Canvas:
         """Return a copy with grid, room and path, to draw the rest on."""
-        wanted = (view, ground, trail, trail.revision)
+        wanted = (view, occupancy, trail, trail.revision)
         if wanted != self._drawn:
             self._drawn, self._done = wanted, (0, 0)
             self._canvas = Canvas(view.columns, view.rows)
             draw_grid(self._canvas, view, grid_step_m(view))
-            if ground is not None:
-                draw_ground(self._canvas, view, ground)
+            if occupancy is not None:
+                draw_occupancy(self._canvas, view, occupancy)
         self._go_on(view, trail)
         return self._canvas.copy()
 

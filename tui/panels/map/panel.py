@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from graph.data import Trouble
 from robot.topics import GOAL_POSE, MAP, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.i18n import N_, _
-from tui.panels.map.reading import goal_in, ground_in, pose_in
+from tui.panels.map.reading import goal_in, occupancy_in, pose_in
 from tui.panels.map.scene import FRONT, REAR
 from tui.panels.map.widget import RoomMap
 from tui.panels.other_type import other_type
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
-    from tui.widgets.drawing import Instead
+    from tui.widgets.drawing import Placeholder
 
 TYPES = {ODOMETRY: "nav_msgs/msg/Odometry", MOCK_POSE: "geometry_msgs/msg/PoseStamped"}
 SONARS = {FRONT: SONAR_FRONT, REAR: SONAR_REAR}
@@ -39,7 +39,7 @@ class MapPanel(Panel):
         self._pose_topic = ""
         """The topic of the pose; empty until there is one."""
         self._heard_s = -math.inf
-        self._instead: Instead | None = None
+        self._placeholder: Placeholder | None = None
         self._bounds = COURSE
 
     def compose(self) -> ComposeResult:
@@ -65,9 +65,9 @@ class MapPanel(Panel):
         drawing = self.query_one(RoomMap)
         self._choose_pose(update, drawing)
         room = newest(update, MAP)
-        ground = None if room is None else ground_in(room.value)
-        if ground is not None:
-            drawing.show_ground(ground)
+        occupancy = None if room is None else occupancy_in(room.value)
+        if occupancy is not None:
+            drawing.show_occupancy(occupancy)
         self._show_goal(update, drawing)
         self._bounds = bounds_of(update, self._bounds)
         drawing.show_bounds(self._bounds)
@@ -76,7 +76,7 @@ class MapPanel(Panel):
         self._show_pose(update, drawing)
         self._show_truth(update, drawing)
         drawing.settle()
-        drawing.show_instead(self._instead)
+        drawing.show_placeholder(self._placeholder)
         drawing.show_trouble(*self._trouble(update))
 
     def _choose_pose(self, update: GraphUpdate, drawing: RoomMap) -> None:
@@ -87,16 +87,16 @@ class MapPanel(Panel):
         if self._pose_topic:
             drawing.forget_path()
         self._pose_topic = topic
-        self._instead = None
+        self._placeholder = None
         self.name_source("" if topic == ODOMETRY else topic)
 
     def _show_pose(self, update: GraphUpdate, drawing: RoomMap) -> None:
         for sample in update.samples.get(self._pose_topic, ()):
             found = pose_in(sample.value)
             if found is None:
-                self._instead = other_type(sample, TYPES[self._pose_topic])
+                self._placeholder = other_type(sample, TYPES[self._pose_topic])
                 continue
-            self._instead = None
+            self._placeholder = None
             if sample.received_s < self._heard_s:
                 # Time went back: somebody jumped back in a recording.
                 drawing.forget_path()

@@ -25,7 +25,7 @@ _MOST_CELLS = 4_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Ground:
+class OccupancyGrid:
     """The map of a room; each message creates a new one."""
 
     cells: NDArray[np.int8]
@@ -82,7 +82,7 @@ def goal_in(value: Mapping[str, Any]) -> Point | None:
     return Point(found[0].x_m, found[0].y_m)
 
 
-def ground_in(value: Mapping[str, Any]) -> Ground | None:
+def occupancy_in(value: Mapping[str, Any]) -> OccupancyGrid | None:
     """Read an OccupancyGrid; None for an invalid one."""
     try:
         info, frame = value["info"], str(value["header"]["frame_id"])
@@ -101,17 +101,17 @@ def ground_in(value: Mapping[str, Any]) -> Ground | None:
         return None
     stride = math.ceil(math.sqrt(cells.size / _MOST_CELLS))
     cells, cell_m = cells[::stride, ::stride], cell_m * stride
-    ground = Ground(cells, cell_m, read[0], frame, None)
-    return Ground(cells, cell_m, read[0], frame, _known(ground))
+    occupancy = OccupancyGrid(cells, cell_m, read[0], frame, None)
+    return OccupancyGrid(cells, cell_m, read[0], frame, _known(occupancy))
 
 
-def _known(ground: Ground) -> Extent | None:
-    known = ground.cells >= 0
+def _known(occupancy: OccupancyGrid) -> Extent | None:
+    known = occupancy.cells >= 0
     rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
     if not rows.size:
         return None
     # Half a cell on each side: the outer edges of the outermost cells.
-    x, y = ground.centres(
+    x, y = occupancy.centres(
         np.array([rows[0] - 0.5, rows[0] - 0.5, rows[-1] + 0.5, rows[-1] + 0.5]),
         np.array([columns[0] - 0.5, columns[-1] + 0.5, columns[0] - 0.5, columns[-1] + 0.5]),
     )

@@ -18,7 +18,7 @@ from tui.panels.sonar.words import COURSE, Bounds
 if TYPE_CHECKING:
     from robot.motion.odometry import Point, Pose
     from tui.panels import dots
-    from tui.panels.map.reading import Ground
+    from tui.panels.map.reading import OccupancyGrid
     from tui.panels.map.viewport import Viewport
 
 FRONT, REAR = "front", "rear"
@@ -94,17 +94,19 @@ def grid_step_m(view: Viewport) -> float:
     return math.inf
 
 
-def draw_ground(canvas: Canvas, view: Viewport, ground: Ground) -> None:
+def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> None:
     """Draw the obstacles in the room."""
-    if ground.cell_m * view.dots_per_m <= 1.0:
-        rows, columns = np.nonzero(ground.cells >= OCCUPIED_FROM)
-        x_m, y_m = ground.centres(rows.astype(np.float64), columns.astype(np.float64))
+    if occupancy.cell_m * view.dots_per_m <= 1.0:
+        rows, columns = np.nonzero(occupancy.cells >= OCCUPIED_FROM)
+        x_m, y_m = occupancy.centres(rows.astype(np.float64), columns.astype(np.float64))
         canvas.dots(
             (x_m - view.left_m) * view.dots_per_m, (view.top_m - y_m) * view.dots_per_m, WALL
         )
         return
     x, y = np.meshgrid(np.arange(canvas.width) + 0.5, np.arange(canvas.height) + 0.5)
-    stands = ground.occupied_at(view.left_m + x / view.dots_per_m, view.top_m - y / view.dots_per_m)
+    stands = occupancy.occupied_at(
+        view.left_m + x / view.dots_per_m, view.top_m - y / view.dots_per_m
+    )
     canvas.dots(x[stands], y[stands], WALL)
 
 

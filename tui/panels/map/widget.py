@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from robot.motion.odometry import Point, Pose
     from tui.panels.map.legend import LegendEntry
-    from tui.panels.map.reading import Ground
+    from tui.panels.map.reading import OccupancyGrid
     from tui.panels.sonar.words import Bounds
 
 MOST_ROWS = 5
@@ -52,7 +52,7 @@ class RoomMap(Drawing):
         self._goal: Point | None = None
         self._rays: dict[str, float] = {}
         self._bounds = COURSE
-        self._ground: Ground | None = None
+        self._occupancy: OccupancyGrid | None = None
         self._frame = ""
         self._seen: Extent | None = None
         """What the rays have reached while there is no room."""
@@ -94,9 +94,9 @@ class RoomMap(Drawing):
         """Show readings below these distances as near."""
         self._bounds = bounds
 
-    def show_ground(self, ground: Ground) -> None:
+    def show_occupancy(self, occupancy: OccupancyGrid) -> None:
         """Show this room."""
-        self._ground = ground
+        self._occupancy = occupancy
 
     def forget_path(self) -> None:
         """Discard the path so far."""
@@ -142,7 +142,7 @@ class RoomMap(Drawing):
         return [*self._field(scene, under), *rows(self._entries(scene, under), width, below)]
 
     def _field(self, scene: Scene, view: Viewport) -> list[Line]:
-        canvas = self._layers.canvas(view, self._ground, self._trail)
+        canvas = self._layers.canvas(view, self._occupancy, self._trail)
         draw_scene(canvas, view, scene)
         return canvas.lines()
 
@@ -152,10 +152,10 @@ class RoomMap(Drawing):
 
     def _other_frame(self) -> str:
         """Warn about a room in another frame, which may be elsewhere; its transform is unknown."""
-        ground = self._ground
-        if ground is None or not ground.frame or ground.frame == self._frame:
+        occupancy = self._occupancy
+        if occupancy is None or not occupancy.frame or occupancy.frame == self._frame:
             return ""
-        return _("room in frame {frame}, not {own}").format(frame=ground.frame, own=self._frame)
+        return _("room in frame {frame}, not {own}").format(frame=occupancy.frame, own=self._frame)
 
     def _extent(self, scene: Scene) -> Extent:
         """The room; without one, the floor driven on and measured so far."""
@@ -163,7 +163,7 @@ class RoomMap(Drawing):
         here = Extent(x, x, y, y).holding(*self._trail.bounds)
         if scene.goal is not None:
             here = here.holding((scene.goal.x_m, scene.goal.y_m))
-        room = self._ground.extent if self._ground else None
+        room = self._occupancy.extent if self._occupancy else None
         if room is not None:
             room = room.widened(MARGIN_M)
             return room if room.joined(here) == room else room.joined(here.widened(0.5).rounded())
@@ -199,7 +199,7 @@ class RoomMap(Drawing):
             dict(scene.rays),
             scene.bounds,
             scene.goal,
-            self._ground,
+            self._occupancy,
             said,
             self._trail.revision,
         )

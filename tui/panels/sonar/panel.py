@@ -60,7 +60,7 @@ class SonarPanel(Panel):
                 if isinstance(metres, (int, float)):
                     gauges.show(place, float(metres), sample.received_s)
             if topic in update.samples:
-                gauges.show_instead(place, other_type(newest(update, topic), TYPE))
+                gauges.show_placeholder(place, other_type(newest(update, topic), TYPE))
             gauges.show_trouble(place, *trouble_of(update, topic))
 
     def words_changed(self) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.events import Resize
 
-    from tui.widgets.drawing import Instead
+    from tui.widgets.drawing import Placeholder
 
 KEPT = 240
 BIG_FROM = 5
@@ -147,9 +147,9 @@ class SonarView(Container):
         """Take a reading of the sonar at `front` or `rear`."""
         self._sonar(place).show(metres, time_s)
 
-    def show_instead(self, place: str, words: Instead | None) -> None:
+    def show_placeholder(self, place: str, words: Placeholder | None) -> None:
         """Show these words in place of the sonar at `front` or `rear`; if empty, show it again."""
-        self._sonar(place).show_instead(words)
+        self._sonar(place).show_placeholder(words)
 
     def show_trouble(
         self, place: str, trouble: Trouble | None, detail: str = "", age_s: float | None = None

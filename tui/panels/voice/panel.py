@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
-    from tui.widgets.drawing import Instead
+    from tui.widgets.drawing import Placeholder
 
 TYPE = "std_msgs/msg/ByteMultiArray"
 TOPICS: dict[str, Speaker] = {MICROPHONE: "human", SPEAKER: "robot"}
@@ -33,7 +33,7 @@ class VoicePanel(Panel):
 
     def __init__(self) -> None:
         super().__init__()
-        self._instead: dict[str, Instead | None] = {}
+        self._placeholder: dict[str, Placeholder | None] = {}
 
     def compose(self) -> ComposeResult:
         """The transcript."""
@@ -56,16 +56,16 @@ class VoicePanel(Panel):
             if isinstance(data, bytes):
                 talk.hear(TOPICS[sample.topic], data, sample.received_s)
         self._show_level(talk, update)
-        instead = self._of_another_type(update)
-        talk.show_instead(instead)
-        talk.show_trouble(*((None,) if instead else trouble_of(update, MICROPHONE)))
+        placeholder = self._of_another_type(update)
+        talk.show_placeholder(placeholder)
+        talk.show_trouble(*((None,) if placeholder else trouble_of(update, MICROPHONE)))
 
-    def _of_another_type(self, update: GraphUpdate) -> Instead | None:
+    def _of_another_type(self, update: GraphUpdate) -> Placeholder | None:
         """Return what to show for the first topic with messages of another type."""
         for topic in TOPICS:
             if topic in update.samples:
-                self._instead[topic] = other_type(newest(update, topic), TYPE)
-            row, words = row_of(update, topic), self._instead.get(topic)
+                self._placeholder[topic] = other_type(newest(update, topic), TYPE)
+            row, words = row_of(update, topic), self._placeholder.get(topic)
             if row is not None and row.publishers and words is not None:
                 return words
         return None

@@ -134,8 +134,8 @@ class VoiceView(Drawing):
         below = [level_line(self._dbfs, width)] if self._tells_level else []
         if not self._sayings:
             return [[Ink(_("nobody has said anything yet"), "muted")], *below][-height:]
-        if self._instead is not None:
-            below[:0] = [[Ink(text, "alert")] for text in folded(self._instead.detail, width)]
+        if self._placeholder is not None:
+            below[:0] = [[Ink(text, "alert")] for text in folded(self._placeholder.detail, width)]
         talk = self._talk(width, max(1, height - len(below)))
         return [*talk, *below][:height]
 

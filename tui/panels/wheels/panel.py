@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
-    from tui.widgets.drawing import Instead
+    from tui.widgets.drawing import Placeholder
 
 DRIVE_TYPE = "ackermann_msgs/msg/AckermannDriveStamped"
 
@@ -37,7 +37,7 @@ class WheelsPanel(Panel):
     def __init__(self) -> None:
         super().__init__()
         self._joints = Joints(WHEEL_COMMANDS, (REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL))
-        self._instead: Instead | None = None
+        self._placeholder: Placeholder | None = None
         """Shown instead of the drive commands."""
 
     def compose(self) -> ComposeResult:
@@ -61,8 +61,10 @@ class WheelsPanel(Panel):
             if topic == WHEEL_COMMANDS:
                 self._joints.hear(sample, read=wheels is not None)
             else:
-                self._instead = other_type(sample, DRIVE_TYPE)
-        drawing.show_instead(self._joints.instead if topic == WHEEL_COMMANDS else self._instead)
+                self._placeholder = other_type(sample, DRIVE_TYPE)
+        drawing.show_placeholder(
+            self._joints.placeholder if topic == WHEEL_COMMANDS else self._placeholder
+        )
         drawing.show_trouble(*trouble_of(update, topic))
 
     def words_changed(self) -> None:

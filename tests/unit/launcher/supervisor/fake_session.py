@@ -52,7 +52,7 @@ class FakeProcess:
 
 
 class FakeSession:
-    """Fits `launcher.supervisor.node.Surroundings`."""
+    """Fits `launcher.supervisor.node_context.NodeContext`."""
 
     def __init__(self) -> None:
         self.clock = ManualClock()

@@ -20,13 +20,13 @@ BESIDE_FROM = 52
 """Width from which on two panels stand side by side."""
 
 
-class Shelf(Container):
+class PanelGrid(Container):
     """Shows as many panels as fit, and the number of pages."""
 
     DEFAULT_CSS = """
-    Shelf { layout: grid; grid-gutter: 0; width: 1fr; height: 1fr; overflow: hidden; }
-    Shelf.-thin > Panel { border: none; border-top: solid $primary 60%; }
-    Shelf.-thin > Panel:focus-within { border: none; border-top: solid $accent; }
+    PanelGrid { layout: grid; grid-gutter: 0; width: 1fr; height: 1fr; overflow: hidden; }
+    PanelGrid.-thin > Panel { border: none; border-top: solid $primary 60%; }
+    PanelGrid.-thin > Panel:focus-within { border: none; border-top: solid $accent; }
     """
 
     def __init__(self, panels: Sequence[Panel], id: str | None = None) -> None:

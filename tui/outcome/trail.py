@@ -52,7 +52,7 @@ class OutcomeEntry:
     """Delay after sending; None for an event that has not happened."""
 
 
-class Story:
+class OutcomeTrail:
     """The trail of one message."""
 
     def __init__(
