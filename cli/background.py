@@ -7,7 +7,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from cli.doctor.login import before_logout, look
+from cli.doctor.login import before_logout, collect
 from cli.health import settled, well
 from cli.report import TextReport
 from cli.sessions import as_json, show
@@ -91,7 +91,7 @@ async def _up(options: Namespace) -> int:
         healthy = all(well(node, optional) for node in link.nodes.values())
     finally:
         await link.aclose()
-    for line in before_logout(look(), os.environ):
+    for line in before_logout(collect(), os.environ):
         say_error(line)
     if stop_is_kept(profile.domain):
         say_error(stop_words(profile.domain))

@@ -1,7 +1,7 @@
 """`deck doctor`: what is installed, what is missing, and how to fix it.
 
-Each module here examines one thing: `look` gathers plain facts, `judge` only interprets them, so
-that it can be tested with the facts of any machine.
+Each module here examines one thing: `collect` gathers plain facts, `diagnose` only interprets them,
+so that it can be tested with the facts of any machine.
 """
 
 from __future__ import annotations
@@ -23,5 +23,5 @@ def examine() -> list[Finding]:
     found: list[Finding] = []
     for thing in THINGS:
         module = import_module(f"{__name__}.{thing}")
-        found += module.judge(module.look())
+        found += module.diagnose(module.collect())
     return found

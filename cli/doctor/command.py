@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from cli.doctor import Level, examine
@@ -28,7 +27,7 @@ def doctor_command(options: Namespace) -> int:
     """Examine everything; return 1 if something essential is missing."""
     findings = examine()
     if options.json:
-        write(json_text([asdict(finding) for finding in findings], indent=2))
+        write(json_text([finding.for_programs() for finding in findings], indent=2))
     else:
         show(findings, Paint(sys.stdout))
     return 1 if any(finding.level is Level.FAIL for finding in findings) else 0
@@ -44,5 +43,5 @@ def show(findings: Iterable[Finding], paint: Paint) -> None:
 def _show(finding: Finding, paint: Paint, width: int) -> None:
     word, colour = LOOKS[finding.level]
     write(f"{paint(_(word).ljust(width), colour)}  {plain(finding.text)}")
-    if finding.mend:
-        write(f"{'':{width}}  {paint('-> ' + finding.mend, DIM)}")
+    if finding.fix:
+        write(f"{'':{width}}  {paint('-> ' + finding.fix, DIM)}")

@@ -24,8 +24,12 @@ class Finding:
     """A stable key for programs: `ros.rclpy`."""
     level: Level
     text: str
-    mend: str = ""
-    """The fix, empty if there is nothing to fix."""
+    fix: str = ""
+    """What to do about it, empty if there is nothing to fix."""
+
+    def for_programs(self) -> dict[str, str]:
+        """Return it as it is written with `--json`."""
+        return {"key": self.key, "level": self.level, "text": self.text, "mend": self.fix}
 
 
 def ok(key: str, text: str) -> Finding:
@@ -33,11 +37,11 @@ def ok(key: str, text: str) -> Finding:
     return Finding(key, Level.OK, text)
 
 
-def warn(key: str, text: str, mend: str) -> Finding:
+def warn(key: str, text: str, fix: str) -> Finding:
     """Report that something will not work, or not reliably."""
-    return Finding(key, Level.WARN, text, mend)
+    return Finding(key, Level.WARN, text, fix)
 
 
-def fail(key: str, text: str, mend: str) -> Finding:
+def fail(key: str, text: str, fix: str) -> Finding:
     """Report that something essential is missing."""
-    return Finding(key, Level.FAIL, text, mend)
+    return Finding(key, Level.FAIL, text, fix)

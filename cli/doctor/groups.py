@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from cli.doctor.finding import ok, warn
 from cli.doctor.power import ROOT
-from cli.doctor.power import look as look_at_power
+from cli.doctor.power import collect as collect_power
 from text.i18n import _
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class GroupFacts:
     """The user's groups from the next login on."""
 
 
-def look(root: Path = ROOT) -> GroupFacts:
+def collect(root: Path = ROOT) -> GroupFacts:
     """Gather the facts."""
     groups = grp.getgrall()
     try:
@@ -46,7 +46,7 @@ def look(root: Path = ROOT) -> GroupFacts:
         user = os.environ.get("USER", "")
     gids = {os.getgid(), *os.getgroups()}
     return GroupFacts(
-        pi=bool(look_at_power(root, lambda: "").pi),
+        pi=bool(collect_power(root, lambda: "").pi),
         user=user,
         uid=os.getuid(),
         existing=tuple(name for name in NEEDED if any(each.gr_name == name for each in groups)),
@@ -55,7 +55,7 @@ def look(root: Path = ROOT) -> GroupFacts:
     )
 
 
-def judge(facts: GroupFacts) -> list[Finding]:
+def diagnose(facts: GroupFacts) -> list[Finding]:
     """Report what is all right and what is not; only the robot needs these groups."""
     missing = [name for name in facts.existing if name not in facts.mine]
     if facts.uid == 0 or not facts.pi or not missing:
@@ -63,6 +63,6 @@ def judge(facts: GroupFacts) -> list[Finding]:
     text = _("you are not in: {groups}").format(groups=", ".join(missing))
     if set(missing) <= set(facts.written):
         return [warn("groups", text, _("log out and in again: you have already been added"))]
-    mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
-    mend = mend.format(group=",".join(missing), user=facts.user or "$USER")
-    return [warn("groups", text, mend)]
+    fix = _("run: sudo usermod -aG {group} {user}, then log out and in again")
+    fix = fix.format(group=",".join(missing), user=facts.user or "$USER")
+    return [warn("groups", text, fix)]

@@ -35,7 +35,7 @@ class LoginFacts:
     uid: int = 1000
 
 
-def look() -> LoginFacts:
+def collect() -> LoginFacts:
     """Gather the facts."""
     user = os.environ.get("USER", "")
     return LoginFacts(
@@ -46,7 +46,7 @@ def look() -> LoginFacts:
     )
 
 
-def judge(facts: LoginFacts) -> list[Finding]:
+def diagnose(facts: LoginFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     key = "login.remove_ipc"
     if not facts.logind:
@@ -69,8 +69,8 @@ def before_logout(facts: LoginFacts, environ: Mapping[str, str]) -> list[str]:
     """Return warnings, a line each, for a user who leaves nodes running in this login."""
     if not environ.get("XDG_SESSION_ID"):
         return []  # Not a login session of logind: it cannot end.
-    found = [finding for finding in judge(facts) if finding.level is Level.WARN]
-    return [line for finding in found for line in (finding.text, finding.mend)]
+    found = [finding for finding in diagnose(facts) if finding.level is Level.WARN]
+    return [line for finding in found for line in (finding.text, finding.fix)]
 
 
 def setting(texts: Iterable[str]) -> bool:

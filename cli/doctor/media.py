@@ -28,7 +28,7 @@ class MediaFacts:
     sound_allowed: bool = True
 
 
-def look() -> MediaFacts:
+def collect() -> MediaFacts:
     """Gather the facts."""
     cameras = tuple(
         (str(path), _camera_name(path.name), os.access(path, os.R_OK | os.W_OK))
@@ -43,7 +43,7 @@ def look() -> MediaFacts:
     return MediaFacts(cameras, cards, allowed)
 
 
-def judge(facts: MediaFacts) -> list[Finding]:
+def diagnose(facts: MediaFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     found = [_camera(*camera) for camera in facts.cameras]
     if not found:

@@ -32,12 +32,12 @@ class NetworkFacts:
     """Those of VARIABLES that are set."""
 
 
-def look() -> NetworkFacts:
+def collect() -> NetworkFacts:
     """Gather the facts."""
     return NetworkFacts({name: os.environ[name] for name in VARIABLES if os.environ.get(name)})
 
 
-def judge(facts: NetworkFacts) -> list[Finding]:
+def diagnose(facts: NetworkFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     return [_domain(facts), *_oddities(facts)]
 
@@ -53,8 +53,8 @@ def _domain(facts: NetworkFacts) -> Finding:
     )
     text = text.format(domain=domain, whose=whose)
     if domain > LAST_SAFE_DOMAIN:
-        mend = _("export ROS_DOMAIN_ID={domain}: ports of domains above {safe} may be taken")
-        return warn("ros.domain", text, mend.format(domain=default_domain(), safe=LAST_SAFE_DOMAIN))
+        fix = _("export ROS_DOMAIN_ID={domain}: ports of domains above {safe} may be taken")
+        return warn("ros.domain", text, fix.format(domain=default_domain(), safe=LAST_SAFE_DOMAIN))
     return ok("ros.domain", text)
 
 

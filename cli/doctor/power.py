@@ -50,7 +50,7 @@ def ask_firmware() -> str:
     return done.stdout
 
 
-def look(root: Path = ROOT, ask: Callable[[], str] = ask_firmware) -> PowerFacts:
+def collect(root: Path = ROOT, ask: Callable[[], str] = ask_firmware) -> PowerFacts:
     """Gather the facts."""
     model = _text(root / "proc/device-tree/model").strip("\0 \n")
     pi = model if model.startswith("Raspberry Pi") else ""
@@ -63,7 +63,7 @@ def look(root: Path = ROOT, ask: Callable[[], str] = ask_firmware) -> PowerFacts
     )
 
 
-def judge(facts: PowerFacts) -> list[Finding]:
+def diagnose(facts: PowerFacts) -> list[Finding]:
     """Report what is all right and what is not; nothing about parts that do not exist."""
     found = []
     if facts.pi and facts.throttled is not None:
@@ -77,12 +77,12 @@ def _supply(pi: str, bits: int) -> list[Finding]:
     found = []
     if bits & (LOW | LOW_BEFORE):
         text = _("low voltage now") if bits & LOW else _("low voltage since power-on")
-        mend = _("use a 5 V, 5 A supply with its own cable, separate from the motors'")
-        found.append(warn("power.voltage", f"{pi}: {text}", mend))
+        fix = _("use a 5 V, 5 A supply with its own cable, separate from the motors'")
+        found.append(warn("power.voltage", f"{pi}: {text}", fix))
     if bits & (HOT | HOT_BEFORE):
         text = _("slowed down now") if bits & HOT else _("slowed down since power-on")
-        mend = _("cool it: a fan, space around it; check with vcgencmd measure_temp")
-        found.append(warn("power.throttled", f"{pi}: {text}", mend))
+        fix = _("cool it: a fan, space around it; check with vcgencmd measure_temp")
+        found.append(warn("power.throttled", f"{pi}: {text}", fix))
     return found or [
         ok("power.voltage", _("{pi}: power supply and temperature are fine").format(pi=pi))
     ]
@@ -92,9 +92,9 @@ def _governor(facts: PowerFacts) -> Finding:
     text = _("CPU governor {name}").format(name=facts.governor)
     if facts.governor != "powersave" or facts.driver in ADAPTS:
         return ok("power.governor", text)
-    mend = _("echo ondemand | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor")
+    fix = _("echo ondemand | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor")
     text = _("{text}: the CPU stays slow, and commands arrive late").format(text=text)
-    return warn("power.governor", text, mend)
+    return warn("power.governor", text, fix)
 
 
 def _throttled(answer: str, root: Path) -> int | None:

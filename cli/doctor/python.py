@@ -38,7 +38,7 @@ class PythonFacts:
     """The version that Deck requires, empty if it is not known."""
 
 
-def look() -> PythonFacts:
+def collect() -> PythonFacts:
     """Gather the facts."""
     installed = {}
     for name in PACKAGES:
@@ -55,7 +55,7 @@ def look() -> PythonFacts:
     )
 
 
-def judge(facts: PythonFacts) -> list[Finding]:
+def diagnose(facts: PythonFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     return [_python(facts), _machine(facts), *_packages(facts), _textual(facts)]
 

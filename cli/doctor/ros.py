@@ -74,7 +74,7 @@ class RosFacts:
     """Path of the command, empty if it is not installed."""
 
 
-def look() -> RosFacts:
+def collect() -> RosFacts:
     """Gather the facts: import rclpy and the messages, and create a node, in a separate process."""
     found = _probe()
     names = ("ROS_DISTRO", "AMENT_PREFIX_PATH", "CONDA_PREFIX", "RMW_IMPLEMENTATION")
@@ -90,7 +90,7 @@ def look() -> RosFacts:
     )
 
 
-def judge(facts: RosFacts) -> list[Finding]:
+def diagnose(facts: RosFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     if not facts.rclpy:
         text = _("ROS 2: rclpy cannot be imported ({reason})").format(reason=facts.error)
@@ -122,20 +122,20 @@ def _origin(facts: RosFacts) -> Finding:
     text = f"ROS 2 {origin(facts)} ({facts.rclpy})"
     distro = facts.environ.get("ROS_DISTRO", "jazzy")
     if distro != "jazzy":
-        mend = _("Deck is tested with jazzy only; others may work")
-        return warn("ros.distro", text, mend)
+        fix = _("Deck is tested with jazzy only; others may work")
+        return warn("ros.distro", text, fix)
     return ok("ros.distro", text)
 
 
 def _node(facts: RosFacts) -> list[Finding]:
     if facts.error:
-        mend = _("try: unset RMW_IMPLEMENTATION, or install that middleware")
+        fix = _("try: unset RMW_IMPLEMENTATION, or install that middleware")
         if "RMW_IMPLEMENTATION" not in facts.environ:
-            mend = how_to_get(facts)
+            fix = how_to_get(facts)
         text = _("rclpy is installed, but no node can be created: {reason}").format(
             reason=facts.error
         )
-        return [fail("ros.rclpy", text, mend)]
+        return [fail("ros.rclpy", text, fix)]
     return [ok("ros.rclpy", _("rclpy can create a node, middleware {rmw}").format(rmw=facts.rmw))]
 
 
@@ -146,9 +146,9 @@ def _messages(facts: RosFacts) -> list[Finding]:
         return [ok("ros.messages", _("all {count} message packages").format(count=count))]
     names = ", ".join(missing)
     text = _("message packages cannot be imported: {names}").format(names=names)
-    mend = _("run: make setup; with a ROS of your own: pip install ./interfaces, or colcon build")
+    fix = _("run: make setup; with a ROS of your own: pip install ./interfaces, or colcon build")
     made = fail if ESSENTIAL & set(missing) else warn
-    return [made("ros.messages", text, mend)]
+    return [made("ros.messages", text, fix)]
 
 
 def _rviz(facts: RosFacts) -> Finding:

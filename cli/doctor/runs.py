@@ -34,7 +34,7 @@ class RunFacts:
     """Process number and node."""
 
 
-def look() -> RunFacts:
+def collect() -> RunFacts:
     """Gather the facts."""
     from launcher.client.client import running
     from launcher.runs.strays import find_strays
@@ -55,7 +55,7 @@ def look() -> RunFacts:
     )
 
 
-def judge(facts: RunFacts) -> list[Finding]:
+def diagnose(facts: RunFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     if facts.error:
         return [fail("folders", facts.error, _("set DECK_RUN_DIR and DECK_LOG_DIR"))]
@@ -83,5 +83,5 @@ def _strays(facts: RunFacts) -> list[Finding]:
     names = ", ".join(f"{node} ({pid})" for pid, node in facts.strays)
     text = _("left behind by an earlier run: {names}").format(names=names)
     pids = " ".join(str(pid) for pid, _node in facts.strays)
-    mend = _("the screen offers to stop them; or: kill {pids}").format(pids=pids)
-    return [warn("strays", text, mend)]
+    fix = _("the screen offers to stop them; or: kill {pids}").format(pids=pids)
+    return [warn("strays", text, fix)]

@@ -36,7 +36,7 @@ class SerialFacts:
     error: str = ""
 
 
-def look() -> SerialFacts:
+def collect() -> SerialFacts:
     """Gather the facts; leave out ports of the motherboard without a device behind them."""
     try:
         found = serial_ports()
@@ -49,7 +49,7 @@ def look() -> SerialFacts:
     return SerialFacts(ports, os.environ.get("USER", ""), tuple(map(_name, os.getgroups())))
 
 
-def judge(facts: SerialFacts) -> list[Finding]:
+def diagnose(facts: SerialFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     if facts.error:
         return [warn("serial", facts.error, "pip install pyserial")]
@@ -58,19 +58,19 @@ def judge(facts: SerialFacts) -> list[Finding]:
     return [_port(access, facts) for access in facts.ports]
 
 
-def permission_mend(device: str) -> str:
+def permission_fix(device: str) -> str:
     """Return how this user can get permission to open a device."""
     groups = tuple(map(_name, os.getgroups()))
-    return _mend(_group_of(device), os.environ.get("USER", ""), groups)
+    return _fix(_group_of(device), os.environ.get("USER", ""), groups)
 
 
-def _mend(group: str, user: str, groups: tuple[str, ...]) -> str:
+def _fix(group: str, user: str, groups: tuple[str, ...]) -> str:
     user, group = user or "$USER", group or "dialout"
     if group in groups:
-        mend = _("you are in group {group}, but the port denies access: check its udev rule")
-        return mend.format(group=group)
-    mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
-    return mend.format(group=group, user=user)
+        fix = _("you are in group {group}, but the port denies access: check its udev rule")
+        return fix.format(group=group)
+    fix = _("run: sudo usermod -aG {group} {user}, then log out and in again")
+    return fix.format(group=group, user=user)
 
 
 def _port(access: Access, facts: SerialFacts) -> Finding:
@@ -80,7 +80,7 @@ def _port(access: Access, facts: SerialFacts) -> Finding:
     if access.allowed:
         return ok("serial", text)
     text = _("{what}: no permission").format(what=text)
-    return warn("serial", text, _mend(access.group, facts.user, facts.groups))
+    return warn("serial", text, _fix(access.group, facts.user, facts.groups))
 
 
 def _group_of(device: str) -> str:

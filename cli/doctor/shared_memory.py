@@ -36,7 +36,7 @@ class SharedMemoryFacts:
     """Those of them that belong to another user."""
 
 
-def look() -> SharedMemoryFacts:
+def collect() -> SharedMemoryFacts:
     """Gather the facts."""
     if not SHARED_MEMORY.is_dir():
         return SharedMemoryFacts(exists=False, free=0)
@@ -54,7 +54,7 @@ def look() -> SharedMemoryFacts:
     return SharedMemoryFacts(True, free, len(stale), sum(stale), mine, foreign)
 
 
-def judge(facts: SharedMemoryFacts) -> list[Finding]:
+def diagnose(facts: SharedMemoryFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     if not facts.exists:
         text = _("there is no /dev/shm: nodes talk through the network stack, which is slower")
@@ -62,9 +62,9 @@ def judge(facts: SharedMemoryFacts) -> list[Finding]:
     found = [_room(facts)]
     if facts.unfinished:
         text = _half_made(facts.unfinished)
-        mend = _("Deck removes it at the next start; or: rm {paths}")
+        fix = _("Deck removes it at the next start; or: rm {paths}")
         paths = " ".join(facts.unfinished)
-        found.append(warn("shm.unfinished", text, mend.format(paths=paths)))
+        found.append(warn("shm.unfinished", text, fix.format(paths=paths)))
     if facts.foreign:
         paths = " ".join(facts.foreign)
         found.append(fail("shm.foreign", _half_made(facts.foreign), f"sudo rm {paths}"))
@@ -76,8 +76,8 @@ def judge(facts: SharedMemoryFacts) -> list[Finding]:
         )
         text = words.format(count=facts.stale, size=facts.stale_bytes / 1e6)
         # Selecting by name alone would include files of other users.
-        mend = _("while none of your ROS nodes is running: {command}").format(command=DELETE_MINE)
-        found.append(warn("shm.stale", text, mend))
+        fix = _("while none of your ROS nodes is running: {command}").format(command=DELETE_MINE)
+        found.append(warn("shm.stale", text, fix))
     return found
 
 
@@ -89,8 +89,8 @@ def _half_made(paths: tuple[str, ...]) -> str:
 def _room(facts: SharedMemoryFacts) -> Finding:
     text = _("/dev/shm has {size:.0f} MB free").format(size=facts.free / 1e6)
     if facts.free < LEAST_FREE:
-        mend = _("free some space, or enlarge it; in a container: --shm-size=256m")
-        return warn("shm", text, mend)
+        fix = _("free some space, or enlarge it; in a container: --shm-size=256m")
+        return warn("shm", text, fix)
     return ok("shm", text)
 
 

@@ -35,7 +35,7 @@ class TerminalFacts:
     lines: int = 40
 
 
-def look() -> TerminalFacts:
+def collect() -> TerminalFacts:
     """Gather the facts."""
     size = shutil.get_terminal_size(fallback=(0, 0))
     return TerminalFacts(
@@ -47,7 +47,7 @@ def look() -> TerminalFacts:
     )
 
 
-def judge(facts: TerminalFacts) -> list[Finding]:
+def diagnose(facts: TerminalFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     found = [_encoding(facts)]
     if not facts.is_terminal:
@@ -78,17 +78,17 @@ def _colour(facts: TerminalFacts) -> Finding:
     env = facts.environ
     term = env.get("TERM", "")
     if env.get("NO_COLOR"):
-        mend = _("unset NO_COLOR if you want colours")
-        return warn("terminal.colour", _("NO_COLOR is set: no colours"), mend)
+        fix = _("unset NO_COLOR if you want colours")
+        return warn("terminal.colour", _("NO_COLOR is set: no colours"), fix)
     depth = _drawn_with(env)
     if depth == "truecolor":
         return ok("terminal.colour", _("16 million colours"))
-    mend = _("if the terminal can, export COLORTERM=truecolor (SSH does not pass it on)")
+    fix = _("if the terminal can, export COLORTERM=truecolor (SSH does not pass it on)")
     if depth == "256":
-        return warn("terminal.colour", _("256 colours: pictures look coarse"), mend)
+        return warn("terminal.colour", _("256 colours: pictures look coarse"), fix)
     if not any(word in term for word in TRUECOLOR_TERMS):
-        mend = _("if the terminal can, export TERM=xterm-256color")
-    return warn("terminal.colour", _("16 colours or fewer: hues are hard to tell apart"), mend)
+        fix = _("if the terminal can, export TERM=xterm-256color")
+    return warn("terminal.colour", _("16 colours or fewer: hues are hard to tell apart"), fix)
 
 
 def _drawn_with(env: Mapping[str, str]) -> str | None:

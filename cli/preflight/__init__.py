@@ -26,13 +26,13 @@ MEDIA = {"camera": ask_camera, "sound": ask_sound}
 
 
 def examine(
-    profile: Profile, look: Callable[[], Sequence[SerialPort]] = serial_ports
+    profile: Profile, find_ports: Callable[[], Sequence[SerialPort]] = serial_ports
 ) -> list[Finding]:
     """Check all devices that the profile's nodes refer to, in parallel."""
     said = profile.document.devices
     devices = {name: said[name] for name in profile.used if name in said}
     questions: dict[str, Callable[[], tuple[str, DeviceAnswer]]] = {
-        **ask_ports(devices, look),
+        **ask_ports(devices, find_ports),
         **{
             name: partial(MEDIA[settings["kind"]], name, settings)
             for name, settings in devices.items()
@@ -48,4 +48,4 @@ def examine(
 
 def _finding(device: str, where: str, answer: DeviceAnswer) -> Finding:
     name = f"{device} {where}".rstrip()
-    return Finding(f"device.{device}", answer.level, f"{name}: {answer.text}", answer.mend)
+    return Finding(f"device.{device}", answer.level, f"{name}: {answer.text}", answer.fix)

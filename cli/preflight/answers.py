@@ -38,7 +38,7 @@ class DeviceAnswer(NamedTuple):
 
     level: Level
     text: str
-    mend: str = ""
+    fix: str = ""
 
 
 def ask(kind: str, line: OpenPort) -> DeviceAnswer:
@@ -125,8 +125,8 @@ def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) 
         found.append((_("some lines arrive garbled"), _better_cable()))
     if not found:
         return DeviceAnswer(Level.OK, text)
-    text = ", ".join([text, *(words for words, _mend in found)])
-    return DeviceAnswer(Level.WARN, text, "; ".join(dict.fromkeys(mend for _words, mend in found)))
+    text = ", ".join([text, *(words for words, _fix in found)])
+    return DeviceAnswer(Level.WARN, text, "; ".join(dict.fromkeys(fix for _words, fix in found)))
 
 
 def _python_prompt(heard: bytes) -> DeviceAnswer | None:
@@ -209,13 +209,13 @@ def _nothing(kind: str, heard: bytes, baud: int) -> DeviceAnswer:
         text = _("{count} bytes arrived, but no {name} sends such data").format(
             count=len(heard), name=name
         )
-        mend = _("wrong baud (this is {baud}), another device, or a bad cable")
-        return DeviceAnswer(Level.FAIL, text, mend.format(baud=baud))
-    mends = {
+        fix = _("wrong baud (this is {baud}), another device, or a bad cable")
+        return DeviceAnswer(Level.FAIL, text, fix.format(baud=baud))
+    fixes = {
         "pico": _("flash firmware/pico2 (docs/pico-firmware.md), or try another cable"),
         "lsc16": _("switch the board on; cross TX and RX, connect the grounds; baud 9600"),
     }
     sonar = _("check its power supply (5 V), wiring and mode: serial, not I2C; baud 115200")
     return DeviceAnswer(
-        Level.FAIL, _("the port is silent: no {name}").format(name=name), mends.get(kind, sonar)
+        Level.FAIL, _("the port is silent: no {name}").format(name=name), fixes.get(kind, sonar)
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from cli.doctor.command import show
@@ -44,7 +43,7 @@ def preflight_command(options: Namespace) -> int:
     findings = examine(profile)
     bad = sum(finding.level is Level.FAIL for finding in findings)
     if options.json:
-        write(json_text([asdict(finding) for finding in findings], indent=2))
+        write(json_text([finding.for_programs() for finding in findings], indent=2))
         return NOT_READY if bad else 0
     if not findings:
         write(_("{name} has no devices").format(name=plain(profile.name)))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from cli.child_python import python
 from cli.doctor.finding import Level
-from cli.doctor.serial_ports import permission_mend
+from cli.doctor.serial_ports import permission_fix
 from cli.preflight.answers import DeviceAnswer
 from cli.preflight.holders import holders
 from launcher.profile.device_variables import variable
@@ -52,12 +52,10 @@ def ask_camera(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAns
     if not path.exists():
         there = ", ".join(map(str, sorted(Path("/dev").glob("video[0-9]*")))) or _("none")
         text = _("there is no such camera; cameras: {cameras}").format(cameras=there)
-        mend = _("plug it in, or choose with {variable}=/dev/v4l/by-id/...")
-        return name, DeviceAnswer(
-            Level.FAIL, text, mend.format(variable=variable(device, "source"))
-        )
+        fix = _("plug it in, or choose with {variable}=/dev/v4l/by-id/...")
+        return name, DeviceAnswer(Level.FAIL, text, fix.format(variable=variable(device, "source")))
     if not os.access(path, os.R_OK):
-        return name, DeviceAnswer(Level.FAIL, _("no permission"), permission_mend(str(path)))
+        return name, DeviceAnswer(Level.FAIL, _("no permission"), permission_fix(str(path)))
     return name, _picture(str(path))
 
 
@@ -69,10 +67,10 @@ def _picture(name: str) -> DeviceAnswer:
     if others:
         text = _("{names} has it open").format(names=", ".join(map(str, others)))
         return DeviceAnswer(Level.FAIL, text, _("close it; if it is a running robot: deck down"))
-    mend = _("is it a video, and does it answer?")
+    fix = _("is it a video, and does it answer?")
     if name.startswith("/dev/"):
-        mend = _("it may be another device of the same camera: v4l2-ctl --list-devices")
-    return DeviceAnswer(Level.FAIL, _("it delivers no picture"), mend)
+        fix = _("it may be another device of the same camera: v4l2-ctl --list-devices")
+    return DeviceAnswer(Level.FAIL, _("it delivers no picture"), fix)
 
 
 def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAnswer]:
@@ -111,9 +109,9 @@ def _no_sound(
     text = _("not found: {missing}; sound devices: {names}").format(
         missing=", ".join(wishes), names=", ".join(there) or _("none")
     )
-    mend = _("plug it in, or set {variables} to a part of its name; `none` works without")
+    fix = _("plug it in, or set {variables} to a part of its name; `none` works without")
     variables = ", ".join(variable(device, setting) for setting, _name in missing)
-    return DeviceAnswer(Level.FAIL, text, mend.format(variables=variables))
+    return DeviceAnswer(Level.FAIL, text, fix.format(variables=variables))
 
 
 def _is(wanted: str, index: int, name: str) -> bool:

@@ -8,7 +8,7 @@ import termios
 from typing import TYPE_CHECKING
 
 from cli.doctor.finding import Level
-from cli.doctor.serial_ports import permission_mend
+from cli.doctor.serial_ports import permission_fix
 from cli.preflight.answers import DeviceAnswer
 from cli.preflight.holders import holders
 from cli.preflight.open_port import OpenPort
@@ -61,7 +61,7 @@ def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPor
     if number in TAKEN:
         return _taken(path, holders(path))
     if number in DENIED:
-        return DeviceAnswer(Level.FAIL, _("no permission"), permission_mend(path))
+        return DeviceAnswer(Level.FAIL, _("no permission"), permission_fix(path))
     if number in GONE:
         return _missing(device, path, ports)
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
@@ -69,8 +69,8 @@ def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPor
             Level.FAIL, _("it is not a serial port"), str(localized(how_to_choose(device)))
         )
     words = reason_of(error).splitlines()[0]
-    mend = _("unplug the device, plug it in again, and look at: dmesg | tail")
-    return DeviceAnswer(Level.FAIL, _("cannot be opened: {reason}").format(reason=words), mend)
+    fix = _("unplug the device, plug it in again, and look at: dmesg | tail")
+    return DeviceAnswer(Level.FAIL, _("cannot be opened: {reason}").format(reason=words), fix)
 
 
 def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswer:
@@ -78,17 +78,17 @@ def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswe
     text = _("it is gone, only its name is left") if dangling else _("there is no such port")
     there = "; ".join(map(str, ports)) or _("none")
     text = _("{text}; ports: {ports}").format(text=text, ports=there)
-    mend = _("plug it in, try another cable; or {choose}")
-    return DeviceAnswer(Level.FAIL, text, mend.format(choose=localized(how_to_choose(device))))
+    fix = _("plug it in, try another cable; or {choose}")
+    return DeviceAnswer(Level.FAIL, text, fix.format(choose=localized(how_to_choose(device))))
 
 
 def _taken(path: str, others: Sequence[Holder]) -> DeviceAnswer:
     if not others:
-        mend = _("close that program; sudo fuser -v {path} shows which it is").format(path=path)
-        return DeviceAnswer(Level.FAIL, _("another program is using it"), mend)
+        fix = _("close that program; sudo fuser -v {path} shows which it is").format(path=path)
+        return DeviceAnswer(Level.FAIL, _("another program is using it"), fix)
     names = ", ".join(map(str, others))
-    mend = _("close it; if it is a running robot: deck down")
-    return DeviceAnswer(Level.FAIL, _("{names} has it open").format(names=names), mend)
+    fix = _("close it; if it is a running robot: deck down")
+    return DeviceAnswer(Level.FAIL, _("{names} has it open").format(names=names), fix)
 
 
 def _number(error: Exception) -> int | None:

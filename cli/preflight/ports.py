@@ -23,13 +23,13 @@ BAUD = 115_200
 
 
 def ask_ports(
-    devices: Mapping[str, Mapping[str, Any]], look: Callable[[], Sequence[SerialPort]]
+    devices: Mapping[str, Mapping[str, Any]], find_ports: Callable[[], Sequence[SerialPort]]
 ) -> dict[str, Callable[[], tuple[str, DeviceAnswer]]]:
     """Return, for each device with a port, a function that checks it: port name and answer."""
     serial = wanted(devices)
     if not serial:
         return {}
-    ports = look()
+    ports = find_ports()
     chosen = choose(serial, ports)
     paths: dict[str, str] = {}
     for device in serial:
@@ -72,8 +72,8 @@ def _one(
     ]
     if twins:
         text = _("the same port as {others}").format(others=", ".join(twins))
-        mend = _("give each device its own port; ls -l /dev/serial/by-id shows which is which")
-        return DeviceAnswer(Level.FAIL, text, mend)
+        fix = _("give each device its own port; ls -l /dev/serial/by-id shows which is which")
+        return DeviceAnswer(Level.FAIL, text, fix)
     baud = settings.get("baud", BAUD)
     line = opened(device, path, baud if isinstance(baud, int) else BAUD, ports)
     if isinstance(line, DeviceAnswer):
@@ -82,13 +82,13 @@ def _one(
         try:
             answer = ask(str(settings.get("kind", "")), line)
         except OSError as error:
-            mend = _("check the cable and the power supply")
+            fix = _("check the cable and the power supply")
             return DeviceAnswer(
-                Level.FAIL, _("it disappeared during the check: {error}").format(error=error), mend
+                Level.FAIL, _("it disappeared during the check: {error}").format(error=error), fix
             )
     lasting = advice(path)
     if answer.level is Level.OK and lasting:
         text = _("{text}; its name may belong to another device after it is plugged in again")
-        mend = _("write {path}").format(path=lasting)
-        return DeviceAnswer(Level.WARN, text.format(text=answer.text), mend)
+        fix = _("write {path}").format(path=lasting)
+        return DeviceAnswer(Level.WARN, text.format(text=answer.text), fix)
     return answer

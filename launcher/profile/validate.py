@@ -132,10 +132,8 @@ def _words(details: ErrorDetails, where: Where) -> tuple[str, str]:
         hint = did_you_mean(str(where[-1]), known) or say("known: {keys}", keys=", ".join(known))
         return say("unknown key"), hint
     if kind in WANTED:
-        wanted = WANTED[kind]
-        return say(
-            "expected {wanted}, found {found}", wanted=wanted, found=described(found)
-        ), _mend(kind, found)
+        words = say("expected {wanted}, found {found}", wanted=WANTED[kind], found=described(found))
+        return words, _fix(kind, found)
     if kind == "literal_error":
         known = _choices(context["expected"])
         return (
@@ -153,7 +151,7 @@ def _words(details: ErrorDetails, where: Where) -> tuple[str, str]:
     return details["msg"], ""
 
 
-def _mend(kind: str, found: object) -> str:
+def _fix(kind: str, found: object) -> str:
     if kind == "string_type" and isinstance(found, (bool, int, float)):
         return say("put it in quotes")
     if kind == "float_type" and isinstance(found, str):

@@ -44,7 +44,7 @@ def _ports(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def preflight() -> tuple[int | None, dict[str, str]]:
-    """Return the exit code, and of each device its line with the mend."""
+    """Return the exit code, and of each device its line with the fix."""
     done = deck("check", "robot", "--hardware", "real", "--preflight")
     assert done.errors == []
     text = "\n".join(done.lines).replace("\n      -> ", " -> ")

@@ -1,4 +1,4 @@
-"""A serial port as a driver keeps it: what goes wrong is told with its mend."""
+"""A serial port as a driver keeps it: what goes wrong is told with its fix."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ def link(request: pytest.FixtureRequest) -> Iterator[tuple[SerialLink, Log]]:
 
 
 @pytest.mark.parametrize(
-    ("number", "mend"),
+    ("number", "fix"),
     [(2, "by-id"), (13, "dialout"), (1, "dialout"), (11, "fuser -v /dev/ttyACM0"), (16, "fuser"),
      (25, "/dev/ttyACM0"), (5, "odd")],
 )  # fmt: skip
 def test_why_a_port_does_not_open_is_told_with_the_mend(
-    link: tuple[SerialLink, Log], monkeypatch: pytest.MonkeyPatch, number: int, mend: str
+    link: tuple[SerialLink, Log], monkeypatch: pytest.MonkeyPatch, number: int, fix: str
 ) -> None:
     def refuse(*_: object, **__: object) -> NoReturn:
         raise serial.SerialException(number, "odd")
@@ -55,7 +55,7 @@ def test_why_a_port_does_not_open_is_told_with_the_mend(
     monkeypatch.setattr("nodes.drivers.serial_link.serial.Serial", refuse)
     link[0].start()
     wait_until(lambda: link[1].lines, "a line")
-    assert mend in link[1].lines[0]
+    assert fix in link[1].lines[0]
     assert not link[0].connected
     assert link[0].write(b"1") is False
     assert link[0].status("x", 0).level == b"\x02"

@@ -69,7 +69,7 @@ def test_frames_of_a_sonar(look: Look, dump_compare: SnapCompare) -> None:
 
 @one_look
 def test_an_unplugged_device(look: Look, dump_compare: SnapCompare) -> None:
-    """Why nothing comes from the last driver, with the mend."""
+    """Why nothing comes from the last driver, with the fix."""
     before = shown(keys=("end",))
     assert dump_compare(
         look.app("devices", with_drivers()), terminal_size=look.size, run_before=before

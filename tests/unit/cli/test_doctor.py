@@ -1,4 +1,4 @@
-"""The doctor, on machines of every kind: each finding is right, and each fault has its mend."""
+"""The doctor, on machines of every kind: each finding is right, and each fault has its fix."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ import pytest
 from cli import main
 from cli.doctor import Finding, Level
 from cli.doctor.login import LoginFacts, before_logout, setting
-from cli.doctor.login import judge as judge_login
+from cli.doctor.login import diagnose as diagnose_login
 from cli.doctor.media import MediaFacts, cards_in
-from cli.doctor.media import judge as judge_media
+from cli.doctor.media import diagnose as diagnose_media
 from cli.doctor.network import NetworkFacts
-from cli.doctor.network import judge as judge_network
+from cli.doctor.network import diagnose as diagnose_network
 from cli.doctor.python import PACKAGES, PythonFacts
-from cli.doctor.python import judge as judge_python
+from cli.doctor.python import diagnose as diagnose_python
 from cli.doctor.ros import MESSAGES, RosFacts
-from cli.doctor.ros import judge as judge_ros
+from cli.doctor.ros import diagnose as diagnose_ros
 from cli.doctor.runs import RunFacts
-from cli.doctor.runs import judge as judge_runs
+from cli.doctor.runs import diagnose as diagnose_runs
 from cli.doctor.serial_ports import Access, SerialFacts
-from cli.doctor.serial_ports import judge as judge_serial
+from cli.doctor.serial_ports import diagnose as diagnose_serial
 from cli.doctor.shared_memory import SharedMemoryFacts
-from cli.doctor.shared_memory import judge as judge_shared_memory
+from cli.doctor.shared_memory import diagnose as diagnose_shared_memory
 from cli.doctor.terminal import TerminalFacts
-from cli.doctor.terminal import judge as judge_terminal
+from cli.doctor.terminal import diagnose as diagnose_terminal
 from launcher.domain.discovery import PROFILES
 from launcher.serial_ports import SerialPort
 
@@ -34,15 +34,15 @@ EVERYTHING = dict.fromkeys(PACKAGES, "1.0") | {"textual": "8.2.8"}
 
 
 def bad(findings: list[Finding]) -> list[tuple[str, str]]:
-    """Return (key, level) of what is not well; whatever is not well has a mend."""
+    """Return (key, level) of what is not well; whatever is not well has a fix."""
     found = [finding for finding in findings if finding.level is not Level.OK]
-    assert all(finding.mend for finding in found)
+    assert all(finding.fix for finding in found)
     return [(finding.key, finding.level.value) for finding in found]
 
 
 def text(findings: list[Finding], key: str) -> str:
-    """Return the text and mend of one finding."""
-    return " -> ".join(f"{each.text} | {each.mend}" for each in findings if each.key == key)
+    """Return the text and fix of one finding."""
+    return " -> ".join(f"{each.text} | {each.fix}" for each in findings if each.key == key)
 
 
 @pytest.mark.parametrize(
@@ -56,13 +56,13 @@ def text(findings: list[Finding], key: str) -> str:
 )
 def test_pythons(version: tuple[int, int, int], verdict: list[tuple[str, str]]) -> None:
     facts = PythonFacts(version, "/usr/bin/python3", "Linux", "x86_64", EVERYTHING, "8.2.8")
-    assert bad(judge_python(facts)) == verdict
+    assert bad(diagnose_python(facts)) == verdict
 
 
 def test_another_system_missing_packages_and_another_textual() -> None:
     installed = {"textual": "9.0", "pydantic": "2"}
     facts = PythonFacts((3, 11, 0), "python", "Darwin", "arm64", installed, "8.2.8")
-    findings = judge_python(facts)
+    findings = diagnose_python(facts)
     assert bad(findings) == [("machine", "fail"), ("packages", "fail"), ("textual", "warn")]
     assert "pip install textual==8.2.8" in text(findings, "textual")
     assert "PyYAML psutil numpy pyserial setproctitle" in text(findings, "packages")
@@ -98,19 +98,19 @@ WHEELS = RosFacts(
 )
 def test_where_ros_comes_from(rclpy: str, environ: dict[str, str], origin: str) -> None:
     facts = RosFacts(rclpy, "rmw_fastrtps_cpp", "", WHEELS.messages, environ)
-    findings = judge_ros(facts)
+    findings = diagnose_ros(facts)
     assert bad(findings) == []
     assert origin in text(findings, "ros.distro")
 
 
 def test_wheels_from_pypi_also_where_they_have_set_the_paths_themselves() -> None:
     facts = replace(WHEELS, environ={"AMENT_PREFIX_PATH": "/venv"})
-    assert "wheels from PyPI (rclpy 7.1.4)" in text(judge_ros(facts), "ros.distro")
+    assert "wheels from PyPI (rclpy 7.1.4)" in text(diagnose_ros(facts), "ros.distro")
 
 
 def test_no_ros_at_all_is_a_failure_with_the_mend_for_the_machine() -> None:
-    here = judge_ros(RosFacts(error="ModuleNotFoundError: No module named 'rclpy'"))
-    on_a_pi = judge_ros(RosFacts(error="no rclpy", machine="aarch64"))
+    here = diagnose_ros(RosFacts(error="ModuleNotFoundError: No module named 'rclpy'"))
+    on_a_pi = diagnose_ros(RosFacts(error="no rclpy", machine="aarch64"))
     assert bad(here) == bad(on_a_pi) == [("ros.rclpy", "fail")]
     assert "make setup" in text(here, "ros.rclpy")
     assert "pixi run deck" in text(on_a_pi, "ros.rclpy")
@@ -119,7 +119,7 @@ def test_no_ros_at_all_is_a_failure_with_the_mend_for_the_machine() -> None:
 
 def test_another_distribution_is_warned_of() -> None:
     facts = RosFacts(WHEELS.rclpy, "x", "", WHEELS.messages, {"ROS_DISTRO": "humble"})
-    assert bad(judge_ros(facts)) == [("ros.distro", "warn")]
+    assert bad(diagnose_ros(facts)) == [("ros.distro", "warn")]
 
 
 def test_a_middleware_that_is_not_installed() -> None:
@@ -129,7 +129,7 @@ def test_a_middleware_that_is_not_installed() -> None:
         messages=WHEELS.messages,
         environ={"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"},
     )
-    findings = judge_ros(facts)
+    findings = diagnose_ros(facts)
     assert bad(findings) == [("ros.rclpy", "fail")]
     assert "unset RMW_IMPLEMENTATION" in text(findings, "ros.rclpy")
 
@@ -137,7 +137,7 @@ def test_a_middleware_that_is_not_installed() -> None:
 @pytest.mark.parametrize(("package", "level"), [("ackermann_msgs", "warn"), ("std_msgs", "fail")])
 def test_missing_messages(package: str, level: str) -> None:
     messages = {**WHEELS.messages, package: "No module named"}
-    findings = judge_ros(RosFacts(WHEELS.rclpy, "x", "", messages))
+    findings = diagnose_ros(RosFacts(WHEELS.rclpy, "x", "", messages))
     assert bad(findings) == [("ros.messages", level)]
     assert package in text(findings, "ros.messages")
 
@@ -158,7 +158,7 @@ def test_missing_messages(package: str, level: str) -> None:
     ],
 )
 def test_domains_and_discovery(environ: dict[str, str], verdict: list[tuple[str, str]]) -> None:
-    assert bad(judge_network(NetworkFacts(environ))) == verdict
+    assert bad(diagnose_network(NetworkFacts(environ))) == verdict
 
 
 GOOD_TERMINAL = {"TERM": "xterm-256color", "COLORTERM": "truecolor"}
@@ -188,14 +188,14 @@ GOOD_TERMINAL = {"TERM": "xterm-256color", "COLORTERM": "truecolor"}
     ],
 )
 def test_terminals(facts: TerminalFacts, verdict: list[tuple[str, str]]) -> None:
-    assert bad(judge_terminal(facts)) == verdict
+    assert bad(diagnose_terminal(facts)) == verdict
 
 
 def test_a_serial_port_without_permission_names_the_group_and_the_lasting_name() -> None:
     pico = SerialPort("/dev/ttyACM0", "/dev/serial/by-id/usb-Pico", description="Pico")
     port = Access(pico, "dialout", allowed=False)
-    outside = judge_serial(SerialFacts((port,), "maria", ("users",)))
-    inside = judge_serial(SerialFacts((port,), "maria", ("dialout",)))
+    outside = diagnose_serial(SerialFacts((port,), "maria", ("users",)))
+    inside = diagnose_serial(SerialFacts((port,), "maria", ("dialout",)))
     assert bad(outside) == bad(inside) == [("serial", "warn")]
     assert "usb-Pico (Pico): no permission" in text(outside, "serial")
     assert "sudo usermod -aG dialout maria" in text(outside, "serial")
@@ -204,36 +204,36 @@ def test_a_serial_port_without_permission_names_the_group_and_the_lasting_name()
 
 def test_serial_ports_that_may_be_opened_and_none_at_all() -> None:
     port = Access(SerialPort("/dev/ttyUSB0", description="CP2102"), "dialout")
-    findings = judge_serial(SerialFacts((port,)))
+    findings = diagnose_serial(SerialFacts((port,)))
     assert bad(findings) == []
     assert "serial port /dev/ttyUSB0 (CP2102)" in text(findings, "serial")
-    assert bad(judge_serial(SerialFacts())) == []
-    assert bad(judge_serial(SerialFacts(error="no pyserial"))) == [("serial", "warn")]
+    assert bad(diagnose_serial(SerialFacts())) == []
+    assert bad(diagnose_serial(SerialFacts(error="no pyserial"))) == [("serial", "warn")]
 
 
 def test_shared_memory() -> None:
-    assert bad(judge_shared_memory(SharedMemoryFacts())) == []
-    assert bad(judge_shared_memory(SharedMemoryFacts(free=10_000_000))) == [("shm", "warn")]
-    assert bad(judge_shared_memory(SharedMemoryFacts(exists=False))) == [("shm", "warn")]
-    stale = judge_shared_memory(SharedMemoryFacts(stale=3, stale_bytes=1_500_000))
+    assert bad(diagnose_shared_memory(SharedMemoryFacts())) == []
+    assert bad(diagnose_shared_memory(SharedMemoryFacts(free=10_000_000))) == [("shm", "warn")]
+    assert bad(diagnose_shared_memory(SharedMemoryFacts(exists=False))) == [("shm", "warn")]
+    stale = diagnose_shared_memory(SharedMemoryFacts(stale=3, stale_bytes=1_500_000))
     assert bad(stale) == [("shm.stale", "warn")]
     assert "3 unused segments" in text(stale, "shm.stale")
-    (mend,) = [one.mend for one in stale if one.key == "shm.stale"]
-    assert "rm /dev/shm" not in mend, "those of other users are there too"
-    assert "find /dev/shm -maxdepth 1 -user $(id -un) -name 'fastrtps_*' -delete" in mend
-    half = judge_shared_memory(SharedMemoryFacts(unfinished=("/dev/shm/fastrtps_port7001",)))
+    (fix,) = [one.fix for one in stale if one.key == "shm.stale"]
+    assert "rm /dev/shm" not in fix, "those of other users are there too"
+    assert "find /dev/shm -maxdepth 1 -user $(id -un) -name 'fastrtps_*' -delete" in fix
+    half = diagnose_shared_memory(SharedMemoryFacts(unfinished=("/dev/shm/fastrtps_port7001",)))
     assert bad(half) == [("shm.unfinished", "warn")]
     assert "/dev/shm/fastrtps_port7001: incomplete" in text(half, "shm.unfinished")
-    foreign = judge_shared_memory(SharedMemoryFacts(foreign=("/dev/shm/fastrtps_port7001",)))
+    foreign = diagnose_shared_memory(SharedMemoryFacts(foreign=("/dev/shm/fastrtps_port7001",)))
     assert bad(foreign) == [("shm.foreign", "fail")]
-    assert foreign[-1].mend == "sudo rm /dev/shm/fastrtps_port7001"
+    assert foreign[-1].fix == "sudo rm /dev/shm/fastrtps_port7001"
 
 
 @pytest.mark.parametrize("term", ["xterm", "screen", "linux"])
 def test_a_terminal_of_few_colours_is_told_how_to_have_more(term: str) -> None:
-    colour = [one for one in judge_terminal(TerminalFacts(environ={"TERM": term})) if one.mend]
+    colour = [one for one in diagnose_terminal(TerminalFacts(environ={"TERM": term})) if one.fix]
     assert [one.key for one in colour] == ["terminal.colour"]
-    assert "TERM=xterm-256color" in colour[0].mend
+    assert "TERM=xterm-256color" in colour[0].fix
 
 
 @pytest.mark.parametrize(
@@ -249,7 +249,7 @@ def test_a_terminal_of_few_colours_is_told_how_to_have_more(term: str) -> None:
 def test_a_terminal_that_can_do_more_than_is_drawn_is_told_how_to_say_so(
     term: str, drawn: str
 ) -> None:
-    found = judge_terminal(TerminalFacts(environ={"TERM": term}))
+    found = diagnose_terminal(TerminalFacts(environ={"TERM": term}))
     assert drawn in text(found, "terminal.colour")
     assert "COLORTERM=truecolor" in text(found, "terminal.colour")
 
@@ -265,7 +265,7 @@ def test_a_terminal_that_can_do_more_than_is_drawn_is_told_how_to_say_so(
     ],
 )
 def test_logging_out(facts: LoginFacts, verdict: list[tuple[str, str]]) -> None:
-    assert bad(judge_login(facts)) == verdict
+    assert bad(diagnose_login(facts)) == verdict
 
 
 def test_up_says_in_a_login_that_logging_out_ends_it() -> None:
@@ -291,9 +291,9 @@ def test_what_logind_is_set_to(texts: list[str], removes: bool) -> None:
 
 
 def test_cameras_and_sound() -> None:
-    assert bad(judge_media(MediaFacts())) == []
+    assert bad(diagnose_media(MediaFacts())) == []
     facts = MediaFacts((("/dev/video0", "Orbbec", False),), ("USB Audio",), sound_allowed=False)
-    findings = judge_media(facts)
+    findings = diagnose_media(facts)
     assert bad(findings) == [("camera", "warn"), ("sound", "warn")]
     assert "/dev/video0 Orbbec" in text(findings, "camera")
 
@@ -305,13 +305,13 @@ def test_names_of_sound_cards() -> None:
 
 
 def test_strays_full_disks_and_folders_of_others() -> None:
-    assert bad(judge_runs(RunFacts())) == []
-    strays = judge_runs(RunFacts(strays=((77, "sonar"), (78, "camera"))))
+    assert bad(diagnose_runs(RunFacts())) == []
+    strays = diagnose_runs(RunFacts(strays=((77, "sonar"), (78, "camera"))))
     assert bad(strays) == [("strays", "warn")]
     assert "sonar (77), camera (78)" in text(strays, "strays")
     assert "kill 77 78" in text(strays, "strays")
-    assert bad(judge_runs(RunFacts(free=1000))) == [("folders", "warn")]
-    assert bad(judge_runs(RunFacts(error="/tmp/x belongs to somebody else"))) == [
+    assert bad(diagnose_runs(RunFacts(free=1000))) == [("folders", "warn")]
+    assert bad(diagnose_runs(RunFacts(error="/tmp/x belongs to somebody else"))) == [
         ("folders", "fail")
     ]
 

@@ -38,15 +38,15 @@ def machine(root: Path, files: dict[str, str]) -> Path:
 )
 def test_the_supply_of_a_pi(answer: str, verdict: list[str], tmp_path: Path) -> None:
     root = machine(tmp_path, {"proc/device-tree/model": f"{PI}\0"})
-    findings = power.judge(power.look(root, lambda: answer))
+    findings = power.diagnose(power.collect(root, lambda: answer))
     assert bad(findings) == [(key, "warn") for key in verdict]
     assert findings[0].text.startswith(PI)
 
 
 def test_low_voltage_now_and_before_are_two_things(tmp_path: Path) -> None:
     root = machine(tmp_path, {"proc/device-tree/model": PI})
-    now = power.judge(power.look(root, lambda: "throttled=0x10001"))
-    before = power.judge(power.look(root, lambda: "throttled=0x10000"))
+    now = power.diagnose(power.collect(root, lambda: "throttled=0x10001"))
+    before = power.diagnose(power.collect(root, lambda: "throttled=0x10000"))
     assert "low voltage now | use a 5 V, 5 A supply" in text(now, "power.voltage")
     assert "low voltage since power-on" in text(before, "power.voltage")
 
@@ -65,7 +65,8 @@ def test_without_vcgencmd_the_kernels_sensor_tells(
             "sys/class/hwmon/hwmon1/in0_lcrit_alarm": f"{alarm}\n",
         },
     )
-    assert bad(power.judge(power.look(root, lambda: answer))) == [(key, "warn") for key in verdict]
+    found = power.diagnose(power.collect(root, lambda: answer))
+    assert bad(found) == [(key, "warn") for key in verdict]
 
 
 def test_a_laptop_is_not_asked_for_its_supply(tmp_path: Path) -> None:
@@ -73,8 +74,8 @@ def test_a_laptop_is_not_asked_for_its_supply(tmp_path: Path) -> None:
         raise AssertionError("no Pi has been seen")
 
     root = machine(tmp_path, {"proc/device-tree/model": "Some Board"})
-    assert power.look(root, fail) == PowerFacts()
-    assert power.judge(power.look(tmp_path / "nothing", fail)) == []
+    assert power.collect(root, fail) == PowerFacts()
+    assert power.diagnose(power.collect(tmp_path / "nothing", fail)) == []
 
 
 @pytest.mark.parametrize(
@@ -90,7 +91,7 @@ def test_a_laptop_is_not_asked_for_its_supply(tmp_path: Path) -> None:
 def test_a_cpu_that_saves_power(governor: str, driver: str, warned: bool, tmp_path: Path) -> None:
     cpu = "sys/devices/system/cpu/cpu0/cpufreq"
     files = {f"{cpu}/scaling_governor": f"{governor}\n", f"{cpu}/scaling_driver": f"{driver}\n"}
-    findings = power.judge(power.look(machine(tmp_path, files), str))
+    findings = power.diagnose(power.collect(machine(tmp_path, files), str))
     assert bad(findings) == ([("power.governor", "warn")] if warned else [])
     assert f"CPU governor {governor}" in text(findings, "power.governor")
 
@@ -106,21 +107,21 @@ def test_a_cpu_that_saves_power(governor: str, driver: str, warned: bool, tmp_pa
     ],
 )
 def test_groups_of_the_robots_user(facts: GroupFacts, verdict: list[tuple[str, str]]) -> None:
-    assert bad(groups.judge(facts)) == verdict
+    assert bad(groups.diagnose(facts)) == verdict
 
 
 def test_the_mend_names_the_groups_that_are_missing() -> None:
     facts = GroupFacts(pi=True, user="maria", mine=("video",))
-    said = text(groups.judge(facts), "groups")
+    said = text(groups.diagnose(facts), "groups")
     assert "you are not in: dialout, audio" in said
     assert "sudo usermod -aG dialout,audio maria" in said
     joined = GroupFacts(pi=True, mine=("video",), written=("dialout", "audio"))
-    assert "log out and in again" in text(groups.judge(joined), "groups")
-    assert "usermod" not in text(groups.judge(joined), "groups")
+    assert "log out and in again" in text(groups.diagnose(joined), "groups")
+    assert "usermod" not in text(groups.diagnose(joined), "groups")
 
 
 def test_groups_of_this_machine_can_be_read(tmp_path: Path) -> None:
-    facts = groups.look(machine(tmp_path, {"proc/device-tree/model": PI}))
+    facts = groups.collect(machine(tmp_path, {"proc/device-tree/model": PI}))
     assert facts.pi
     assert set(facts.existing) <= set(groups.NEEDED)
     assert facts.user
@@ -133,10 +134,10 @@ def test_ports_are_told_with_what_they_look_like(monkeypatch: pytest.MonkeyPatch
         SerialPort("/dev/ttyACM1", "", "1234:5678", "Modem"),
     ]
     monkeypatch.setattr(serial_ports, "serial_ports", lambda: there)
-    found = serial_ports.look().ports
+    found = serial_ports.collect().ports
     assert [access.port for access in found] == there
     allowed = SerialFacts(tuple(Access(port) for port in there))
-    assert [finding.text for finding in serial_ports.judge(allowed)] == [
+    assert [finding.text for finding in serial_ports.diagnose(allowed)] == [
         "serial port /dev/serial/by-id/usb-MicroPython (Board, Pico with MicroPython)",
         "serial port /dev/ttyUSB0 (CH340 bridge: a sonar, or the servos)",
         "serial port /dev/ttyACM1 (Modem)",

@@ -51,10 +51,10 @@ class Device:
 
 
 def asked(kind: str, device: Device) -> DeviceAnswer:
-    """Ask a device; whatever it is, nothing is said that moves, and what is not well has a mend."""
+    """Ask a device; whatever it is, nothing is said that moves, and what is not well has a fix."""
     answer = ask(kind, cast("OpenPort", device))
     assert set(device.said) <= {HELLO, BATTERY}
-    assert (answer.level is Level.OK) is (answer.mend == "")
+    assert (answer.level is Level.OK) is (answer.fix == "")
     return answer
 
 
@@ -96,7 +96,7 @@ def test_a_pico_whose_lines_come_garbled_is_told() -> None:
     answer = asked("pico", noisy)
     assert answer.level is Level.WARN
     assert answer.text.endswith("7.4 V, the battery is low, some lines arrive garbled")
-    assert "the cable: short" in answer.mend
+    assert "the cable: short" in answer.fix
     dumb = Device(answers={HELLO: b"$T,4" * 99 + b"\n" + b"\xff\n" * 3 + pico().answers[HELLO]})
     assert asked("pico", dumb).text == "firmware 1.0.0, some lines arrive garbled"
 
@@ -113,7 +113,7 @@ def test_a_device_without_a_protocol_of_ours_is_opened_and_no_more() -> None:
 
 
 @pytest.mark.parametrize(
-    ("flags", "words", "mend"),
+    ("flags", "words", "fix"),
     [
         ("E", "the emergency stop is held", "Ctrl+R"),
         ("L", "left motor driver", "wiring"),
@@ -121,15 +121,15 @@ def test_a_device_without_a_protocol_of_ours_is_opened_and_no_more() -> None:
         ("U", "battery is low", "charge"),
     ],
 )
-def test_a_pico_in_trouble_is_told(flags: str, words: str, mend: str) -> None:
+def test_a_pico_in_trouble_is_told(flags: str, words: str, fix: str) -> None:
     answer = asked("pico", pico(flags))
     assert answer.level is Level.WARN
     assert words in answer.text
-    assert mend in answer.mend
+    assert fix in answer.fix
 
 
 @pytest.mark.parametrize(
-    ("kind", "device", "words", "mend"),
+    ("kind", "device", "words", "fix"),
     [
         ("pico", Device(), "silent: no Pico", "flash firmware/pico2"),
         ("pico", Device(READING * 9), "a ToF sonar answers here, not the Pico", "by-id"),
@@ -148,11 +148,11 @@ def test_a_pico_in_trouble_is_told(flags: str, words: str, mend: str) -> None:
         ("lsc16", Device(answers={BATTERY: GARBAGE}), "no LSC-16 sends", "baud"),
     ],
 )
-def test_wrong_devices(kind: str, device: Device, words: str, mend: str) -> None:
+def test_wrong_devices(kind: str, device: Device, words: str, fix: str) -> None:
     answer = asked(kind, device)
     assert answer.level is Level.FAIL
     assert words in answer.text
-    assert mend in answer.mend
+    assert fix in answer.fix
 
 
 def test_what_talks_already_is_not_talked_to() -> None:

@@ -48,7 +48,7 @@ OTHER = SerialPort("/dev/ttyUSB3", "", "10c4:ea60", "CP2102")
 
 
 @pytest.mark.parametrize(
-    ("number", "words", "mend"),
+    ("number", "words", "fix"),
     [
         (errno.EACCES, "no permission", "usermod -aG"),
         (errno.EAGAIN, "another program is using it", "fuser -v"),
@@ -59,7 +59,7 @@ OTHER = SerialPort("/dev/ttyUSB3", "", "10c4:ea60", "CP2102")
     ],
 )
 def test_ports_that_cannot_be_opened(
-    number: int, words: str, mend: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    number: int, words: str, fix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Here by a user who is in no group, whoever runs this."""
     monkeypatch.setattr(os, "getgroups", list)
@@ -69,14 +69,14 @@ def test_ports_that_cannot_be_opened(
     assert isinstance(answer, DeviceAnswer)
     assert answer.level is Level.FAIL
     assert words in answer.text
-    assert mend in answer.mend
+    assert fix in answer.fix
 
 
 def test_a_port_that_is_missing_lists_those_that_are_there(tmp_path: Path) -> None:
     answer = opened("pico", str(tmp_path / "none"), 115_200, [OTHER])
     assert isinstance(answer, DeviceAnswer)
     assert "no such port; ports: /dev/ttyUSB3 (10c4:ea60, CP2102)" in answer.text
-    assert "DECK_PICO_PORT=" in answer.mend
+    assert "DECK_PICO_PORT=" in answer.fix
 
 
 def test_a_name_whose_device_was_unplugged(tmp_path: Path) -> None:
@@ -167,7 +167,7 @@ def test_auto_takes_the_port_that_fits(port: str) -> None:
     assert f"pico {port}: the port is silent" in found.text
     (missing,) = examine(robot(pico={"kind": "pico", "port": "auto"}), list)
     assert "pico: no port fits (2e8a:0005)" in missing.text
-    assert missing.mend.startswith("choose with DECK_PICO_PORT=")
+    assert missing.fix.startswith("choose with DECK_PICO_PORT=")
 
 
 @pytest.mark.parametrize(

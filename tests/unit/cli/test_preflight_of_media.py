@@ -27,7 +27,7 @@ def test_cameras_that_are_missing_or_none(tmp_path: Path) -> None:
     (none,) = examine(robot(eye={"kind": "camera", "source": "77"}), list)
     assert none.level is Level.FAIL
     assert "eye /dev/video77: there is no such camera" in none.text
-    assert "DECK_EYE_SOURCE=" in none.mend
+    assert "DECK_EYE_SOURCE=" in none.fix
     (other,) = examine(robot(eye={"kind": "camera", "source": str(tmp_path / "note.txt")}), list)
     assert other.level is Level.FAIL
     assert "it delivers no picture" in other.text
@@ -60,4 +60,4 @@ def test_microphones_and_loudspeakers(
     (found,) = examine(robot(sound={"kind": "sound", **settings}), list)
     assert found.level is level
     assert words in found.text
-    assert (found.level is Level.OK) is (found.mend == "")
+    assert (found.level is Level.OK) is (found.fix == "")

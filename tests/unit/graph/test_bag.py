@@ -1,4 +1,4 @@
-"""Bags that are no bags, cut short, or foreign: each gets a word that names file and mend."""
+"""Bags that are no bags, cut short, or foreign: each gets a word that names file and fix."""
 
 from __future__ import annotations
 

@@ -81,14 +81,14 @@ def type_text(row: TopicRow) -> str:
     return plain(" | ".join(name.replace("/msg/", "/") for name in row.type_names))
 
 
-def needs_mending(row: TopicRow) -> bool:
+def has_problem(row: TopicRow) -> bool:
     """Return whether something is wrong; mere silence is usually not."""
     return row.trouble in _TROUBLES
 
 
 def state_text(row: TopicRow) -> str:
     """A mark and a word: what is wrong, or why there are no figures; empty if all is well."""
-    if needs_mending(row):
+    if has_problem(row):
         return _(_TROUBLES[row.trouble]) if row.trouble else ""
     if not row.measured:
         return _("– not measured")
@@ -108,7 +108,7 @@ def _figure(value: float | None) -> float:
 
 def _state_key(row: TopicRow) -> SortKey:
     """Troubles, then what is not measured, then what is quiet: without ages, which change."""
-    if needs_mending(row):
+    if has_problem(row):
         return 0.0, state_text(row)
     if not row.measured:
         return 1.0, ""

@@ -16,7 +16,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from text.i18n import _
-from tui.topics.table.columns import PlacedColumn, needs_mending, placed
+from tui.topics.table.columns import PlacedColumn, has_problem, placed
 from tui.topics.table.order import TopicsOrder
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import word_strips
@@ -300,7 +300,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         if chosen:
             base = self.get_component_rich_style("topics-table--cursor")
         trouble = base
-        if needs_mending(row) and not chosen:
+        if has_problem(row) and not chosen:
             trouble += self.get_component_rich_style("topics-table--trouble", partial=True)
         styles = [trouble if place.column.id == "state" else base for place in self._places]
         return self._strip("▶ " if chosen else "", cells, styles, width, base)

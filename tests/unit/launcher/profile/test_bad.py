@@ -1,4 +1,4 @@
-"""Every way in which a profile can be wrong has its own message, with place, field and mend."""
+"""Every way in which a profile can be wrong has its own message, with place, field and fix."""
 
 from __future__ import annotations
 
