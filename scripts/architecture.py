@@ -1,6 +1,6 @@
 """Draw the rooms for ARCHITECTURE.md from the code: `architecture.py [--write]`.
 
-The imports are read from the modules, the floors within a room from the contracts in
+The imports are read from the modules, the layers within a room from the contracts in
 pyproject.toml. Without --write the picture goes to standard output.
 """
 
@@ -33,7 +33,7 @@ def picture() -> str:
     for room in rooms:
         graph.squash_module(room)
     imported = {room: sorted(graph.find_modules_directly_imported_by(room)) for room in rooms}
-    parts = [_arrows(imported, rooms), _libraries(imported, rooms), *_floors(options)]
+    parts = [_arrows(imported, rooms), _libraries(imported, rooms), *_layers(options)]
     return "\n".join(parts)
 
 
@@ -61,14 +61,14 @@ def _library(name: str) -> str:
     return "ROS messages" if ros or name in OUR_OWN_MESSAGES else name
 
 
-def _floors(options: UserOptions) -> list[str]:
+def _layers(options: UserOptions) -> list[str]:
     drawn = []
     for contract in options.contracts_options:
         if contract["type"] != "layers":
             continue
         (room,) = contract["containers"]
-        floors = [f"  {str(floor).strip('()')}\n" for floor in contract["layers"]]
-        drawn.append(f"```text\n{room}\n{''.join(floors)}```\n")
+        layers = [f"  {str(layer).strip('()')}\n" for layer in contract["layers"]]
+        drawn.append(f"```text\n{room}\n{''.join(layers)}```\n")
     return drawn
 
 
