@@ -113,10 +113,6 @@ class Replay:
 
         self._order(do)
 
-    def pause(self) -> None:
-        """Pause."""
-        self._order(lambda _player: self._set(paused=True))
-
     def step(self) -> None:
         """Pause, and take the next message, of the watched topics if there are any."""
 

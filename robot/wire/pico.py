@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, field
 
 from robot.limits import Limits
-from robot.wire.line import LineSplitter, unwrap, wrap
+from robot.wire.line import LineSplitter, wrap
 from text.i18n import N_
 
 PROTOCOL = 1
@@ -105,11 +105,6 @@ class Telemetry:
     """Lines that the Pico could not use so far."""
     flags: frozenset[str] = field(default_factory=frozenset)
 
-    @property
-    def stands(self) -> bool:
-        """Whether something keeps the motors off."""
-        return bool(self.flags & STANDING_FLAGS)
-
 
 FromPico = Welcome | Telemetry
 Message = Hello | Drive | Halt | Release | FromPico
@@ -121,12 +116,6 @@ def encode(message: Message) -> bytes:
     if parse(body) is None:
         raise ValueError(f"out of range: {message}")
     return wrap(body)
-
-
-def decode(line: bytes) -> Message | None:
-    """Return the message in one line given without its end, None if there is none."""
-    body = unwrap(line)
-    return None if body is None else parse(body)
 
 
 class PicoDecoder:

@@ -33,15 +33,6 @@ class CellMap:
     cells: NDArray[np.int8]
     """Shape (rows, columns); rows count along y, columns along x."""
 
-    def at(self, x_m: float, y_m: float) -> int:
-        """Return the cell at a place; unknown outside."""
-        row = math.floor((y_m - self.y_m) / self.cell_m)
-        column = math.floor((x_m - self.x_m) / self.cell_m)
-        rows, columns = self.cells.shape
-        if 0 <= row < rows and 0 <= column < columns:
-            return int(self.cells[row, column])
-        return UNKNOWN
-
 
 def grid_of(room: Room, cell_m: float = CELL_M) -> CellMap:
     """Draw a room: its walls and boxes are occupied, the floor between them is free."""

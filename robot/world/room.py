@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from robot.motion.odometry import Point
-
 
 @dataclass(frozen=True)
 class Box:
@@ -70,11 +68,6 @@ class Room:
         return any(
             self._crossed(corner, edge) for corner, edge in zip(corners, edges, strict=True)
         ) or any(_inside(point, box) for point in self._begins)
-
-    def holds(self, point: Point) -> bool:
-        """Whether a point lies between the walls and outside all boxes."""
-        place = np.array((point.x_m, point.y_m))
-        return _inside(place, self.walls) and not any(_inside(place, box) for box in self.boxes)
 
     def _crossed(self, begin: NDArray[np.float64], edge: NDArray[np.float64]) -> bool:
         to_begin = self._begins - begin

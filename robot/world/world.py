@@ -138,13 +138,6 @@ class World:
         self._since_hit_m += moved_m
         self.pose = pose
 
-    def place(self, pose: Pose) -> bool:
-        """Move the robot elsewhere; return False if it would touch something there."""
-        if self.room.touches(self.body.outline(pose)):
-            return False
-        self.pose, self._free_m, self._since_hit_m = pose, 0.0, math.inf
-        return True
-
     def read_sonars(self) -> tuple[float, float]:
         """Return front and rear in metres by REP-117; each call draws new noise."""
         front, rear = (

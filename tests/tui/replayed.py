@@ -37,7 +37,7 @@ class BagOpener(LiveOpener):
         assert replay is not None
         self.opened.append(replay)
         if self.paused:
-            replay.pause()
+            replay.toggle()
         if self.position_s:
             replay.seek(self.position_s)
         return link

@@ -7,10 +7,11 @@ import random
 from typing import TYPE_CHECKING
 
 from robot.kinematics import wheel_speeds
-from robot.motion.odometry import Point, Pose
+from robot.motion.odometry import Pose
 from robot.safety.distance import Reading, SafetyZone, Shares, gate, range_state, share, where
 from robot.words import STOP, DriveSetpoint
 from robot.world.world import STEP_S, Wheels
+from tests.unit.free_floor import on_free_floor
 
 if TYPE_CHECKING:
     from robot.world.world import World
@@ -103,8 +104,16 @@ class RandomDriver:
         dice = self.dice
         while True:
             pose = Pose(dice.uniform(-0.5, 3.5), dice.uniform(-1.5, 1.5), dice.uniform(-3, 3))
-            if self.world.room.holds(Point(pose.x_m, pose.y_m)) and self.world.place(pose):
+            if on_free_floor(self.world.room, pose.x_m, pose.y_m) and self._put(pose):
                 return
+
+    def _put(self, pose: Pose) -> bool:
+        """Move the robot elsewhere; return False if it would touch something there."""
+        world = self.world
+        if world.room.touches(world.body.outline(pose)):
+            return False
+        world.pose, world._free_m, world._since_hit_m = pose, 0.0, math.inf
+        return True
 
     def _pass(self) -> None:
         world = self.world

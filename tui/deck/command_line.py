@@ -101,11 +101,6 @@ class CommandLine(Vertical):
         """The text field."""
         return self.query_one(Input)
 
-    @property
-    def remark(self) -> str:
-        """The remark about the text, or about the listeners."""
-        return self._remark()[0]
-
     def show_listeners(self, count: int) -> None:
         """Show how many nodes listen for commands."""
         if count != self._listeners:

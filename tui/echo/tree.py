@@ -20,7 +20,7 @@ from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, word_strips
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from textual.events import Click
 
@@ -123,11 +123,6 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
     def message(self) -> Mapping[str, Value] | None:
         """The message shown now."""
         return self._message
-
-    @property
-    def lines(self) -> Sequence[EchoLine]:
-        """The current lines of the tree."""
-        return self._lines
 
     @property
     def paused(self) -> bool:

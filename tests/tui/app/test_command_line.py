@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from textual import on
 from textual.app import App, ComposeResult
+from textual.widgets import Static
 
 from tests.tui.panel_stage import Stage
 from tests.tui.snapshots import SnapCompare
@@ -32,6 +33,11 @@ class LineApp(App[None]):
         """The line."""
         return self.query_one(CommandLine)
 
+    @property
+    def remark(self) -> str:
+        """What stands below the line."""
+        return str(self.line.query_one(Static).content)
+
 
 async def test_enter_sends_the_word_and_empties_the_line() -> None:
     app = LineApp()
@@ -48,7 +54,7 @@ async def test_a_known_word_says_what_it_will_do() -> None:
     async with app.run_test() as pilot:
         app.line.show_listeners(1)
         await pilot.press(*"Налево")
-        assert app.line.remark == "0.3 m/s, steering 0.5 rad"
+        assert app.remark == "0.3 m/s, steering 0.5 rad"
 
 
 async def test_an_unknown_word_is_warned_of_and_sent_all_the_same() -> None:
@@ -56,7 +62,7 @@ async def test_an_unknown_word_is_warned_of_and_sent_all_the_same() -> None:
     async with app.run_test() as pilot:
         app.line.show_listeners(1)
         await pilot.press(*"прыжок")
-        assert "unknown word “прыжок”" in app.line.remark
+        assert "unknown word “прыжок”" in app.remark
         await pilot.press("enter")
         assert app.sent == ["прыжок"]
 
@@ -65,9 +71,9 @@ async def test_it_says_when_nobody_listens() -> None:
     app = LineApp()
     async with app.run_test():
         app.line.show_listeners(0)
-        assert "nobody listens to /ai_command" in app.line.remark
+        assert "nobody listens to /ai_command" in app.remark
         app.line.show_listeners(2)
-        assert "nobody" not in app.line.remark
+        assert "nobody" not in app.remark
 
 
 @pytest.mark.parametrize(
@@ -118,7 +124,7 @@ async def test_of_hostile_text_what_is_seen_is_what_is_sent() -> None:
         app.line.show_listeners(1)
         app.line.field.value = "[red]x\x1b[31m"
         await pilot.pause()
-        assert "“[red]x␛[31m”" in app.line.remark
+        assert "“[red]x␛[31m”" in app.remark
         await pilot.press("enter")
         assert app.sent == ["[red]x␛[31m"]
 

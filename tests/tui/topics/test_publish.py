@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from textual.widgets import Static
 
 from graph.data import Publication, Sample
 from graph.messages.yaml_form import check
@@ -64,8 +65,12 @@ class Desk:
 
     async def says(self, words: str) -> None:
         """Wait until this is said beside the rate."""
-        rate = self.dialog.rate
-        await until(lambda: words in rate.said, lambda: f"{words!r}, but {rate.said!r}")
+        await until(lambda: words in self.said, lambda: f"{words!r}, but {self.said!r}")
+
+    @property
+    def said(self) -> str:
+        """What stands beside the rate."""
+        return str(self.dialog.rate.query_one("#rate-said", Static).content)
 
     def fill(self, old: str, new: str) -> None:
         """Change what stands in the form."""
@@ -112,7 +117,7 @@ async def test_what_is_wrong_publishes_nothing_and_is_gone_to(desk: Desk) -> Non
     assert desk.dialog.focused is desk.dialog.form.editor
     assert desk.dialog.form.editor.cursor_location == (6, 9)
     desk.fill("fast", "1")
-    await until(lambda: desk.dialog.rate.said == "", "the word gone that it was not sent")
+    await until(lambda: desk.said == "", "the word gone that it was not sent")
 
 
 async def test_the_newest_message_fills_the_form(desk: Desk) -> None:

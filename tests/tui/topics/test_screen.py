@@ -316,7 +316,7 @@ async def test_five_megabytes_are_shown_with_few_objects_and_cut(stage: Stage) -
     tree = stage.screen.detail.echo
     tree.focus()
     await stage.pilot.press("end", "enter")
-    assert "… 1249800 more items" in tree.lines[-1].text
+    assert "… 1249800 more items" in tree._lines[-1].text
 
 
 async def test_a_name_longer_than_a_line_is_told_whole_above_its_message() -> None:

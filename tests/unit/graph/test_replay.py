@@ -100,7 +100,7 @@ def test_a_type_that_is_installed_nowhere_is_decoded(viewer: Viewer) -> None:
 
 
 def test_it_pauses_steps_and_goes_on(viewer: Viewer) -> None:
-    viewer.replay.pause()
+    viewer.replay.toggle()
     viewer.replay.watch(["/number"])
     viewer.start()
     viewer.wait(lambda: viewer.values("/number") == [0.0], "the first message")
@@ -115,7 +115,7 @@ def test_it_pauses_steps_and_goes_on(viewer: Viewer) -> None:
 
 
 def test_a_jump_shows_the_message_and_the_rate_of_that_place(viewer: Viewer) -> None:
-    viewer.replay.pause()
+    viewer.replay.toggle()
     viewer.replay.watch(["/number", "/map_name"])
     viewer.start()
     viewer.replay.seek(7.0)
@@ -131,7 +131,7 @@ def test_a_jump_shows_the_message_and_the_rate_of_that_place(viewer: Viewer) -> 
 def test_a_latched_message_from_long_before_is_there_after_a_jump(bag: Path) -> None:
     viewer = Viewer(bag, start_s=9.0)
     viewer.replay.watch(["/map_name"])
-    viewer.replay.pause()
+    viewer.replay.toggle()
     viewer.start()
     viewer.wait(lambda: viewer.values("/map_name") == ["kitchen"], "the latched message")
     viewer.replay.stop()

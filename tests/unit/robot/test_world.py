@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.motion.odometry import Point, Pose
+from robot.motion.odometry import Pose
 from robot.safety.distance import SafetyZone
 from robot.world.room import LIVING_ROOM, Box, Room
 from robot.world.world import Body, SimulatedSonar, Wheels, World
@@ -39,9 +39,6 @@ def test_a_ray_sees_the_nearest_box() -> None:
     assert room.distance(0, 0, 0) == pytest.approx(1.5)
     assert room.distance(0, 0, math.pi) == pytest.approx(5.0)
     assert room.distance(0, 0, math.pi / 4) == pytest.approx(5 * math.sqrt(2))
-    assert room.holds(Point(0, 0))
-    assert not room.holds(Point(2, 0.2))
-    assert not room.holds(Point(6, 0))
 
 
 @given(small, small, angles, st.floats(0.05, 3), st.floats(0.05, 3))

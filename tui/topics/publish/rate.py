@@ -58,11 +58,6 @@ class PublishRate(Horizontal):
         return self.query_one(Input)
 
     @property
-    def said(self) -> str:
-        """The remark."""
-        return str(self.query_one("#rate-said", Static).content)
-
-    @property
     def says_bad(self) -> bool:
         """Whether the remark reports a failure."""
         return self._look == "bad"
