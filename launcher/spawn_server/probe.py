@@ -1,7 +1,7 @@
 """The probe: a short-lived process that reports which nodes, topics and services exist.
 
 The supervisor does not load rclpy. While it waits for a node to become ready, this process, forked
-from the spawn server, watches the graph for it and writes a line of JSON to stdout for every
+from the spawn server, watches the graph for it and writes a line of JSON to its stdout for every
 change. `met` lists the conditions that hold now, by their position in the list it was given; `seen`
 has `[position, types, messages per second or null]` for each topic that is published but not as
 required.
@@ -54,6 +54,10 @@ class _Report:
 
 def probe(argv: Sequence[str]) -> None:
     """Watch until stdin ends; `argv` is a single JSON list of `[kind, name, type, rate]`."""
+    # Fast DDS prints its errors to stdout.
+    reports = os.dup(1)
+    os.dup2(2, 1)
+
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
@@ -69,13 +73,13 @@ def probe(argv: Sequence[str]) -> None:
         start_parameter_services=False,
     )
     try:
-        _watch(node, conditions, MessageRates(node))
+        _watch(node, conditions, MessageRates(node), reports)
     finally:
         node.destroy_node()
         rclpy.shutdown()
 
 
-def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates) -> None:
+def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates, reports: int) -> None:
     started = time.monotonic()
     told: _Report | None = None
     told_at = 0.0
@@ -85,7 +89,7 @@ def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates) ->
         # Rates change all the time; all else is reported at once.
         if told is None or report.differs(told) or (report != told and now > told_at + RATES_S):
             line = {"met": report.met, "seen": report.seen}
-            os.write(1, json.dumps(line).encode() + b"\n")
+            os.write(reports, json.dumps(line).encode() + b"\n")
             told, told_at = report, now
         eager = now - started < EAGER_S
         if select.select([0], [], [], EAGER_PERIOD_S if eager else CALM_PERIOD_S)[0]:

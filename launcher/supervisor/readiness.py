@@ -128,7 +128,7 @@ class Readiness:
 
     async def _watch(self) -> None:
         for _attempt in range(MAX_PROBES):
-            with contextlib.suppress(SpawnError):
+            with contextlib.suppress(SpawnError, ValueError):
                 await self._one_probe()
         self._holding = frozenset()
         for future in self._waiters:

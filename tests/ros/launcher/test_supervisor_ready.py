@@ -306,6 +306,18 @@ async def test_where_rclpy_is_missing_nodes_run_and_nobody_waits_for_ever(
     await running_pid(client, "other")
 
 
+async def test_what_the_middleware_prints_keeps_no_node_from_being_ready(
+    start: Launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Fast DDS prints its errors to stdout, for example when two processes want one port."""
+    faulty = tmp_path / "faulty.xml"
+    faulty.write_text("<profiles><nonsense/></profiles>")
+    monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(faulty))
+    client = await start({"node": module(tmp_path, "talker_module", TALKER)})
+    await until_state(client, "node", NodeState.READY)
+    assert any("XMLPARSER" in line.text for line in await client.history("node", 1000))
+
+
 def _python_path() -> list[str]:
     before = os.environ.get("PYTHONPATH")
     return [before] if before else []
