@@ -46,7 +46,7 @@ _TOO_CLOSE = N_("something too close to measure ahead")
 _NOT_VALID = N_("no valid distance straight ahead")
 _NO_DISTANCE = N_("no distance")
 _THOUGHTS = {
-    Decision.LOOK_AND_GO: N_("The way is free: I look round and drive on"),
+    Decision.LOOK_AND_GO: N_("The path is clear: I look round and drive on"),
     Decision.OBSTACLE: N_("An obstacle is near: I stop"),
     Decision.BLIND: N_("I do not know what is ahead: I stop"),
     Decision.OBEY: N_("As you say"),
@@ -70,9 +70,7 @@ class AiBrain(LessonNode):
     NAME = "ai_brain"
     SETTINGS = (
         Number("stop_distance", 1.0, "Nearer than this it stops", low=0.05, high=100.0, unit="m"),
-        Number(
-            "stale_after_s", 2.5, "An older distance is not believed", low=0.1, high=60.0, unit="s"
-        ),
+        Number("stale_after_s", 2.5, "An older distance is ignored", low=0.1, high=60.0, unit="s"),
         Number(
             "head_timeout",
             5.0,

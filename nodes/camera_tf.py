@@ -24,7 +24,7 @@ from text.i18n import N_
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_PUBLISHED = N_("{child} sits at x {x:g}, y {y:g}, z {z:g} m from {parent}")
+_PUBLISHED = N_("{child} relative to {parent}: x {x:g}, y {y:g}, z {z:g} m")
 _SAME = N_("parameters parent and child are both {parent}, but must differ")
 
 

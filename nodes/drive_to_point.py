@@ -71,8 +71,10 @@ class DriveToPointNode(LessonNode):
             choices=(AUTO, ALWAYS, NEVER),
         ),
         Text("base_topic", DRIVE, "Commands that the simulated base obeys", fixed=True),
-        Number("max_speed", 0.3, "Drives no faster", low=0.05, high=SPEED.high, unit="m/s"),
-        Number("max_steering", 0.5, "Steers no further", low=0.1, high=STEERING.high, unit="rad"),
+        Number("max_speed", 0.3, "Maximum speed", low=0.05, high=SPEED.high, unit="m/s"),
+        Number(
+            "max_steering", 0.5, "Maximum steering angle", low=0.1, high=STEERING.high, unit="rad"
+        ),
         Number(
             "wheelbase",
             WHEELBASE_M,

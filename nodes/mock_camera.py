@@ -26,7 +26,7 @@ from text.i18n import N_
 
 FILM, ROOM = "film", "room"
 
-_STARTED = N_("The camera films {width}x{height} {encoding}, {rate:g} pictures a second")
+_STARTED = N_("The camera publishes {width}x{height} {encoding}, {rate:g} pictures a second")
 
 
 class MockCamera(LessonNode):

@@ -23,7 +23,7 @@ from nodes.parts.node import LessonNode, NodeUsageError
 from nodes.parts.parameters import Choice, Number, Setting, Text, Whole
 from nodes.parts.qos import DEPTH, LATCHED
 from nodes.parts.runner import run
-from nodes.simulated.device_fault import FAULTS, FINE, FaultyLine
+from nodes.simulated.device_fault import FAULTS, FINE, NOISE, SILENT, SLOW, UNPLUGGED, FaultyLine
 from nodes.simulated.map_message import occupancy_grid
 from nodes.simulated.motors import MockMotors
 from nodes.simulated.pseudo_terminal import PseudoSerial
@@ -45,7 +45,13 @@ _POSE_EVERY = 5
 
 _STARTED = N_("The simulated robot is in {folder}: {devices}")
 _NO_FOLDER = N_("cannot make devices in {folder}: {problem}; set the parameter folder")
-_FAULT = N_("{device} is now: {fault}")
+_FAULT = {
+    FINE: N_("{device} works again"),
+    UNPLUGGED: N_("{device} is now unplugged"),
+    SILENT: N_("{device} is now silent"),
+    NOISE: N_("{device} now has noise on its line"),
+    SLOW: N_("{device} is now slow"),
+}
 _COLLISION = N_("The robot ran into something (number {count})")
 
 
@@ -111,7 +117,7 @@ class MockRobot(LessonNode):
             if fault != self._told[device]:
                 self._told[device] = fault
                 self._lines[device].set_fault(fault)
-                self.say.warn(_FAULT, device=device, fault=fault)
+                self.say.warn(_FAULT[fault], device=device)
         sides = {"none": "", "left": "L", "right": "R", "both": "LR"}
         stalled = sides[self.text("stalled")]
         self._world.stalled = "L" in stalled, "R" in stalled

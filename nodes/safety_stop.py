@@ -5,7 +5,7 @@ An obstacle nearer than `critical_distance`, an invalid reading (nan), and no re
 the sources of commands and /drive_safe: forward is blocked while the front is in danger, backward
 while the rear is (if a `rear_topic` is given; without one, backing off is always allowed). Between
 `slow_distance` and `critical_distance` the speed is reduced in proportion. A command that was cut
-short is forgotten: when the way is free again the robot waits for a new one.
+short is forgotten: when the path is clear again the robot waits for a new one.
 
 `sources` are the topics with commands, highest rank first: a source is active while its newest
 command is younger than `max_age_s`, and lower sources are ignored meanwhile. Without an active
@@ -61,7 +61,7 @@ class SafetyStop(LessonNode):
         Number(
             "slow_distance",
             1.0,
-            "Slows from here to critical_distance; not above that: never",
+            "Slows down between this and critical_distance; never if it is not larger",
             high=100.0,
             unit="m",
         ),
@@ -74,13 +74,23 @@ class SafetyStop(LessonNode):
             unit="s",
         ),
         Switch("gate", False, "Whether to relay commands to /drive_safe", fixed=True),
-        Text("sources", " ".join(COMMAND_SOURCES), "Their topics, highest rank first", fixed=True),
+        Text(
+            "sources",
+            " ".join(COMMAND_SOURCES),
+            "Topics of the command sources, highest priority first",
+            fixed=True,
+        ),
         Number("max_age_s", 0.5, "An older command becomes a stop; 0: never", high=60.0, unit="s"),
         Number(
             "settle_s", 1.0, "How long the gate stays shut after its start", high=10.0, unit="s"
         ),
         Number(
-            "rate", 10.0, "Looks, and repetitions of /drive_safe", low=1.0, high=100.0, unit="Hz"
+            "rate",
+            10.0,
+            "Checks, and repetitions of /drive_safe, a second",
+            low=1.0,
+            high=100.0,
+            unit="Hz",
         ),
     )
 

@@ -57,7 +57,12 @@ class TofSonar(LessonNode):
         Text("frame_id", "sonar_front_link", "Frame of the readings", fixed=True),
         Whole("every", 2, "Every n-th reading is published", low=1, high=1000),
         Number(
-            "silent_after_s", 0.5, "Without a reading it is silent", low=0.1, high=10.0, unit="s"
+            "silent_after_s",
+            0.5,
+            "The sensor counts as silent after this long without a reading",
+            low=0.1,
+            high=10.0,
+            unit="s",
         ),
     )
 

@@ -186,7 +186,7 @@ def words_of(cause: BaseException, place: Widget | None) -> str:
     """Say what failed, and where."""
     said = plain(str(cause), 200)
     kind = f"{type(cause).__name__}: {said}" if said else type(cause).__name__
-    words = _("{place} has failed ({kind}). The rest goes on.")
+    words = _("{place} has failed ({kind}). Everything else keeps working.")
     return words.format(place=_name_of(place), kind=kind)
 
 

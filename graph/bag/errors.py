@@ -59,7 +59,8 @@ def unreadable(path: Path, error: Exception) -> BagError:
         return error
     return BagError(
         say(
-            "{path} cannot be read: {reason}. Is it whole? `ros2 bag reindex` repairs many bags",
+            "{path} cannot be read: {reason}. It may be damaged: `ros2 bag reindex` repairs "
+            "many bags",
             path=path,
             reason=say(os_reason(error).rstrip(".")),
         )

@@ -152,7 +152,7 @@ def _meant(value: Value) -> Value | None:
 
 def _string(value: Value) -> str:
     if not isinstance(value, str):
-        raise WrongValueError(say("expected text, got {value}", value=_shown(value)))
+        raise WrongValueError(say("expected a string, got {value}", value=_shown(value)))
     if "\0" in value:
         raise WrongValueError(say("a ROS string cannot hold the character NUL"))
     try:

@@ -150,7 +150,7 @@ class Calls:
         late = [other for other in self._calls if other.is_late]
         for oldest in late[: max(0, len(late) + 1 - LATE_KEPT)]:
             self._calls.remove(oldest)
-            words = say("{name}: its answer is no longer awaited", name=oldest.service)
+            words = say("{name}: no longer waiting for the response", name=oldest.service)
             oldest.future.set_result(_failed(oldest.service, words, oldest.started_s))
         call.is_late, call.future = True, Future()
         # A caller that stops waiting must not leave a future behind that cannot be set.

@@ -225,5 +225,5 @@ def _kind(value: Any) -> str:  # noqa: ANN401
     if isinstance(value, Mapping):
         return say("a message")
     if isinstance(value, str):
-        return say("a text")
+        return say("a string")
     return say("a number") if _is_number(value) else say("a list")

@@ -147,10 +147,10 @@ def _check_length(kind: FieldType, length: int, path: str) -> None:
 
 def _text(kind: FieldType, value: Value, path: str) -> str:
     if isinstance(value, (bool, int, float)):
-        words = say("expected text, got {value}: put it in quotes", value=_shown(value))
+        words = say("expected a string, got {value}: put it in quotes", value=_shown(value))
         raise FieldError(path, words)
     if not isinstance(value, str):
-        raise FieldError(path, say("expected text, got {value}", value=_shown(value)))
+        raise FieldError(path, say("expected a string, got {value}", value=_shown(value)))
     if kind.text_limit is not None and len(value) > kind.text_limit:
         raise FieldError(
             path,

@@ -74,7 +74,11 @@ def _size(raw: bytes) -> tuple[int, int]:
         )
         raise ImageError(words)
     if not 0 < width * height <= MOST_PIXELS:
-        words = say("a picture of {width} x {height} is not decoded", width=width, height=height)
+        words = say(
+            "an image of {width} x {height} is not decoded: it is too large or empty",
+            width=width,
+            height=height,
+        )
         raise ImageError(words)
     return width, height
 

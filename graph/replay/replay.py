@@ -299,7 +299,7 @@ class Replay:
 
 
 def _refusal() -> str:
-    return say("this is a recording: nobody can hear it")
+    return say("this is a recording: there is nobody to send to")
 
 
 def refused() -> Future[T]:

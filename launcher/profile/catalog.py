@@ -79,7 +79,7 @@ def find_profile(name: str | Path) -> Path:
         return known[fits[0]]
     if fits:
         raise UsageError(
-            say("{name!r} fits several: {names}", name=text, names=", ".join(sorted(fits)))
+            say("{name!r} matches several: {names}", name=text, names=", ".join(sorted(fits)))
         )
     raise ProfileNotFoundError(text, _likely(text, known))
 

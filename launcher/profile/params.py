@@ -128,7 +128,7 @@ def _single(scalar: Scalar, where: Where, problems: Problems) -> Single | None:
 
 def _text_trouble(text: str) -> str:
     if "\0" in text:
-        return say("ROS cannot carry a NUL character in a text")
+        return say("ROS cannot carry a NUL character in a string")
     if any("\ud800" <= character <= "\udfff" for character in text):
         return say("an incomplete character: a lone surrogate")
     if len(text) > LONGEST_TEXT:

@@ -86,7 +86,7 @@ def _one(
     if not found:
         looked = ", ".join(wanted.usb) or say("any USB device")
         there = "; ".join(map(str, ports)) or say("none")
-        message = say("no port fits ({usb}); ports: {ports}", usb=looked, ports=there)
+        message = say("no port matches ({usb}); ports: {ports}", usb=looked, ports=there)
     elif len(found) == 1:
         message = say(
             "{port} may be this or {others}", port=str(found[0]), others=", ".join(rivals)

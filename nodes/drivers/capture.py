@@ -38,7 +38,7 @@ _SAY_EVERY_S = 10.0
 _MOST_FPS = 240.0
 
 _OPEN = N_("The camera is {source}")
-_LOST = N_("Lost {source}: no more pictures come")
+_LOST = N_("Lost {source}: no more pictures arrive")
 _CANNOT = N_("Cannot open {source}: {problem}")
 _OVER = N_("{source} is at its end")
 _BROKEN = N_("Bad picture from {source}: {problem}")

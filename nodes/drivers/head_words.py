@@ -38,14 +38,14 @@ _NO_ROOM = {
 
 
 DESCRIPTIONS = (
-    N_("Where the pan servo is plugged in"),
-    N_("Least pan"),
-    N_("Most pan"),
+    N_("Channel of the pan servo"),
+    N_("Minimum pan"),
+    N_("Maximum pan"),
     N_("Angle of the pan servo at which the head looks straight ahead"),
     N_("Whether a longer pulse turns the head right"),
-    N_("Where the tilt servo is plugged in"),
-    N_("Least tilt"),
-    N_("Most tilt"),
+    N_("Channel of the tilt servo"),
+    N_("Minimum tilt"),
+    N_("Maximum tilt"),
     N_("Angle of the tilt servo at which the head looks straight ahead"),
     N_("Whether a longer pulse turns the head down"),
 )

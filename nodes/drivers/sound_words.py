@@ -33,7 +33,7 @@ OPENING = N_("it is being opened")
 
 EMPTY = N_("An empty message for the speaker")
 ODD = N_("{count} bytes for the speaker, but a sample has two: the last is left out")
-WORDS = N_('Words and no sound came for the speaker: "{words}"')
+WORDS = N_('The speaker got text instead of sound: "{words}"')
 LATE = N_("The speaker is late: the oldest {seconds:.1f} s of sound are dropped")
 UNPLAYED = N_("There is no speaker now: {seconds:.1f} s of sound are not played")
 

@@ -7,9 +7,9 @@ from text.i18n import N_
 STARTED = N_("Ready to drive to a point: action {action}")
 GOAL = N_("Driving to x {x:.2f}, y {y:.2f} m, to within {tolerance:.2f} m")
 
-REACHED = N_("There: the point is {distance:.2f} m away")
+REACHED = N_("Arrived: the point is {distance:.2f} m away")
 CANCELLED = N_("Cancelled as asked, {distance:.2f} m from the point")
-REPLACED = N_("Given up for a newer goal, {distance:.2f} m from the point")
+REPLACED = N_("Preempted by a newer goal, {distance:.2f} m from the point")
 NO_ODOMETRY = N_(
     "Nobody publishes {topic}: the robot's position is unknown; start its base, or simulate:=auto"
 )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 ODOM = "odom"
 """The frame of the poses on /odom (REP-105)."""
-_NO_NUMBER = N_("{topic} is not a number, not believed")
+_NO_NUMBER = N_("{topic} is not a number and is ignored")
 
 
 class OdometryListener:

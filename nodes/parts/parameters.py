@@ -164,7 +164,7 @@ class Text(Setting):
         """Return a str."""
         if isinstance(value, str) and (value.strip() or self.may_be_empty):
             return value
-        raise BadValueError(N_("a text (in quotes if it looks like a number)"))
+        raise BadValueError(N_("a string (in quotes if it looks like a number)"))
 
     def expected(self) -> str:
         """Say whether it may be empty."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from nodes.safety.distance_sensors import SensorResult
     from nodes.safety.snapshot import GateSnapshot
 
-STARTED = N_("Watching the way: closer than {metres:g} m is danger")
+STARTED = N_("Watching the path: closer than {metres:g} m is danger")
 EMERGENCY = N_("EMERGENCY STOP: nothing moves until it is released")
 RELEASED = N_("The emergency stop is released; waiting for a new command")
 COMMAND_CUT = N_("The command {speed:.2f} m/s, {steering:.2f} rad is stopped: {reason}")
@@ -27,7 +27,7 @@ IGNORED = N_("{ignored} is ignored: {source} drives, and ranks higher")
 HELD_UP = N_("This node was held up: commands that waited meanwhile are not obeyed")
 
 _FRONT = {
-    RangeState.FREE: N_("The way is free ({metres:.2f} m)."),
+    RangeState.FREE: N_("The path is clear ({metres:.2f} m)."),
     RangeState.CLOSE: N_("EMERGENCY BRAKE! Obstacle at {metres:.2f} m."),
     RangeState.INVALID: N_(
         "The front sonar gives no valid distance ({metres}): treated as danger."
@@ -37,7 +37,7 @@ _FRONT = {
     ),
 }
 _FRONT_OUT_OF_RANGE = {
-    RangeState.FREE: N_("The way is free (nothing in range)."),
+    RangeState.FREE: N_("The path is clear (nothing in range)."),
     RangeState.CLOSE: N_("EMERGENCY BRAKE! Obstacle too close to measure."),
 }
 """Used instead for an infinite distance by REP-117."""

@@ -26,9 +26,9 @@ def wait_for_words(terminal: Terminal, words: str) -> None:
 def test_the_head_is_turned_by_a_call_from_the_graph(deck: Deck) -> None:
     terminal = at_the_graph(deck, "03-head-service", 1)
     terminal.press("right")
-    terminal.wait_for("fits example_interfaces/srv/AddTwoInts")
+    terminal.wait_for("valid example_interfaces/srv/AddTwoInts")
     terminal.press("enter", "ctrl+s")
-    terminal.wait_for("Answer in")
+    terminal.wait_for("Response in")
     wait_for_words(terminal, "sum: 1")
 
 
@@ -78,7 +78,7 @@ def test_a_goal_is_sent_and_reached_with_feedback_on_the_way(deck: Deck) -> None
     terminal.press("5")
     terminal.wait_for("Actions 1")
     terminal.press("right", "right")
-    terminal.wait_for("fits deck_interfaces/action/DriveToPoint")
+    terminal.wait_for("valid deck_interfaces/action/DriveToPoint")
     terminal.press("ctrl+s")
     terminal.wait_for("#1")
     terminal.wait_until(lambda text: "✓ succeeded" in text or "✗" in text, "the goal's end")

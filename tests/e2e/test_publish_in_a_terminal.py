@@ -20,15 +20,15 @@ def test_a_message_is_filled_in_published_and_repeated_until_it_is_stopped(deck:
     terminal.type("/ai_command")
     terminal.wait_for("1 of ")
     terminal.press("enter", "P")
-    terminal.wait_for("fits std_msgs/msg/String")
+    terminal.wait_for("valid std_msgs/msg/String")
     # A word where a text belongs that YAML takes for a truth: named, and not sent.
     terminal.type("data: on #")
-    terminal.wait_for("line 1: data: expected text, got True: put it in quotes")
+    terminal.wait_for("line 1: data: expected a string, got True: put it in quotes")
     terminal.press("ctrl+s")
     terminal.wait_for("Not sent")
     # The cursor stands on the word by now.
     terminal.type(DELETE * len("on") + '"стоп"')
-    terminal.wait_for("fits std_msgs/msg/String")
+    terminal.wait_for("valid std_msgs/msg/String")
     terminal.press("ctrl+s")
     terminal.wait_for("got it.")
     terminal.press("ctrl+g")

@@ -49,7 +49,7 @@ def test_a_stop_that_outlives_its_screen_is_released_from_the_next(deck: Deck) -
     first.press("q")
     assert first.wait_exit() == 0
     second = deck.open("attach", "--lang", "en")
-    second.wait_for("EMERGENCY STOP (from before) since ")
+    second.wait_for("EMERGENCY STOP (from earlier) since ")
     # What was said before it came.
     second.wait_for("EMERGENCY STOP: nothing moves")
     second.press("ctrl+r")

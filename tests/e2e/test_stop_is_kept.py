@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tests.e2e.conftest import Deck
     from tests.e2e.terminal import Terminal
 
-STOP, KEPT = "■ EMERGENCY STOP", "■ EMERGENCY STOP (from before)"
+STOP, KEPT = "■ EMERGENCY STOP", "■ EMERGENCY STOP (from earlier)"
 RELEASE = "^r Release"
 
 

@@ -104,7 +104,7 @@ def test_wheels_turn_while_a_key_is_held_and_stand_when_it_is_let_go_or_nobody_i
     terminal.wait_for("electronic_differential")
     terminal.press("t")
     terminal.wait_for("Drive by keys → /drive_teleop")
-    terminal.wait_for("the way is free")
+    terminal.wait_for("the path is clear")
     assert not robot.turns()
     with HeldKey(terminal, "ц"):
         wait_until(robot.turns, "the wheels turn")

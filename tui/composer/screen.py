@@ -49,7 +49,7 @@ class ComposerScreen(DeckScreen):
     about: ClassVar[str] = N_(
         "The JSON that a language model would send to the robot. It is checked as you write; what "
         "is wrong is underlined and listed below with line, column and field. Sending puts it on "
-        "/llm_raw_json, and the right side shows what came of it: accepted or refused, what went "
+        "/llm_raw_json, and the right side shows the result: accepted or refused, what went "
         "to the wheels and to the head, and after how many milliseconds."
     )
     period_s = 0.1
@@ -262,7 +262,7 @@ class ComposerScreen(DeckScreen):
         if trail is None:
             hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(Send)[0])
             if self.feed.replay is not None:
-                hint = _("This is a recording: nobody can hear it.")
+                hint = _("This is a recording: there is nobody to send to.")
             nothing = _("Nothing has been sent yet.")
             self.outcome.show(f"{nothing} {hint}", ())
             return

@@ -128,7 +128,7 @@ class TemplatesDialog(Dialog[str | None]):
 
     def words(self) -> Content:
         """Return what the keys do."""
-        return Content(_("Enter takes one, Escape leaves"))
+        return Content(_("Enter takes it, Escape closes"))
 
     def compose(self) -> ComposeResult:
         """Put the frame around the list."""

@@ -122,7 +122,7 @@ class StartNode(_AskNode):
     key = "s,ы"
     title = N_("Start")
     means = "start"
-    tooltip = N_("Start the chosen node, with all that it needs.")
+    tooltip = N_("Start the selected node and all nodes that it needs.")
     footer = True
     asked = "start"
     done = RUNS
@@ -135,7 +135,7 @@ class StopNode(_AskNode):
     key = "x,ч"
     title = N_("Stop")
     means = "stop"
-    tooltip = N_("Stop the chosen node; press again to force it.")
+    tooltip = N_("Stop the selected node; press again to force it.")
     footer = True
     asked = "stop"
     done = ENDED
@@ -147,7 +147,7 @@ class RestartNode(_AskNode):
     id = "node.restart"
     key = "r,к"
     title = N_("Restart")
-    tooltip = N_("Stop the chosen node and start it again.")
+    tooltip = N_("Restart the selected node.")
     footer = True
     asked = "restart"
 
@@ -205,7 +205,7 @@ class MuteChosenNode(_OfNode):
     key = "m,ь"
     title = N_("Mute")
     means = "leave out"
-    tooltip = N_("Leave the chosen node out of the log, or let it be heard again.")
+    tooltip = N_("Hide the selected node in the log, or show it again.")
     footer = True
 
     @classmethod
@@ -221,7 +221,7 @@ class HearOnly(_OfNode):
     key = "o,щ"
     title = N_("Only this")
     means = "only this"
-    tooltip = N_("Show only the chosen node's log; again: as before.")
+    tooltip = N_("Show only the selected node's log; press again to undo.")
     footer = True
 
     @classmethod
@@ -253,7 +253,7 @@ class HearAllNodes(DeckAction):
     key = "a,ф"
     title = N_("Whole log")
     means = "all"
-    tooltip = N_("Let every node be heard, at every severity.")
+    tooltip = N_("Show the lines of all nodes, at every severity.")
     from_elsewhere = True
 
     @classmethod

@@ -145,7 +145,7 @@ class ClearFrames(DevicesAction):
     key = "d,в"
     title = N_("Clear")
     means = "clear"
-    tooltip = N_("Forget the frames that have come so far.")
+    tooltip = N_("Forget the frames received so far.")
     footer = True
 
     @classmethod
@@ -214,7 +214,7 @@ class Unplug(_MakeTrouble):
     id = "devices.unplug"
     key = "U,Г"
     title = N_("Pull cable")
-    tooltip = N_("Simulated robot: pull the cable of the chosen device; press again to plug it in.")
+    tooltip = N_("Simulated robot: unplug the selected device; press again to plug it in.")
     footer = True
     trouble = UNPLUGGED
 
@@ -225,7 +225,9 @@ class Noise(_MakeTrouble):
     id = "devices.noise"
     key = "Z,Я"
     title = N_("Noise")
-    tooltip = N_("Simulated robot: noise on the line of the chosen device; press again to end it.")
+    tooltip = N_(
+        "Simulated robot: noise on the line of the selected device; press again to end it."
+    )
     trouble = NOISE
 
 
@@ -235,7 +237,7 @@ class Silence(_MakeTrouble):
     id = "devices.silence"
     key = "H,Р"
     title = N_("Silence")
-    tooltip = N_("Simulated robot: silence the chosen device; press again to end that.")
+    tooltip = N_("Simulated robot: silence the selected device; press again to undo.")
     trouble = SILENCE
 
 

@@ -73,7 +73,7 @@ def no_frames(device: Device, topic: str | None, now_s: float) -> str:
         )
         return words.format(name=name, topic=f"…/{name}/frames")
     if device.connected is False:
-        return _("Nothing is connected, so nothing comes. The driver tries again by itself.")
+        return _("Nothing is connected, so no data arrives. The driver keeps trying.")
     words = _("Listening on {topic}: traffic on the port, if any, appears within a second.")
     return words.format(topic=topic)
 
@@ -100,7 +100,7 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
     if feed.replay is not None:
         return [*lines, _("This recording has none of its messages.")]
     if not feed.watching:
-        lines.append(_("This lesson has no drivers: its nodes invent their readings."))
+        lines.append(_("This lesson has no drivers: its nodes simulate their readings."))
     if lessons:
         lines.append(_("Drivers run in: {lessons}.").format(lessons=", ".join(lessons)))
     return lines

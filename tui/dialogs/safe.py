@@ -56,7 +56,7 @@ def safe_lines(deck: Host) -> list[str]:
     ]
     tabs = "   ".join(text for text, _action, _front in title.tabs(deck, ""))
     return [
-        _("That screen cannot be drawn. The nodes go on, and so does the emergency stop."),
+        _("That screen cannot be drawn. The nodes and the emergency stop keep working."),
         "",
         "  ".join(filter(None, (runs, states[0] if states else ""))),
         "",

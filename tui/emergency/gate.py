@@ -156,7 +156,7 @@ def gate_words(gate: Gate) -> str:
         slowed = _("slowed to {percent} %").format(percent=round(100 * gate.share))
         parts.append(f"{slowed}: {far}" if not gate.is_held else slowed)
     elif not gate.is_held:
-        free = _("the way is free")
+        free = _("the path is clear")
         parts.append((f"{free}: {far}" if far else free) if gate.verdict else gate.message)
     if gate.source:
         source = _(SOURCES[gate.source]) if gate.source in SOURCES else gate.source

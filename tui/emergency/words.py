@@ -44,7 +44,7 @@ def differing_words(state: Emergency) -> str:
     if state.overdue:
         return _("released here, still held by {nodes}").format(nodes=_names(state.overdue))
     if held and free:
-        words = _("held by {held}, released in {free}")
+        words = _("held by {held}, released by {free}")
         return words.format(held=_names(held), free=_names(free))
     if free and state.asked:
         return _("not obeyed by {nodes}").format(nodes=_names(free))
@@ -59,7 +59,7 @@ def _head(state: Emergency) -> str:
     if held and all(node.by == PICO for node in held):
         return _("■ EMERGENCY STOP (kept by the Pico)")
     if held and all(node.before for node in held):
-        return _("■ EMERGENCY STOP (from before)")
+        return _("■ EMERGENCY STOP (from earlier)")
     said_by = {name for node in held for name in node.publishers if not _is_own(name)}
     if len(said_by) == 1 and not min(said_by).startswith(DECKS):
         return _("■ EMERGENCY STOP (by {node})").format(node=_names(said_by))

@@ -110,7 +110,7 @@ class PauseFlow(FlowAction):
     id = "flow.pause"
     key = "p,з"
     title = N_("Pause")
-    tooltip = N_("Freeze the timeline, or show what has come since.")
+    tooltip = N_("Freeze the timeline, or show what has happened since.")
     footer = True
 
     @classmethod
@@ -131,7 +131,9 @@ class HideLane(_Chosen):
     key = "m,ь"
     title = N_("Hide")
     means = "leave out"
-    tooltip = N_("Hide all steps of the same kind as the chosen one: microphone, brain, wheels...")
+    tooltip = N_(
+        "Hide all steps of the same kind as the selected one: microphone, brain, wheels..."
+    )
     footer = True
 
     @classmethod

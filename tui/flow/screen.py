@@ -41,8 +41,8 @@ class FlowScreen(DeckScreen):
         "What followed when somebody spoke into the microphone, or sent a command: every message "
         "and log line with its delay from the first. The dot is the moment, the line before it the "
         "time since the step before. The newest utterance is at the top; Enter folds one. What is "
-        "repeated all the time is shown when it changes. Collected from when this screen is first "
-        "opened, also while another is in front."
+        "repeated all the time is shown when it changes. Collection starts when this screen is "
+        "first opened and goes on while another is in front."
     )
     period_s = 0.1
     BINDINGS: ClassVar = bindings(*FLOW_ACTIONS)

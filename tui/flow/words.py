@@ -81,7 +81,7 @@ def nothing_yet(topics: Collection[str], command_key: str, *, recorded: bool) ->
     `recorded`: whether a recording is shown, to which nobody can say anything.
     """
     if recorded:
-        return [_("Nobody has spoken so far in this recording: play it on, or jump.")]
+        return [_("Nobody has spoken so far in this recording: play on, or skip ahead.")]
     said = [_("Nobody has spoken since this screen was opened.")]
     if MICROPHONE in topics:
         said.append(_("The microphone is there: speak, or wait for what is said next."))

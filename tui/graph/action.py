@@ -9,7 +9,7 @@ from textual.content import Content
 
 from graph.data import Goal, GoalStatus, SeenGoal
 from text.figures import figure
-from text.i18n import N_, _, localized, ngettext
+from text.i18n import N_, _, localized
 from text.plain import plain
 from text.sentences import reason_of
 from tui.actions import Action, bindings
@@ -212,13 +212,11 @@ def _own_row(goal: Goal) -> Row:
 
 
 def _other_row(goal: SeenGoal) -> Row:
-    return _row(goal, goal.age_s, _("other's"))
+    return _row(goal, goal.age_s, _("other"))
 
 
 def _row(goal: Goal | SeenGoal, age_s: float | None, whose: str) -> Row:
-    told = ngettext("{n} feedback", "{n} feedbacks", goal.feedback_count).format(
-        n=goal.feedback_count
-    )
+    told = _("feedback {n}").format(n=goal.feedback_count)
     if goal.error:
         told = plain(localized(goal.error), LONGEST)
     age = "" if age_s is None else _("{n} s").format(n=figure(age_s, 1))
@@ -284,6 +282,6 @@ class CancelGoalScreen(Dialog["SeenGoal | None"]):
             Content.styled(plain(self.goal.action, LONGEST), "bold"),
             Content(f"{self.goal.goal_id}  {self._state}"),
             Content(""),
-            Content(_("Another program has sent it and waits for its end.")),
+            Content(_("Another program sent it and is waiting for its result.")),
         ]
         return Content("\n").join(lines)

@@ -142,7 +142,7 @@ class PreviousKind(GraphAction):
     id = "graph.previous"
     key = "left"
     title = N_("Previous kind")
-    tooltip = N_("List the kind before: types, actions, services, nodes.")
+    tooltip = N_("List the previous kind: types, actions, services, nodes.")
     from_elsewhere = True
 
     @classmethod
@@ -157,7 +157,9 @@ class ShowMap(GraphAction):
     id = "graph.map"
     key = "M,Ь"
     title = N_("Map")
-    tooltip = N_("Draw the chosen node with those that it talks to; arrows walk, Enter goes on.")
+    tooltip = N_(
+        "Draw the selected node with those that it talks to; the arrow keys move, Enter opens."
+    )
     footer = True
     from_elsewhere = True
 
@@ -178,7 +180,7 @@ class ShowParameters(GraphAction):
     id = "graph.calls.parameters"
     key = "E,У"
     title = N_("Parameters")
-    tooltip = N_("Read the parameters of the chosen node, or hide them; Enter changes one.")
+    tooltip = N_("Read the parameters of the selected node, or hide them; Enter changes one.")
     footer = True
     from_elsewhere = True
 
@@ -272,7 +274,10 @@ class CancelRequest(GraphAction):
     key = "f12,x,ч"
     title = N_("Cancel")
     means = "stop"
-    tooltip = N_("Stop waiting for the call, or cancel the chosen goal; asks first for others'.")
+    tooltip = N_(
+        "Stop waiting for the call, or cancel the selected goal; asks first if it is "
+        "another client's."
+    )
     footer = True
     priority = True
 
@@ -295,7 +300,7 @@ class ForgetGoal(GraphAction):
     key = "delete,d,в"
     title = N_("Forget")
     means = "clear"
-    tooltip = N_("Remove the chosen goal from the list; one that has not ended is cancelled.")
+    tooltip = N_("Remove the selected goal from the list; one that has not ended is cancelled.")
 
     @classmethod
     def possible(cls, target: GraphTarget) -> bool | None:

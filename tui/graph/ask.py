@@ -177,7 +177,7 @@ class AskPane(GraphPane):
         types = self.type_names()
         told = [] if types else [_("nobody serves it any more")]
         if len(types) > 1:
-            told = [_("Nodes disagree about its type; Deck asks for {type}.").format(type=types[0])]
+            told = [_("Nodes use different types for it; Deck uses {type}.").format(type=types[0])]
         self.query_one(NameHead).show(self.name_shown, *told)
         self.query_one(GraphLinks).show_links(self.links())
         columns, rows = self.asked()

@@ -138,7 +138,7 @@ def why_empty(
     if update.error:
         return feed.blind, localized(update.error)
     if any(not entry.housekeeping for entry in listed):
-        return _("nothing fits the filter"), _("Escape in the filter shows all again.")
+        return _("nothing matches the filter"), _("Escape in the filter shows all again.")
     if listed:
         return _("only what ROS itself needs is here"), _("{key} shows it.").format(key=all_key)
     return _none(kind)

@@ -111,7 +111,7 @@ def _side(
 ) -> None:
     """Draw the connections of one side; on the right side, `x` is where the box ends."""
     if not connections:
-        words = _("hears nothing") if column == LEFT else _("says nothing")
+        words = _("no subscriptions") if column == LEFT else _("no publications")
         at = max(0, side - cell_len(words)) if column == LEFT else x + 3
         drawn.put(MapPiece(middle, at, ended(words, side), "dim"))
         return

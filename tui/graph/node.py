@@ -139,7 +139,7 @@ class NodePane(GraphPane):
 
 def _gone_words(ours: bool) -> str:
     if ours:
-        return _("Its process is Deck's own: the screens Deck and Logs tell what became of it.")
+        return _("Deck started it: the screens Deck and Logs show what happened to it.")
     return _("It was stopped, or cannot be reached any more. Below is what it last did.")
 
 
@@ -151,7 +151,7 @@ def node_rows(update: GraphUpdate, node: NodeRow, *, everything: bool) -> list[R
         ("hears", _("Subscribes to"), around.heard, "←"),
         ("serves", _("Serves"), around.served, "←"),
         ("calls", _("Calls"), around.called, "→"),
-        ("takes", _("Takes goals of"), around.goals_taken, "←"),
+        ("takes", _("Receives goals from"), around.goals_taken, "←"),
         ("sends", _("Sends goals to"), around.goals_sent, "→"),
     )
     rows: list[Row] = []

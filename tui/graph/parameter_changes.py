@@ -76,7 +76,7 @@ class PathDialog(Dialog[str]):
     def redraw(self) -> None:
         """Redraw in the current language."""
         super().redraw()
-        self.query_one("#path-keys", Static).update(_("Enter goes on, Escape leaves"))
+        self.query_one("#path-keys", Static).update(_("Enter continues, Escape cancels"))
 
     def action_leave(self) -> None:
         """Close without doing anything."""

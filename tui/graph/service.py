@@ -74,7 +74,7 @@ class CallTimeout(Horizontal):
 
     def relabel(self) -> None:
         """Redraw in the current language."""
-        self.query_one(".timeout-label", Static).update(_("Wait for the answer"))
+        self.query_one(".timeout-label", Static).update(_("Time-out"))
         self.query_one(".timeout-unit", Static).update(_("s"))
         limits = {"least": decimal(f"{LEAST_S:g}"), "greatest": f"{MOST_S:g}"}
         wrong = "" if self.seconds else "✗ " + _("{least} to {greatest} s").format(**limits)
@@ -196,7 +196,7 @@ class ServicePane(AskPane):
         if call is None:
             key = self.submit_key
             return (
-                _("Answer"),
+                _("Response"),
                 self.name_shown,
                 (_("not called yet"), _("{key} calls it with what is filled in.").format(key=key)),
             )
@@ -207,18 +207,18 @@ class ServicePane(AskPane):
             return _answer_title(call, call.result), name, call.result.response
         words = plain(localized(call.result.error), LONGEST)
         if call.result.late is not None:
-            title = _("No answer within {n} s").format(n=decimal(f"{call.timeout_s:g}"))
-            listens = _("A late answer will be shown here; choose a longer time below the form.")
-            return title, name, (_("no answer yet"), listens)
+            title = _("No response within {n} s").format(n=decimal(f"{call.timeout_s:g}"))
+            listens = _("A late response will be shown here; set a longer time-out below the form.")
+            return title, name, (_("no response yet"), listens)
         told = _("{n} ms").format(n=decimal(f"{call.result.elapsed_s * 1000:.1f}"))
-        return _("No answer · {time}").format(time=told), name, (_("the call failed"), words)
+        return _("No response · {time}").format(time=told), name, (_("the call failed"), words)
 
     def _waiting(self, call: ServiceCall, name: str) -> tuple[str, str, tuple[str, str]]:
         if call.given_up:
             words = _(
-                "The node may still do what it was asked for; a late answer will be shown here."
+                "The node may still do what it was asked for; a late response will be shown here."
             )
-            return _("No answer"), name, (_("given up"), words)
+            return _("No response"), name, (_("given up"), words)
         waited = int(now_s() - call.asked_s)
         title = _("Still waiting: {n} s of {most} s").format(
             n=waited, most=decimal(f"{call.timeout_s:g}")
@@ -231,7 +231,7 @@ class ServicePane(AskPane):
         """Call the service."""
         graph, timeout_s = self.deck.feed.graph, self.timeout.seconds
         if timeout_s is None:
-            self.warn(_("Not called: correct the waiting time below the form."))
+            self.warn(_("Not called: correct the time-out below the form."))
             self.timeout.field.focus()
             return
         if graph is None:
@@ -257,7 +257,7 @@ class ServicePane(AskPane):
         call.late = result.ok
         self._show(call, result)
         if call.late:
-            words = _("{name}: the answer has come after {n} s.")
+            words = _("{name}: the response arrived after {n} s.")
             told = words.format(name=name, n=figure(result.elapsed_s, 1))
             self.notify(plain(told, LONGEST), markup=False)
 
@@ -289,10 +289,10 @@ async def _outcome(call: ServiceCall, name: str, future: Future[CallResult]) -> 
 
 def _answer_title(call: ServiceCall, result: CallResult) -> str:
     if call.late:
-        words = _("Late answer after {n} s, awaited for {most} s")
+        words = _("Late response after {n} s (time-out {most} s)")
         return words.format(n=figure(result.elapsed_s, 1), most=decimal(f"{call.timeout_s:g}"))
     told = _("{n} ms").format(n=decimal(f"{result.elapsed_s * 1000:.1f}"))
-    return _("Answer in {time}").format(time=told)
+    return _("Response in {time}").format(time=told)
 
 
 def _at(call: ServiceCall) -> str:

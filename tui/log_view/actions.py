@@ -94,8 +94,8 @@ class FoldLines(Action[Shown]):
     """Wrap long lines, or not."""
 
     key = "w,ц"
-    title = N_("Fold")
-    tooltip = N_("Fold long lines, or show one row of each: left and right shift it.")
+    title = N_("Wrap")
+    tooltip = N_("Wrap long lines, or show one row of each: left and right shift it.")
     footer = True
     from_elsewhere = True
 
@@ -110,7 +110,7 @@ class CopyLines(Action[Shown]):
 
     key = "y,н"
     title = N_("Copy")
-    tooltip = N_("Copy the chosen lines to the clipboard of your terminal.")
+    tooltip = N_("Copy the selected lines to the clipboard of your terminal.")
     footer = True
 
     @classmethod
@@ -124,7 +124,7 @@ class SaveLines(Action[Shown]):
 
     key = "W,Ц"
     title = N_("Write")
-    tooltip = N_("Write the chosen lines, or else all lines shown, to a file.")
+    tooltip = N_("Write the selected lines to a file, or all lines shown if none is selected.")
     footer = True
 
     @classmethod

@@ -121,7 +121,7 @@ def _count_parts(view: LogView) -> list[tuple[str, str]]:
     parts: list[tuple[str, str]] = []
     lines = len(view.choice.entries)
     if lines > 1:
-        words = ngettext("{count} line chosen", "{count} lines chosen", lines)
+        words = ngettext("{count} line selected", "{count} lines selected", lines)
         parts.append((words.format(count=grouped(lines)), "chosen"))
     shown, total = len(view.index.shown), len(view.ring.entries)
     words = ngettext("{count} line", "{count} lines", total)
@@ -129,5 +129,5 @@ def _count_parts(view: LogView) -> list[tuple[str, str]]:
         words = ngettext("{shown} of {count} line", "{shown} of {count} lines", total)
     parts.append((words.format(shown=grouped(shown), count=grouped(total)), ""))
     if not view.fold:
-        parts.append((_("lines not folded"), ""))
+        parts.append((_("lines not wrapped"), ""))
     return parts

@@ -84,7 +84,7 @@ class OnlyFound(LogsAction):
     key = "f,а"
     title = N_("Only found")
     means = "only"
-    tooltip = N_("Leave out the lines that do not hold the text searched for.")
+    tooltip = N_("Show only the lines that contain the search text.")
 
     @classmethod
     def possible(cls, target: LogsTarget) -> bool | None:
@@ -137,7 +137,7 @@ class MuteInLog(LogsAction):
     key = "m,ь"
     title = N_("Mute")
     means = "leave out"
-    tooltip = N_("Hide the lines of the chosen line's or row's node, or show them again.")
+    tooltip = N_("Hide the lines of the selected node, or show them again.")
     footer = True
     from_elsewhere = False
 
@@ -160,7 +160,7 @@ class HearOneInLog(LogsAction):
     key = "o,щ"
     title = N_("Only this")
     means = "only this"
-    tooltip = N_("Show only the node of the chosen line or row; press again to undo.")
+    tooltip = N_("Show only the lines of the selected node; press again to undo.")
     footer = True
     from_elsewhere = False
 
@@ -183,7 +183,7 @@ class HearAllInLog(LogsAction):
     key = "a,ф"
     title = N_("All nodes")
     means = "all"
-    tooltip = N_("Let every node be heard, at every severity.")
+    tooltip = N_("Show the lines of all nodes, at every severity.")
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:

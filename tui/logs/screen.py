@@ -33,8 +33,8 @@ class LogsScreen(DeckScreen):
 
     tab: ClassVar[str] = "logs"
     about: ClassVar[str] = N_(
-        "What all nodes say. The arrow keys choose lines, with Shift several; that pauses the "
-        "log, End follows it again. The list has the nodes with their lines, warnings (W) and "
+        "The messages of all nodes. The arrow keys select lines, with Shift several; that pauses "
+        "the log, End follows it again. The list has the nodes with their lines, warnings (W) and "
         "errors (E): ● is shown, ○ is muted, ★ is shown alone."
     )
     BINDINGS: ClassVar[list[BindingType]] = [

@@ -175,7 +175,7 @@ class OutcomeTrail:
         if alike:
             self._add("✓", DRIVE_SAFE, _("let through"), delay_s)
         else:
-            held = _("held back to {drive}").format(drive=words.drive_words(*passed))
+            held = _("limited to {drive}").format(drive=words.drive_words(*passed))
             self._add("!", DRIVE_SAFE, held, delay_s)
 
     def _see_wheels(self, sample: Sample, delay_s: float) -> None:

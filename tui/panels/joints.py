@@ -49,8 +49,8 @@ class Joints:
             plain(", ".join(map(str, found)), LONGEST) if isinstance(found, (list, tuple)) else ""
         )
         if not names:
-            came = _("{topic}: no joint names have come").format(topic=self._topic)
+            came = _("{topic}: received no joint names").format(topic=self._topic)
         else:
-            came = _("{topic}: {names} have come").format(topic=self._topic, names=names)
+            came = _("{topic}: received {names}").format(topic=self._topic, names=names)
         awaited = _("expected: {names}").format(names=", ".join(self._awaited))
-        return Placeholder(_("messages come, but with other joint names"), f"{came}; {awaited}")
+        return Placeholder(_("messages arrive, but with other joint names"), f"{came}; {awaited}")

@@ -68,7 +68,7 @@ class LlmPanel(Panel):
         outcome = self.query_one(Outcome)
         if self._trail is None:
             key = host_of(self).keys_of(ShowComposer)[0]
-            outcome.show(_("Nothing has come yet; {key} opens the Composer.").format(key=key), ())
+            outcome.show(_("Nothing received yet; {key} opens the Composer.").format(key=key), ())
             return
         at = clock.time_of_day(self._trail.sent_s)
         entries = self._trail.entries(clock.now())

@@ -21,7 +21,7 @@ def other_type(sample: Sample | None, awaited: str) -> Placeholder | None:
     words = _("{topic}: {type} comes; expected: {awaited}").format(
         topic=sample.topic, type=_short(sample.type_name), awaited=_short(awaited)
     )
-    return Placeholder(_("messages come, but of another type"), plain(words, LONGEST))
+    return Placeholder(_("messages arrive, but of another type"), plain(words, LONGEST))
 
 
 def _short(type_name: str) -> str:

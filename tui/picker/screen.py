@@ -45,7 +45,7 @@ class StartLesson(Action["PickerScreen"]):
     id = "lesson.start"
     key = "enter"
     title = N_("Start")
-    tooltip = N_("Start the chosen lesson's nodes and show them.")
+    tooltip = N_("Start the selected lesson's nodes and show them.")
     footer = True
     priority = True
 

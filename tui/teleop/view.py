@@ -81,7 +81,7 @@ def _column(
     title: str, setpoint: DriveSetpoint | None, look: str, missing: str, detail: str = ""
 ) -> _Column:
     if setpoint is None:
-        return _Column(title, "---", missing or _("no word yet"), "muted")
+        return _Column(title, "---", missing or _("no data yet"), "muted")
     speed, short = number_words(setpoint.speed_m_s), _arrows(setpoint)
     return _Column(title, speed, detail or _way(setpoint), look, short)
 

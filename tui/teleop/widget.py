@@ -258,7 +258,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
             return nowhere_words(), "warn"
         if not self.has_focus:
             key = self._deck.keys_of(OpenTeleop)[0]
-            words = _("the keys go elsewhere now; {key}, or a click here, brings them back")
+            words = _("the keyboard focus is elsewhere; {key} or a click here brings it back")
             return words.format(key=key), "warn"
         if self._error:
             return plain(self._error, 400), "bad"
@@ -266,7 +266,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
 
     def _told_by_gate(self) -> tuple[str, str]:
         if not self._route.gated:
-            return _("no gate: the keys drive past every sonar"), "warn"
+            return _("no gate: nothing stops the robot before an obstacle"), "warn"
         if self._gate is None:
             return _("the gate has not said anything yet"), "muted"
         look = "warn" if self._gate.is_held or self._gate.is_slowed else "good"

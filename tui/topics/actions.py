@@ -249,7 +249,7 @@ class FilterMessages(TopicsAction):
 
     id = "topics.condition"
     key = "f,а"
-    title = N_("Only if")
+    title = N_("Condition")
     means = "only"
     tooltip = N_("Show only messages that match an expression such as m.data > 0.5; Esc ends it.")
     footer = True
@@ -361,7 +361,7 @@ class OpenPublish(TopicsAction):
     id = "topics.publish"
     key = "P,З"
     title = N_("Publish")
-    tooltip = N_("Publish a message to the chosen topic or to a new one, once or at a rate.")
+    tooltip = N_("Publish a message to the selected topic or to a new one, once or at a rate.")
     footer = True
 
     @classmethod

@@ -239,7 +239,7 @@ class TopicDetail(Vertical, Working):
         if self.as_endpoints:
             self.endpoints.show(row)
         if row is None:
-            head.show(_("no topic is chosen"), "", (), "")
+            head.show(_("no topic is selected"), "", (), "")
             self.echo.show_words("", "")
             return
         headline, way_out = advice(row)

@@ -122,7 +122,7 @@ class EchoFilter(Horizontal):
         """Return headline and detail for the place of a message while none matches."""
         if self.is_wrong:
             return _("the expression is wrong"), _("Nothing is shown until it is right.")
-        return _("no message fits the expression yet"), self._counts()
+        return _("no message matches the expression yet"), self._counts()
 
     @on(Input.Changed)
     def _typed(self, event: Input.Changed) -> None:

@@ -88,7 +88,7 @@ def _types(row: TopicRow) -> list[str]:
 
 
 def _types_lines(row: TopicRow, width: int) -> Iterator[Line]:
-    words = _("Peers disagree about the type; a message passes only where both have the same.")
+    words = _("The endpoints use different types; a message passes only between equal types.")
     yield from _wrapped(MISMATCH, words, width, "bad")
     for type_name in _types(row):
         publishers = [end for end in row.published_by if end.type_name == type_name]

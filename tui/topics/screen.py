@@ -46,7 +46,7 @@ class TopicsScreen(DeckScreen):
     tab: ClassVar[str] = "topics"
     about: ClassVar[str] = N_(
         "Every topic of the robot with its type, who publishes and who listens, its rate and "
-        "bandwidth, and how old its newest message is. The chosen one is shown live below or "
+        "bandwidth, and how old its newest message is. The selected one is shown live below or "
         "beside: as a tree that folds, an image as a picture. Where nothing comes, it says why."
     )
     measure_all = True

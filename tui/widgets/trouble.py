@@ -22,7 +22,7 @@ _HEADLINES = {
     Trouble.NO_PUBLISHER: N_("nobody publishes this topic"),
     Trouble.QOS_MISMATCH: N_("QoS is incompatible: not everybody is heard"),
     Trouble.UNKNOWN_TYPE: N_("message type is not installed"),
-    Trouble.QUIET: N_("there is a publisher, but nothing has come yet"),
+    Trouble.QUIET: N_("there is a publisher, but no message has arrived yet"),
 }
 
 
@@ -89,7 +89,7 @@ def _what_deck_sent(row: TopicRow) -> str:
 
 def _remark(row: TopicRow) -> str:
     if "types" in row.facts:
-        words = _("Peers disagree about the type: {types}; shown is {shown}.")
+        words = _("The endpoints use different types: {types}; shown is {shown}.")
         return plain(words.format(**row.facts), LONGEST)
     return plain(row.detail, LONGEST)
 

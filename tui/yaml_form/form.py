@@ -165,7 +165,7 @@ class YamlForm(Vertical, Acting, Working):
 
     def relabel(self) -> None:
         """Show the verdict in the current language."""
-        words = "✓ " + _("fits {type}").format(type=plain(self.type_name, 100))
+        words = "✓ " + _("valid {type}").format(type=plain(self.type_name, 100))
         if self._loading or (self.type_is_given and not self.type_name):
             words = _("the form is being loaded…")
         elif not self.type_name:

@@ -126,7 +126,7 @@ def test_nobody_listening_is_told_by_a_zero(watcher: Watcher) -> None:
     [
         ("/typed", STRING, {"data": "x"}, PublishError, "/typed carries std_msgs/msg/Bool"),
         ("/new", "foo_msgs/msg/Bar", {}, UnknownTypeError, "foo_msgs is not installed"),
-        ("/new", STRING, {"data": 5}, FieldError, "data: expected text, got 5"),
+        ("/new", STRING, {"data": 5}, FieldError, "data: expected a string, got 5"),
         ("/new", STRING, {"dat": "x"}, FieldError, "dat: no such field; did you mean data?"),
         ("/9 lives", STRING, {"data": "x"}, PublishError, "/9 lives cannot be published"),
     ],

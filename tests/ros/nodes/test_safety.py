@@ -186,7 +186,7 @@ def test_a_fast_sonar_does_not_flood_the_log(ros_domain: int) -> None:
     [
         ("en", -math.inf, "Obstacle too close to measure.", "front too close to measure"),
         ("ru", -math.inf, "Препятствие слишком близко.", "спереди слишком близко"),
-        ("en", math.inf, "The way is free (nothing in range).", "motion is allowed"),
+        ("en", math.inf, "The path is clear (nothing in range).", "motion is allowed"),
         ("ru", math.inf, "Путь свободен (преград не видно).", "движение разрешено"),
     ],
 )
@@ -215,7 +215,7 @@ def test_what_is_out_of_range_is_told_in_words(
         ("en", 0.501, "Free to move, slowed to 1 % (0.50 m)."),
         ("en", 0.999, "Free to move, slowed to 99 % (1.00 m)."),
         ("en", 0.5, "EMERGENCY BRAKE! Obstacle at 0.50 m."),
-        ("en", 1.0, "The way is free (1.00 m)."),
+        ("en", 1.0, "The path is clear (1.00 m)."),
     ],
 )
 def test_a_way_on_which_it_is_slowed_is_not_called_free(

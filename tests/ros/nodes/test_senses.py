@@ -89,7 +89,7 @@ def test_somebody_speaks_and_the_loudspeaker_is_heard(peer: Peer, ros_domain: in
 def test_the_place_of_the_camera_is_latched(peer: Peer, ros_domain: int) -> None:
     params: dict[str, object] = {"yaw": 1.5707963}
     with NodeProcess("nodes.camera_tf", ros_domain, params=params) as node:
-        node.wait_for_words("camera_link sits at x 0.15")
+        node.wait_for_words("camera_link relative to base_link: x 0.15")
         heard = peer.hear("/tf_static", TFMessage, LATCHED)
         wait_until(lambda: heard, "the transform, late")
         (place,) = heard[0].transforms

@@ -82,7 +82,7 @@ def test_a_binding_carries_all_that_the_action_says() -> None:
         id = "test.dance"
         key = "d,D"
         title = N_("Quit")
-        tooltip = N_("Every topic with its rates; the chosen one live.")
+        tooltip = N_("Every topic with its rates; the selected one live.")
         footer = True
 
     try:

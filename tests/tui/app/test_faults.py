@@ -96,7 +96,7 @@ def shown(widget: Widget) -> str:
     return "\n".join(line.text.rstrip() for line in lines)
 
 
-FAULT = "has failed (ZeroDivisionError: broken on purpose). The rest goes on."
+FAULT = "has failed (ZeroDivisionError: broken on purpose). Everything else keeps working."
 
 
 def flat(text: str) -> str:

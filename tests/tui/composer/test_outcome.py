@@ -150,7 +150,7 @@ def test_what_safety_holds_back_is_told_with_its_reason() -> None:
             "/safety_state": [at(0.41, safety("obstacle at 0.3 m"))],
         }
     )
-    assert ("!", "/drive_safe", "held back to 0.00 m/s, -0.30 rad, to the right") in told(trail)
+    assert ("!", "/drive_safe", "limited to 0.00 m/s, -0.30 rad, to the right") in told(trail)
     assert ("!", "/safety_state", "obstacle at 0.3 m") in told(trail)
 
 

@@ -67,7 +67,7 @@ def test_who_looks_later_sees_what_is_held_and_for_how_long() -> None:
     state = after(obeyed(held, at_s=NOW_S))
     assert state.engaged
     assert stop_words(state, "^r")[0] == (
-        "■ EMERGENCY STOP (from before) since 2026-05-04 03:02 · ^r releases"
+        "■ EMERGENCY STOP (from earlier) since 2026-05-04 03:02 · ^r releases"
     )
 
 
@@ -99,7 +99,7 @@ def test_where_nodes_differ_the_banner_says_so_when_they_have_had_the_time() -> 
         gate = word(GATE, False, NOW_S + seconds, since_s=NOW_S + 9)
         chassis = word(CHASSIS, True, NOW_S + seconds, since_s=NOW_S + 0.1)
         state = after(obeyed(gate, chassis, at_s=NOW_S + seconds), begin=state)
-        differing = "held by chassis, released in safety_stop"
+        differing = "held by chassis, released by safety_stop"
         assert (differing in stop_words(state, "^r")[0]) == (seconds > 12)
 
 
@@ -173,7 +173,7 @@ def test_a_time_that_makes_no_sense_is_not_told(since: str) -> None:
         EMERGENCY_STATE, STATES, NOW_S, 0.0, 9, {"status": [{"name": GATE, "values": pairs}]}
     )
     state = Emergency().seen(lesson_update(samples={EMERGENCY_STATE: (held,)}))
-    assert stop_words(state, "^r")[0] == "■ EMERGENCY STOP (from before) · ^r releases"
+    assert stop_words(state, "^r")[0] == "■ EMERGENCY STOP (from earlier) · ^r releases"
 
 
 def test_what_others_said_before_our_own_word_does_not_undo_it() -> None:

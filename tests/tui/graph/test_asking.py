@@ -27,7 +27,7 @@ async def at(place: GraphPlace, graph: RecordedGraph | None = None) -> AsyncIter
     """Open the screen with the form of this place filled in by its defaults."""
     async with opened(graph) as stage:
         await stage.screen.go(place)
-        await stage.wait_for("✓ fits ")
+        await stage.wait_for("✓ valid ")
         await stage.press("enter")
         yield stage
 
@@ -54,7 +54,7 @@ async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: S
     assert "not called yet" in service.seen()
     fill(service, "a: 30\nb: -10\n")
     await service.press("ctrl+s")
-    await service.wait_for("Answer in 12.0 ms")
+    await service.wait_for("Response in 12.0 ms")
     assert service.graph.called == [(SERVICE, ADD, {"a": 30, "b": -10})]
     await service.wait_for("sum: 1")
     assert "a 30, b -10 → sum 1" in service.seen()
@@ -63,7 +63,7 @@ async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: S
 async def test_tab_leads_into_the_form_where_digits_and_enter_stay() -> None:
     async with opened() as stage:
         await stage.screen.go(GraphPlace(GraphKind.SERVICE, SERVICE))
-        await stage.wait_for("✓ fits ")
+        await stage.wait_for("✓ valid ")
         assert "tab Fill in" in footer(stage)
         await stage.press("tab")
         pane = stage.screen.ask_pane
@@ -84,7 +84,7 @@ async def test_tab_goes_on_from_the_form_to_the_time_out_and_from_a_list_to_its_
         assert stage.screen.focused not in {None, stage.screen.names}
         await stage.press("escape")
         await stage.screen.go(GraphPlace(GraphKind.SERVICE, SERVICE))
-        await stage.wait_for("✓ fits ")
+        await stage.wait_for("✓ valid ")
         await stage.press("tab", "tab", "backspace", "9")
         assert timeout_field(stage).value == "9"
 
@@ -127,7 +127,7 @@ async def test_a_call_that_waits_freezes_nothing_and_can_be_given_up(service: St
     # Its time passes too, and still nobody is told that it has failed.
     late = time_is_over(service)
     late.set_result(CallResult(SERVICE, True, {"sum": 7}, "", 9.0))
-    await service.wait_for("Late answer after 9.0 s, awaited for 5 s")
+    await service.wait_for("Late response after 9.0 s (time-out 5 s)")
     await service.wait_for("sum: 7")
 
 
@@ -153,7 +153,7 @@ async def test_the_time_out_is_chosen_below_the_form_and_each_service_keeps_its_
     await service.wait_for("Still waiting: 0 s of 30 s")
     assert service.graph.waited_s == [30.0]
     await service.screen.go(GraphPlace(GraphKind.SERVICE, "/camera/set_parameters"))
-    await service.wait_for("fits rcl_interfaces/srv/SetParameters")
+    await service.wait_for("valid rcl_interfaces/srv/SetParameters")
     assert timeout_field(service).value == "5"
     await service.screen.go(GraphPlace(GraphKind.SERVICE, SERVICE))
     await service.wait_for("Still waiting: 0 s of 30 s")
@@ -180,14 +180,14 @@ async def test_a_late_answer_is_told_wherever_one_is_and_shown_as_late(service: 
     await service.press("ctrl+s")
     await service.wait_for("Still waiting")
     late = time_is_over(service)
-    await service.wait_for("No answer within 5 s")
-    assert "A late answer will be shown here" in " ".join(service.seen().split())
+    await service.wait_for("No response within 5 s")
+    assert "A late response will be shown here" in " ".join(service.seen().split())
     await service.app.show_screen("topics")
     late.set_result(CallResult(SERVICE, True, {"sum": 42}, "", 7.04))
-    told = f"{SERVICE}: the answer has come after 7.0 s."
+    told = f"{SERVICE}: the response arrived after 7.0 s."
     await service.wait(lambda: told in [one.message for one in service.app._notifications])
     await service.app.show_screen("graph")
-    await service.wait_for("Late answer after 7.0 s, awaited for 5 s")
+    await service.wait_for("Late response after 7.0 s (time-out 5 s)")
     await service.wait_for("sum: 42")
 
 
@@ -196,7 +196,7 @@ async def test_a_service_that_leaves_after_the_time_out_is_told(service: Stage) 
     await service.press("ctrl+s")
     await service.wait_for("Still waiting")
     late = time_is_over(service)
-    await service.wait_for("no answer yet")
+    await service.wait_for("no response yet")
     why = f"{SERVICE} has left the graph and has not answered"
     late.set_result(CallResult(SERVICE, False, None, why, 8.0))
     await service.wait_for(why)
@@ -208,12 +208,12 @@ async def test_a_call_that_fails_says_why(service: Stage) -> None:
     await service.press("ctrl+s")
     await service.wait_for("the call failed")
     assert why in service.seen()
-    assert "No answer · 5000.0 ms" in service.seen()
+    assert "No response · 5000.0 ms" in service.seen()
 
 
 async def test_calls_are_listed_and_an_older_answer_can_be_seen_again(service: Stage) -> None:
     await service.press("ctrl+s")
-    await service.wait_for("Answer in")
+    await service.wait_for("Response in")
     service.graph.answers[SERVICE] = CallResult(SERVICE, True, {"sum": 0}, "", 0.2)
     await service.press("ctrl+s")
     await service.wait_for("sum: 0")
@@ -235,7 +235,7 @@ async def test_what_was_typed_is_there_when_one_comes_back(service: Stage) -> No
     fill(service, "a: 5\nb: 6\n")
     await service.press("escape", "a")
     await service.choose("/camera/set_parameters")
-    await service.wait_for("fits rcl_interfaces/srv/SetParameters")
+    await service.wait_for("valid rcl_interfaces/srv/SetParameters")
     await service.choose(SERVICE)
     await service.wait_for("a: 5")
 
@@ -334,8 +334,8 @@ async def test_goals_of_other_clients_are_listed_with_id_state_age_and_feedback(
 ) -> None:
     assert action.graph.goals_watched == {ACTION}
     await action.show(graph_update(seen_goals=SEEN))
-    await action.wait_for("8d00b7f4 ● executing 12.3 s other's · 9 feedbacks")
-    await action.wait_for("3f2a9c1e ✓ succeeded 63.0 s other's · 0 feedbacks")
+    await action.wait_for("8d00b7f4 ● executing 12.3 s other · feedback 9")
+    await action.wait_for("3f2a9c1e ✓ succeeded 63.0 s other · feedback 0")
     await action.wait_for("distance: 0.7")
     assert "77777777" not in action.seen()
     # Nobody need look at them who looks at something else.
@@ -397,7 +397,7 @@ async def test_what_is_not_in_front_is_neither_sent_nor_forgotten(action: Stage)
     await action.press("ctrl+s")
     await action.wait_for("#1")
     await action.press("escape", "slash", *"x: 2")
-    await action.wait_for("nothing fits the filter")
+    await action.wait_for("nothing matches the filter")
     assert "Send goal" not in action.seen()
     await action.press("ctrl+s")
     assert len(action.graph.sent_goals) == 1

@@ -111,7 +111,7 @@ async def test_enter_on_a_service_goes_to_its_form(stage: Stage) -> None:
     await stage.press("left", *("up",) * 5, "enter")
     assert stage.screen.history.here == GraphPlace(GraphKind.SERVICE, "/set_head_position")
     assert not stage.screen.draws
-    await stage.wait_for("fits example_interfaces/srv/AddTwoInts")
+    await stage.wait_for("valid example_interfaces/srv/AddTwoInts")
 
 
 async def test_a_node_that_vanishes_is_said_to_have_left(stage: Stage) -> None:

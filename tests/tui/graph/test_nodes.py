@@ -55,7 +55,7 @@ async def test_a_filter_narrows_down_as_one_types_and_escape_ends_it(stage: Stag
     await stage.press("enter", "escape")
     assert "10 of 10" in stage.seen()
     await stage.press("slash", *"zzz")
-    assert "nothing fits the filter" in stage.seen()
+    assert "nothing matches the filter" in stage.seen()
 
 
 async def test_enter_follows_a_link_to_a_service_and_escape_goes_back(stage: Stage) -> None:

@@ -48,7 +48,7 @@ async def test_those_of_a_node_that_is_not_in_front_are_not_offered(stage: Stage
     await stage.press("E")
     await stage.wait_for("5 parameters")
     await stage.press("slash", "q", "q")
-    await stage.wait_for("nothing fits the filter")
+    await stage.wait_for("nothing matches the filter")
     assert "W Save" not in stage.seen()
     stage.screen.names.focus()
     await stage.press("W", "O", "E")

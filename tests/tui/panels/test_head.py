@@ -97,7 +97,7 @@ async def test_what_it_was_told_and_the_answer_are_shown_harmlessly() -> None:
     async with alone(view, 60, 10).run_test(size=(80, 30)):
         view.show(HeadReading(0, 0))
         view.command(HeadReading(-90, 15))
-        assert "told: 90° right, 15° up" in "\n".join(rows(view))
+        assert "commanded: 90° right, 15° up" in "\n".join(rows(view))
         view.answer("[red]no[/red]\x1b[31m")
         assert "[red]no[/red]␛[31m" in "\n".join(rows(view))
         view.command(HeadReading(0, 0))

@@ -45,19 +45,19 @@ def heard(*samples: tuple[Sample, float]) -> Joints:
         (
             WheelsView,
             OTHER,
-            "/wheel_commands: left_wheel, right_wheel have come",
+            "/wheel_commands: received left_wheel, right_wheel",
             "expected: rear_left_wheel_joint, rear_right_wheel_joint",
         ),
         (
             HeadView,
             joints("/head_state", yaw=(0.1, 0.0), pitch=(0.2, 0.0)),
-            "/head_state: yaw, pitch have come",
+            "/head_state: received yaw, pitch",
             "expected: pan_joint, tilt_joint",
         ),
         (
             HeadView,
             joints("/head_state"),
-            "/head_state: no joint names have come",
+            "/head_state: received no joint names",
             "expected: pan_joint, tilt_joint",
         ),
     ],
@@ -71,7 +71,7 @@ async def test_the_panel_says_which_joints_come_and_which_are_awaited(
         await pilot.pause()
         view = app.screen.query_one(kind)
         words = " ".join(" ".join(rows(view)).split())
-        assert "messages come, but with other joint names" in words
+        assert "messages arrive, but with other joint names" in words
         assert came in words
         assert awaited in words
         assert "waiting for the first message" not in words
@@ -90,7 +90,7 @@ async def test_a_sonar_of_another_type_is_told_and_not_waited_for() -> None:
         await pilot.pause()
         view = app.screen.query_one("#front", Sonar)
         told = " ".join(" ".join(rows(view)).split())
-        assert "messages come, but of another type" in told
+        assert "messages arrive, but of another type" in told
         assert f"{topic}: std_msgs/String comes; expected: std_msgs/Float32" in told
         # A look at which nothing has come changes nothing.
         opener.graph.show(lesson_update(samples={}))

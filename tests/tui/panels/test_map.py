@@ -85,7 +85,7 @@ def test_deck_with_a_map_without_a_room_looks(look: Look, snap_compare: SnapComp
     ("trouble", "more", "words"),
     [
         (Trouble.NO_PUBLISHER, NOBODY, ("nobody publishes this topic", "/odom", "Start chassis")),
-        (Trouble.QUIET, {"age_s": None}, ("nothing has come yet", "/odom", "Its log says")),
+        (Trouble.QUIET, {"age_s": None}, ("no message has arrived yet", "/odom", "Its log says")),
         (Trouble.UNKNOWN_TYPE, {"detail": "my/Odom"}, ("is not installed", "/odom: my/Odom")),
         (Trouble.QOS_MISMATCH, {"detail": "best effort"}, ("QoS is incompatible", "best effort")),
     ],
@@ -128,7 +128,7 @@ async def test_without_odometry_the_truth_of_a_simulated_robot_is_shown_and_name
         assert app.query_one(MapPanel).border_title == "Map ← /mock/pose"
         text = app.tell(map_update(odom=(odometry(Pose(0.5, 0.5)),), mock_pose=(there,)))
         assert "x 0.50  y 0.50 m" in text
-        assert "truth 0.71 m off" in text
+        assert "true pose, 0.71 m off" in text
         assert "path" not in text
         assert app.query_one(MapPanel).border_title == "Map"
 
@@ -165,7 +165,7 @@ async def test_a_room_in_another_frame_is_told_harmlessly() -> None:
     app = Alone()
     async with app.run_test(size=(100, 20)):
         text = app.tell(map_update(map=(room("[b]\x1b]52;c;aGk=\x07"),)))
-        assert "room in frame [b]" in text
+        assert "map in frame [b]" in text
         assert "\x1b" not in text
 
 

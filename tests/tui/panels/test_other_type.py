@@ -41,7 +41,7 @@ async def test_another_type_is_told_and_not_waited_for(
         def told() -> str:
             return " ".join(" ".join(rows(widget)).split())
 
-        assert "messages come, but of another type" in told()
+        assert "messages arrive, but of another type" in told()
         assert f"{topic}: std_msgs/String comes; expected: {expected}" in told()
         # A look at which nothing has come changes nothing.
         opener.graph.show(lesson_update(topics=topics, samples={}))
@@ -72,7 +72,7 @@ async def test_odometry_of_another_type_is_told_by_the_map() -> None:
     async with app.run_test(size=(100, 20)):
         words = sample("/odom", STRING, {"data": "1.5"})
         text = app.tell(map_update(odom=(words,), mock_pose=()))
-        assert "messages come, but of another type" in text
+        assert "messages arrive, but of another type" in text
         assert "/odom: std_msgs/String comes; expected: nav_msgs/Odometry" in text
         text = app.tell(map_update())
         assert "another type" not in text

@@ -113,14 +113,14 @@ async def test_silence_is_told_with_its_length_and_old_values_are_greyed() -> No
         (Trouble.NO_PUBLISHER, "nobody publishes this topic"),
         (Trouble.QOS_MISMATCH, "QoS is incompatible"),
         (Trouble.UNKNOWN_TYPE, "message type is not installed"),
-        (Trouble.QUIET, "there is a publisher, but nothing has come yet"),
+        (Trouble.QUIET, "there is a publisher, but no message has arrived yet"),
     ],
 )
 async def test_an_empty_gauge_says_why(trouble: Trouble | None, words: str) -> None:
     gauge = Sonar("front")
     async with alone(gauge, 50, 4).run_test(size=(60, 20)):
         gauge.show_trouble(trouble, "[b]detail[/b]\x1b[31m")
-        shown = " ".join(rows(gauge))
+        shown = " ".join(" ".join(rows(gauge)).split())
         assert words in shown
         assert "[b]detail[/b]␛[31m" in shown
 

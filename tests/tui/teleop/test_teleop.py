@@ -184,7 +184,7 @@ async def test_whatever_takes_the_keys_away_stops() -> None:
             assert set(opener.graph.let_go_of[before:]) == {DRIVE_TELEOP}, leave
             assert panel.asked.speed_m_s == 0, leave
             if leave == "tab":
-                assert "the keys go elsewhere now; t, or a click" in text_of(panel)
+                assert "the keyboard focus is elsewhere; t or a click" in text_of(panel)
             await pilot.press(*back)
             await pilot.pause()
             assert bool(app.screen.query(TeleopPanel)) == (leave not in {"escape", "е"})
@@ -287,9 +287,9 @@ async def test_it_is_offered_only_where_there_is_a_robot() -> None:
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({}, "the way is free: 1.84 m ahead"),
-        ({"front_m": "inf"}, "the way is free: nothing ahead"),
-        ({"source": "/drive_teleop"}, "the way is free: 1.84 m ahead · obeys the keys"),
+        ({}, "the path is clear: 1.84 m ahead"),
+        ({"front_m": "inf"}, "the path is clear: nothing ahead"),
+        ({"source": "/drive_teleop"}, "the path is clear: 1.84 m ahead · obeys the keys"),
         (
             {"front_m": "0.7", "allowed": "0.40", "source": "/drive", "ignored": "/x\x1b"},
             "slowed to 40 %: 0.70 m ahead · obeys /drive · ignores /x␛",

@@ -85,7 +85,7 @@ def test_only_the_endpoints_that_do_not_fit_are_marked() -> None:
 
 def test_who_disagrees_about_the_type_is_named_and_no_qos_is_held_against_it() -> None:
     shown = text(a_row([LIDAR], [replace(BRAIN, type_name=DOUBLE)]))
-    assert "✗ Peers disagree about the type" in shown
+    assert "✗ The endpoints use different types" in shown
     assert f"{FLOAT}: published by lidar" in shown
     assert f"{DOUBLE}: expected by brain" in shown
     assert "does not hear" not in shown

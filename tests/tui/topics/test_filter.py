@@ -59,7 +59,7 @@ async def test_a_message_that_does_not_fit_goes_out_of_sight_and_comes_back(stag
     await stage.show(sonar(0.25))
     assert "0.25" in stage.echo()
     await only_if(stage, "m.data > 0.5")
-    assert stage.echo().splitlines()[0] == "no message fits the expression yet"
+    assert stage.echo().splitlines()[0] == "no message matches the expression yet"
     assert "0 of 1 message" in stage.echo()
     await stage.pilot.press("escape")
     assert "0.25" in stage.echo()

@@ -81,7 +81,7 @@ async def test_a_form_is_prefilled_and_right() -> None:
     async with app.run_test(size=(80, 24)) as pilot:
         await checked(pilot)
         assert app.form.text.startswith("header:\n  stamp: now  # builtin_interfaces/Time\n")
-        assert app.form.verdict == f"✓ fits {DRIVE}"
+        assert app.form.verdict == f"✓ valid {DRIVE}"
         value = app.form.value
         assert value is not None
         assert value["drive"]["speed"] == 0.0  # type: ignore[index,call-overload]
@@ -173,7 +173,7 @@ async def test_a_form_whose_type_is_not_chosen_here_says_that_it_is_loading(
         assert app.form.verdict == "the form is being loaded…"
         held.set()
         await checked(pilot)
-        assert app.form.verdict == "✓ fits std_msgs/msg/Bool"
+        assert app.form.verdict == "✓ valid std_msgs/msg/Bool"
 
 
 async def test_hostile_text_in_the_form_is_harmless() -> None:

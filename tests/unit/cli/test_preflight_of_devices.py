@@ -166,7 +166,7 @@ def test_auto_takes_the_port_that_fits(port: str) -> None:
     assert found.key == "device.pico"
     assert f"pico {port}: the port is silent" in found.text
     (missing,) = examine(robot(pico={"kind": "pico", "port": "auto"}), list)
-    assert "pico: no port fits (2e8a:0005)" in missing.text
+    assert "pico: no port matches (2e8a:0005)" in missing.text
     assert missing.fix.startswith("choose with DECK_PICO_PORT=")
 
 

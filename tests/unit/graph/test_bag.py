@@ -81,7 +81,7 @@ def test_a_link_to_itself_and_an_endless_name_are_told(tmp_path: Path) -> None:
 
 def test_a_reason_that_is_a_sentence_brings_no_second_dot() -> None:
     words = str(unreadable(Path("walk"), ValueError("File magic is invalid.")))
-    assert "invalid. Is it whole?" in words
+    assert "invalid. It may be damaged" in words
 
 
 @pytest.mark.parametrize("name", ["fake.mcap", "fake.db3"])
@@ -122,7 +122,7 @@ def test_what_is_wrong_with_a_file_is_told_in_russian_alone(tmp_path: Path) -> N
 
 def test_what_the_system_says_of_a_file_is_told_in_russian_too() -> None:
     words = unreadable(Path("walk"), OSError(errno.EIO, os.strerror(errno.EIO))).words
-    assert "Input/output error. Is it whole?" in words
+    assert "Input/output error. It may be damaged" in words
     set_language("ru")
     try:
         assert "ошибка ввода-вывода. Возможно" in localized(words)

@@ -94,7 +94,7 @@ def test_english_is_as_a_native_speaker_writes_it(pattern: str) -> None:
 @pytest.mark.parametrize(
     "said",
     [
-        "Нет узла безопасности: перед препятствием робот не остановится",
+        "нет узла безопасности: перед препятствием робот не остановится",
         "не готов за {seconds:g} с: {why}",
         "никто не публикует {name}",
         "· стр. {page}/{pages} (v — дальше)",

@@ -106,7 +106,7 @@ class ShowTopics(ShowScreen):
     id = "screen.topics"
     key = "2,f3"
     title = N_("Topics")
-    tooltip = N_("Every topic with its rates; the chosen one live.")
+    tooltip = N_("Every topic with its rates; the selected one live.")
     screen = "topics"
 
 
@@ -116,7 +116,7 @@ class ShowComposer(ShowScreen):
     id = "screen.composer"
     key = "3,f4"
     title = N_("Composer")
-    tooltip = N_("Write the JSON that an LLM would send, and see what comes of it.")
+    tooltip = N_("Write the JSON that an LLM would send, and see the result.")
     screen = "composer"
 
 
@@ -126,7 +126,7 @@ class ShowLogs(ShowScreen):
     id = "screen.logs"
     key = "4,f5"
     title = N_("Logs")
-    tooltip = N_("What all nodes say: filter, search, save.")
+    tooltip = N_("The messages of all nodes: filter, search, save.")
     screen = "logs"
 
 

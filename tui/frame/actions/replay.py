@@ -90,7 +90,7 @@ class Forward(ReplayAction):
 
     id = "replay.forward"
     key = "shift+right"
-    title = N_("5 s on")
+    title = N_("5 s forward")
     tooltip = N_("Jump five seconds ahead in the recording.")
 
     @classmethod

@@ -90,7 +90,7 @@ class HeadView(Drawing):
         told = self._told
         lines: list[Line] = []
         if told is not None:
-            words = _("told: {pan}, {tilt}").format(pan=told.pan_words, tilt=told.tilt_words)
+            words = _("commanded: {pan}, {tilt}").format(pan=told.pan_words, tilt=told.tilt_words)
             lines.append([Ink(f"╱ {words}", "muted")])
         if self._answer:
             lines.append([Ink(self._answer, "muted")])

@@ -63,7 +63,7 @@ def entries(
     ]
     if scene.truth is not None:
         metres = scene.pose.distance_to(scene.truth)
-        words = _("truth {metres} m off").format(metres=decimal(f"{metres:.2f}"))
+        words = _("true pose, {metres} m off").format(metres=decimal(f"{metres:.2f}"))
         said.append(LegendEntry(5, [Ink("◇ ", TRUTH), Ink(words)]))
     said.append(LegendEntry(2, scale_bar(view)))
     said.append(LegendEntry(8, [Ink(_("x → right, y ↑ up"), "muted")]))

@@ -155,7 +155,7 @@ class RoomMap(Drawing):
         occupancy = self._occupancy
         if occupancy is None or not occupancy.frame or occupancy.frame == self._frame:
             return ""
-        return _("room in frame {frame}, not {own}").format(frame=occupancy.frame, own=self._frame)
+        return _("map in frame {frame}, not {own}").format(frame=occupancy.frame, own=self._frame)
 
     def _extent(self, scene: Scene) -> Extent:
         """The room; without one, the floor driven on and measured so far."""

@@ -67,7 +67,7 @@ class PublishAtRate(PublishAction):
     id = "publish.rate"
     key = "ctrl+g"
     title = N_("At a rate")
-    tooltip = N_("Publish the message again and again, so many times a second.")
+    tooltip = N_("Publish the message repeatedly, at this rate.")
 
     @classmethod
     async def run(cls, target: PublishingTarget) -> None:
@@ -82,7 +82,7 @@ class StopPublication(PublishAction):
     key = "f12"
     title = N_("Stop it")
     means = "stop"
-    tooltip = N_("Stop publishing the chosen one; Enter in the list does the same.")
+    tooltip = N_("Stop publishing the selected one; Enter in the list does the same.")
 
     @classmethod
     def possible(cls, target: PublishingTarget) -> bool | None:

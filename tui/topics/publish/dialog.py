@@ -270,7 +270,7 @@ class PublishDialog(Dialog[None]):
             value = self.form.value
             if value is not None:
                 return graph, topic, value
-            self.rate.tell(lambda: _("Not sent: what is wrong stands below the form."), "bad")
+            self.rate.tell(lambda: _("Not sent: the error is shown below the form."), "bad")
             self.form.go_to_problem()
         return None
 

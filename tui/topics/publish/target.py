@@ -79,7 +79,7 @@ class PublishTarget(Vertical, Working):
         """Redraw in the current language."""
         self.query_one("#target-topic-label", Static).update(_("Topic"))
         self.query_one("#target-type-label", Static).update(_("Type"))
-        self.field.placeholder = _("/name of a topic that is there, or of a new one")
+        self.field.placeholder = _("/name of an existing or a new topic")
         self.type.field.placeholder = _("words of its name: float32, twist")
 
     async def _learn_types(self) -> None:

@@ -63,7 +63,7 @@ def test_a_name_near_nothing_points_at_the_list() -> None:
 
 
 def test_a_beginning_that_fits_several_is_told() -> None:
-    with pytest.raises(UsageError, match="'0' fits several: 01-hello, 02-sonar-safety"):
+    with pytest.raises(UsageError, match="'0' matches several: 01-hello, 02-sonar-safety"):
         find_profile("0")
 
 

@@ -69,7 +69,7 @@ def test_a_port_that_is_missing_is_told_with_its_place_and_its_mend(tmp_path: Pa
         started(tmp_path)
     (problem,) = caught.value.problems
     assert (problem.line, problem.column, problem.field) == (4, 11, "devices.pico.port")
-    assert "no port fits (2e8a:0005); ports: none" in problem.message
+    assert "no port matches (2e8a:0005); ports: none" in problem.message
     assert "DECK_PICO_PORT=" in problem.hint
 
 

@@ -164,7 +164,7 @@ def test_names_that_ros_knows(name: str) -> None:
 @pytest.mark.parametrize(
     ("value", "told"),
     [
-        ("a\0b", "ROS cannot carry a NUL character in a text"),
+        ("a\0b", "ROS cannot carry a NUL character in a string"),
         ("\ud800", "an incomplete character: a lone surrogate"),
         (5e-324, "5e-324 is too small for ROS"),
         ("x" * 40_000, "the text is longer than 32768 characters"),
