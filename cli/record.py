@@ -26,6 +26,7 @@ from launcher.rundir import new_recording
 from text.i18n import _
 from text.output import BOLD, Paint, json_text, keep_stdout_to_ourselves, table, write
 from text.plain import plain
+from text.ros_names import TOPIC_NAME
 from text.sentences import say
 from tui.recording.words import complaints, progress, size_words
 
@@ -70,7 +71,7 @@ def record_command(options: Namespace) -> int:
 def _topic(name: str) -> str:
     """Return the full name of a topic; raises UsageError if it is invalid."""
     full = f"/{name.lstrip('/')}"
-    if not full.replace("/", "").replace("_", "").isalnum() or not full.isascii():
+    if not TOPIC_NAME.fullmatch(full):
         raise UsageError(
             say("{name!r} is not a valid topic name; write it as /sensor/sonar_front", name=name)
         )

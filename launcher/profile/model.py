@@ -17,13 +17,13 @@ from launcher.profile.defaults import READY_WITHIN_S
 from launcher.profile.field_marks import AsText, Joined, PathFromProfile
 from launcher.profile.panels import Panel
 from launcher.profile.serial_choice import KINDS
+from text.ros_names import ROS_NAME
 from text.sentences import Words, say
 
 Restart = Literal["never", "on-failure", "always"]
 
 NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 LONGEST_NODE_NAME = 255
-ROS_NAME = re.compile(r"[~/]?[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
 TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
 MODULE = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*")
 PEER = re.compile(r"[A-Za-z0-9:][A-Za-z0-9.:%_-]*")

@@ -96,3 +96,13 @@ def test_a_folder_that_is_there_is_refused_with_a_word(tmp_path: Path) -> None:
     run = deck("record", "-o", str(tmp_path))
     assert run.process.returncode == 2
     assert "already exists: choose another folder" in run.errors[0]
+
+
+@pytest.mark.parametrize("name", ["/a//b", "/1st", "/a/", "sönar"])
+def test_what_is_no_topic_name_is_refused_before_anything_is_recorded(
+    name: str, tmp_path: Path
+) -> None:
+    run = deck("record", name, "-o", str(tmp_path / "bag"))
+    assert run.process.returncode == 2
+    assert f"'{name}' is not a valid topic name; write it as /sensor/sonar_front" in run.errors[0]
+    assert not (tmp_path / "bag").exists()

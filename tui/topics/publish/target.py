@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import re
 from typing import TYPE_CHECKING
 
 from textual import on
@@ -13,14 +12,13 @@ from textual.widgets import Input, Static
 
 from graph.messages.browse import interfaces
 from text.i18n import _
+from text.ros_names import TOPIC_NAME
 from tui.widgets.field import Field
 from tui.widgets.working import Working
 from tui.yaml_form.type_field import TypeField
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-
-TOPIC = re.compile(r"/[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
 
 
 class PublishTarget(Vertical, Working):
@@ -73,7 +71,7 @@ class PublishTarget(Vertical, Working):
     @property
     def is_name(self) -> bool:
         """Whether it is a valid topic name."""
-        return TOPIC.fullmatch(self.topic) is not None
+        return TOPIC_NAME.fullmatch(self.topic) is not None
 
     def relabel(self) -> None:
         """Redraw in the current language."""

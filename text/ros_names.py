@@ -1,0 +1,14 @@
+"""The names of ROS: which characters they may have.
+
+Source: design.ros2.org/articles/topic_and_service_names.html.
+"""
+
+from __future__ import annotations
+
+import re
+
+_PART = r"[A-Za-z_]\w*"
+ROS_NAME = re.compile(rf"[~/]?{_PART}(/{_PART})*", re.ASCII)
+"""Of a topic, service or action; without a slash in front it is relative."""
+TOPIC_NAME = re.compile(rf"/{_PART}(/{_PART})*", re.ASCII)
+"""The full name of a topic."""
