@@ -201,7 +201,9 @@ def _parsed(text: str) -> Value:
 
 
 def _shown(value: object) -> str:
-    text = "nothing" if value is None else repr(value)
+    if value is None:
+        return say("nothing")
+    text = repr(value)
     return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"
 
 

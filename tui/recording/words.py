@@ -93,7 +93,7 @@ def complaints(status: RecordingStatus) -> Sequence[str]:
         found.append(words.format(n=on_the_way))
     for topic, reason in status.skipped.items():
         words = _("{topic} is not recorded: {reason}")
-        found.append(words.format(topic=plain(topic), reason=plain(reason, LONGEST)))
+        found.append(words.format(topic=plain(topic), reason=plain(localized(reason), LONGEST)))
     if status.absent:
         topics = ", ".join(plain(topic) for topic in status.absent)
         found.append(_("nobody has published {topics}").format(topics=topics))
