@@ -61,17 +61,11 @@ def message(scene: str, count: int) -> tuple[str, str, Mapping[str, Any]]:
     return "/load/image", IMAGE, {"header": HEADER, **size, "data": data}
 
 
-class FedApp(DeckApp):
-    """The program, on the terminal it was started in."""
-
-    terminal_fd = 1
-
-
 def child(scene: str) -> None:
     """Run the program, with data from a thread."""
     graph = RecordedGraph(update=None)
     order = OpenRequest(Path("profiles/09-brain.yaml"))
-    app = FedApp(RecordedOpener(graph=graph), order, "topics", driver_class=DeckDriver)
+    app = DeckApp(RecordedOpener(graph=graph), order, "topics", driver_class=DeckDriver)
 
     def feed() -> None:
         for count in range(1_000_000):

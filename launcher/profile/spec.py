@@ -16,9 +16,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from launcher.errors import ProfileProblem
-    from launcher.profile.defaults import READY_WITHIN_S
     from launcher.profile.model import NodeDocument, ProfileDocument
-from launcher.profile.params import Param
+    from launcher.profile.params import Param
 
 
 @dataclass(frozen=True)
