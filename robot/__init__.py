@@ -2,5 +2,6 @@
 
 Nothing here does input or output or uses ROS: the formulas of the chassis, the words and the JSON
 that drive it, the rules that stop it. Nodes, screens and the command line may import from each
-folder what its docstring names; names of topics and joints are in `topics` and `joints`.
+folder what its docstring names, and all modules beside them: names in `topics` and `joints`, words
+in `words`, formulas in `kinematics`, what the robot can do in `limits`, PCM in `sound`.
 """

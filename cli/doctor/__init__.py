@@ -1,7 +1,8 @@
 """`deck doctor`: what is installed, what is missing, and how to fix it.
 
 Each module here examines one thing: `collect` gathers plain facts, `diagnose` only interprets them,
-so that it can be tested with the facts of any machine.
+so that it can be tested with the facts of any machine. Elsewhere `command` is used by the command
+line, `login` before a start in the background, and `finding` and `serial_ports` by `cli.preflight`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """`deck check --preflight`: whether each device is found, permitted, free, and answering.
 
-Nothing moves: `cli.preflight.answers` says what is sent.
+Nothing moves: `cli.preflight.answers` says what is sent. Only `command` is used elsewhere.
 """
 
 from __future__ import annotations

@@ -2,5 +2,5 @@
 
 Messages and log lines become steps in `reading`, steps become chains in `book` and `chains`, and
 chains become lines in `lines`, which `view` shows. Everything except `view` and `screen` is plain
-data. Only `screen` is used elsewhere, by the app.
+data. Other rooms import only `screen` (for the app) and `actions` (for the names of its keys).
 """

@@ -1,1 +1,4 @@
-"""The page that explains every key of the screen in front."""
+"""The page that explains every key of the screen in front.
+
+Only `screen` is used elsewhere, by the app.
+"""

@@ -1,1 +1,4 @@
-"""The Map panel: where the robot is, and what is around it."""
+"""The Map panel: where the robot is, and what is around it.
+
+Only `panel` is used elsewhere, by the registry.
+"""
