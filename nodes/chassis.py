@@ -100,7 +100,7 @@ class ChassisNode(LessonNode):
         self._standstill = StandstillLogger(self.say)
         self._release_wanted = False
         self._released_s = -math.inf
-        self._nap = StallDetector()
+        self._stalls = StallDetector()
         self._refusals = CommandRefusals(self)
         self._wheel_limits = wheel_limits(self.number("wheel_radius"))
         self._sending = threading.Lock()
@@ -135,7 +135,7 @@ class ChassisNode(LessonNode):
 
     def _obey(self, message: JointState) -> None:
         stamp = message.header.stamp
-        if self._nap.lasted(_AWAY_S) or self._nap.kept_waiting(stamp):
+        if self._stalls.lasted(_AWAY_S) or self._stalls.kept_waiting(stamp):
             return
         command = _STILL if self._emergency.active else self._granted(message)
         with self._sending:
@@ -215,7 +215,7 @@ class ChassisNode(LessonNode):
     # ---------------------------------------------------------------- at a pace
 
     def _drive(self) -> None:
-        away = self._nap.lasted(_AWAY_S)
+        away = self._stalls.lasted(_AWAY_S)
         with self._sending:
             late = away or time.monotonic() - self._commanded_s > self.number("max_age_s")
             if late and self._command[:2] != _STILL[:2]:

@@ -126,7 +126,7 @@ class ElectronicDifferential(LessonNode):
     def __init__(self) -> None:
         super().__init__()
         self._command = STOP
-        self._nap = StallDetector()
+        self._stalls = StallDetector()
         self._refusals = CommandRefusals(self)
         self._heard = False
         self._told: DriveSetpoint | None = None
@@ -157,7 +157,7 @@ class ElectronicDifferential(LessonNode):
 
     def _hear(self, message: AckermannDriveStamped) -> None:
         stamp = message.header.stamp
-        if self._held_up() or self._nap.kept_waiting(stamp):
+        if self._held_up() or self._stalls.kept_waiting(stamp):
             return
         self._await_next()
         if self._emergency.active:
@@ -212,7 +212,7 @@ class ElectronicDifferential(LessonNode):
     def _held_up(self) -> bool:
         """Whether to ignore messages now, as they may have waited too long."""
         max_age_s = self.number("max_age_s") or math.inf
-        return self._nap.lasted(max_age_s + 1.0 / self.number("rate"))
+        return self._stalls.lasted(max_age_s + 1.0 / self.number("rate"))
 
     def _repeat(self) -> None:
         self._held_up()

@@ -60,7 +60,7 @@ class CommandGate:
         self._driver = self._ignored = ""
         self._ignored_s = -math.inf
         self._sent = STOP
-        self._nap = StallDetector()
+        self._stalls = StallDetector()
         self._refusals = CommandRefusals(node)
         self._publisher = node.create_publisher(AckermannDriveStamped, DRIVE_SAFE, DEPTH)
         SolePublisher(node, self._publisher)
@@ -77,7 +77,7 @@ class CommandGate:
     def held_up(self) -> bool:
         """Whether to ignore messages now, as they may have waited too long."""
         ages_s = (self._node.number("max_age_s") or math.inf, self._node.number("stale_after_s"))
-        held_up = self._nap.lasted(min(ages_s) + 1.0 / self._node.number("rate"))
+        held_up = self._stalls.lasted(min(ages_s) + 1.0 / self._node.number("rate"))
         if held_up:
             self._node.say.warn(words.HELD_UP, every_s=1.0)
         return held_up
@@ -120,7 +120,7 @@ class CommandGate:
     def _hear(self, source: str, message: AckermannDriveStamped) -> None:
         # Read first: if this process is held up after this, the command will count as old.
         arrived_s = time.monotonic()
-        if self.held_up() or self._nap.kept_waiting(message.header.stamp):
+        if self.held_up() or self._stalls.kept_waiting(message.header.stamp):
             return
         self._arrivals.hear(source)
         self._look()

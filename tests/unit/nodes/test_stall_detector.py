@@ -26,11 +26,11 @@ def stamp(age_s: float) -> Stamp:
 @pytest.fixture
 def woken(monkeypatch: pytest.MonkeyPatch) -> StallDetector:
     """One who was away for 2 s and came back this moment."""
-    nap = StallDetector()
+    stalls = StallDetector()
     now_s = time.monotonic() + 2.0
     monkeypatch.setattr(time, "monotonic", lambda: now_s)
-    assert nap.lasted(0.5)
-    return nap
+    assert stalls.lasted(0.5)
+    return stalls
 
 
 def later(monkeypatch: pytest.MonkeyPatch, by_s: float) -> None:
@@ -39,9 +39,9 @@ def later(monkeypatch: pytest.MonkeyPatch, by_s: float) -> None:
 
 
 def test_who_was_not_away_takes_everything_in() -> None:
-    nap = StallDetector()
-    assert not nap.lasted(0.5)
-    assert not nap.kept_waiting(stamp(0.4))
+    stalls = StallDetector()
+    assert not stalls.lasted(0.5)
+    assert not stalls.kept_waiting(stamp(0.4))
 
 
 def test_just_awake_it_takes_nothing_in(
