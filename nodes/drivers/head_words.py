@@ -58,13 +58,15 @@ def _joint_settings(joint: str, servo: int, way: str) -> tuple[Setting, ...]:
         Whole(
             f"{joint}_servo",
             servo,
-            f"Where the {joint} servo is plugged in",
+            f"Channel of the {joint} servo",
             fixed=True,
             low=int(SERVO.low),
             high=int(SERVO.high),
         ),
-        Number(f"{joint}_min", low, f"Least {joint}", fixed=True, low=low, high=high, unit="deg"),
-        Number(f"{joint}_max", high, f"Most {joint}", fixed=True, low=low, high=high, unit="deg"),
+        Number(f"{joint}_min", low, f"Minimum {joint}", fixed=True, low=low, high=high, unit="deg"),
+        Number(
+            f"{joint}_max", high, f"Maximum {joint}", fixed=True, low=low, high=high, unit="deg"
+        ),
         Number(
             f"{joint}_trim",
             0.0,

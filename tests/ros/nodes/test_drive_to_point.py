@@ -124,7 +124,7 @@ def test_it_reaches_the_point_while_the_distance_falls(peer: Peer, ros_domain: i
         wait_until(lambda: goals[-1].header.frame_id == "", "the end of the goal")
         assert (status, result.reached) == (SUCCEEDED, True)
         assert result.distance <= 0.05
-        assert "There" in result.message
+        assert "Arrived" in result.message
         assert len(asker.feedback) >= 3
         assert asker.feedback == sorted(asker.feedback, reverse=True)
         wait_for_stop(drive)
@@ -133,7 +133,7 @@ def test_it_reaches_the_point_while_the_distance_falls(peer: Peer, ros_domain: i
         assert math.hypot(last.x - 0.8, last.y - 0.2) <= 0.06
         assert poses[-1].header.frame_id == "odom"
         assert transforms[-1].transforms[0].child_frame_id == "base_link"
-        node.wait_for_words("Driving to x 0.80, y 0.20 m, to within 0.05 m", "There: ")
+        node.wait_for_words("Driving to x 0.80, y 0.20 m, to within 0.05 m", "Arrived: ")
 
 
 def test_it_reverses_to_a_point_behind(peer: Peer, ros_domain: int) -> None:

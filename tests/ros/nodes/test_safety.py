@@ -173,12 +173,12 @@ def test_without_the_gate_it_only_warns(ros_domain: int) -> None:
 def test_a_fast_sonar_does_not_flood_the_log(ros_domain: int) -> None:
     with Peer(ros_domain) as peer, NodeProcess("nodes.safety_stop", ros_domain) as node:
         peer.say(FRONT, Float32(data=1.0))
-        node.wait_for_words("free")
+        node.wait_for_words("is clear")
         for _ in range(200):
             peer.say(FRONT, Float32(data=1.0))
         peer.say(FRONT, Float32(data=0.1))
         node.wait_for_words("Obstacle at 0.10 m")
-        assert node.output.count("free") <= 10
+        assert node.output.count("is clear") <= 10
 
 
 @pytest.mark.parametrize(

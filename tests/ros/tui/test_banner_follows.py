@@ -124,7 +124,7 @@ async def test_who_looks_later_sees_the_stop_and_releases_a_node_that_was_starte
         await asyncio.to_thread(node.wait_for_words, "given before this node was started")
         late = Screen(ros_domain)
         try:
-            await late.until(lambda: "(from before) since" in late.words, "the stop")
+            await late.until(lambda: "(from earlier) since" in late.words, "the stop")
             late.emergency.release()
             await late.until(lambda: not late.words and late.says(False), "the release")
             assert not late.notes
