@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import shutil
 import subprocess
 import sys
@@ -14,6 +13,7 @@ import tempfile
 from pathlib import Path
 
 from tests.e2e.terminal import Terminal
+from tests.waiting import comes
 
 ROOT = Path(__file__).resolve().parents[1]
 DOMAIN = 76
@@ -50,8 +50,7 @@ def picture(language: str) -> None:
             while SPOKEN[language] not in terminal.text():
                 # A wall may be near just then, or the brain may give another command.
                 say_left(terminal, "^x STOP" if language == "en" else "^x СТОП")
-                with contextlib.suppress(AssertionError):
-                    terminal.wait_for(SPOKEN[language], within_s=3)
+                comes(lambda: SPOKEN[language] in terminal.text(), within_s=3)
             svg = Path(folder) / "deck.svg"
             svg.write_text(terminal.svg("deck 09-brain"))
         finally:
