@@ -6,6 +6,7 @@ Exit codes: 0 success, 1 a failure, 2 an invalid request, 130 interrupted.
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -18,6 +19,7 @@ from text.output import drop_output, make_streams_safe, say_error
 if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Sequence
+    from types import ModuleType
 
 HANDLERS = {
     "open": ("cli.screen", "open_command"),
@@ -118,6 +120,24 @@ def _run(command: str, options: Namespace) -> int:
 
 def _handle(command: str, options: Namespace) -> int:
     module, function = HANDLERS[command]
-    code: int = getattr(import_module(module), function)(options)
+    code: int = getattr(_imported(module), function)(options)
     sys.stdout.flush()
     return code
+
+
+def _imported(module: str) -> ModuleType:
+    """Import a module; an interrupt that comes meanwhile is raised afterwards.
+
+    An interrupted import can end with a traceback of its own, or lose the interrupt.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.default_int_handler:
+        return import_module(module)
+    interrupts: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _frame: interrupts.append(number))
+    try:
+        return import_module(module)
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if interrupts:
+            raise KeyboardInterrupt

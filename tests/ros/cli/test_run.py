@@ -238,7 +238,7 @@ def test_ctrl_c_while_it_starts_leaves_nothing(tmp_path: Path) -> None:
         lambda: psutil.Process(run.process.pid).children(), "the supervisor starts", every_s=0.001
     )[0]
     run.signal(signal.SIGINT)
-    assert run.finish() in (0, 130)
+    assert run.finish() in (0, 130), run.errors
     assert run.errors == []
     wait_until(lambda: not alive(supervisor.pid), "the supervisor has ended")
     assert json.loads("\n".join(deck("ps", "--json").lines)) == []
