@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from text.plain import filled, plain, plain_lines
-from text.sentences import Words
+from text.sentences import InLanguages, Words
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -91,9 +91,11 @@ def localized(words: str, code: str = "") -> str:
 
     Its values, and any other text, are sanitized.
     """
+    code = code or _language
+    if isinstance(words, InLanguages):
+        return plain_lines(words.texts.get(code) or words)
     if not isinstance(words, Words):
         return plain_lines(words)
-    code = code or _language
     values = {name: _in_words(value, code) for name, value in words.values.items()}
     return filled(translated(words.template, code), values)
 

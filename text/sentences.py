@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 from text.plain import filled
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from typing_extensions import Self
 
 
@@ -38,6 +40,27 @@ class Words(str):
         return self.template, self.values
 
 
+class InLanguages(str):
+    """A text that its author has written in several languages, as a lesson's hints are.
+
+    It is a plain `str`, the English text; `texts` holds all of them by language.
+    """
+
+    __slots__ = ("texts",)
+
+    texts: dict[str, str]
+
+    def __new__(cls, texts: Mapping[str, str]) -> Self:
+        """Keep the texts, {language: text}."""
+        made = super().__new__(cls, texts.get("en") or next(iter(texts.values()), ""))
+        made.texts = dict(texts)
+        return made
+
+    def __getnewargs__(self) -> tuple[dict[str, str]]:  # type: ignore[override]
+        """Make copying and pickling keep the texts."""
+        return (self.texts,)
+
+
 def say(template: str, **values: object) -> Words:
     """Make a sentence: `say("no such node: {node}", node=name)`."""
     return Words(template, values)
@@ -48,6 +71,6 @@ def reason_of(error: BaseException) -> str:
 
     `str` of an error is that sentence in English, which cannot be translated any more.
     """
-    if len(error.args) == 1 and isinstance(error.args[0], Words):
+    if len(error.args) == 1 and isinstance(error.args[0], (Words, InLanguages)):
         return error.args[0]
     return str(error) or type(error).__name__
