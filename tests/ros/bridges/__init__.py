@@ -1,0 +1,1 @@
+"""Tests of the packages of ROS that PyPI does not have."""

@@ -1,0 +1,237 @@
+"""Where a frame is in another: in one process, and over the topics."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import rclpy
+import tf2_geometry_msgs
+import tf2_ros
+import yaml
+from geometry_msgs.msg import PointStamped, TransformStamped, Vector3Stamped
+from rclpy.context import Context
+from rclpy.duration import Duration
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy
+from rclpy.time import Time
+from tf2_msgs.msg import TFMessage
+
+S = 1_000_000_000
+NEWEST = Time()
+
+
+def at(seconds: float) -> Time:
+    return Time(nanoseconds=int(seconds * S))
+
+
+def transform(
+    parent: str, child: str, x: float = 0.0, *, yaw: float = 0.0, time: float = 0.0
+) -> Any:
+    """Return where a frame is: so far ahead of its parent, and turned to the left."""
+    found = TransformStamped(child_frame_id=child)
+    found.header.frame_id = parent
+    found.header.stamp = at(time).to_msg()
+    found.transform.translation.x = x
+    found.transform.rotation.z = math.sin(yaw / 2)
+    found.transform.rotation.w = math.cos(yaw / 2)
+    return found
+
+
+def place(found: Any) -> tuple[float, float]:
+    moved = found.transform.translation
+    return round(moved.x, 6), round(moved.y, 6)
+
+
+def yaw(found: Any) -> float:
+    turned = found.transform.rotation
+    return 2 * math.atan2(turned.z, turned.w)
+
+
+@pytest.fixture
+def buffer() -> tf2_ros.Buffer:
+    """A robot that drives 1 m/s and turns 90 degrees in two seconds, with a camera on its front."""
+    made = tf2_ros.Buffer()
+    made.set_transform_static(transform("base_link", "camera_link", 0.15), "test")
+    for second in (1, 2, 3):
+        turn = math.radians(45) * (second - 1)
+        made.set_transform(transform("odom", "base_link", second, yaw=turn, time=second), "test")
+    return made
+
+
+def test_a_chain_of_frames_is_followed_both_ways(buffer: tf2_ros.Buffer) -> None:
+    found = buffer.lookup_transform("odom", "camera_link", at(3))
+    assert place(found) == (3.0, 0.15)
+    assert (found.header.frame_id, found.child_frame_id) == ("odom", "camera_link")
+    assert place(buffer.lookup_transform("camera_link", "odom", at(3))) == (-0.15, 3.0)
+    assert place(buffer.lookup_transform("odom", "odom", NEWEST)) == (0.0, 0.0)
+
+
+def test_between_two_samples_it_is_interpolated(buffer: tf2_ros.Buffer) -> None:
+    found = buffer.lookup_transform("odom", "base_link", at(2.5))
+    assert place(found) == (2.5, 0.0)
+    assert math.degrees(yaw(found)) == pytest.approx(67.5)
+    assert found.header.stamp.nanosec == S / 2
+
+
+def test_time_0_is_the_newest_that_all_of_the_way_has(buffer: tf2_ros.Buffer) -> None:
+    buffer.set_transform(transform("base_link", "arm", 1.0, time=1.5), "test")
+    buffer.set_transform(transform("base_link", "arm", 2.0, time=2.5), "test")
+    found = buffer.lookup_transform("odom", "arm", NEWEST)
+    assert Time.from_msg(found.header.stamp).nanoseconds == 2.5 * S
+    assert buffer.get_latest_common_time("odom", "arm").nanoseconds == 2.5 * S
+    static = buffer.lookup_transform("base_link", "camera_link", NEWEST)
+    assert Time.from_msg(static.header.stamp).nanoseconds == 0
+
+
+def test_a_static_frame_is_there_at_any_time(buffer: tf2_ros.Buffer) -> None:
+    assert place(buffer.lookup_transform("base_link", "camera_link", at(1e6))) == (0.15, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("frames", "time", "kind", "words"),
+    [
+        (("odom", "kamera"), 0, tf2_ros.LookupException, '"kamera" .*does not exist'),
+        (("odom", "map"), 0, tf2_ros.ConnectivityException, "unconnected trees"),
+        (("odom", "camera_link"), 4, tf2_ros.ExtrapolationException, "into the future"),
+        (("odom", "camera_link"), 0.5, tf2_ros.ExtrapolationException, "into the past"),
+        (("odom", ""), 0, tf2_ros.InvalidArgumentException, "cannot be empty"),
+        (("odom", "/base_link"), 0, tf2_ros.InvalidArgumentException, "cannot start with"),
+    ],
+)
+def test_why_there_is_no_transform(
+    buffer: tf2_ros.Buffer, frames: tuple[str, str], time: float, kind: type, words: str
+) -> None:
+    buffer.set_transform(transform("map", "house", time=2), "test")
+    with pytest.raises(kind, match=words) as raised:
+        buffer.lookup_transform(*frames, at(time))
+    assert isinstance(raised.value, tf2_ros.TransformException)
+    assert not buffer.can_transform(*frames, at(time))
+
+
+def test_the_time_of_a_message_is_asked_for_in_a_sentence(buffer: tf2_ros.Buffer) -> None:
+    with pytest.raises(TypeError, match=r"Time\.from_msg"):
+        buffer.lookup_transform("odom", "base_link", at(2).to_msg())
+
+
+def test_what_is_older_than_ten_seconds_is_forgotten(buffer: tf2_ros.Buffer) -> None:
+    buffer.set_transform(transform("odom", "base_link", 12, time=12.5), "test")
+    assert buffer.can_transform("odom", "base_link", at(3))
+    assert not buffer.can_transform("odom", "base_link", at(2))
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        transform("odom", "odom"),
+        transform("", "arm"),
+        transform("odom", "arm", math.nan),
+        TransformStamped(child_frame_id="arm"),
+    ],
+)
+def test_a_transform_that_makes_no_sense_is_ignored(buffer: tf2_ros.Buffer, broken: Any) -> None:
+    before = buffer.all_frames_as_yaml()
+    buffer.set_transform(broken, "test")
+    assert buffer.all_frames_as_yaml() == before
+
+
+def test_a_quaternion_of_another_length_is_ignored(buffer: tf2_ros.Buffer) -> None:
+    broken = transform("odom", "arm")
+    broken.transform.rotation.w = 0.0
+    buffer.set_transform(broken, "test")
+    assert "arm" not in buffer.all_frames_as_string()
+
+
+def test_all_frames_can_be_read_by_people_and_by_programs(buffer: tf2_ros.Buffer) -> None:
+    assert "Frame camera_link exists with parent base_link.\n" in buffer.all_frames_as_string()
+    frames = yaml.safe_load(buffer.all_frames_as_yaml())
+    assert frames["base_link"]["parent"] == "odom"
+    assert frames["base_link"]["buffer_length"] == 2.0
+    assert yaml.safe_load(tf2_ros.Buffer().all_frames_as_yaml()) == {}
+
+
+def test_a_place_then_seen_from_a_place_now(buffer: tf2_ros.Buffer) -> None:
+    found = buffer.lookup_transform_full("base_link", at(3), "base_link", at(1), "odom")
+    assert place(found) == (0.0, 2.0)
+
+
+def test_a_ball_before_the_camera_is_seen_from_the_wheels(buffer: tf2_ros.Buffer) -> None:
+    ball = PointStamped()
+    ball.header.frame_id = "camera_link"
+    ball.point.x = 1.0
+    assert buffer.transform(ball, "base_link").point.x == pytest.approx(1.15)
+    push = Vector3Stamped()
+    push.vector.x = 1.0
+    turned = tf2_geometry_msgs.do_transform_vector3(push, transform("a", "b", 5.0, yaw=math.pi / 2))
+    assert (round(turned.vector.x, 6), round(turned.vector.y, 6)) == (0.0, 1.0)
+
+
+def test_who_waits_is_told_when_it_comes(buffer: tf2_ros.Buffer) -> None:
+    waiting = buffer.wait_for_transform_async("odom", "hand", NEWEST)
+    assert not waiting.done()
+    later = transform("base_link", "hand", 1.0)
+    sender = threading.Timer(0.05, buffer.set_transform_static, (later, "test"))
+    sender.start()
+    assert buffer.can_transform("odom", "hand", NEWEST, Duration(seconds=10))
+    sender.join()
+    assert place(waiting.result()) == (3.0, 1.0)
+    assert not buffer.can_transform("odom", "nobody", NEWEST, Duration(seconds=0.05))
+
+
+@pytest.fixture
+def nodes(ros_domain: int) -> Iterator[tuple[Node, Node]]:
+    """One node that tells, and one that listens."""
+    context = Context()
+    rclpy.init(context=context, domain_id=ros_domain)
+    made = (Node("teller", context=context), Node("listener", context=context))
+    yield made
+    for node in made:
+        node.destroy_node()
+    context.try_shutdown()
+
+
+def test_over_the_topics(nodes: tuple[Node, Node]) -> None:
+    """Static frames reach a listener that comes later, all of them; moving ones a later one not."""
+    teller, listener = nodes
+    fixed = tf2_ros.StaticTransformBroadcaster(teller)
+    fixed.sendTransform(transform("base_link", "camera_link", 0.15))
+    fixed.sendTransform([transform("base_link", "sonar_link", 0.2)])
+    moving = tf2_ros.TransformBroadcaster(teller)
+    buffer = tf2_ros.Buffer(node=listener)
+    heard = tf2_ros.TransformListener(buffer, listener)
+    executor = SingleThreadedExecutor(context=listener.context)
+    executor.add_node(listener)
+    for target in ("camera_link", "sonar_link"):
+        waiting = buffer.wait_for_transform_async("base_link", target, NEWEST)
+        executor.spin_until_future_complete(waiting, 20.0)
+        assert waiting.done(), target
+    waiting = buffer.wait_for_transform_async("odom", "camera_link", NEWEST)
+    for _ in range(200):
+        moving.sendTransform(transform("odom", "base_link", 2.0, time=7))
+        executor.spin_until_future_complete(waiting, 0.1)
+        if waiting.done():
+            break
+    assert place(waiting.result()) == (2.15, 0.0)
+    (static,) = teller.get_publishers_info_by_topic("/tf_static")
+    assert static.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+    (plain,) = teller.get_publishers_info_by_topic("/tf")
+    assert plain.qos_profile.durability is DurabilityPolicy.VOLATILE
+    assert heard.tf_sub.msg_type is TFMessage
+    heard.unregister()
+
+
+def test_a_listener_can_have_a_thread_of_its_own(nodes: tuple[Node, Node]) -> None:
+    teller, listener = nodes
+    fixed = tf2_ros.StaticTransformBroadcaster(teller)
+    fixed.sendTransform(transform("base_link", "camera_link", 0.15))
+    buffer = tf2_ros.Buffer()
+    heard = tf2_ros.TransformListener(buffer, listener, spin_thread=True)
+    found = buffer.lookup_transform("base_link", "camera_link", NEWEST, Duration(seconds=20))
+    assert place(found) == (0.15, 0.0)
+    listener.context.try_shutdown()
+    heard.dedicated_listener_thread.join(20)
+    assert not heard.dedicated_listener_thread.is_alive()
