@@ -3,7 +3,8 @@
 Like `python -m MODULE` and `python FILE`, except for the module search path: `-m` would look in the
 current folder first, and take whatever is there for a part of Deck or ROS. Here the current folder
 is not searched at all. Deck's installation comes first for Deck's own nodes and last for others,
-which may have a `graph` or `text` of their own.
+which may have a `graph` or `text` of their own. After all of it come the packages of ROS that PyPI
+does not have: a ROS that brings them itself is found before.
 """
 
 from __future__ import annotations
@@ -19,14 +20,20 @@ OURS, _, _ = __file__.rpartition("/")
 INSTALLATION, _, _ = OURS.rpartition("/")
 """The folder that Deck's packages are in."""
 
+BRIDGES = f"{INSTALLATION}/bridges"
+"""The folder of cv_bridge and tf2_ros, for a ROS that comes without them."""
+
 
 def prepare(argv: tuple[str, ...]) -> None:
     """Make this process look like a node's program; `argv` begins with its module or file."""
     name = argv[0]
-    places = [place for place in sys.path if place not in (INSTALLATION, "")]
+    places = [place for place in sys.path if place not in (INSTALLATION, BRIDGES, "")]
     sys.path[:] = [INSTALLATION, *places] if is_ours(name) else [*places, INSTALLATION]
+    sys.path.append(BRIDGES)
     if "/" in name:
         sys.path.insert(0, name.rpartition("/")[0])
+        # Saved twice within a second, a module beside it would be taken for the first one.
+        sys.dont_write_bytecode = True
     sys.excepthook = _report
     sys.orig_argv = [sys.executable, __file__, *argv]
     # The `-m` tells the nodes' packages that one of their modules is being started.
@@ -43,6 +50,9 @@ def run(name: str) -> None:
     import runpy
 
     if "/" in name:
+        # Not imported: the learner may have a `launcher` of his own.
+        runpy.run_path(f"{OURS}/byte_fields.py")["allow"]()
+        runpy.run_path(f"{OURS}/callback_watch.py")["watch"](name.rpartition("/")[0])
         runpy.run_path(name, run_name="__main__")
     else:
         runpy.run_module(name, run_name="__main__", alter_sys=True)

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
+from text.sentences import Words, say
+
 NOT_READY = "not ready"
 """The start of the supervisor's message about a node that was not ready in time."""
 
@@ -60,6 +62,38 @@ _RANKS = {severity: rank for rank, severity in enumerate(Severity)}
 
 
 @dataclass(frozen=True)
+class NodeFault:
+    """What is wrong with a learner's own file."""
+
+    kind: str
+    """`syntax`: it cannot be read, and an older process may still run; `import`: a module is not
+    there; `crash`: its process has ended by an exception; `warning`: it runs, but not as meant."""
+    file: str
+    """Absolute."""
+    line: int = 0
+    """From 1; 0 if unknown, as is the next."""
+    column: int = 0
+    source_line: str = ""
+    exception: str = ""
+    """As Python words it: `NameError: name 'x' is not defined`."""
+    meaning: str = ""
+    """A sentence for a beginner; empty if there is none for it."""
+
+    @property
+    def words(self) -> Words:
+        """All of it in one line."""
+        place = say("{file}:{line}", file=self.file.rpartition("/")[2], line=self.line)
+        if self.meaning:
+            return say(
+                "{place}: {exception}. {meaning}",
+                place=place,
+                exception=self.exception,
+                meaning=self.meaning,
+            )
+        return say("{place}: {exception}", place=place, exception=self.exception)
+
+
+@dataclass(frozen=True)
 class NodeStatus:
     """The current state of one node of the running profile."""
 
@@ -81,6 +115,10 @@ class NodeStatus:
     memory_bytes: int | None = None
     """Proportional set size of all the node's processes."""
     needs: tuple[str, ...] = ()
+    file: str = ""
+    """The learner's own file that it runs, absolute; empty for other nodes."""
+    fault: NodeFault | None = None
+    """What is wrong with that file, as far as it has shown."""
 
     @property
     def late(self) -> bool:

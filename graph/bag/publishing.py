@@ -6,6 +6,7 @@ two publishers of one sensor are worse than none.
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -17,7 +18,7 @@ from text.sentences import say
 
 if TYPE_CHECKING:
     import threading
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Mapping
 
     from rclpy.publisher import Publisher
 
@@ -56,11 +57,18 @@ class BagPublisher:
         ros: Ros,
         refusal: Callable[[TopicInBag], str | None],
         stopped_by_zeros: Collection[str] = (),
+        *,
+        names: Mapping[str, str] | None = None,
+        gives_way: bool = True,
     ) -> None:
         """`refusal` returns why a topic must not be published, None for those that may be.
 
-        `stopped_by_zeros`: types for which an empty message is sent at the end.
+        `stopped_by_zeros`: types for which an empty message is sent at the end. `names`: topics
+        that are published under another name. Without `gives_way`, a topic is also published
+        beside another node that does so.
         """
+        self._names = names or {}
+        self._gives_way = gives_way
         self.progress = PublishingProgress()
         self._bag = bag
         self._ros = ros
@@ -91,15 +99,18 @@ class BagPublisher:
         rate: float = 1.0,
         start_s: float = 0.0,
         loop: bool = False,
+        until_s: float = math.inf,
     ) -> None:
         """Publish once, or with `loop` until `stop`; report the progress each second.
+
+        `start_s` and `until_s` are places in the bag: the first time begins and all end there.
 
         Raises BagError if the bag turns out to be damaged.
         """
         try:
-            self._once(stop, tell, rate, start_s)
+            self._once(stop, tell, rate, start_s, until_s)
             while loop and not stop.is_set() and self._publishers:
-                self._once(stop, tell, rate, 0.0)
+                self._once(stop, tell, rate, 0.0, until_s)
         finally:
             self._end()
 
@@ -109,12 +120,15 @@ class BagPublisher:
         tell: Callable[[PublishingProgress], None],
         rate: float,
         start_s: float,
+        until_s: float,
     ) -> None:
         bag = self._bag
         begin_ns = bag.start_ns + round(start_s * 1e9)
         self._latched_before(begin_ns)
         begun_s = look_s = tell_s = time.monotonic()
         for topic, stamp_ns, raw in bag.messages(begin_ns, list(self._publishers)):
+            if (stamp_ns - bag.start_ns) / 1e9 > until_s:
+                return
             due_s = begun_s + (stamp_ns - begin_ns) / 1e9 / rate
             while not stop.is_set():
                 now_s = time.monotonic()
@@ -160,9 +174,10 @@ class BagPublisher:
             return
         qos = Qos(topic.reliability or "reliable", topic.durability or "volatile")
         try:
-            validate_full_topic_name(topic.name)
+            name = self._names.get(topic.name, topic.name)
+            validate_full_topic_name(name)
             kind = load_message(topic.kind.name)
-            publisher = self._ros.node.create_publisher(kind, topic.name, profile(qos, DEPTH))
+            publisher = self._ros.node.create_publisher(kind, name, profile(qos, DEPTH))
         except UnknownTypeError as error:
             self.progress.left_out[topic.name] = error.reason
         except InvalidTopicNameException:
@@ -173,6 +188,8 @@ class BagPublisher:
 
     def _give_way(self) -> None:
         """Leave topics to others who publish them."""
+        if not self._gives_way:
+            return
         node = self._ros.node
         for name in self._publishers.keys() - SHARED:
             if node.handle.get_count_publishers(name) < 2:

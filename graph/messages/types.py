@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import threading
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ EVENT = "_Event"
 """Suffix of the message type in which a service publishes its calls, if it does."""
 NAME_PARTS = 3
 """`std_msgs/msg/Float32`."""
+_LOADING = threading.RLock()
 
 
 class UnknownTypeError(Exception):
@@ -109,9 +111,14 @@ def _load(type_name: str, kind: str) -> type[Any]:
 
 
 def _import_type_support(found: Any) -> None:  # noqa: ANN401 - generated, without a base class
-    """Load the C library behind a class now, where a failure can be reported."""
-    if getattr(found, "_TYPE_SUPPORT", None) is None:
-        found.__import_type_support__()
+    """Load the C library behind a class now, where a failure can be reported.
+
+    A class has its type support before the classes inside it have theirs: no other thread, which
+    may be another observer's, must find it in between.
+    """
+    with _LOADING:
+        if getattr(found, "_TYPE_SUPPORT", None) is None:
+            found.__import_type_support__()
 
 
 def _missing(error: ModuleNotFoundError, package: str, kind: str) -> Words:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from graph.scan.endpoints import TopicEnds
 
 LOOK_AT_GRAPH_S = 0.25
+"""Often enough for a reader of the screen."""
 PENDING_S = 0.01
 """How often calls and messages under way are polled."""
 RESCAN_S = 3.0
@@ -34,7 +35,9 @@ RESCAN_S = 3.0
 class ObserverNode:
     """One open node at work; no method blocks."""
 
-    def __init__(self, ros: Ros) -> None:
+    def __init__(self, ros: Ros, graph_s: float = LOOK_AT_GRAPH_S) -> None:
+        """Take a node; it looks at the graph every `graph_s` seconds."""
+        self.graph_s = graph_s
         self.calls = Calls(ros.node)
         self.outbox = Outbox(ros.node)
         self.goals = Goals(ros.node)
@@ -75,7 +78,7 @@ class ObserverNode:
 
     def look(self, interest: Interest) -> GraphUpdate | None:
         """Look at the graph and at the queues; return what is new, None if nothing is."""
-        if time.monotonic() - self._looked_s >= LOOK_AT_GRAPH_S:
+        if time.monotonic() - self._looked_s >= self.graph_s:
             self._look_at_graph()
         tuned = (self._scan, interest)
         if tuned != self._tuned or self._taps.need_tuning():

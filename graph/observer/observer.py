@@ -45,12 +45,20 @@ class Observer:
     """The ROS graph of one domain as plain data. All methods may be called from any thread."""
 
     def __init__(
-        self, domain: int, discovery: str | tuple[str, ...] = "localhost", period_s: float = 0.1
+        self,
+        domain: int,
+        discovery: str | tuple[str, ...] = "localhost",
+        period_s: float = 0.1,
+        graph_s: float = LOOK_AT_GRAPH_S,
     ) -> None:
-        """Prepare for a domain; `discovery` is localhost, subnet, or the addresses of peers."""
+        """Prepare for a domain; `discovery` is localhost, subnet, or the addresses of peers.
+
+        `graph_s`: seconds between two looks at who is there, which cost more than those at messages
+        """
         self._domain = domain
         self._discovery = discovery
         self._period_s = period_s
+        self._graph_s = graph_s
         self._interest = Interest()
         self._lock = threading.Lock()
         self._wake = threading.Event()
@@ -270,7 +278,7 @@ class Observer:
         end = ObserverError(say("the observer has been stopped"))
         try:
             # This imports rclpy; the screen need not wait for it.
-            node = ObserverNode(open_ros(self._domain, self._discovery))
+            node = ObserverNode(open_ros(self._domain, self._discovery), self._graph_s)
             node.serve_urgent = lambda: self._serve_urgent(node)
         except Exception as error:  # noqa: BLE001 - reported to the screen
             words = say("ROS cannot be used: {error}", error=str(error))
@@ -294,7 +302,7 @@ class Observer:
                 now_s = time.monotonic()
                 if now_s >= next_look_s or self._interest is not interest:
                     interest = self._interest
-                    period_s = LOOK_AT_GRAPH_S if node.is_idle else self._period_s
+                    period_s = self._graph_s if node.is_idle else self._period_s
                     # At a steady pace; an extra look out of turn does not delay the next.
                     next_look_s = max(now_s, min(next_look_s, now_s) + period_s)
                     self._look(node, interest, on_update)

@@ -19,7 +19,7 @@ from graph.recording.topics import RecordingTopics, TopicChoice
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from graph.recording.file import BagFile
     from graph.recording.writer import RecordingWriter
@@ -90,8 +90,11 @@ class Recorder:
         hidden: bool = False,
         images: bool = True,
         reserve_bytes: int = RESERVE_BYTES,
+        wanted: Callable[[str, Sequence[str]], bool] | None = None,
     ) -> None:
         """`topics`: None for all, including those that appear later.
+
+        `wanted` decides in its place, by the name of a topic and its types.
 
         With `hidden`, all includes the inner topics of actions; without `images`, no pictures.
         It stops by itself when no more than `reserve_bytes` are free on the disk.
@@ -99,7 +102,8 @@ class Recorder:
         self._domain = domain
         self._discovery = discovery
         self._folder = folder
-        self._choice = TopicChoice(None if topics is None else frozenset(topics), hidden, images)
+        named = None if topics is None else frozenset(topics)
+        self._choice = TopicChoice(named, hidden, images, wanted)
         self._room = DiskRoom(folder, reserve_bytes)
         self._error = ""
         self._since_s = time.time()

@@ -14,7 +14,7 @@ from graph.recording.tap import RecordingTap
 from graph.scan.endpoints import full_name
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from rclpy.node import Node
     from rclpy.topic_endpoint_info import TopicEndpointInfo
@@ -34,9 +34,13 @@ class TopicChoice(NamedTuple):
     """Whether "all" includes names that begin with an underscore."""
     images: bool = True
     """Whether "all" includes pictures."""
+    wanted: Callable[[str, Sequence[str]], bool] | None = None
+    """Decides, by name and types, in the place of all this."""
 
     def takes(self, name: str, types: Sequence[str]) -> bool:
         """Return whether a topic is to be recorded."""
+        if self.wanted is not None:
+            return self.wanted(name, types)
         if self.topics is not None:
             return name in self.topics
         return (self.hidden or not is_hidden(name)) and (self.images or IMAGES.isdisjoint(types))

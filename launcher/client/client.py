@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import json
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.client.hung_supervisor import kill_supervisor
@@ -30,6 +31,7 @@ from launcher.errors import (
     ProtocolError,
     SilentSupervisorError,
     UnknownNodeError,
+    UsageError,
 )
 from launcher.events import LogEvent
 from launcher.run_id import supervisor_of
@@ -40,7 +42,6 @@ from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterable
-    from pathlib import Path
 
     from launcher.events import Event
     from launcher.profile.load import Profile
@@ -65,6 +66,7 @@ async def launch(
     foreground: bool = True,
     node_lang: str = "",
     supervisor: StartingSupervisor | None = None,
+    confined_to: Iterable[str] = (),
 ) -> SupervisorClient:
     """Start a profile and connect to its supervisor.
 
@@ -76,6 +78,8 @@ async def launch(
         foreground: whether the nodes end with this process, or with `aclose`
         node_lang: the language the nodes log in, `en` or `ru`; empty: as the environment says
         supervisor: one that was started in advance, for this call only
+        confined_to: the only folders in which the nodes may write, see
+            `launcher.processes.confinement`; none: they are not confined
 
     Raises:
         ProfileError, DomainError: if the profile or domain cannot be used; nothing was started.
@@ -87,7 +91,13 @@ async def launch(
     try:
         folders = {"run_dir": str(run_dir()), "log_dir": str(log_dir())}
         read = await asyncio.to_thread(_read, profile, hardware, tuple(overrides), domain)
-        plan = plan_of(read, **folders, foreground=foreground, node_lang=node_lang)
+        plan = plan_of(
+            read,
+            **folders,
+            foreground=foreground,
+            node_lang=node_lang,
+            confined_to=confined_to,
+        )
     except BaseException:
         supervisor.give_up()
         raise
@@ -134,6 +144,12 @@ def _read(
     return load_profile(
         profile, hardware=hardware, overrides=overrides, domain=domain, ports=serial_ports
     )
+
+
+def _own_file(file: Path) -> str:
+    if not file.is_file():
+        raise UsageError(say("there is no file {path}", path=str(file)))
+    return str(file.absolute())
 
 
 def _silent(pid: int) -> Words:
@@ -250,6 +266,23 @@ class SupervisorClient:
     async def restart(self, *names: str) -> None:
         """Begin to restart these nodes; all if none is named."""
         await self._ask("restart", nodes=names)
+
+    async def exchange(self, name: str, program: Path | str | None) -> None:
+        """Run another program in the place of a node's own; None: that of the profile again.
+
+        It is a file of the learner's, or a module of Deck, such as `nodes.mock_sonar`.
+
+        A node that runs is restarted; one that was stopped stays stopped. `NodeStatus.file` tells
+        which it is. A file that does not compile leaves the old process running, see
+        `NodeStatus.fault`.
+
+        Raises:
+            UsageError: if there is no such file.
+            UnknownNodeError: if there is no such node.
+        """
+        if isinstance(program, Path):
+            program = await asyncio.to_thread(_own_file, program)
+        await self._ask("exchange", node=name, run=program)
 
     async def history(self, node: str | None, limit: int) -> list[LogLine]:
         """Return the newest lines, oldest first, of one node, or of all nodes in order of time."""

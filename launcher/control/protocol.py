@@ -12,13 +12,22 @@ import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity, Stray, Who
-from text.sentences import Words, say
+from launcher.status import (
+    LogLine,
+    NodeFault,
+    NodeState,
+    NodeStatus,
+    SessionInfo,
+    Severity,
+    Stray,
+    Who,
+)
+from text.sentences import InLanguages, Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-VERSION = 2
+VERSION = 3
 
 MAX_REQUEST_BYTES = 1 << 20
 """Longest line from a client; a longer one is an error."""
@@ -37,6 +46,8 @@ def encode(message: Mapping[str, Any]) -> bytes:
 
 def pack_text(text: str) -> Any:  # noqa: ANN401 - JSON
     """Return a sentence in a form that can be translated at the other end."""
+    if isinstance(text, InLanguages):
+        return text.texts
     if isinstance(text, Words) and text.values:
         return [text.template, {key: _pack_value(value) for key, value in text.values.items()}]
     return str(text) if not isinstance(text, Words) else [text.template, {}]
@@ -52,9 +63,11 @@ def unpack_text(packed: Any) -> str:  # noqa: ANN401 - JSON
     """Return the sentence that `pack_text` was given."""
     if isinstance(packed, str):
         return packed
+    if isinstance(packed, dict):
+        return InLanguages(packed)
     template, values = packed
     unpacked = {
-        key: unpack_text(value) if isinstance(value, (str, list)) else value
+        key: unpack_text(value) if isinstance(value, (str, list, dict)) else value
         for key, value in values.items()
     }
     return say(template, **unpacked)
@@ -62,7 +75,13 @@ def unpack_text(packed: Any) -> str:  # noqa: ANN401 - JSON
 
 def pack_status(status: NodeStatus) -> dict[str, Any]:
     """Return a node's status as JSON."""
-    return {**vars(status), "detail": pack_text(status.detail)}
+    fault = None if status.fault is None else _pack_fault(status.fault)
+    return {**vars(status), "detail": pack_text(status.detail), "fault": fault}
+
+
+def _pack_fault(fault: NodeFault) -> dict[str, Any]:
+    said = {"exception": pack_text(fault.exception), "meaning": pack_text(fault.meaning)}
+    return {**vars(fault), **said}
 
 
 def unpack_status(fields: dict[str, Any]) -> NodeStatus:
@@ -73,8 +92,16 @@ def unpack_status(fields: dict[str, Any]) -> NodeStatus:
             "state": NodeState(fields["state"]),
             "detail": unpack_text(fields["detail"]),
             "needs": tuple(fields["needs"]),
+            "fault": _unpack_fault(fields["fault"]),
         }
     )
+
+
+def _unpack_fault(fields: dict[str, Any] | None) -> NodeFault | None:
+    if fields is None:
+        return None
+    said = {name: unpack_text(fields[name]) for name in ("exception", "meaning")}
+    return NodeFault(**{**fields, **said})
 
 
 def pack_line(line: LogLine) -> list[Any]:

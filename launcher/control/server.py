@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import re
 import socket
 import struct
 import time
@@ -48,6 +49,8 @@ A client that greets at once is heard before this many others can connect: async
 time.
 """
 GREETED_WITHIN_S = 10.0
+MODULE = re.compile(r"nodes\.[a-z][a-z0-9_]*")
+"""A node of Deck."""
 MAX_REQUESTS = 100
 """Most requests of one client that are served at the same time."""
 
@@ -75,6 +78,12 @@ class Controlled(Protocol):
 
     def restart(self, names: Iterable[str]) -> None:
         """Restart nodes; raises `UnknownNodeError`."""
+
+    def exchange(self, name: str, program: str | None) -> None:
+        """Run this file or module in the place of a node's program, or again that itself (None).
+
+        Raises `UnknownNodeError`.
+        """
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """End these processes that an earlier run left behind."""
@@ -249,6 +258,8 @@ class ControlServer:
             controlled.restart(_names(request))
         elif op == "stop":
             await controlled.stop(_names(request), now=request.get("now") is True)
+        elif op == "exchange":
+            controlled.exchange(*_exchange(request))
         elif op == "history":
             return self._history(request)
         elif op == "stop_strays":
@@ -362,6 +373,18 @@ def _names(request: dict[str, Any]) -> list[str]:
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise BadRequestError(say("nodes: expected a list of names"))
     return names
+
+
+def _exchange(request: dict[str, Any]) -> tuple[str, str | None]:
+    node, program = request.get("node"), request.get("run")
+    if not isinstance(node, str):
+        raise BadRequestError(say("node: expected a name, found {x!r}", x=node))
+    if program is None:
+        return node, None
+    if not isinstance(program, str) or not (os.path.isabs(program) or MODULE.fullmatch(program)):  # noqa: PTH117
+        words = say("run: expected an absolute path or a module, found {x!r}", x=program)
+        raise BadRequestError(words)
+    return node, program
 
 
 def _strays(request: dict[str, Any]) -> list[Stray]:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 DECK = "deck"
 """The node name under which the supervisor logs about itself, and the `source` of its lines."""
+CRASH_LINES = 400
+"""As many lines as the traceback of a crash, and what is printed after it, may have."""
 
 
 class SessionLog:
@@ -32,6 +34,8 @@ class SessionLog:
         self.rings = {name: LogRing() for name in (DECK, *nodes)}
         self._files = files
         self._on_line = on_line
+        self.heard: Callable[[LogLine], None] = lambda _line: None
+        """Called with each line that a node has written."""
 
     def read(self, node: str, fd: int, source: str) -> PipeReader:
         """Read a node's pipe to its end; `source` is `stdout` or `stderr`."""
@@ -60,6 +64,17 @@ class SessionLog:
         errors = [line for line in lines if line.severity.rank >= Severity.ERROR.rank]
         return (errors or lines)[-1].text if lines else ""
 
+    def since_start(self, node: str) -> list[LogLine]:
+        """Return the newest lines that the node's own last process has written."""
+        lines: list[LogLine] = []
+        for line in reversed(self.rings[node].newest(CRASH_LINES)):
+            if line.source == DECK:
+                if lines:
+                    break
+                continue
+            lines.append(line)
+        return lines[::-1]
+
     def newest(self, node: str | None, limit: int) -> list[LogLine]:
         """Return the newest lines of one node, or of all nodes in order of time; oldest first."""
         if node is not None:
@@ -76,15 +91,15 @@ class SessionLog:
             shown = parsed.text
             if raw.lost:
                 shown += say(" … [{count} more bytes, see the log file]", count=raw.lost)
-            ring.append(
-                LogLine(
-                    node,
-                    ring.last_seq + 1,
-                    parsed.time_s,
-                    parsed.severity,
-                    shown,
-                    parsed.logger,
-                    source,
-                )
+            line = LogLine(
+                node,
+                ring.last_seq + 1,
+                parsed.time_s,
+                parsed.severity,
+                shown,
+                parsed.logger,
+                source,
             )
+            ring.append(line)
+            self.heard(line)
         self._on_line()

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from launcher.errors import LauncherError, ProfileError, ProfileNotFoundError, UsageError
+from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.text import SHIPPED
 from text.sentences import say
 from text.suggestions import near
@@ -58,7 +59,7 @@ def list_profiles(
 
 
 def find_profile(name: str | Path) -> Path:
-    """Return the file of a profile given by path, name, lesson number or start of a name.
+    """Return the file of a profile given by path, folder, name, lesson number or start of a name.
 
     Profiles in `./profiles` take precedence over those of the course.
 
@@ -67,6 +68,9 @@ def find_profile(name: str | Path) -> Path:
         UsageError: if several names begin like this.
     """
     text = str(name)
+    inside = os.path.join(text, FOLDERS_OWN)  # noqa: PTH118
+    if os.path.isfile(inside):  # noqa: PTH113
+        return Path(inside)
     if is_path(text):
         return Path(text)
     known = {

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from launcher.domain.domain import LAST_SAFE_DOMAIN, choose_domain
 from launcher.errors import DomainError, ProfileError, ProfileProblem
 from launcher.profile.check import applies, check_needs, check_node, check_run
+from launcher.profile.defaults import name_of
 from launcher.profile.devices import with_devices
 from launcher.profile.extends import read_profile
 from launcher.profile.overrides import read_sets
@@ -21,6 +22,7 @@ from launcher.profile.params import flatten
 from launcher.profile.problems import Problems
 from launcher.profile.references import used_devices
 from launcher.profile.spec import NodeSpec, Profile, Ready
+from launcher.profile.steps.check import check_steps
 from launcher.profile.text import shown
 from launcher.profile.validate import validate
 from launcher.profile.when import HARDWARE
@@ -76,6 +78,8 @@ def load_profile(
     document, valid = validate(tree, problems)
     reader = _SpecBuilder(path.absolute(), tree, problems, used)
     nodes = reader.nodes(valid, hardware)
+    if document is not None:
+        check_steps(document, set(valid), tree, problems)
     nodes = read_sets(overrides, nodes, set(valid) - set(nodes), problems)
     if problems.found or document is None:
         raise ProfileError(problems.in_order())
@@ -147,6 +151,7 @@ class _SpecBuilder:
             needs=tuple(other for other in node.needs if other in running),
             ready=_ready(name, node),
             cwd=cwd,
+            folder=self.path.parent,
         )
 
     def profile(
@@ -155,7 +160,7 @@ class _SpecBuilder:
         """Put everything together."""
         return Profile(
             path=self.path,
-            name=self.path.stem,
+            name=name_of(self.path),
             nodes=nodes,
             document=document,
             domain=domain,

@@ -9,22 +9,21 @@ from __future__ import annotations
 import re
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
-from pydantic_core import PydanticCustomError
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from launcher.domain.domain import LAST_DOMAIN
 from launcher.profile.defaults import READY_WITHIN_S
 from launcher.profile.field_marks import AsText, Joined, PathFromProfile
+from launcher.profile.fields import Document, RosName, Texts, TypeName, refuse, ros_name
 from launcher.profile.panels import Panel
 from launcher.profile.serial_choice import KINDS
-from text.ros_names import ROS_NAME
-from text.sentences import Words, say
+from launcher.profile.steps.model import StepDocument, Values
+from text.sentences import say
 
 Restart = Literal["never", "on-failure", "always"]
 
 NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 LONGEST_NODE_NAME = 255
-TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
 MODULE = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*")
 PEER = re.compile(r"[A-Za-z0-9:][A-Za-z0-9.:%_-]*")
 ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
@@ -33,15 +32,6 @@ ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 def is_file(run: str) -> bool:
     """Whether `run` means a file, not a module."""
     return run.startswith(("./", "../", "/"))
-
-
-def refuse(words: Words) -> PydanticCustomError:
-    """Return the error with which a validator of this model rejects a value."""
-    return PydanticCustomError("deck", "{words}", {"words": words})
-
-
-def _texts(value: object) -> object:
-    return {"en": value} if isinstance(value, str) else value
 
 
 def _module(value: object) -> object:
@@ -56,25 +46,9 @@ def _module(value: object) -> object:
     return value
 
 
-def _ros_name(value: object) -> object:
-    if isinstance(value, str) and not ROS_NAME.fullmatch(value):
-        raise refuse(
-            say("{value!r} is not a ROS name; write it as /sensor/sonar_front", value=value)
-        )
-    return value
-
-
-def _type_name(value: object) -> object:
-    if isinstance(value, str) and not TYPE_NAME.fullmatch(value):
-        raise refuse(
-            say("{value!r} is not a message type; write it as std_msgs/msg/Float32", value=value)
-        )
-    return value
-
-
 def _ros_names(value: object) -> object:
     for old in value if isinstance(value, dict) else ():
-        _ros_name(old)
+        ros_name(old)
     return value
 
 
@@ -117,25 +91,7 @@ def _discovery(value: object) -> object:
     return tuple(value)
 
 
-Texts = Annotated[
-    dict[str, str],
-    BeforeValidator(_texts),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "string"},
-                {
-                    "type": "object",
-                    "properties": {"en": {"type": "string"}, "ru": {"type": "string"}},
-                    "additionalProperties": {"type": "string"},
-                },
-            ]
-        }
-    ),
-]
 ModuleOrFile = Annotated[str, BeforeValidator(_module)]
-RosName = Annotated[str, BeforeValidator(_ros_name)]
-TypeName = Annotated[str, BeforeValidator(_type_name)]
 _SCALARS: dict[str, Any] = {"type": ["string", "number", "boolean"]}
 Command = Annotated[
     tuple[str, ...],
@@ -178,12 +134,6 @@ _DEVICE: dict[str, Any] = {
 }
 
 
-class Document(BaseModel):
-    """Base of all parts of a profile: no unknown keys, no silent conversions."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
-
-
 class ReadyDocument(Document):
     """When a node counts as ready: exactly one of topic, service and node."""
 
@@ -213,7 +163,10 @@ class NodeDocument(Document):
         " file of your own, relative to the profile: `./my_sonar.py`.",
     )
     exec: Annotated[Command | None, AsText()] = Field(
-        None, strict=False, description="Any command instead: `[ros2, run, package, program]`."
+        None,
+        strict=False,
+        description="Any command instead: `[ros2, run, package, program]`; `python` and `python3`"
+        " are the ones that know rclpy: `[python, my_sonar.py]`.",
     )
     params: Annotated[dict[str, Any], Joined()] = Field(
         {}, description="ROS parameters, nested as you like."
@@ -291,6 +244,9 @@ class ProfileDocument(Document):
     panels: tuple[Panel, ...] = Field(
         (), strict=False, description="Panels that the deck shows beside nodes and logs."
     )
-    steps: tuple[dict[str, Any], ...] = Field(
-        (), strict=False, description="The lesson's own exercises."
+    values: Values = Field(
+        {}, description="Values that differ from run to run, used in checks as `${near_m}`."
+    )
+    steps: tuple[StepDocument, ...] = Field(
+        (), strict=False, description="What the learner does, and how it is checked."
     )

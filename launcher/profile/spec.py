@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from launcher import node_program
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from launcher.errors import ProfileProblem
     from launcher.profile.model import NodeDocument, ProfileDocument
     from launcher.profile.params import Param
+
+
+PYTHONS = ("python", "python3")
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,8 @@ class NodeSpec:
     """By default, a `run` node must be in the graph."""
     cwd: Path | None
     """An absolute path; None: the folder in which the launcher was started."""
+    folder: Path = field(compare=False)
+    """That of the profile."""
 
     @property
     def command(self) -> str:
@@ -59,6 +64,29 @@ class NodeSpec:
         if run is None:
             return " ".join(self.document.exec or ())
         return f"./{os.path.basename(run)}" if "/" in run else run  # noqa: PTH119
+
+    @property
+    def is_python(self) -> bool:
+        """Whether it is a command that begins with `python`: Deck's own, which knows rclpy."""
+        return bool(self.document.exec) and (self.document.exec or ("",))[0] in PYTHONS
+
+    @property
+    def own_file(self) -> str:
+        """The Python file of one's own that it runs, absolute; empty if it runs none."""
+        run = self.document.run
+        if run is not None:
+            return run if "/" in run else ""
+        words = self.document.exec or ()
+        if not self.is_python or len(words) < 2 or not words[1].endswith(".py"):
+            return ""
+        return self._beside(words[1])
+
+    def _beside(self, file: str) -> str:
+        """Return the path of a file: as it is meant from the working directory, or the profile."""
+        here = os.path.join(self.cwd or os.getcwd(), file)  # noqa: PTH109, PTH118
+        beside = os.path.join(self.folder, file)  # noqa: PTH118
+        found = here if self.cwd is not None or not os.path.isfile(beside) else beside  # noqa: PTH113
+        return os.path.normpath(found)
 
     def ros_args(self) -> list[str]:
         """Return `--ros-args` and everything after it; empty for a command without parameters."""
@@ -79,7 +107,12 @@ class NodeSpec:
                 self.document.run,
                 *self.ros_args(),
             ]
-        return [*(self.document.exec or ()), *self.ros_args()]
+        words = list(self.document.exec or ())
+        if self.own_file:
+            words[:2] = [sys.executable, "-u", node_program.__file__, self.own_file]
+        elif self.is_python:
+            words[0] = sys.executable
+        return [*words, *self.ros_args()]
 
 
 @dataclass(frozen=True)
@@ -89,7 +122,7 @@ class Profile:
     path: Path
     """Absolute."""
     name: str
-    """File name without its suffix: `09-brain`."""
+    """File name without its suffix: `09-brain`; of a lesson.yaml, the name of its folder."""
     nodes: Mapping[str, NodeSpec]
     """In file order; only those that run on this hardware."""
     document: ProfileDocument

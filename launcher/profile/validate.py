@@ -9,18 +9,22 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic import ValidationError
 
 from launcher.profile.field_marks import AsText, marked
-from launcher.profile.model import Document, NodeDocument, ProfileDocument, ReadyDocument
+from launcher.profile.model import NodeDocument, ProfileDocument, ReadyDocument
+from launcher.profile.steps.checks import KINDS, FrameDocument, kind_of
+from launcher.profile.steps.model import StepDocument, ValueDocument
 from text.sentences import say
 from text.suggestions import did_you_mean
 from text.yaml_tree import Branch, Listing, empty, find, place_of, plain
 
 if TYPE_CHECKING:
+    from pydantic import BaseModel
     from pydantic_core import ErrorDetails
 
+    from launcher.profile.fields import Document
     from launcher.profile.problems import Problems
     from text.yaml_tree import Tree, Where
 
-D = TypeVar("D", bound=Document)
+D = TypeVar("D", bound="Document")
 
 WANTED = {
     "string_type": say("text"),
@@ -32,6 +36,10 @@ WANTED = {
     "model_type": say("keys and values"),
 }
 _DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
+MISSING = {
+    "missing": say("`{key}` is missing"),
+    "too_short": say("`{key}` is empty"),
+}
 LIMITS = {
     "greater_than": (say("more than {limit}"), "gt"),
     "greater_than_equal": (say("at least {limit}"), "ge"),
@@ -107,7 +115,8 @@ def _validated(
     except ValidationError as error:
         faults = error.errors(include_url=False)
     for details in faults:
-        _add(details, where, tree, problems)
+        if not _only_follows(details):
+            _add(details, where, tree, problems)
     if not isinstance(data, dict):
         return None
     at_fault = {details["loc"][0] for details in faults if details["loc"]}
@@ -116,26 +125,55 @@ def _validated(
     return None
 
 
+def _only_follows(details: ErrorDetails) -> bool:
+    """Whether a list counts as empty only since its items are wrong, which is reported itself."""
+    return details["type"] == "too_short" and bool(details["input"])
+
+
 def _add(details: ErrorDetails, above: Where, tree: Branch, problems: Problems) -> None:
-    where = (*above, *details["loc"])
+    where = (*above, *_without_kinds(details["loc"]))
     kind = details["type"]
-    message, hint = _words(details, where)
+    message, hint = _words(details, where, tree)
     problems.add(place_of(tree, where, key=kind == "extra_forbidden"), where, message, hint)
 
 
-def _words(details: ErrorDetails, where: Where) -> tuple[str, str]:
+def _without_kinds(where: Where) -> Where:
+    """Leave out the kind of check that pydantic puts behind the number of each check."""
+    kept = [
+        part
+        for index, part in enumerate(where)
+        if index < 2 or where[index - 2] not in ("checks", "then") or part not in KINDS
+    ]
+    return tuple(kept)
+
+
+def _words(details: ErrorDetails, where: Where, tree: Branch) -> tuple[str, str]:
     kind, found, context = details["type"], details["input"], details.get("ctx", {})
     if kind == "deck":
         return context["words"], ""
-    if kind == "extra_forbidden":
-        known = _keys(where[:-1])
-        hint = did_you_mean(str(where[-1]), known) or say("known: {keys}", keys=", ".join(known))
-        return say("unknown key"), hint
     if kind in WANTED:
         words = say("expected {wanted}, found {found}", wanted=WANTED[kind], found=described(found))
         return words, _fix(kind, found)
+    if kind in LIMITS:
+        template, key = LIMITS[kind]
+        wanted = say(template, limit=f"{context[key]:g}")
+        return say("expected {wanted}, found {found}", wanted=wanted, found=described(found)), ""
+    if kind in MISSING:
+        return say(MISSING[kind], key=str(where[-1])), ""
+    return _words_of_choice(details, where, tree)
+
+
+def _words_of_choice(details: ErrorDetails, where: Where, tree: Branch) -> tuple[str, str]:
+    """Return what is wrong with a key or a value that must be one of several."""
+    kind, found = details["type"], details["input"]
+    if kind == "extra_forbidden":
+        known = _keys(where[:-1], tree)
+        hint = did_you_mean(str(where[-1]), known) or say("known: {keys}", keys=", ".join(known))
+        return say("unknown key"), hint
+    if kind == "union_tag_not_found":
+        return say("no kind of check is named here"), _likely_kind(found)
     if kind == "literal_error":
-        known = _choices(context["expected"])
+        known = _choices(details["ctx"]["expected"])
         return (
             say(
                 "expected one of {known}, found {found}",
@@ -144,10 +182,6 @@ def _words(details: ErrorDetails, where: Where) -> tuple[str, str]:
             ),
             did_you_mean(str(found), known),
         )
-    if kind in LIMITS:
-        template, key = LIMITS[kind]
-        wanted = say(template, limit=f"{context[key]:g}")
-        return say("expected {wanted}, found {found}", wanted=wanted, found=described(found)), ""
     return details["msg"], ""
 
 
@@ -168,11 +202,32 @@ def _choices(expected: str) -> list[str]:
     return [word.strip("' ") for word in expected.replace(" or ", ", ").split(",")]
 
 
-def _keys(where: Where) -> list[str]:
-    model: type[Document] = ProfileDocument
-    if where and where[0] == "nodes":
-        model = ReadyDocument if where[-1] == "ready" else NodeDocument
-    return list(model.model_fields)
+def _likely_kind(check: object) -> str:
+    for key in check if isinstance(check, dict) else ():
+        hint = did_you_mean(str(key), KINDS)
+        if hint:
+            return hint
+    return say("known: {keys}", keys=", ".join(KINDS))
+
+
+def _keys(where: Where, tree: Branch) -> list[str]:
+    return [field.alias or name for name, field in _model(where, tree).model_fields.items()]
+
+
+def _model(where: Where, tree: Branch) -> type[BaseModel]:
+    """Return the model of the mapping at this place."""
+    if where[:1] == ("nodes",):
+        return ReadyDocument if where[-1] == "ready" else NodeDocument
+    if where[:1] == ("values",):
+        return ValueDocument
+    if where[:1] != ("steps",):
+        return ProfileDocument
+    if where[-1] == "transform":
+        return FrameDocument
+    if len(where) == 2:
+        return StepDocument
+    here = find(tree, where)
+    return KINDS[kind_of(None if here is None else plain(here)) or "node"]
 
 
 def described(value: object) -> str:

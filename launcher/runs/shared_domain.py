@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shlex
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from launcher.domain.domain import LAST_SAFE_DOMAIN
@@ -18,7 +19,7 @@ from text.run_path import OWN_RUN_DIR
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from launcher.profile.load import Profile
     from launcher.runs.found import FoundSupervisor
@@ -97,6 +98,24 @@ def refuse_shared_domain(profile: Profile) -> None:
         free_domain(everyone, profile.domain),
         can_share=not any(one.record.collides(set(profile.nodes), driving) for one in here),
     )
+
+
+def apart_from_classmates(
+    profile: Profile, asked: int | None, environ: Mapping[str, str] = os.environ
+) -> Profile:
+    """Return the profile, in a free domain if a classmate with the same account is in its own.
+
+    A classmate is who has logged in by SSH from another address. A domain that somebody has chosen
+    (`asked`, in the profile or by ROS_DOMAIN_ID) stays.
+    """
+    if asked is not None or profile.document.domain is not None or environ.get("ROS_DOMAIN_ID"):
+        return profile
+    us = environ.get("SSH_CONNECTION", "").split(" ")[0]
+    everyone = list(supervisors())
+    hosts = {one.record.session.started_by.host for one in neighbours(everyone, profile.domain)}
+    if not us or not hosts - {us, ""}:
+        return profile
+    return replace(profile, domain=free_domain(everyone, profile.domain))
 
 
 def rival(everyone: Iterable[FoundSupervisor], record: RunRecord) -> Neighbour | None:

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from launcher import node_program
+from launcher.faults.meanings import CHECK_FIELDS
+from launcher.processes.confinement import confine
 from launcher.processes.prctl import die_with_parent, leave_libraries_alone_at_exit
 from launcher.processes.table import NODE_MARK
 from launcher.processes.title import show_mark, show_name, show_title
@@ -46,6 +48,8 @@ class ForkSpec:
     supervisor: int
     shared: SharedModules
     """The project's own modules that have been imported."""
+    confined_to: tuple[str, ...] = ()
+    """The only folders in which it may write; empty: it is not confined."""
 
     @classmethod
     def from_request(
@@ -65,6 +69,7 @@ class ForkSpec:
             fds=tuple(fds),
             supervisor=supervisor,
             shared=preload.shared,
+            confined_to=tuple(request.get("confined_to", ())),
         )
 
 
@@ -76,6 +81,7 @@ def become(spec: ForkSpec) -> None:
     _reset_signals()
     _take_descriptors(spec.fds)
     _set_environment(spec)
+    _confine(spec)
     try:
         os.chdir(spec.cwd)
     except OSError as problem:
@@ -86,7 +92,7 @@ def become(spec: ForkSpec) -> None:
     show_title(spec.title)
     show_name(spec.name)
     show_mark(NODE_MARK, spec.name)
-    _renew_streams()
+    renew_streams()
     if spec.kind == "probe":
         _hear_signals()
         from launcher.spawn_server.probe import probe
@@ -129,6 +135,16 @@ def _take_descriptors(fds: tuple[int, ...]) -> None:
                 os.close(int(entry))
 
 
+def _confine(spec: ForkSpec) -> None:
+    if not spec.confined_to:
+        return
+    try:
+        confine(spec.confined_to)
+    except OSError as problem:
+        # Not without: whoever asked for it does not trust this program.
+        _give_up(f"cannot be confined: {problem.strerror}", NOT_EXECUTABLE)
+
+
 def _execute(spec: ForkSpec) -> None:
     try:
         os.execvp(spec.argv[0], spec.argv)
@@ -143,7 +159,7 @@ def _give_up(word: str, code: int) -> None:
     os._exit(code)
 
 
-def _renew_streams() -> None:
+def renew_streams() -> None:
     """Reopen stdin, stdout and stderr, unbuffered as under `python -u`."""
     stdin = open(0, encoding="utf-8", closefd=False)  # noqa: SIM115
     sys.stdin = sys.__stdin__ = stdin  # type: ignore[misc]
@@ -161,6 +177,13 @@ def _unbuffered(fd: int) -> io.TextIOWrapper:
     )
 
 
+def check_fields(wanted: str) -> None:
+    """Have the messages imported so far check their fields as a new interpreter would."""
+    for module in tuple(sys.modules.values()):
+        if hasattr(module, "ros_python_check_fields"):
+            module.ros_python_check_fields = wanted  # type: ignore[attr-defined]
+
+
 def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
     """Run as the program that `launcher.node_program` would start in a new interpreter."""
     # Python's defaults at startup, which `_reset_signals` has undone.
@@ -169,6 +192,7 @@ def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
     node_program.prepare(argv)
     importlib.invalidate_caches()
     shared.renew(argv[0])
+    check_fields(os.environ.get(CHECK_FIELDS, ""))
     _hear_signals()
     if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
         # Not earlier: interrupted before this point, it ends without a traceback.

@@ -4,7 +4,8 @@ The supervisor does not load rclpy. While it waits for a node to become ready, t
 from the spawn server, watches the graph for it and writes a line of JSON to its stdout for every
 change. `met` lists the conditions that hold now, by their position in the list it was given; `seen`
 has `[position, types, messages per second or null]` for each topic that is published but not as
-required.
+required. `clashes` has `[topic, [[node, type], ...]]` for each topic that is used with several
+types, and null as long as that is not known.
 """
 
 from __future__ import annotations
@@ -29,6 +30,11 @@ EAGER_PERIOD_S = 0.03
 CALM_PERIOD_S = 0.25
 RATES_S = 1.0
 """A rate that is too low is reported no more often than this."""
+CLASHES_S = 0.25
+"""How often to look for topics of several types."""
+KNOWN_AFTER_S = 1.5
+"""By then it has found who was there before it: before, a topic may seem to have one type only."""
+HIDDEN = "_"
 ENOUGH = 0.9
 """Fraction of the required rate that is enough: a 5 Hz timer never quite reaches 5 Hz."""
 
@@ -46,10 +52,16 @@ class _Wanted(NamedTuple):
 class _Report:
     met: list[int] = field(default_factory=list)
     seen: list[tuple[int, list[str], float | None]] = field(default_factory=list)
+    clashes: list[tuple[str, list[tuple[str, str]]]] | None = None
+    """None as long as they are not known."""
 
     def differs(self, other: _Report) -> bool:
         """Whether anything but the rates differs."""
-        return self.met != other.met or [x[:2] for x in self.seen] != [x[:2] for x in other.seen]
+        return (self.met, self.clashes, [x[:2] for x in self.seen]) != (
+            other.met,
+            other.clashes,
+            [x[:2] for x in other.seen],
+        )
 
 
 def probe(argv: Sequence[str]) -> None:
@@ -83,12 +95,16 @@ def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates, re
     started = time.monotonic()
     told: _Report | None = None
     told_at = 0.0
+    clashes, clashes_at = None, started + KNOWN_AFTER_S
     while True:
         now = time.monotonic()
         report = _look(node, conditions, arrivals)
+        if now >= clashes_at:
+            clashes, clashes_at = _clashes(node), now + CLASHES_S
+        report.clashes = clashes
         # Rates change all the time; all else is reported at once.
         if told is None or report.differs(told) or (report != told and now > told_at + RATES_S):
-            line = {"met": report.met, "seen": report.seen}
+            line = {"met": report.met, "seen": report.seen, "clashes": report.clashes}
             os.write(reports, json.dumps(line).encode() + b"\n")
             told, told_at = report, now
         eager = now - started < EAGER_S
@@ -125,3 +141,22 @@ def _look(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates) -> 
         else:
             report.seen.append((position, types, rate_hz))
     return report
+
+
+def _clashes(node: Node) -> list[tuple[str, list[tuple[str, str]]]]:
+    """Return the topics that have several types, with who uses which."""
+    found = []
+    for topic, types in node.get_topic_names_and_types():
+        if len(types) > 1:
+            ends = (
+                *node.get_publishers_info_by_topic(topic),
+                *node.get_subscriptions_info_by_topic(topic),
+            )
+            users = {
+                (f"{end.node_namespace.rstrip('/')}/{end.node_name}", str(end.topic_type))
+                for end in ends
+                if not end.node_name.startswith(HIDDEN)
+            }
+            if len({kind for _, kind in users}) > 1:
+                found.append((str(topic), sorted(users)))
+    return sorted(found)

@@ -6,13 +6,13 @@ It all happens in one task, so that nothing can start the node twice.
 from __future__ import annotations
 
 import asyncio
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from launcher.processes.exit import Exit
 from launcher.processes.stop import PATIENT, QUICK, StagedStop
 from launcher.spawn_server.spawner import SpawnError
-from launcher.status import NodeState, NodeStatus, Severity
+from launcher.status import NodeFault, NodeState, NodeStatus, Severity
 from launcher.supervisor.readiness import UnwatchableError
 from launcher.supervisor.restart_policy import Again, Finished, GivenUp, RestartPolicy
 from launcher.supervisor.words import (
@@ -68,6 +68,9 @@ class SupervisedNode:
         self.serves = False
         """Whether the nodes that need it may start."""
         self.usage: Usage | None = None
+        self.fault: NodeFault | None = None
+        """What is wrong with the learner's own file."""
+        self._clash: NodeFault | None = None
         self._around = around
         self._policy = RestartPolicy(plan.restart)
         self._restarts = 0
@@ -102,6 +105,8 @@ class SupervisedNode:
             cpu_percent=usage.cpu_percent if usage and now else None,
             memory_bytes=usage.memory_bytes if usage and now else None,
             needs=self.plan.needs,
+            file=self.plan.file,
+            fault=self.fault,
         )
 
     def start(self) -> None:
@@ -136,6 +141,44 @@ class SupervisedNode:
             self._go_down(now=False)
         else:
             self.start()
+
+    def exchange(self, plan: NodePlan, fault: NodeFault | None) -> None:
+        """Restart it with another program, as `saved` does."""
+        self.plan = plan
+        self._renew(fault, say("exchanged for {program}", program=plan.command))
+
+    def warn(self, fault: NodeFault | None) -> None:
+        """Note something that is wrong while it runs."""
+        if fault is not None and self._now is not None:
+            self.fault = fault
+            self._around.changed(self.plan.name, self.state)
+
+    def clashes(self, fault: NodeFault | None) -> None:
+        """Note a topic that has another type elsewhere, or that this is no longer so."""
+        if fault == self._clash or self._now is None:
+            return
+        if self.fault is None or self.fault == self._clash:
+            self.fault = fault
+            if fault is not None:
+                self._around.say(self.plan.name, Severity.WARN, fault.words)
+            self._around.changed(self.plan.name, self.state)
+        self._clash = fault
+
+    def saved(self, fault: NodeFault | None) -> None:
+        """Restart it, since its file was saved; with a fault in the file, leave it as it is.
+
+        A node that was stopped by hand stays stopped.
+        """
+        self._renew(fault, say("saved: starting it again"))
+
+    def _renew(self, fault: NodeFault | None, why: str) -> None:
+        self.fault = fault
+        if fault is not None:
+            self._around.say(self.plan.name, Severity.ERROR, fault.words)
+        elif not self._down or self._again:
+            self._around.say(self.plan.name, Severity.INFO, why)
+            self.restart()
+        self._around.changed(self.plan.name, self.state)
 
     def needs_changed(self) -> None:
         """Check again whether everything it needs is there."""
@@ -209,6 +252,9 @@ class SupervisedNode:
                 return False
             end, lasted = await self._see_through(process)
             why = self._end_words(end)
+            if self.fault is not None and not self._down:
+                why = self.fault.words
+                self._around.say(self.plan.name, Severity.ERROR, why)
         if self._down:
             return False
         return await self._after(end, lasted, why)
@@ -228,7 +274,7 @@ class SupervisedNode:
     async def _see_through(self, process: RunningProcess) -> tuple[Exit, float]:
         clock = self._around.clock
         self._now = now = _Now(process, clock.now())
-        self._last = self.usage = None
+        self._last = self.usage = self.fault = self._clash = None
         self._around.say(self.plan.name, Severity.INFO, say("started, pid {pid}", pid=process.pid))
         process.ended.add_done_callback(lambda _ended: self._nudge.set())
         ready = asyncio.create_task(self._become_ready())
@@ -244,7 +290,22 @@ class SupervisedNode:
         await process.close()
         self._now, self._last = None, end
         self._around.say(self.plan.name, self._gravity(end), self._end_words(end))
+        if self.plan.file:
+            self._judge_end(end)
         return end, lasted
+
+    def _judge_end(self, end: Exit) -> None:
+        """Note what is wrong with the learner's own file if it ended other than as it should."""
+        if end.clean:
+            if not self._down:
+                self.fault = self._around.ended_early(self.plan) or self.fault
+            return
+        crash = self._around.crash(self.plan)
+        if crash is not None and self._down:
+            self.fault = replace(crash, kind="warning")
+            self._around.say(self.plan.name, Severity.WARN, crash.words)
+        elif crash is not None:
+            self.fault = crash
 
     async def _end_all_of_it(self, now: _Now) -> None:
         """Stop what is left: everything if the node is to stop, else what its process left."""
@@ -324,7 +385,7 @@ class SupervisedNode:
             self._become(NodeState.EXITED, why)
             return False
         if isinstance(verdict, Finished):
-            why = undone
+            why = why if self.fault is not None else undone
             self._around.say(self.plan.name, Severity.ERROR, why)
         elif verdict.crashes > 1:
             why = say(

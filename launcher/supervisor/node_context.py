@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from launcher.clock import Clock
     from launcher.processes.exit import Exit
     from launcher.processes.table import Process
-    from launcher.status import NodeState, Severity
+    from launcher.status import NodeFault, NodeState, Severity
     from launcher.supervisor.plan import NodePlan
     from launcher.supervisor.readiness import ReadyCondition, Seen
 
@@ -51,6 +51,12 @@ class NodeContext(Protocol):
 
     def last_words(self, name: str) -> str:
         """Return the last words of the node."""
+
+    def crash(self, plan: NodePlan) -> NodeFault | None:
+        """Return what the last output of a learner's own node tells of its end."""
+
+    def ended_early(self, plan: NodePlan) -> NodeFault | None:
+        """Return why a learner's own node has ended without an error; None if it was to."""
 
     def say(self, name: str, severity: Severity, words: str) -> None:
         """Add a line about the node to its log."""

@@ -8,26 +8,24 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
+from launcher.faults.meanings import CHECK_FIELDS
 from launcher.profile.defaults import READY_WITHIN_S
 from launcher.profile.driving import drives
+from launcher.ros_tools import ros_tools, without_wheels
 from launcher.supervisor.readiness import ReadyCondition
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from launcher.profile.load import NodeSpec, Profile
 
 _COLD_PREFIXES = ("PYTHON", "LD_", "RMW_", "OPENBLAS_", "OMP_", "MALLOC_", "LTTNG_", "AMENT_")
 """Variables read when an interpreter or a library is loaded: after a fork it is too late."""
-
-_BOOTSTRAP_DONE = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
-"""Set by the ROS wheels once LD_LIBRARY_PATH points into this environment."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +46,8 @@ class NodePlan:
     within_s: float = READY_WITHIN_S
     restart: str = "never"
     optional: bool = False
+    file: str = ""
+    """The learner's own file that it runs, absolute."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,8 @@ class Plan:
     hardware: str = "mock"
     panels: tuple[str, ...] = ()
     foreground: bool = True
+    confined_to: tuple[str, ...] = ()
+    """The only folders in which nodes may write; empty: they are not confined."""
 
     @property
     def needs(self) -> dict[str, tuple[str, ...]]:
@@ -100,6 +102,7 @@ class Plan:
         fields: dict[str, Any] = json.loads(line)
         fields["nodes"] = tuple(_node_from(node) for node in fields["nodes"])
         fields["panels"] = tuple(fields["panels"])
+        fields["confined_to"] = tuple(fields["confined_to"])
         if not isinstance(fields["discovery"], str):
             fields["discovery"] = tuple(fields["discovery"])
         return cls(**fields)
@@ -114,7 +117,13 @@ def _node_from(fields: dict[str, Any]) -> NodePlan:
 
 
 def plan_of(
-    profile: Profile, *, run_dir: str, log_dir: str, foreground: bool, node_lang: str
+    profile: Profile,
+    *,
+    run_dir: str,
+    log_dir: str,
+    foreground: bool,
+    node_lang: str,
+    confined_to: Iterable[str] = (),
 ) -> Plan:
     """Make the plan of a profile for this machine, environment and current folder."""
     return Plan(
@@ -131,6 +140,7 @@ def plan_of(
         hardware=profile.hardware,
         panels=tuple(profile.document.panels),
         foreground=foreground,
+        confined_to=tuple(confined_to),
     )
 
 
@@ -158,7 +168,7 @@ def _node_plan(node: NodeSpec) -> NodePlan:
     env: dict[str, str | None] = {}
     module: tuple[str, ...] = ()
     if said.run is None:
-        env.update(_foreign_env())
+        env.update({} if node.is_python else _foreign_env(argv[0]))
     elif said.warm and not any(name.startswith(_COLD_PREFIXES) for name in said.env):
         module = argv[argv.index(said.run) :]
     ready = node.ready
@@ -167,7 +177,7 @@ def _node_plan(node: NodeSpec) -> NodePlan:
         command=node.command,
         argv=argv,
         module=module,
-        env={**env, **said.env},
+        env={**_learner_env(node), **env, **said.env},
         cwd=str(node.cwd) if node.cwd is not None else os.getcwd(),  # noqa: PTH109
         needs=tuple(node.needs),
         ready=None
@@ -176,17 +186,16 @@ def _node_plan(node: NodeSpec) -> NodePlan:
         within_s=READY_WITHIN_S if ready is None else ready.within_s,
         restart=said.restart,
         optional=said.optional,
+        file=node.own_file,
     )
 
 
-def _foreign_env() -> Mapping[str, str | None]:
-    """Return changes for programs of another environment, which must not inherit the ROS wheels'.
+def _learner_env(node: NodeSpec) -> Mapping[str, str | None]:
+    """Return what makes mistakes of a learner's own node show at the line where they are made."""
+    return {CHECK_FIELDS: os.environ.get(CHECK_FIELDS, "1")} if node.own_file else {}
 
-    They would find the wheels' libraries before their own; a Python of this environment sets the
-    variables again.
-    """
-    if _BOOTSTRAP_DONE not in os.environ:
-        return {}
-    parts = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
-    others = [part for part in parts if part and not part.startswith(sys.prefix)]
-    return {_BOOTSTRAP_DONE: None, "LD_LIBRARY_PATH": os.pathsep.join(others) or None}
+
+def _foreign_env(program: str) -> Mapping[str, str | None]:
+    """Return changes for a program of somebody else's; `ros2` is found as in `deck shell`."""
+    tools = ros_tools(os.environ) if program == "ros2" else {}
+    return {**without_wheels(os.environ), **tools}

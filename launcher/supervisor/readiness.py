@@ -12,7 +12,7 @@ import json
 import os
 import signal
 from dataclasses import astuple, dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from launcher.processes.signal import send
 from launcher.spawn_server.spawner import SpawnError, SpawnRequest
@@ -52,6 +52,14 @@ class Seen:
     """The rate of its messages; None if it is not required or cannot be measured."""
 
 
+class Clash(NamedTuple):
+    """A topic that is used with several types, so that messages do not arrive."""
+
+    topic: str
+    users: tuple[tuple[str, str], ...]
+    """Full name of a node, and the type that it uses."""
+
+
 class UnwatchableError(Exception):
     """The graph cannot be watched: rclpy is not installed, or does not start."""
 
@@ -65,12 +73,17 @@ class Readiness:
         spawner: Spawner,
         reaper: Reaper,
         env: Mapping[str, str | None],
+        on_clashes: Callable[[Sequence[Clash]], None],
     ) -> None:
-        """`env`: the variables that the probe needs to watch the right domain."""
+        """`env`: the variables that the probe needs to watch the right domain.
+
+        `on_clashes` is told of the topics of several types as often as the probe reports.
+        """
         self._conditions = list(dict.fromkeys(conditions))
         self._spawner = spawner
         self._reaper = reaper
         self._env = env
+        self._on_clashes = on_clashes
         self._waiters: dict[
             asyncio.Future[None], tuple[ReadyCondition, Callable[[Seen], None]]
         ] = {}
@@ -81,7 +94,7 @@ class Readiness:
 
     def expect(self) -> None:
         """Start watching: a wait will begin in a moment, and the probe takes time to start."""
-        if self._task is None and self._conditions:
+        if self._task is None:
             self._task = asyncio.create_task(self._watch())
             self._stop_later()
 
@@ -170,6 +183,13 @@ class Readiness:
                         for position, types, rate_hz in told["seen"]
                     },
                 )
+                if told["clashes"] is not None:
+                    self._on_clashes(
+                        [
+                            Clash(topic, tuple((user, kind) for user, kind in users))
+                            for topic, users in told["clashes"]
+                        ]
+                    )
         finally:
             transport.close()
 

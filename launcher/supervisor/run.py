@@ -31,6 +31,7 @@ from launcher.runs.strays import end_strays, find_strays, forget_ended_runs
 from launcher.spawn_server.spawner import Spawner
 from launcher.status import SessionInfo, Severity, Stray
 from launcher.supervisor.orphans import Orphans
+from launcher.supervisor.own_files import OwnFiles
 from launcher.supervisor.plan import Plan
 from launcher.supervisor.process import ProcessLauncher, ProcessScan
 from launcher.supervisor.session import Session
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
     from launcher.logs.ring import LogRing
     from launcher.runs.shared_domain import Neighbour
     from launcher.spawn_server.start import SpawnServerHandle
-    from launcher.status import LogLine, NodeStatus
+    from launcher.status import LogLine, NodeFault, NodeStatus
 
 LAST_WORDS = "supervisor"
 """Name of the log with the supervisor's own output, above all its tracebacks."""
@@ -170,7 +171,10 @@ class Supervisor:
         )
         scan = ProcessScan(Members(self.info.run_id))
         launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._log)
-        self._session = Session(plan, launcher, self._log, self._status_changed)
+        self._own_files = OwnFiles(lambda: self._session.own_files(), self._saved)  # noqa: PLW0108
+        self._session = Session(
+            plan, launcher, self._log, self._status_changed, self._own_files.note
+        )
         open_because = why_open(os.environ, plan.discovery)
         if open_because:
             self._log.say(DECK, Severity.WARN, open_because)
@@ -202,6 +206,7 @@ class Supervisor:
             asyncio.create_task(self._look_for_strays()),
             asyncio.create_task(self._run_folder.keep(self.control.serve, self._warn)),
             asyncio.create_task(self._watch_owner(stdin)),
+            asyncio.create_task(self._own_files.watch()),
         ]
         await self._end.wait()
         await self._stop_all()
@@ -240,6 +245,16 @@ class Supervisor:
         """Restart nodes; raises `UnknownNodeError`."""
         if not self._end.is_set():
             self._session.restart(names)
+
+    def exchange(self, name: str, program: str | None) -> None:
+        """Run another program in the place of a node's own, or its own; `UnknownNodeError`."""
+        if not self._end.is_set():
+            self._session.exchange(name, program)
+            self._own_files.look_again()
+
+    def _saved(self, name: str, fault: NodeFault | None) -> None:
+        if not self._end.is_set():
+            self._session.saved(name, fault)
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """End these processes that an earlier run left behind."""

@@ -7,23 +7,28 @@ from typing import TYPE_CHECKING
 
 from launcher.clock import MonotonicClock
 from launcher.errors import UnknownNodeError
+from launcher.faults.crash import crash_of, warning_in
+from launcher.faults.source import look_at, unspun
 from launcher.logs.session_log import DECK
 from launcher.processes.usage import UsageMeter
 from launcher.status import NodeState, Severity
+from launcher.supervisor.clashes import clash_of
 from launcher.supervisor.dependencies import stop_waves, with_needs
+from launcher.supervisor.exchange import exchanged
 from launcher.supervisor.node import SupervisedNode
 from launcher.supervisor.readiness import Readiness
 from launcher.supervisor.shared_memory import SharedMemory
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from launcher.clock import Clock
     from launcher.logs.session_log import SessionLog
+    from launcher.status import LogLine, NodeFault
     from launcher.supervisor.plan import NodePlan, Plan
     from launcher.supervisor.process import NodeProcess, ProcessLauncher
-    from launcher.supervisor.readiness import ReadyCondition, Seen
+    from launcher.supervisor.readiness import Clash, ReadyCondition, Seen
 
 USAGE_EVERY_S = 2.0
 
@@ -37,20 +42,28 @@ class Session:
         launcher: ProcessLauncher,
         log: SessionLog,
         on_change: Callable[[str], None],
+        on_start: Callable[[str, str], None] = lambda _name, _file: None,
     ) -> None:
-        """`on_change` is called with the name of each node whose status has changed."""
+        """`on_change` is called with the name of each node whose status has changed.
+
+        `on_start` is called with the name and the file of each node of the learner's own that is
+        about to be started.
+        """
         self.clock: Clock = MonotonicClock()
         self.plan = plan
         self.log = log
+        log.heard = self.heard
         self.nodes = {node.name: SupervisedNode(node, self) for node in plan.nodes}
         self._launcher = launcher
         self._on_change = on_change
+        self._on_start = on_start
         self._meter = UsageMeter()
         self._readiness = Readiness(
             [node.ready for node in plan.nodes if node.ready is not None],
             launcher.spawner,
             launcher.reaper,
             plan.env,
+            self._tell_clashes,
         )
         self.processes: dict[str, tuple[int, int]] = {}
         """Node to the number and the start, in ticks, of its latest process."""
@@ -67,7 +80,8 @@ class Session:
         chosen = self._chosen(names)
         self._shared_memory.clear()
         # The probe goes first: nodes that appear while it watches are found sooner.
-        self._readiness.expect()
+        if self._is_watched():
+            self._readiness.expect()
         for name in with_needs(chosen, self.plan.needs):
             if name in chosen or not self.nodes[name].at_work:
                 self.nodes[name].start()
@@ -140,6 +154,10 @@ class Session:
         if plan.name in self.processes:
             # It may have died without notice, and a probe that saw it alive still sees it.
             self._readiness.renew()
+        if plan.file:
+            self._on_start(plan.name, plan.file)
+            # Also where it has no condition: are its topics of the types that others use?
+            self._readiness.expect()
         process = await self._launcher.launch(plan)
         self.processes[plan.name] = (process.pid, process.started_ticks)
         return process
@@ -158,6 +176,46 @@ class Session:
     def last_words(self, name: str) -> str:
         """Return the last words of the node."""
         return self.log.last_words(name)
+
+    def crash(self, plan: NodePlan) -> NodeFault | None:
+        """Return what the last output of a learner's own node tells of its end."""
+        lines = [line.text for line in self.log.since_start(plan.name)]
+        return crash_of(lines, plan.file.rpartition("/")[0])
+
+    def exchange(self, name: str, program: str | None) -> None:
+        """Run a file or a module in the place of a node's program, or the program itself again."""
+        self._chosen([name])
+        (plan,) = (plan for plan in self.plan.nodes if plan.name == name)
+        plan = plan if program is None else exchanged(plan, program)
+        self.nodes[name].exchange(plan, look_at(plan.file) if plan.file else None)
+
+    def heard(self, line: LogLine) -> None:
+        """Look for a mistake in a line that a learner's own node has written."""
+        if line.severity.rank >= Severity.WARN.rank and line.node in self.nodes:
+            node = self.nodes[line.node]
+            if node.plan.file and node.fault is None:
+                node.warn(warning_in(line.text, node.plan.file))
+
+    def _is_watched(self) -> bool:
+        return any(node.plan.ready or node.plan.file for node in self.nodes.values())
+
+    def _tell_clashes(self, clashes: Sequence[Clash]) -> None:
+        """Tell the learner's own nodes of their topics that others use with another type."""
+        for name, node in self.nodes.items():
+            if node.plan.file:
+                node.clashes(clash_of(f"/{name}", node.plan.file, clashes))
+
+    def ended_early(self, plan: NodePlan) -> NodeFault | None:
+        """Return why a learner's own node has ended without an error; None if it was to."""
+        return unspun(plan.file)
+
+    def own_files(self) -> dict[str, str]:
+        """Return the file of each node that is the learner's own."""
+        return {name: node.plan.file for name, node in self.nodes.items() if node.plan.file}
+
+    def saved(self, name: str, fault: NodeFault | None) -> None:
+        """Restart a node whose file was saved, or say what is wrong with the file."""
+        self.nodes[name].saved(fault)
 
     def say(self, name: str, severity: Severity, words: str) -> None:
         """Add a line about the node to its log."""

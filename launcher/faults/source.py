@@ -1,0 +1,145 @@
+"""Looking at a learner's file without running it: does it compile, is what it imports installed?"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import importlib.util
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.faults.meanings import meaning_of
+from launcher.status import NodeFault
+from text.plain import plain
+from text.sentences import say
+from text.suggestions import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MAX_BYTES = 1 << 20
+MAIN = "main"
+KNOWN = (
+    "ackermann_msgs", "builtin_interfaces", "cv2", "cv_bridge", "deck_interfaces",
+    "diagnostic_msgs", "example_interfaces", "geometry_msgs", "json", "math", "nav_msgs", "numpy",
+    "pydantic", "random", "rclpy", "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "tf2_ros",
+    "time", "visualization_msgs",
+)  # fmt: skip
+"""Modules that a beginner may have meant."""
+
+
+def look_at(file: str) -> NodeFault | None:
+    """Return what is wrong with a Python file, None if nothing can be seen."""
+    path = Path(file)
+    try:
+        data = path.read_bytes()[:MAX_BYTES]
+    except OSError as error:
+        return NodeFault("import", file, exception=plain(str(error)))
+    try:
+        tree = compile(data, file, "exec", ast.PyCF_ONLY_AST, dont_inherit=True)
+        compile(data, file, "exec", dont_inherit=True)
+    except SyntaxError as error:
+        return _syntax(file, error)
+    except (ValueError, RecursionError, MemoryError) as error:  # A NUL character, or nested deeply
+        return NodeFault("syntax", file, exception=plain(str(error)))
+    lines = data.decode("utf-8", "replace").splitlines()
+    assert isinstance(tree, ast.Module)
+    for name, node in _imports(tree):
+        if not _is_there(name, path.parent):
+            return _missing(file, name, node, lines)
+    return None
+
+
+def unspun(file: str) -> NodeFault | None:
+    """Return why a node's program ended by itself: nothing calls main, or nothing spins."""
+    try:
+        tree = ast.parse(Path(file).read_bytes()[:MAX_BYTES])
+    except (OSError, SyntaxError, ValueError):
+        return None
+    named = {getattr(node, "id", getattr(node, "attr", "")) for node in ast.walk(tree)}
+    mains = [each for each in tree.body if isinstance(each, ast.FunctionDef) and each.name == MAIN]
+    if "rclpy" not in {name for name, _node in _imports(tree)}:
+        return None
+    ended = say("the program came to its end")
+    if mains and MAIN not in named:
+        words = say('main() is never called: if __name__ == "__main__": main().')
+        return NodeFault("warning", file, mains[0].lineno, exception=ended, meaning=words)
+    if not any(name.startswith("spin") for name in named):
+        line = mains[0].end_lineno if mains else tree.body[-1].end_lineno
+        words = say("rclpy.spin(node) is missing: it keeps the node running.")
+        return NodeFault("warning", file, line or 0, exception=ended, meaning=words)
+    return None
+
+
+def modules_of(file: str) -> set[str]:
+    """Return the files of the same folder that it imports, and that those import."""
+    found: set[str] = set()
+    pending = [Path(file)]
+    while pending:
+        path = pending.pop()
+        with contextlib.suppress(OSError, SyntaxError, ValueError):
+            tree = ast.parse(path.read_bytes()[:MAX_BYTES])
+            names = {name for name, _node in _imports(tree, deep=True)}
+            beside = {str(path.with_name(f"{name}.py")) for name in names} - found
+            pending += [Path(each) for each in beside if Path(each).is_file()]
+            found |= beside
+    return found - {file}
+
+
+def _syntax(file: str, error: SyntaxError) -> NodeFault:
+    words = plain(f"{type(error).__name__}: {error.msg}")
+    return NodeFault(
+        "syntax",
+        file,
+        line=error.lineno or 0,
+        column=error.offset or 0,
+        source_line=plain((error.text or "").strip()),
+        exception=words,
+        meaning=meaning_of(words),
+    )
+
+
+def _imports(tree: ast.Module, *, deep: bool = False) -> Iterator[tuple[str, ast.stmt]]:
+    """Yield the top-level names of the modules that the file imports when it is run.
+
+    `deep`: and of those that it imports within functions.
+    """
+    for node in ast.walk(tree) if deep else tree.body:
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name.partition(".")[0], node
+        elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
+            yield node.module.partition(".")[0], node
+
+
+def _is_there(name: str, folder: Path) -> bool:
+    if name in sys.builtin_module_names or name in sys.stdlib_module_names:
+        return True
+    if (folder / f"{name}.py").is_file() or (folder / name).is_dir():
+        return True
+    try:
+        return importlib.util.find_spec(name) is not None
+    except (ImportError, ValueError):
+        return False
+
+
+def _missing(file: str, name: str, node: ast.stmt, lines: list[str]) -> NodeFault:
+    meant = "" if name in KNOWN else nearest(name, KNOWN)
+    if meant:
+        meaning = say("There is no module {name}; did you mean {meant}?", name=name, meant=meant)
+    else:
+        meaning = say(
+            "The module {name} is not installed; put its file beside this one, or install it with"
+            " pip.",
+            name=name,
+        )
+    return NodeFault(
+        "import",
+        file,
+        line=node.lineno,
+        column=node.col_offset + 1,
+        source_line=plain(lines[node.lineno - 1].strip()),
+        exception=f"ModuleNotFoundError: No module named '{plain(name)}'",
+        meaning=meaning,
+    )
