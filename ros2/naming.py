@@ -1,0 +1,102 @@
+"""Names in the graph: which are hidden, full names of nodes, topics with their types."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from graph.housekeeping import is_hidden
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+
+def full_name(name: str, namespace: str) -> str:
+    """Return the full name of a node."""
+    return f"{namespace}{'' if namespace.endswith('/') else '/'}{name}"
+
+
+def absolute(name: str) -> str:
+    """Return the name of a node or a topic, with the slash that may have been left out."""
+    return name if name.startswith("/") else f"/{name}"
+
+
+def split_name(full: str) -> tuple[str, str]:
+    """Return name and namespace."""
+    namespace, _, name = full.rpartition("/")
+    return name, namespace or "/"
+
+
+def nodes(node: Node, *, hidden: bool) -> list[str]:
+    """Return the full names of the nodes, as often as they are there."""
+    return [
+        full_name(name, namespace)
+        for name, namespace in node.get_node_names_and_namespaces()
+        if hidden or not name.startswith("_")
+    ]
+
+
+def shown(
+    names_and_types: list[tuple[str, list[str]]], *, hidden: bool
+) -> list[tuple[str, list[str]]]:
+    """Return topics or services without those that are hidden."""
+    return [(name, types) for name, types in names_and_types if hidden or not is_hidden(name)]
+
+
+def expanded(topic: str, node: Node) -> str:
+    """Return the full name of a topic; RuntimeError if it cannot be one."""
+    from rclpy.exceptions import InvalidTopicNameException
+    from rclpy.expand_topic_name import expand_topic_name
+    from rclpy.validate_full_topic_name import validate_full_topic_name
+
+    try:
+        name: str = expand_topic_name(topic, node.get_name(), node.get_namespace())
+        validate_full_topic_name(name)
+    except (ValueError, InvalidTopicNameException) as error:
+        raise RuntimeError(str(error)) from error
+    return name
+
+
+def types_of_topic(topic: str, node: Node) -> list[str]:
+    """Return the types under which a topic is in the graph."""
+    return next((types for name, types in node.get_topic_names_and_types() if name == topic), [])
+
+
+def load(type_name: str, kind: str) -> type[Any]:
+    """Return the class of a type; `pkg/Name` means `pkg/KIND/Name`."""
+    parts = type_name.split("/")
+    if len(parts) == 2:
+        parts.insert(1, kind)
+    if len(parts) != 3 or not all(parts):
+        raise ValueError(type_name)
+    found: type[Any] = getattr(import_module(".".join(parts[:-1])), parts[-1])
+    return found
+
+
+def message_class(type_name: str) -> type[Any]:
+    """Return the class of a message; RuntimeError if there is none."""
+    try:
+        return load(type_name, "msg")
+    except (AttributeError, ImportError, ValueError) as error:
+        raise RuntimeError("The passed message type is invalid") from error
+
+
+def service_class(type_name: str) -> type[Any]:
+    """Return the class of a service; RuntimeError if there is none."""
+    try:
+        found = load(type_name, "srv")
+    except (AttributeError, ImportError, ValueError) as error:
+        raise RuntimeError("The passed service type is invalid") from error
+    if not hasattr(found, "Request") or not hasattr(found, "Response"):
+        raise RuntimeError("The passed type is not a service")
+    return found
+
+
+def action_class(type_name: str) -> type[Any]:
+    """Return the class of an action; RuntimeError if there is none."""
+    try:
+        found = load(type_name, "action")
+        _ = found.Goal
+    except (AttributeError, ImportError, ValueError) as error:
+        raise RuntimeError("The passed action type is invalid") from error
+    return found

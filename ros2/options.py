@@ -1,0 +1,134 @@
+"""Options that several verbs have in common, with the real tool's names."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rclpy.qos import QoSProfile
+
+PROFILES = (
+    "unknown", "system_default", "sensor_data", "services_default", "parameters",
+    "parameter_events", "action_status_default", "best_available", "default",
+)  # fmt: skip
+HISTORIES = ("system_default", "keep_last", "keep_all", "unknown")
+RELIABILITIES = ("system_default", "reliable", "best_effort", "unknown", "best_available")
+DURABILITIES = ("system_default", "transient_local", "volatile", "unknown", "best_available")
+LIVELINESSES = ("system_default", "automatic", "manual_by_topic", "unknown", "best_available")
+
+
+def of_node(parser: argparse.ArgumentParser) -> None:
+    """Declare what a verb with a node of its own takes."""
+    parser.add_argument(
+        "--spin-time",
+        type=float,
+        default=None,
+        help="Spin time in seconds to wait for discovery (only applies when not using an already "
+        "running daemon)",
+    )
+    parser.add_argument(
+        "-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time"
+    )
+
+
+def of_graph(parser: argparse.ArgumentParser) -> None:
+    """Declare what a verb takes that could ask the daemon; here there is none."""
+    of_node(parser)
+    parser.add_argument(
+        "--no-daemon",
+        action="store_true",
+        help="Do not spawn nor use an already running daemon",
+    )
+
+
+def hidden_topics(parser: argparse.ArgumentParser) -> None:
+    """Declare `--include-hidden-topics`, where it means nothing to the verb itself."""
+    parser.add_argument(
+        "--include-hidden-topics", action="store_true", help="Consider hidden topics as well"
+    )
+
+
+def qos(parser: argparse.ArgumentParser, doing: str, default: str) -> None:
+    """Declare the options `--qos-...`."""
+    over = f"setting to {doing} with (overrides the value of --qos-profile option, default: "
+    add = parser.add_argument
+    add(
+        "--qos-profile",
+        choices=PROFILES,
+        help=f"Quality of service preset profile to {doing} with (default: {default})",
+    )
+    add("--qos-depth", metavar="N", type=int, default=-1, help=f"Queue size {over}the profile's)")
+    add("--qos-history", choices=HISTORIES, help=f"History of samples {over}the profile's)")
+    add("--qos-reliability", choices=RELIABILITIES, help=f"Reliability {over}the profile's)")
+    add("--qos-durability", choices=DURABILITIES, help=f"Durability {over}the profile's)")
+    add("--qos-liveliness", choices=LIVELINESSES, help=f"Liveliness {over}the profile's)")
+    add(
+        "--qos-liveliness-lease-duration-seconds",
+        type=float,
+        help=f"Liveliness lease duration {over}the profile's)",
+    )
+
+
+def asks_for_qos(args: argparse.Namespace) -> bool:
+    """Return whether one of the options is given."""
+    return bool(
+        args.qos_profile
+        or args.qos_depth >= 0
+        or args.qos_history
+        or args.qos_reliability
+        or args.qos_durability
+        or args.qos_liveliness
+        or args.qos_liveliness_lease_duration_seconds is not None
+    )
+
+
+def chosen_qos(args: argparse.Namespace, profile: QoSProfile) -> QoSProfile:
+    """Apply the options to `profile`, in whose place a preset named by them comes."""
+    import copy
+
+    from rclpy import qos as policies
+    from rclpy.duration import Duration
+
+    if args.qos_profile:
+        profile = policies.QoSPresetProfiles.get_from_short_key(args.qos_profile)
+    profile = copy.copy(profile)
+    if args.qos_history:
+        profile.history = policies.HistoryPolicy.get_from_short_key(args.qos_history)
+    if args.qos_depth >= 0:
+        profile.depth = args.qos_depth
+    if args.qos_reliability:
+        profile.reliability = policies.ReliabilityPolicy.get_from_short_key(args.qos_reliability)
+    if args.qos_durability:
+        profile.durability = policies.DurabilityPolicy.get_from_short_key(args.qos_durability)
+        keep = policies.DurabilityPolicy.TRANSIENT_LOCAL
+        if profile.durability == keep and profile.depth == 0:
+            profile.depth = 1
+    if args.qos_liveliness:
+        profile.liveliness = policies.LivelinessPolicy.get_from_short_key(args.qos_liveliness)
+    if args.qos_liveliness_lease_duration_seconds is not None:
+        seconds = args.qos_liveliness_lease_duration_seconds
+        profile.liveliness_lease_duration = Duration(seconds=seconds)
+    return profile
+
+
+def positive_int(text: str) -> int:
+    """Read a number of messages."""
+    if not text.isdecimal() or int(text) <= 0:
+        raise argparse.ArgumentTypeError("value must be a positive integer")
+    return int(text)
+
+
+def unsigned_int(text: str) -> int:
+    """Read a length."""
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError("value must be non-negative integer")
+    return int(text)
+
+
+def positive_float(text: str) -> float:
+    """Read a rate."""
+    value = float(text)
+    if value <= 0:
+        raise ValueError
+    return value

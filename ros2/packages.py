@@ -1,0 +1,51 @@
+"""Installed packages: which there are, in which prefix, and their executables.
+
+Each prefix has an ament index, with a file for each package.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from launcher.ros_tools import prefixes
+
+INDEX = Path("share/ament_index/resource_index/packages")
+
+
+class NoPackageError(RuntimeError):
+    """There is no such package."""
+
+
+def packages() -> dict[str, Path]:
+    """Return package -> prefix; the first prefix that has it counts."""
+    found: dict[str, Path] = {}
+    for prefix in map(Path, prefixes(os.environ)):
+        folder = prefix / INDEX
+        if folder.is_dir():
+            for file in sorted(folder.iterdir()):
+                if not file.name.startswith("."):
+                    found.setdefault(file.name, prefix)
+    return found
+
+
+def prefix_of(package: str) -> Path:
+    """Return the prefix of a package.
+
+    Raises:
+        NoPackageError: if there is none.
+    """
+    for prefix in map(Path, prefixes(os.environ)):
+        if package and "/" not in package and (prefix / INDEX / package).is_file():
+            return prefix
+    raise NoPackageError(package)
+
+
+def executables(package: str) -> list[Path]:
+    """Return the programs of a package; raises NoPackageError."""
+    found = []
+    for folder, folders, files in os.walk(prefix_of(package) / "lib" / package):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        places = (Path(folder) / name for name in sorted(files))
+        found += [place for place in places if os.access(place, os.X_OK)]
+    return found

@@ -1,0 +1,88 @@
+"""Calls to the parameter services of a node."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ros2.joining import joined
+from ros2.naming import absolute, nodes
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Sequence
+
+    from rcl_interfaces.msg import Parameter
+
+    from ros2.joining import Guest
+
+READY_S = 5.0
+NOT_FOUND = "Node not found"
+TYPES = (
+    "not set", "boolean", "integer", "double", "string", "byte array", "boolean array",
+    "integer array", "double array", "string array",
+)  # fmt: skip
+"""By the numbers of rcl_interfaces/msg/ParameterType."""
+FIELDS = (
+    "", "bool_value", "integer_value", "double_value", "string_value", "byte_array_value",
+    "bool_array_value", "integer_array_value", "double_array_value", "string_array_value",
+)  # fmt: skip
+"""Where a value of that number is in rcl_interfaces/msg/ParameterValue."""
+
+
+def find_node(me: Guest, name: str, *, hidden: bool) -> str:
+    """Return the full name of a node once it is there, empty if it is not."""
+    full = absolute(name)
+    hidden = hidden or full.rpartition("/")[2].startswith("_")
+    return full if me.await_until(lambda: full in nodes(me.node, hidden=hidden)) else ""
+
+
+def call(me: Guest, node_name: str, service: str, **fields: object) -> Any:  # noqa: ANN401
+    """Call one of a node's parameter services, named as its type: `GetParameters`."""
+    from rcl_interfaces import srv
+
+    kind = getattr(srv, service)
+    name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in service)
+    client = me.node.create_client(kind, f"{node_name}/{name[1:]}")
+    try:
+        if not client.wait_for_service(timeout_sec=READY_S):
+            raise RuntimeError("Wait for service timed out")
+        future = client.call_async(kind.Request(**fields))
+        me.finish(future)
+        response = future.result()
+        if response is None:
+            why = future.exception()
+            raise RuntimeError(f"Exception while calling service of node '{node_name}': {why}")
+        return response
+    finally:
+        me.node.destroy_client(client)
+
+
+def write(
+    args: argparse.Namespace, wanted: Sequence[Parameter], *, done: str, failed: str
+) -> str | None:
+    """Have a node take parameters; print `done`, or `failed` to standard error, with the reason.
+
+    Both may have `{name}` in them. Returns why the node was not asked; None if it was, whatever it
+    answered.
+    """
+    with joined(args) as me:
+        node = find_node(me, args.node_name, hidden=args.include_hidden_nodes)
+        if not node:
+            return NOT_FOUND
+        response = call(me, node, "SetParameters", parameters=list(wanted))
+    for parameter, result in zip(wanted, response.results, strict=True):
+        reason = f": {result.reason}" if result.reason else ""
+        if result.successful:
+            print(f"{done.format(name=parameter.name)}{reason}")
+        else:
+            print(f"{failed.format(name=parameter.name)}{reason}", file=sys.stderr)
+    return None
+
+
+def plain(value: Any) -> Any:  # noqa: ANN401 - a ParameterValue, and what it holds
+    """Return the value in a ParameterValue, None for one that is not set."""
+    if not 0 < value.type < len(FIELDS):
+        return None
+    held = getattr(value, FIELDS[value.type])
+    return list(held) if value.type > FIELDS.index("string_value") else held

@@ -1,0 +1,1 @@
+"""The verbs, one file each: `SUMMARY`, `arguments(parser)` and `main(args)`; see `ros2.table`."""

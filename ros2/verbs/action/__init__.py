@@ -1,0 +1,1 @@
+"""`ros2 action`: one file a verb."""

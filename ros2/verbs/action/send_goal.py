@@ -1,0 +1,112 @@
+"""`ros2 action send_goal`: a goal for an action, and how it ends."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ros2 import naming, options
+from ros2.filling import fill, read
+from ros2.joining import SPIN_S, joined
+from ros2.printing import to_yaml
+
+if TYPE_CHECKING:
+    import argparse
+
+    from ros2.joining import Guest
+
+SUMMARY = "Send an action goal"
+
+
+STATUS = (
+    "UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED",
+)  # fmt: skip
+"""By the numbers of action_msgs/msg/GoalStatus."""
+RUNNING = (1, 2)
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    options.of_node(parser)
+    add = parser.add_argument
+    add("action_name", help="Name of the ROS action (e.g. '/fibonacci')")
+    add(
+        "action_type",
+        help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')",
+    )
+    goal = parser.add_mutually_exclusive_group()
+    goal.add_argument(
+        "goal",
+        nargs="?",
+        default="{}",
+        help="Goal request values in YAML format (e.g. '{order: 10}')",
+    )
+    goal.add_argument("--stdin", action="store_true", help="Read goal from standard input")
+    add("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
+
+
+def main(args: argparse.Namespace) -> int | str | None:
+    """Send it, and wait for its result; Ctrl-C cancels it."""
+    kind = naming.action_class(args.action_type)
+    values = read(sys.stdin.read() if args.stdin else args.goal)
+    goal = kind.Goal()
+    try:
+        fill(goal, values)
+    except Exception as error:  # noqa: BLE001 - whatever a generated class raises
+        return f"Failed to populate message fields: {error!r}"
+    with joined(args) as me:
+        return _drive(me, args, kind, goal)
+
+
+def _drive(me: Guest, args: argparse.Namespace, kind: type[Any], goal: Any) -> str | None:  # noqa: ANN401
+    from rclpy.action import ActionClient
+
+    client = ActionClient(me.node, kind, args.action_name)
+    try:
+        print("Waiting for an action server to become available...", flush=True)
+        while not client.wait_for_server(timeout_sec=SPIN_S):
+            pass
+        print(f"Sending goal:\n     {to_yaml(goal)}", flush=True)
+        feedback = _print_feedback if args.feedback else None
+        sent = client.send_goal_async(goal, feedback)
+        me.finish(sent)
+        handle = sent.result()
+        if handle is None:
+            raise RuntimeError(f"Exception while sending goal: {sent.exception()!r}")
+        if not handle.accepted:
+            print("Goal was rejected.")
+            return None
+        print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
+        try:
+            ended = handle.get_result_async()
+            me.finish(ended)
+        except KeyboardInterrupt:
+            _cancel(me, handle)
+            raise
+        result = ended.result()
+        if result is None:
+            raise RuntimeError(f"Exception while getting result: {ended.exception()!r}")
+        print(f"Result:\n    {to_yaml(result.result)}")
+        status = result.status if 0 <= result.status < len(STATUS) else 0
+        print(f"Goal finished with status: {STATUS[status]}")
+        return None
+    finally:
+        client.destroy()
+
+
+def _print_feedback(message: Any) -> None:  # noqa: ANN401 - generated
+    print(f"Feedback:\n    {to_yaml(message.feedback)}", flush=True)
+
+
+def _cancel(me: Guest, handle: Any) -> None:  # noqa: ANN401 - rclpy has no types
+    if handle.status not in RUNNING:
+        return
+    print("Canceling goal...", flush=True)
+    future = handle.cancel_goal_async()
+    me.finish(future)
+    response = future.result()
+    if response is None:
+        raise RuntimeError(f"Exception while canceling goal: {future.exception()!r}")
+    if not response.goals_canceling:
+        raise RuntimeError("Failed to cancel goal")
+    print("Goal canceled.", flush=True)

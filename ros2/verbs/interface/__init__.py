@@ -1,0 +1,1 @@
+"""`ros2 interface`: one file a verb."""

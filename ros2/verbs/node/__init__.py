@@ -1,0 +1,1 @@
+"""`ros2 node`: one file a verb."""

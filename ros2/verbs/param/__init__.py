@@ -1,0 +1,1 @@
+"""`ros2 param`: one file a verb."""

@@ -1,0 +1,64 @@
+"""`ros2 param list`: the parameters of one node, or of all."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from ros2 import naming, options, parameters
+from ros2.joining import joined
+
+if TYPE_CHECKING:
+    import argparse
+
+SUMMARY = "Output a list of available parameters"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    options.of_graph(parser)
+    add = parser.add_argument
+    add("node_name", nargs="?", help="Name of the ROS node")
+    add("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+    add(
+        "--param-prefixes",
+        nargs="+",
+        default=[],
+        help="Only list parameters with the provided prefixes",
+    )
+    add("--param-type", action="store_true", help="Print parameter types with parameter names")
+    add(
+        "--filter",
+        help="Only list parameters that match the given regular expression",
+    )
+
+
+def main(args: argparse.Namespace) -> int | str | None:
+    """Print their names, below the name of each node if there may be several."""
+    hidden = args.include_hidden_nodes
+    pattern = re.compile(args.filter or "")
+    with joined(args, settled=not args.node_name) as me:
+        if args.node_name:
+            node = parameters.find_node(me, args.node_name, hidden=hidden)
+            if not node:
+                return parameters.NOT_FOUND
+            found = [node]
+        else:
+            serving = dict(me.node.get_service_names_and_types())
+            found = sorted(
+                node
+                for node in set(naming.nodes(me.node, hidden=hidden))
+                if f"{node}/list_parameters" in serving
+            )
+        for node in found:
+            response = parameters.call(me, node, "ListParameters", prefixes=args.param_prefixes)
+            names = [name for name in sorted(response.result.names) if pattern.search(name)]
+            if not args.node_name:
+                print(f"{node}:")
+            if not args.param_type:
+                print("".join(f"  {name}\n" for name in names), end="")
+                continue
+            described = parameters.call(me, node, "DescribeParameters", names=names)
+            for each in described.descriptors:
+                print(f"  {each.name} (type: {parameters.TYPES[each.type]})")
+    return None

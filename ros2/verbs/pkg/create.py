@@ -1,0 +1,144 @@
+"""`ros2 pkg create`: a new package of nodes in Python, ready for `colcon build`."""
+
+from __future__ import annotations
+
+import getpass
+import re
+from argparse import ArgumentTypeError
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ros2 import package_files
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+
+SUMMARY = "Create a new ROS 2 package"
+NO_LICENSE = "TODO: License declaration"
+LICENSES = (
+    "Apache-2.0",
+    "BSL-1.0",
+    "BSD-2.0",
+    "BSD-2-Clause",
+    "BSD-3-Clause",
+    "GPL-3.0-only",
+    "LGPL-2.1-only",
+    "LGPL-3.0-only",
+    "MIT",
+    "MIT-0",
+)
+BUILD_TYPES = ("cmake", "ament_cmake", "ament_python")
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("package_name", type=_name, help="The package name")
+    parser.add_argument(
+        "--package-format", "--package_format", choices=("2", "3"), default="3",
+        help="The package.xml format.",
+    )  # fmt: skip
+    parser.add_argument(
+        "--description",
+        default="TODO: Package description",
+        help="The description given in the package.xml",
+    )
+    parser.add_argument(
+        "--license", default=NO_LICENSE, help="The license attached to this package"
+    )
+    parser.add_argument(
+        "--destination-directory",
+        type=Path,
+        default=Path(),
+        help="Directory where to create the package directory",
+    )
+    parser.add_argument(
+        "--build-type",
+        default="ament_cmake",
+        choices=BUILD_TYPES,
+        help="The build type to process the package with",
+    )
+    parser.add_argument("--dependencies", nargs="+", default=[], help="list of dependencies")
+    parser.add_argument("--maintainer-email", default="", help="email address of the maintainer")
+    parser.add_argument("--maintainer-name", default="", help="name of the maintainer")
+    parser.add_argument("--node-name", type=_name, help="name of the empty executable")
+    parser.add_argument("--library-name", help="name of the empty library")
+
+
+def _name(text: str) -> str:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", text):
+        raise ArgumentTypeError(f"'{text}' is not a name: letters, digits and _ after a letter")
+    return text
+
+
+def main(args: Namespace) -> int | str | None:
+    """Write the files, and print each of them."""
+    if args.build_type != "ament_python":
+        return "Deck's ros2 makes packages in Python only: add --build-type ament_python"
+    if args.library_name:
+        return "a library is for C++ packages, which Deck's ros2 does not make"
+    if args.node_name == args.package_name:
+        # Its file would hide the package of the same name.
+        args.node_name += "_node"
+        print(
+            "[WARNING] node name can not be equal to the package name: "
+            f"it is called '{args.node_name}'"
+        )
+    folder = args.destination_directory / args.package_name
+    if folder.exists():
+        return f"\nAborted!\nThe directory already exists: {folder}"
+    package = package_files.Package(
+        name=args.package_name,
+        package_format=int(args.package_format),
+        description=args.description,
+        license=args.license,
+        maintainer=args.maintainer_name or getpass.getuser(),
+        email=args.maintainer_email or f"{getpass.getuser()}@todo.todo",
+        dependencies=tuple(dict.fromkeys(args.dependencies)),
+        node=args.node_name or "",
+    )
+    _say(package, args.destination_directory.resolve())
+    return _write(package, folder)
+
+
+def _say(package: package_files.Package, place: Path) -> None:
+    print("going to create a new package")
+    for key, value in (
+        ("package name", package.name),
+        ("destination directory", place),
+        ("package format", package.package_format),
+        ("version", "0.0.0"),
+        ("description", package.description),
+        ("maintainer", [f"{package.maintainer} <{package.email}>"]),
+        ("licenses", [package.license]),
+        ("build type", "ament_python"),
+        ("dependencies", list(package.dependencies)),
+    ):
+        print(f"{key}: {value}")
+    if package.node:
+        print(f"node_name: {package.node}")
+
+
+def _write(package: package_files.Package, folder: Path) -> str | None:
+    shown = f"./{package.name}"
+    made: set[str] = set()
+    try:
+        for place, content in package_files.files(package).items():
+            inner = Path(place).parent
+            for part in [*reversed(inner.parents), inner]:
+                path = shown if part == Path() else f"{shown}/{part}"
+                if path not in made:
+                    made.add(path)
+                    (folder / part).mkdir(parents=True)
+                    print(f"creating folder {path}")
+            print(f"creating {shown}/{place}")
+            (folder / place).write_text(content, encoding="utf-8")
+    except OSError as error:
+        return f"{error.filename}: {error.strerror}"
+    if package.license not in LICENSES:
+        print(
+            f"\n[WARNING]: Unknown license '{package.license}'.  This has been set in the "
+            "package.xml, but no LICENSE file has been created.\n"
+            "It is recommended to use one of the ament license identifiers:"
+        )
+        print("\n".join(LICENSES))
+    return None

@@ -1,0 +1,60 @@
+"""`ros2 run`: become the program of a package, so that signals and the exit code are its own."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import sys
+from typing import TYPE_CHECKING
+
+from ros2.packages import NoPackageError, executables
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SUMMARY = "Run a package specific executable"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument(
+        "--prefix",
+        help="Prefix command, which should go before the executable. "
+        "Command must be wrapped in quotes if it contains spaces "
+        "(e.g. --prefix 'gdb -ex run --args').",
+    )
+    parser.add_argument("package_name", help="Name of the ROS package")
+    parser.add_argument("executable_name", help="Name of the executable")
+    parser.add_argument(
+        "argv", nargs=argparse.REMAINDER, help="Pass arbitrary arguments to the executable"
+    )
+
+
+def main(args: argparse.Namespace) -> int | str | None:
+    """Find the program and become it."""
+    try:
+        paths = executables(args.package_name)
+    except NoPackageError:
+        return f"Package '{args.package_name}' not found"
+    fitting = [path for path in paths if path.name == args.executable_name]
+    if not fitting:
+        return "No executable found"
+    if len(fitting) > 1:
+        return "\n- ".join(["Multiple executables found:", *map(str, fitting)])
+    return _become([*shlex.split(args.prefix or ""), *_program(fitting[0]), *args.argv])
+
+
+def _program(path: Path) -> list[str]:
+    """Return the start of the command line: a Python file without `#!` gets this Python."""
+    with path.open("rb") as file:
+        bare = file.read(2) != b"#!" and path.suffix == ".py"
+    return [sys.executable, str(path)] if bare else [str(path)]
+
+
+def _become(argv: list[str]) -> str:
+    sys.stdout.flush()
+    try:
+        os.execvp(argv[0], argv)
+    except OSError as error:
+        return f"{argv[0]}: {error.strerror}"

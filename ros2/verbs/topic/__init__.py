@@ -1,0 +1,1 @@
+"""`ros2 topic`: one file a verb."""

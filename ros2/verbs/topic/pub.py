@@ -1,0 +1,148 @@
+"""`ros2 topic pub`: publishes a message, once or at a rate."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from ros2 import naming, options
+from ros2.filling import fill, read
+from ros2.joining import joined
+
+if TYPE_CHECKING:
+    from rclpy.publisher import Publisher
+
+SUMMARY = "Publish a message to a topic"
+LOOK_S = 0.1
+LOOKS_A_LINE = 10
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    options.of_node(parser)
+    add = parser.add_argument
+    add("topic_name", help="Name of the ROS topic to publish to (e.g. '/chatter')")
+    add("message_type", help="Type of the ROS message (e.g. 'std_msgs/String')")
+    values = parser.add_mutually_exclusive_group()
+    values.add_argument(
+        "values",
+        nargs="?",
+        default="{}",
+        help="Values to fill the message with in YAML format (e.g. 'data: Hello World'), "
+        "otherwise the message will be published with default values",
+    )
+    values.add_argument("--stdin", action="store_true", help="Read values from standard input")
+    add(
+        "-r",
+        "--rate",
+        metavar="N",
+        type=options.positive_float,
+        default=1.0,
+        help="Publishing rate in Hz (default: 1)",
+    )
+    add(
+        "-p",
+        "--print",
+        metavar="N",
+        type=int,
+        default=1,
+        help="Only print every N-th published message (default: 1)",
+    )
+    times = parser.add_mutually_exclusive_group()
+    times.add_argument("-1", "--once", action="store_true", help="Publish one message and exit")
+    times.add_argument(
+        "-t",
+        "--times",
+        type=options.unsigned_int,
+        default=0,
+        help="Publish this number of times and then exit",
+    )
+    add(
+        "-w",
+        "--wait-matching-subscriptions",
+        type=options.unsigned_int,
+        default=None,
+        help="Wait until finding the specified number of matching subscriptions. Defaults to 1 "
+        "when using '-1'/'--once'/'--times', otherwise defaults to 0.",
+    )
+    add(
+        "--max-wait-time-secs",
+        type=options.positive_float,
+        default=None,
+        help="This sets the maximum wait time in seconds if --wait-matching-subscriptions is set.",
+    )
+    add(
+        "--keep-alive",
+        metavar="N",
+        type=options.positive_float,
+        default=0.1,
+        help="Keep publishing node alive for N seconds after the last msg (default: 0.1)",
+    )
+    add("-n", "--node-name", default="", help="Name of the created publishing node")
+    options.qos(parser, "publish", "default")
+    options.hidden_topics(parser)
+
+
+def main(args: argparse.Namespace) -> int | str | None:
+    """Publish until told to stop, or as often as asked."""
+    from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+    kind = naming.message_class(args.message_type)
+    values = read(sys.stdin.read() if args.stdin else args.values)
+    if values is None:
+        return "The passed value needs to be a dictionary in YAML format"
+    message = kind()
+    try:
+        stamps = fill(message, values)
+    except Exception as error:  # noqa: BLE001 - whatever a generated class raises
+        return f"Failed to populate field: {error}"
+    default = QoSProfile(
+        depth=1,
+        reliability=ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL,
+    )
+    times = 1 if args.once else args.times
+    with joined(args, args.node_name) as me:
+        publisher = me.node.create_publisher(
+            kind, args.topic_name, options.chosen_qos(args, default)
+        )
+        if trouble := _await_subscriptions(args, publisher, times):
+            return trouble
+        print("publisher: beginning loop", flush=True)
+        due, count = time.monotonic(), 0
+        while True:
+            count += 1
+            now: Any = me.node.get_clock().now().to_msg()
+            for set_stamp in stamps:
+                set_stamp(now)
+            if args.print and count % args.print == 0:
+                print(f"publishing #{count}: {message!r}\n", flush=True)
+            publisher.publish(message)
+            if times and count >= times:
+                break
+            due += 1 / args.rate
+            while (left := due - time.monotonic()) > 0:
+                me.spin_once(min(left, LOOK_S))
+        time.sleep(args.keep_alive)
+    return None
+
+
+def _await_subscriptions(args: argparse.Namespace, publisher: Publisher, times: int) -> str:
+    wanted = args.wait_matching_subscriptions
+    if wanted is None:
+        wanted = 1 if times else 0
+    start, looks = time.monotonic(), 0
+    while (found := publisher.get_subscription_count()) < wanted:
+        waited = time.monotonic() - start
+        if args.max_wait_time_secs is not None and waited >= args.max_wait_time_secs:
+            return (
+                f"Timed out waiting for subscribers: Expected {wanted} subcribers but only got "
+                f"{found} subscribers"
+            )
+        if looks % LOOKS_A_LINE == 0:
+            print(f"Waiting for at least {wanted} matching subscription(s)...", flush=True)
+        looks += 1
+        time.sleep(LOOK_S)
+    return ""
