@@ -1,0 +1,118 @@
+"""Making the learner's folder of a lesson, or of a node; what is there is copied before it changes.
+
+The folders are in `course.lessons.catalog.course_dir`, each named after its lesson.
+"""
+
+from __future__ import annotations
+
+import filecmp
+import re
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.folder.node_template import NODE, PROFILE
+from course.lessons.catalog import course_dir
+from course.lessons.lesson import IGNORED
+from launcher.errors import UsageError
+from launcher.profile.defaults import FOLDERS_OWN
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from course.lessons.lesson import LessonFolder
+
+NAME = re.compile(r"[a-z][a-z0-9_]*")
+
+
+@dataclass(frozen=True)
+class NewFolder:
+    """What was made."""
+
+    path: Path
+    files: tuple[Path, ...]
+    """That were written."""
+    kept: tuple[Path, ...]
+    """Copies of files that were there and differed."""
+
+
+def folder_of(lesson: LessonFolder) -> Path:
+    """Return where the learner's folder of a lesson is, or would be."""
+    return course_dir() / lesson.name
+
+
+def new_folder(lesson: LessonFolder) -> NewFolder:
+    """Make the learner's folder of a lesson from its starter.
+
+    A file that is there and differs is copied first: mock_sonar.py to mock_sonar.py.1, or .2.
+
+    Raises:
+        UsageError: if the lesson has no starter.
+        OSError: if the folder cannot be written.
+    """
+    if not lesson.starter.is_dir():
+        raise UsageError(say("there is no folder {folder}", folder=str(lesson.starter)))
+    sources = [
+        file
+        for file in sorted(lesson.starter.rglob("*"))
+        if file.is_file() and not IGNORED & set(file.parts)
+    ]
+    texts = {file.relative_to(lesson.starter): file for file in sources}
+    return _written(folder_of(lesson), texts)
+
+
+def own_profile(lesson: LessonFolder) -> Path:
+    """Return the profile of the learner's folder of a lesson; the folder is made if it has none.
+
+    Raises:
+        UsageError: if the lesson has no starter.
+        OSError: if the folder cannot be written.
+    """
+    profile = folder_of(lesson) / FOLDERS_OWN
+    if not profile.is_file():
+        new_folder(lesson)
+    return profile
+
+
+def _written(folder: Path, sources: dict[Path, Path]) -> NewFolder:
+    written, kept = [], []
+    for name, source in sources.items():
+        target = folder / name
+        if target.exists():
+            if filecmp.cmp(source, target, shallow=False):
+                continue
+            kept.append(_copied(target))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
+        written.append(target)
+    return NewFolder(folder, tuple(written), tuple(kept))
+
+
+def _copied(file: Path) -> Path:
+    """Copy a file to the next free number, and return the copy."""
+    number = 1
+    while (copy := file.with_name(f"{file.name}.{number}")).exists():
+        number += 1
+    shutil.copy2(file, copy)
+    return copy
+
+
+def new_node(name: str) -> NewFolder:
+    """Make a folder with an empty node of this name and a profile for it.
+
+    Raises:
+        UsageError: if the name cannot be one, or if there is such a folder already.
+    """
+    if not NAME.fullmatch(name):
+        raise UsageError(
+            say("{name!r} cannot be the name of a node: write it as my_node", name=name)
+        )
+    folder = course_dir() / name
+    if folder.exists():
+        raise UsageError(say("{path} is there already: choose another name", path=str(folder)))
+    folder.mkdir(parents=True)
+    file, profile = folder / f"{name}.py", folder / FOLDERS_OWN
+    class_name = "".join(part.capitalize() for part in name.split("_")) or "MyNode"
+    file.write_text(NODE.format(name=name, class_name=class_name), "utf-8")
+    profile.write_text(PROFILE.format(name=name), "utf-8")
+    return NewFolder(folder, (file, profile), ())

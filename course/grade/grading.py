@@ -1,0 +1,297 @@
+"""Grading folders, several at once, each by an examiner of its own that may come to any harm."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import tempfile
+import time
+from collections import deque
+from contextlib import aclosing
+from dataclasses import dataclass, field, replace
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from course.grade.defaults import WITHIN_S
+from course.grade.environment import places_of
+from course.grade.examination import Examination, Examiners
+from course.grade.grades import Grade, StepGrade, filled_up
+from course.grade.protocol import ExamRequest
+from course.grade.submission import (
+    Files,
+    Submission,
+    UnreadableError,
+    check_gradable,
+    files_of,
+)
+from course.proof.domains import unused_domains
+from course.protocol import unpack_step
+from course.results import State
+from launcher.control.protocol import unpack_text
+from launcher.profile.defaults import FOLDERS_OWN
+from launcher.profile.steps.draw import new_seed
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncGenerator, Callable, Sequence
+
+    from course.lessons.lesson import LessonFolder
+
+ATTEMPTS = 3
+"""In how many domains it is tried, if somebody else is in the first."""
+
+
+@dataclass(frozen=True)
+class Terms:
+    """How to grade; the same for all folders."""
+
+    lesson: LessonFolder
+    seed: int = 0
+    """What the values are drawn from; 0: another one for each folder."""
+    bags: Path | None = None
+    """Where to keep recordings."""
+    within_s: float = WITHIN_S
+    language: str = "en"
+    confined: bool = True
+    """Whether to confine the nodes, where the kernel can."""
+    adopting: bool = False
+    """Whether this process does nothing else, and adopts what examiners leave behind: then its
+    other children are ended."""
+
+
+@dataclass
+class Domains:
+    """ROS domains that nobody else is in, each used as late again as can be."""
+
+    fixed: Sequence[int] = ()
+    """Those to be used; empty: whichever are unused."""
+    _in_use: set[int] = field(default_factory=set)
+    _recent: deque[int] = field(default_factory=lambda: deque(maxlen=20))
+
+    def take(self) -> int:
+        """Return one that is not in use."""
+        candidates = self.fixed or unused_domains(64)
+        free = [each for each in candidates if each not in self._in_use]
+        fresh = [each for each in free if each not in self._recent]
+        chosen = (fresh or free or list(candidates))[0]
+        self._in_use.add(chosen)
+        self._recent.append(chosen)
+        return chosen
+
+    def give_back(self, domain: int) -> None:
+        """Let it be used again."""
+        self._in_use.discard(domain)
+
+
+async def grade_all(
+    terms: Terms,
+    chosen: Sequence[Submission],
+    *,
+    jobs: int = 1,
+    domains: Domains | None = None,
+    on_step: Callable[[Submission, StepGrade], object] = lambda _submission, _step: None,
+) -> AsyncGenerator[tuple[int, Grade], None]:
+    """Grade folders, so many at once; yield each grade as it comes, with its folder's number.
+
+    All folders, and the lesson, are read before anything is run: what one learner's nodes do to
+    the files of another is not judged, and is undone.
+    """
+    domains = domains or Domains()
+    check_gradable(terms.lesson)
+    lesson = await asyncio.to_thread(Files.read, terms.lesson.path)
+    read = [await asyncio.to_thread(_read, one.folder) for one in chosen]
+    everything = [lesson, *(one for one in read if isinstance(one, Files))]
+    room = asyncio.Semaphore(jobs)
+    examiners = Examiners()
+
+    async def one(number: int) -> tuple[int, Grade]:
+        submission, files = chosen[number], read[number]
+        async with room:
+            if not isinstance(files, Files):
+                return number, _not_graded(terms, submission, files)
+            # With several jobs another one's nodes may be at it just now.
+            before = await asyncio.to_thread(_put_back, everything)
+            grading = _Grading(terms, submission, (lesson, files), domains, on_step, examiners)
+            grade = await grading.grade()
+            after = await asyncio.to_thread(_put_back, everything)
+            if terms.adopting:
+                await examiners.end_adopted()
+            return number, replace(grade, notes=(*grade.notes, *before, *after))
+
+    tasks = [asyncio.ensure_future(one(number)) for number in range(len(chosen))]
+    try:
+        for task in asyncio.as_completed(tasks):
+            yield await task
+    finally:
+        for each in tasks:
+            each.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+
+def _read(folder: Path) -> Files | str:
+    try:
+        return Files.read(folder)
+    except UnreadableError as error:
+        return error.words
+
+
+def _put_back(everything: Sequence[Files]) -> list[str]:
+    """Undo what has been changed meanwhile; say what it was."""
+    found = []
+    for files in everything:
+        try:
+            changed = files.put_back()
+        except OSError as error:
+            found.append(str(error))
+            continue
+        if changed:
+            found.append(
+                say(
+                    "{folder} was changed while it was graded, and is as before again: {files}",
+                    folder=str(files.folder),
+                    files=", ".join(changed[:5]),
+                )
+            )
+    return found
+
+
+def _not_graded(terms: Terms, submission: Submission, reason: str) -> Grade:
+    steps = filled_up(terms.lesson, (), State.UNJUDGED, reason)
+    began = datetime.now(timezone.utc)
+    return Grade(terms.lesson, submission.student, submission.folder, steps, began, reason=reason)
+
+
+class _Grading:
+    """The grading of one folder."""
+
+    def __init__(
+        self,
+        terms: Terms,
+        submission: Submission,
+        files: tuple[Files, Files],
+        domains: Domains,
+        on_step: Callable[[Submission, StepGrade], object],
+        examiners: Examiners,
+    ) -> None:
+        """`files`: those of the lesson and the learner; `examiners`: the processes of all."""
+        self._terms = terms
+        self._submission = submission
+        self._starter = files[0].below(terms.lesson.starter.name)
+        self._files = files[1]
+        self._examiners = examiners
+        self._domains = domains
+        self._on_step = on_step
+        self._seed = terms.seed or new_seed()
+        self._began_s = time.monotonic()
+        self._grade = Grade(
+            terms.lesson,
+            submission.student,
+            submission.folder,
+            (),
+            datetime.now(timezone.utc),
+            notes=tuple(self._remarks()),
+        )
+
+    def _missing(self) -> list[str]:
+        names = files_of(self._terms.lesson)
+        return [name for name in names if Path(name) not in self._files.contents]
+
+    def _remarks(self) -> list[str]:
+        """Return what its teacher should know of the folder."""
+        notes: list[str] = []
+        missing = self._missing()
+        if missing:
+            notes.append(
+                say(
+                    "not in the folder: {files}; the lesson's own beginning of it was judged",
+                    files=", ".join(missing),
+                )
+            )
+        own = self._files.contents.get(Path(FOLDERS_OWN))
+        if own is not None and own != self._starter.contents[Path(FOLDERS_OWN)]:
+            notes.append(
+                say("the folder's {file} was not used, but the lesson's own", file=FOLDERS_OWN)
+            )
+        return notes
+
+    async def grade(self) -> Grade:
+        """Grade it; whatever happens, the result is a grade."""
+        names = files_of(self._terms.lesson)
+        if names and len(self._missing()) == len(names):
+            reason = say("none of the lesson's files is there: {files}", files=", ".join(names))
+            steps = filled_up(self._terms.lesson, (), State.FAILED, reason)
+            for step in steps:
+                self._on_step(self._submission, step)
+            return replace(self._grade, steps=steps, notes=())
+        for attempt in range(1, ATTEMPTS + 1):
+            domain = self._domains.take()
+            try:
+                grade, again = await self._in_domain(domain)
+            finally:
+                self._domains.give_back(domain)
+            if not again or attempt == ATTEMPTS:
+                break
+        return replace(grade, seconds=time.monotonic() - self._began_s)
+
+    async def _in_domain(self, domain: int) -> tuple[Grade, bool]:
+        """Grade it in this domain; also return whether somebody else is there."""
+        place = Path(await asyncio.to_thread(tempfile.mkdtemp, prefix="deck-grade-"))
+        try:
+            examination = Examination(place, self._prepared(place, domain), self._examiners)
+            async with aclosing(examination.events()) as events:
+                async for event in events:
+                    self._take(event)
+            steps = filled_up(
+                self._terms.lesson,
+                self._grade.steps,
+                State.UNJUDGED,
+                examination.reason or say("it was not judged"),
+            )
+            grade = replace(self._grade, steps=steps, seed=self._seed, reason=examination.reason)
+            return grade, examination.taken and not self._grade.steps
+        finally:
+            await asyncio.to_thread(shutil.rmtree, place, ignore_errors=True)
+
+    def _prepared(self, place: Path, domain: int) -> ExamRequest:
+        lesson = self._terms.lesson
+        places = places_of(place, lesson.name)
+        for each in places:
+            each.mkdir(parents=True)
+        folder = places[0]
+        self._starter.write(folder)
+        self._files.write(folder, without=[FOLDERS_OWN])
+        bag = self._bag()
+        return ExamRequest(
+            lesson=str(lesson.path),
+            folder=str(folder),
+            writable=tuple(map(str, places)) if self._terms.confined else (),
+            domain=domain,
+            seed=self._seed,
+            within_s=self._terms.within_s,
+            language=self._terms.language,
+            bag=str(bag) if bag else "",
+        )
+
+    def _bag(self) -> Path | None:
+        if self._terms.bags is None:
+            return None
+        folder = self._terms.bags.absolute() / self._submission.student.replace("/", "-")
+        if self._grade.bag is not None:
+            shutil.rmtree(folder, ignore_errors=True)  # Of an attempt in another domain
+        self._grade = replace(self._grade, bag=folder)
+        return folder
+
+    def _take(self, event: dict[str, Any]) -> None:
+        if event["event"] == "values":
+            self._grade = replace(self._grade, values=event["values"])
+        elif event["event"] == "note":
+            self._grade = replace(
+                self._grade, notes=(*self._grade.notes, unpack_text(event["words"]))
+            )
+        elif event["event"] == "step":
+            result = unpack_step(event["step"])
+            document = next(step for step in self._terms.lesson.steps if step.id == result.id)
+            step = StepGrade(document, result, float(event["seconds"]))
+            self._grade = replace(self._grade, steps=(*self._grade.steps, step))
+            self._on_step(self._submission, step)

@@ -1,0 +1,48 @@
+"""The messages between the grader and an examiner: a line of JSON each, over a socket.
+
+One request; then `values` once the nodes are started, `step` for each step, `end` at the end. A
+socket, since the other end of a pipe can be opened by every process of the same user.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+from course.protocol import MOST_BYTES
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+__all__ = ["MOST_BYTES", "ExamRequest"]
+
+
+@dataclass(frozen=True)
+class ExamRequest:
+    """What an examiner is to do."""
+
+    lesson: str
+    """The folder of the lesson."""
+    folder: str
+    """The copy of the learner's folder, with a lesson.yaml in it."""
+    writable: tuple[str, ...]
+    """The folders in which the nodes may write."""
+    domain: int
+    seed: int
+    within_s: float
+    """How long all of it may take."""
+    language: str
+    """The one that nodes log in."""
+    bag: str = ""
+    """The folder of a recording, which does not exist yet; empty: none is made."""
+
+    def to_json(self) -> str:
+        """Return it as one line."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def from_json(cls, line: bytes) -> Self:
+        """Read the output of `to_json`."""
+        fields = json.loads(line)
+        return cls(**{**fields, "writable": tuple(fields["writable"])})

@@ -1,0 +1,235 @@
+"""What the judge sees: the graph, the messages since the nodes last started, the log, the nodes."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from collections import deque
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from graph.data import GraphUpdate
+from graph.ros import ONLY_LISTENING
+from launcher.events import ClosedEvent, LogEvent, StatusEvent
+from launcher.processes.table import TICKS_PER_S, read_process
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+    from typing import Any
+
+    from graph.data import NodeRow, TopicRow, Value
+    from graph.observer.observer import Observer
+    from launcher.client.client import SupervisorClient
+    from launcher.profile.steps.expressions import Drawn
+    from launcher.status import LogLine, NodeStatus
+
+KEPT_BYTES = 32_000_000
+"""Most bytes of messages that are kept of one topic."""
+KEPT = 2000
+KEPT_LINES = 2000
+MARGIN_S = 0.02
+"""How much later than it began a node may be known to have begun."""
+TICK_S = 0.1
+
+
+@dataclass(frozen=True)
+class ReceivedMessage:
+    """A message that has arrived."""
+
+    time_s: float
+    """When it arrived at the middleware, unix time."""
+    type_name: str
+    value: Mapping[str, Value]
+    size_bytes: int
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What a look at the evidence has shown."""
+
+    met: bool
+    seen: str = ""
+    """What there is instead, a sentence; empty if met."""
+    final: bool = False
+    """Whether waiting longer cannot change it."""
+    look: str = ""
+    """Where the learner should look, if something better than usual can be said."""
+
+
+MET = Observation(met=True)
+
+
+@dataclass
+class Evidence:
+    """Everything the judge knows at the moment; lives on the judge's event loop."""
+
+    observer: Observer
+    client: SupervisorClient
+    folder: Path
+    """That of the lesson."""
+    values: Mapping[str, Drawn]
+    functions: Mapping[str, Callable[[Any], object]] = field(default_factory=dict)
+    """Those of the lesson that have been loaded, by the name that checks give them."""
+    update: GraphUpdate = field(default_factory=lambda: GraphUpdate(0.0))
+    restarts: int = 0
+    """How often nodes were started by the learner: not by the judge, nor after a crash."""
+    touched: set[str] = field(default_factory=set)
+    """Nodes that the judge itself is restarting."""
+    ended: str = ""
+    """Why the session is over; empty while it runs."""
+    _messages: dict[str, deque[ReceivedMessage]] = field(default_factory=dict)
+    _bytes: dict[str, int] = field(default_factory=dict)
+    _lines: dict[str, deque[LogLine]] = field(default_factory=dict)
+    _born: dict[str, tuple[int, float]] = field(default_factory=dict)
+    """Of each node its process, and when that began, unix time."""
+    _policy_restarts: dict[str, int] = field(default_factory=dict)
+    _changed: asyncio.Event = field(default_factory=asyncio.Event)
+
+    def __post_init__(self) -> None:
+        self.note_starts(self.client.nodes.values())
+        self.restarts = 0
+
+    @property
+    def nodes(self) -> Mapping[str, NodeStatus]:
+        """The nodes of the profile."""
+        return self.client.nodes
+
+    def take(self, update: GraphUpdate) -> None:
+        """Take what the observer has seen."""
+        self.update = update
+        for topic, samples in update.samples.items():
+            kept = self._messages.setdefault(topic, deque())
+            for sample in samples:
+                arrived_s = sample.received_s - sample.age_s
+                kept.append(
+                    ReceivedMessage(arrived_s, sample.type_name, sample.value, sample.size_bytes)
+                )
+                self._bytes[topic] = self._bytes.get(topic, 0) + sample.size_bytes
+            while len(kept) > KEPT or (self._bytes[topic] > KEPT_BYTES and len(kept) > 2):
+                self._bytes[topic] -= kept.popleft().size_bytes
+        self._changed.set()
+
+    async def listen(self) -> None:
+        """Take the events of the supervisor until the session ends."""
+        async for event in self.client.events(past=KEPT_LINES):
+            if isinstance(event, LogEvent):
+                for line in event.lines:
+                    self._lines.setdefault(line.node, deque(maxlen=KEPT_LINES)).append(line)
+            elif isinstance(event, StatusEvent):
+                self.note_starts(event.nodes)
+            elif isinstance(event, ClosedEvent):
+                self.ended = event.reason or "closed"
+            self._changed.set()
+
+    def note_starts(self, nodes: Iterable[NodeStatus]) -> None:
+        """Take what the supervisor says of the nodes: which processes are new, and whose doing."""
+        for node in nodes:
+            before, began_s = self._born.get(node.name, (None, math.inf))
+            if node.pid is None or node.pid == before:
+                continue
+            self._born[node.name] = (node.pid, _began_s(node.pid, node.uptime_s or 0.0))
+            again = node.restarts > self._policy_restarts.get(node.name, 0)
+            self._policy_restarts[node.name] = node.restarts
+            if node.name in self.touched:
+                self.touched.discard(node.name)
+                # Its file may have been saved meanwhile: then one start serves both.
+                self.restarts += _written_s(node.file) > began_s
+            elif not again:
+                self.restarts += 1
+
+    def began_s(self, node: str) -> float:
+        """Return when the process of a node began, unix time; 0 if there has been none."""
+        return self._born.get(node, (0, 0.0))[1]
+
+    def fresh_s(self, topic: str, *, latched: bool = False) -> float:
+        """Return the unix time since which messages on a topic count: not those of earlier runs.
+
+        It is when the last of those nodes began that publish it, of all nodes if none does. Of a
+        `latched` topic it is when the first began, since each publishes only once.
+        """
+        row = self.topic(topic)
+        ends = row.published_by if row is not None else ()
+        starts = {name: began_s for name, (_, began_s) in self._born.items()}
+        publishing = [starts[name] for end in ends if (name := end.node.lstrip("/")) in starts]
+        return (min if latched else max)(publishing or starts.values(), default=0.0)
+
+    def messages(self, topic: str, since_s: float) -> list[ReceivedMessage]:
+        """Return the messages on a topic that have arrived since then, oldest first."""
+        return [each for each in self._messages.get(topic, ()) if each.time_s >= since_s]
+
+    def lines(self, node: str, since_s: float) -> list[LogLine]:
+        """Return what a node has logged since then; since it was started, if that is 0."""
+        since_s = since_s or self.began_s(node)
+        lines = self._lines.get(node, ())
+        return [line for line in lines if line.time_s >= since_s and line.source != "deck"]
+
+    def topic(self, name: str) -> TopicRow | None:
+        """Return what is known of a topic."""
+        return next((row for row in self.update.topics if row.name == name), None)
+
+    def node(self, name: str) -> NodeRow | None:
+        """Return what is known of a node of the graph."""
+        return next((row for row in self.update.nodes if row.name == name), None)
+
+    async def until(
+        self, look: Callable[[], Observation | None], within_s: float, *, tick_s: float = TICK_S
+    ) -> Observation:
+        """Look again whenever something changes, until it is met, final, or time is up.
+
+        `look` returns None for as long as nothing can be said; that is not met in the end.
+        """
+        deadline_s = time.monotonic() + within_s
+        while True:
+            observation = look()
+            if observation is not None and (observation.met or observation.final):
+                return observation
+            left_s = deadline_s - time.monotonic()
+            if left_s <= 0 or self.ended:
+                return observation or Observation(met=False)
+            await self.wait(min(left_s, tick_s))
+
+    async def let_pass(self, seconds: float) -> None:
+        """Wait so long, or until the session ends."""
+        until_s = time.monotonic() + seconds
+        while (left_s := until_s - time.monotonic()) > 0 and not self.ended:
+            await self.wait(left_s)
+
+    async def wait(self, longest_s: float) -> None:
+        """Wait until something changes."""
+        self._changed.clear()
+        try:
+            await asyncio.wait_for(self._changed.wait(), longest_s)
+        except asyncio.TimeoutError:
+            return
+
+
+def _written_s(file: str) -> float:
+    """Return when a learner's file was written, unix time; long ago if there is none."""
+    try:
+        return Path(file).stat().st_mtime if file else -math.inf
+    except OSError:
+        return -math.inf
+
+
+def _began_s(pid: int, uptime_s: float) -> float:
+    """Return when a process began, unix time: by the kernel, for a status is told late.
+
+    Of a process that is no more, by the uptime it was told with.
+    """
+    process = read_process(pid)
+    if process is not None:
+        now_s = time.clock_gettime(time.CLOCK_BOOTTIME)
+        uptime_s = max(uptime_s, now_s - process.started_ticks / TICKS_PER_S)
+    return time.time() - uptime_s - MARGIN_S
+
+
+def same_name(one: str, other: str) -> bool:
+    """Whether two names of nodes or topics mean the same, with or without the leading slash."""
+    return one.lstrip("/") == other.lstrip("/")
+
+
+def is_decks(node: str) -> bool:
+    """Whether a node of the graph is an observer of Deck's, by which the learner publishes."""
+    return node.startswith(ONLY_LISTENING)

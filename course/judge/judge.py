@@ -1,0 +1,254 @@
+"""Judging the steps of a lesson against a running profile, once or again and again."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from course.judge.evidence import MET, Evidence
+from course.judge.functions import LessonFaultError
+from course.judge.kinds import expected, judged, topics_of
+from course.results import CheckResult, LessonResult, State, StepResult
+from graph.messages.making import FieldError
+from graph.messages.types import UnknownTypeError
+from graph.observer.observer import Observer
+from launcher.profile.steps.checks import kind_of
+from launcher.profile.steps.draw import draw
+from launcher.profile.steps.expressions import filled
+from launcher.status import NodeState
+from text.sentences import InLanguages, reason_of, say
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Callable, Iterable, Mapping
+    from typing import Any
+
+    from course.lessons.lesson import LessonFolder
+    from graph.data import GraphUpdate
+    from launcher.client.client import SupervisorClient
+    from launcher.profile.steps.checks import CheckDocument
+    from launcher.profile.steps.model import StepDocument
+
+PERIOD_S = 0.1
+SETTLED_WITHIN_S = 15.0
+FOUND_WITHIN_S = 1.5
+"""A node whose name is another one is not waited for any longer."""
+AGAIN_S = 2.0
+"""How long a failed step rests before it is judged again, if nothing happens."""
+REST_S = {"publish": 5.0, "service": 5.0, "parameter": 5.0, "action": 60.0, "ends": 3600.0}
+"""The same after a check that does something: it must not play with the robot all the time."""
+
+_SETTLED = (NodeState.READY, NodeState.RUNNING, NodeState.FAILED, NodeState.EXITED)
+
+
+class Judge:
+    """Judges a lesson; made and closed by `judging`."""
+
+    def __init__(self, lesson: LessonFolder, evidence: Evidence, seed: int) -> None:
+        self.lesson = lesson
+        self.seed = seed
+        self.evidence = evidence
+        self.steps = {step.id: step for step in lesson.steps}
+        self.over = asyncio.create_task(evidence.listen())
+        """Done once the session has ended."""
+
+    async def close(self) -> None:
+        """Stop listening."""
+        self.over.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await self.over
+
+    async def settle(self) -> None:
+        """Wait until every node is ready, or will not be, and the judge has found those there."""
+        loop = asyncio.get_running_loop()
+        deadline_s = loop.time() + SETTLED_WITHIN_S
+        while loop.time() < deadline_s and not self.evidence.ended:
+            if all(node.state in _SETTLED for node in self.evidence.nodes.values()):
+                break
+            await self.evidence.wait(0.2)
+        alive = [node.name for node in self.evidence.nodes.values() if node.state.alive]
+        await self.evidence.until(
+            lambda: MET if all(self.evidence.node(f"/{name}") for name in alive) else None,
+            FOUND_WITHIN_S,
+        )
+
+    async def once(
+        self, *, until: str = "", on_step: Callable[[StepResult], object] = lambda _: None
+    ) -> LessonResult:
+        """Judge every step once, in order; those after the step `until` are left out."""
+        self.follow()
+        await self.settle()
+        results: list[StepResult] = []
+        for step in self.steps.values():
+            result = self.waits(step, results)
+            if result is None:
+                result = await self.step(step)
+            results.append(result)
+            on_step(result)
+            if step.id == until:
+                break
+        return LessonResult(self.seed, self.evidence.values, tuple(results))
+
+    def waits(self, step: StepDocument, results: Iterable[StepResult]) -> StepResult | None:
+        """Return the result of a step that needs one that has not passed; None if it can begin."""
+        passed = {result.id for result in results if result.state is State.PASSED}
+        missing = [need for need in step.needs if need not in passed]
+        if not missing:
+            return None
+        reason = say("waits for: {steps}", steps=", ".join(missing))
+        return StepResult(step.id, State.WAITS, step.points, (), reason)
+
+    async def watch(self, id_: str) -> AsyncIterator[StepResult]:
+        """Judge a step again and again until it has passed; yield what changes.
+
+        It begins anew when a node is started, by others than the judge.
+        """
+        step = self.steps[id_]
+        self.follow([step])
+        shown: StepResult | None = None
+        try:
+            await self.settle()
+            while not self.evidence.ended:
+                restarts = self.evidence.restarts
+                async for result in self._round(step, shown, restarts):
+                    if result != shown:
+                        shown = result
+                        yield shown
+                if shown is not None and shown.state is State.PASSED:
+                    return
+                await self._rest(shown, restarts)
+        finally:
+            self.follow(())
+
+    async def _round(
+        self, step: StepDocument, before: StepResult | None, restarts: int
+    ) -> AsyncIterator[StepResult]:
+        """Judge a step once; yield what is known of it after each check, and at the end."""
+        news: asyncio.Queue[StepResult | None] = asyncio.Queue()
+        judging = asyncio.ensure_future(self.step(step, news.put_nowait, before))
+        judging.add_done_callback(lambda _: news.put_nowait(None))
+        disturbed = asyncio.ensure_future(self._disturbed(restarts, judging))
+        try:
+            while (result := await news.get()) is not None:
+                yield result
+            if not judging.cancelled():
+                yield judging.result()
+        finally:
+            judging.cancel()
+            disturbed.cancel()
+
+    async def _disturbed(self, restarts: int, judging: asyncio.Future[StepResult]) -> None:
+        """Call it off when a node is started."""
+        while self.evidence.restarts == restarts:
+            await self.evidence.wait(AGAIN_S)
+        judging.cancel()
+
+    async def _rest(self, shown: StepResult | None, restarts: int) -> None:
+        """Wait until a node is started, or until it is time to look again."""
+        failed = len([c for c in shown.checks if c.state is State.PASSED]) if shown else 0
+        checks = self.steps[shown.id].checks if shown else ()
+        kind = kind_of(checks[failed]) if failed < len(checks) else None
+        longest_s = REST_S.get(str(kind), AGAIN_S)
+        until_s = time.monotonic() + longest_s
+        while (
+            (left_s := until_s - time.monotonic()) > 0
+            and self.evidence.restarts == restarts
+            and not self.evidence.ended
+        ):
+            await self.evidence.wait(left_s)
+
+    async def step(
+        self,
+        step: StepDocument,
+        on_check: Callable[[StepResult], object] = lambda _: None,
+        before: StepResult | None = None,
+    ) -> StepResult:
+        """Judge a step: its checks in order, up to the first that fails.
+
+        `before`: what was known of it, shown for the checks whose turn has not come.
+        """
+        checks = [self._filled(check) for check in step.checks]
+        found = [CheckResult(State.NOT_YET, expected(check)) for check in checks]
+        if before is not None and len(before.checks) == len(found):
+            found = [
+                replace(one, state=old.state, seen=old.seen, look=old.look)
+                for one, old in zip(found, before.checks, strict=True)
+            ]
+        state, meanwhile = State.PASSED, before.state if before is not None else State.NOT_YET
+        on_check(StepResult(step.id, meanwhile, step.points, tuple(found)))
+        for number, check in enumerate(checks):
+            found[number] = await self._check(check)
+            if found[number].state is not State.PASSED:
+                state = found[number].state
+                found[number + 1 :] = [
+                    CheckResult(State.NOT_YET, one.what) for one in found[number + 1 :]
+                ]
+                break
+            on_check(StepResult(step.id, meanwhile, step.points, tuple(found)))
+        return StepResult(step.id, state, step.points, tuple(found))
+
+    async def _check(self, check: CheckDocument) -> CheckResult:
+        what = expected(check)
+        if self.evidence.update.error:
+            return CheckResult(State.UNJUDGED, what, self.evidence.update.error)
+        try:
+            observation = await judged(check, self.evidence)
+        except Exception as error:  # noqa: BLE001 - whatever nodes say, the judge goes on
+            return CheckResult(State.UNJUDGED, what, _why(error))
+        if observation.met:
+            return CheckResult(State.PASSED, what)
+        if self.evidence.ended:
+            return CheckResult(State.UNJUDGED, what, say("the session has ended"))
+        look = InLanguages(check.look) if check.look else observation.look
+        return CheckResult(State.FAILED, what, observation.seen, look)
+
+    def _filled(self, check: CheckDocument) -> CheckDocument:
+        """Return the check with the values of this run in it."""
+        data = filled(check.model_dump(by_alias=True, exclude_unset=True), self.evidence.values)
+        return type(check).model_validate(data)
+
+    def follow(self, steps: Iterable[StepDocument] | None = None) -> None:
+        """Subscribe to what these steps need, or all steps, and to nothing else."""
+        steps = self.steps.values() if steps is None else steps
+        topics = {topic for step in steps for check in step.checks for topic in topics_of(check)}
+        self.evidence.observer.follow(topics)
+
+
+def _why(error: Exception) -> str:
+    """Say why a check could not be judged."""
+    if isinstance(error, LessonFaultError):
+        return error.words
+    if isinstance(error, (FieldError, UnknownTypeError)):
+        return reason_of(error)
+    return say("the judge failed: {kind}: {text}", kind=type(error).__name__, text=str(error))
+
+
+@contextlib.asynccontextmanager
+async def judging(
+    lesson: LessonFolder,
+    client: SupervisorClient,
+    seed: int,
+    functions: Mapping[str, Callable[[Any], object]] | None = None,
+) -> AsyncIterator[Judge]:
+    """Open a judge for a running profile; `client` is a connection of its own, and stays open.
+
+    `functions`: those of the lesson's checks, if they are not to be read when their turn comes.
+    """
+    observer = Observer(client.session.domain, client.session.discovery, PERIOD_S, graph_s=PERIOD_S)
+    values = draw(lesson.profile.document.values, seed)
+    evidence = Evidence(observer, client, lesson.path, values, functions or {})
+    loop = asyncio.get_running_loop()
+
+    def take(update: GraphUpdate) -> None:
+        with contextlib.suppress(RuntimeError):  # The loop is closed at the very end.
+            loop.call_soon_threadsafe(evidence.take, update)
+
+    observer.start(take)
+    judge = Judge(lesson, evidence, seed)
+    try:
+        yield judge
+    finally:
+        await judge.close()
+        await asyncio.to_thread(observer.stop)

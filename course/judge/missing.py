@@ -1,0 +1,112 @@
+"""Why something is not there: a node that has ended, a topic of a similar name, another type."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.judge.evidence import Observation
+from graph.data import Trouble
+from launcher.status import NodeState
+from text.sentences import say
+from text.suggestions import nearest
+
+if TYPE_CHECKING:
+    from course.judge.evidence import Evidence
+
+_DOWN = (NodeState.FAILED, NodeState.BACKOFF, NodeState.EXITED)
+
+
+def dead_nodes(evidence: Evidence) -> str:
+    """Say which node of the profile does not run as meant, and why; empty if all do.
+
+    What is wrong with a learner's own file comes first: an older process may still run.
+    """
+    for node in evidence.nodes.values():
+        if node.fault is not None and (node.state in _DOWN or node.fault.kind != "warning"):
+            return say("{node}: {why}", node=node.name, why=node.fault.words)
+    for node in evidence.nodes.values():
+        if node.state in _DOWN:
+            return say(
+                "{node} does not run: {why}", node=node.name, why=node.detail or node.state.value
+            )
+    return next(
+        (
+            say("{node}: {why}", node=node.name, why=node.fault.words)
+            for node in evidence.nodes.values()
+            if node.fault is not None
+        ),
+        "",
+    )
+
+
+def no_topic(evidence: Evidence, topic: str) -> Observation:
+    """Say that nobody publishes a topic, and what there is instead."""
+    others = [row.name for row in evidence.update.topics if row.publishers and row.name != topic]
+    meant = nearest(topic, others)
+    if meant:
+        return Observation(
+            met=False,
+            seen=say(
+                "nobody publishes {topic}, but {meant} is published", topic=topic, meant=meant
+            ),
+            look=say("Compare the name of the topic letter by letter."),
+        )
+    return Observation(
+        met=False,
+        seen=say("nobody publishes {topic}", topic=topic),
+        look=dead_nodes(evidence)
+        or say("Is create_publisher called in __init__, and is the name of the topic right?"),
+    )
+
+
+def nobody_subscribes(evidence: Evidence, topic: str) -> Observation:
+    """Say that nobody subscribes to a topic, and what there is instead."""
+    others = [row.name for row in evidence.update.topics if row.subscribed_by and row.name != topic]
+    meant = nearest(topic, others)
+    if meant:
+        return Observation(
+            met=False,
+            seen=say(
+                "nobody subscribes to {topic}, but {meant} is subscribed to",
+                topic=topic,
+                meant=meant,
+            ),
+            look=say("Compare the name of the topic letter by letter."),
+        )
+    return Observation(
+        met=False,
+        seen=say("nobody subscribes to {topic}", topic=topic),
+        look=dead_nodes(evidence)
+        or say("Is create_subscription called in __init__, with the right name?"),
+    )
+
+
+def wrong_type(topic: str, wanted: str, found: tuple[str, ...]) -> Observation:
+    """Say that a topic has another type than it should."""
+    return Observation(
+        met=False,
+        seen=say(
+            "{topic} has the type {found}, not {wanted}",
+            topic=topic,
+            found=", ".join(found),
+            wanted=wanted,
+        ),
+        look=say("Compare the import of the message and the type in create_publisher."),
+    )
+
+
+def no_messages(evidence: Evidence, topic: str, type_name: str) -> Observation:
+    """Say why there are no messages on a topic."""
+    row = evidence.topic(topic)
+    if row is None or not row.publishers:
+        return no_topic(evidence, topic)
+    published = tuple(dict.fromkeys(end.type_name for end in row.published_by))
+    if type_name and published and published != (type_name,):
+        return wrong_type(topic, type_name, published)
+    if row.trouble in (Trouble.QOS_MISMATCH, Trouble.UNKNOWN_TYPE):
+        return Observation(met=False, seen=row.detail)
+    return Observation(
+        met=False,
+        seen=say("no message has come on {topic}", topic=topic),
+        look=dead_nodes(evidence) or say("Is publish called? By a timer, or in the callback?"),
+    )

@@ -1,0 +1,126 @@
+"""A judge in a process of its own, from the side of whoever shows what it says.
+
+judge = await RemoteJudge.start(lesson.path, client.session.run_id, passed={"topic"})
+judge.judge("rate")
+async for event in judge.events(): ...
+await judge.close()
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import course
+from course.protocol import MOST_BYTES, unpack_step
+from course.results import StepResult
+from launcher.control.protocol import encode, unpack_text
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncGenerator, Iterable, Mapping
+
+    from launcher.profile.steps.expressions import Drawn
+
+CLOSED_WITHIN_S = 3.0
+
+
+@dataclass(frozen=True)
+class ValuesDrawn:
+    """The judge is at work, with these values."""
+
+    seed: int
+    values: Mapping[str, Drawn] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class JudgeEnded:
+    """The judge has ended; nothing more comes."""
+
+    reason: str = ""
+    """Why, in a sentence; empty if it was asked to."""
+
+
+JudgeEvent: TypeAlias = ValuesDrawn | StepResult | JudgeEnded
+
+
+class RemoteJudge:
+    """A judge's process; made by `start`."""
+
+    def __init__(self, process: asyncio.subprocess.Process) -> None:
+        self._process = process
+
+    @classmethod
+    async def start(
+        cls, lesson: Path, run: str, *, seed: int = 0, passed: Iterable[str] = ()
+    ) -> RemoteJudge:
+        """Start one for a running profile.
+
+        Args:
+            lesson: the folder of the lesson whose steps count
+            run: the id of the run, `SessionInfo.run_id`
+            seed: what the values are drawn from; 0: it draws one
+            passed: steps that have passed earlier, for those that need them
+        """
+        process = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", "course.judge"),
+            # In that folder `course` is this package, whatever else the user's folder may contain.
+            cwd=Path(course.__file__).parent.parent,
+            stdin=asyncio.subprocess.PIPE,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.DEVNULL,
+            env={**os.environ, "OPENBLAS_THREAD_TIMEOUT": "4"},
+            limit=MOST_BYTES,
+            # Ctrl-C in the terminal is meant for its client.
+            start_new_session=True,
+        )
+        judge = cls(process)
+        judge._ask(lesson=str(lesson), run=run, seed=seed, passed=sorted(passed), op="start")
+        return judge
+
+    def judge(self, step: str) -> None:
+        """Judge this step from now on, again and again until it has passed, and no other one."""
+        self._ask(op="judge", step=step)
+
+    async def events(self) -> AsyncGenerator[JudgeEvent, None]:
+        """Yield what the judge says, `JudgeEnded` last; for a single consumer."""
+        assert self._process.stdout is not None
+        async for line in self._process.stdout:
+            try:
+                event = _unpacked(json.loads(line))
+            except (ValueError, KeyError, TypeError):
+                break
+            yield event
+            if isinstance(event, JudgeEnded):
+                return
+        yield JudgeEnded(say("the judge has ended unexpectedly"))
+
+    async def close(self) -> None:
+        """End it; return when it has ended."""
+        self._ask(op="quit")
+        if self._process.stdin is not None:
+            self._process.stdin.close()
+        try:
+            await asyncio.wait_for(self._process.wait(), CLOSED_WITHIN_S)
+        except asyncio.TimeoutError:
+            with contextlib.suppress(ProcessLookupError):
+                self._process.kill()
+            await self._process.wait()
+
+    def _ask(self, **request: object) -> None:
+        if self._process.stdin is not None and not self._process.stdin.is_closing():
+            self._process.stdin.write(encode(request))
+
+
+def _unpacked(message: Mapping[str, Any]) -> JudgeEvent:
+    if message["event"] == "values":
+        return ValuesDrawn(message["seed"], message["values"])
+    if message["event"] == "step":
+        return unpack_step(message["step"])
+    return JudgeEnded(unpack_text(message["reason"]))

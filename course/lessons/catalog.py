@@ -1,0 +1,70 @@
+"""Finding lessons: those of Deck, in `./lessons`, and in the learner's course folder."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.lessons.lesson import LessonFolder, folders
+from launcher.errors import UsageError
+from launcher.profile.catalog import fitting
+from launcher.profile.defaults import FOLDERS_OWN
+from text.sentences import say
+from text.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from launcher.profile.spec import Profile
+
+SHIPPED = Path(__file__).resolve().parents[2] / "lessons"
+COURSE = "DECK_COURSE"
+
+
+def course_dir() -> Path:
+    """Return the folder in which the learner works: `DECK_COURSE`, else `~/deck-course`."""
+    chosen = os.environ.get(COURSE)
+    return Path(chosen).expanduser().absolute() if chosen else Path.home() / "deck-course"
+
+
+def lessons() -> dict[str, LessonFolder]:
+    """Return all lessons by name; a later place overrides an earlier one."""
+    places = (SHIPPED, course_dir() / "lessons", Path("lessons"))
+    found = {
+        folder.name: LessonFolder(folder.absolute())
+        for place in places
+        for folder in folders(place)
+        if (folder / FOLDERS_OWN).is_file()
+    }
+    return dict(sorted(found.items()))
+
+
+def find_lesson(name: str | Path) -> LessonFolder:
+    """Return a lesson by folder, name, number or start of a name.
+
+    Raises:
+        UsageError: if there is none, or if there are several.
+    """
+    text = str(name)
+    known = lessons()
+    if (Path(text) / FOLDERS_OWN).is_file() and (os.sep in text or text not in known):
+        # `..` is a name as little as `.` is.
+        return LessonFolder(Path(os.path.abspath(text)))  # noqa: PTH100
+    if text in known:
+        return known[text]
+    fits = fitting(text, known)
+    if len(fits) == 1:
+        return known[fits[0]]
+    if fits:
+        names = ", ".join(sorted(fits))
+        raise UsageError(say("{name!r} matches several: {names}", name=text, names=names))
+    hint = did_you_mean(text, known) or say("there are: {names}", names=", ".join(known))
+    raise UsageError(say("there is no lesson {name!r}; {hint}", name=text, hint=hint))
+
+
+def lesson_of(profile: Profile) -> LessonFolder | None:
+    """Return the lesson that a profile belongs to, by its number; None if there is none."""
+    number = profile.document.lesson
+    if number:
+        fits = fitting(number, lessons())
+        return lessons()[fits[0]] if len(fits) == 1 else None
+    return lessons().get(profile.name)

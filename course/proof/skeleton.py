@@ -1,0 +1,144 @@
+"""The folder that a teacher's own lesson begins as: one step, and what it takes to prove it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launcher.errors import UsageError
+from launcher.profile.defaults import FOLDERS_OWN
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_LESSON = """\
+title: {en: My lesson, ru: Мой урок}
+# The nodes of Deck that the lesson is about; here, none: the learner's own are in starter/.
+nodes:
+  talker: {run: ./solution/talker.py}
+values:
+  word: {one_of: [one, two, three]}
+steps:
+  - id: topic
+    title: {en: Publish a text, ru: Опубликовать строку}
+    file: talker.py
+    checks:
+      - topic: /chatter
+        type: std_msgs/msg/String
+    hints:
+      - en: A publisher is made in __init__ by self.create_publisher.
+        ru: Издатель создаётся в __init__ вызовом self.create_publisher.
+  - id: rate
+    title: {en: Twice a second, ru: Дважды в секунду}
+    file: talker.py
+    needs: [topic]
+    checks:
+      - rate: /chatter
+        between: [1.7, 2.3]
+"""
+_PROFILE = """\
+title: {en: My lesson, ru: Мой урок}
+nodes:
+  talker: {run: ./talker.py}
+"""
+_TEXT = {
+    "en": """\
+# My lesson
+
+What the learner should know before the first step.
+
+## topic
+
+What this step is about.
+
+**Your task**: what is to be done in talker.py.
+
+## rate
+
+A timer calls a method every so many seconds.
+
+**Your task**: publish twice a second.
+""",
+    "ru": """\
+# Мой урок
+
+Что ученику нужно знать до первого шага.
+
+## topic
+
+О чём этот шаг.
+
+**Задание**: что нужно сделать в talker.py.
+
+## rate
+
+Таймер вызывает метод через заданное число секунд.
+
+**Задание**: публикуйте дважды в секунду.
+""",
+}
+_NODE = """\
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__("talker")
+{body}
+
+    def talk(self):
+        self.publisher.publish(String(data="hello"))
+
+
+def main():
+    rclpy.init()
+    node = Talker()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
+"""
+_PUBLISHER = '        self.publisher = self.create_publisher(String, "/chatter", 10)\n'
+_TIMER = "        self.create_timer({period}, self.talk)"
+_SOLUTION = _PUBLISHER + _TIMER.format(period=0.5)
+_FILES = {
+    FOLDERS_OWN: _LESSON,
+    "text.en.md": _TEXT["en"],
+    "text.ru.md": _TEXT["ru"],
+    "starter/lesson.yaml": _PROFILE,
+    "starter/talker.py": _NODE.format(
+        body="        # Missing: a publisher of String on /chatter, and a timer that calls talk."
+    ),
+    "solution/talker.py": _NODE.format(body=_SOLUTION),
+    "wrong/topic/another-name/talker.py": _NODE.format(
+        body=_SOLUTION.replace("/chatter", "/chater")
+    ),
+    "wrong/rate/once-in-two-seconds/talker.py": _NODE.format(
+        body=_PUBLISHER + _TIMER.format(period=2.0)
+    ),
+}
+
+
+def new_lesson(folder: Path) -> Path:
+    """Make the folder of a new lesson.
+
+    Raises:
+        UsageError: if something is there already.
+    """
+    if folder.exists():
+        raise UsageError(say("{path} is there already: choose another name", path=str(folder)))
+    for name, text in _FILES.items():
+        file = folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, "utf-8")
+    return folder

@@ -1,0 +1,73 @@
+"""What the log of lesson 1 must look like."""
+
+import re
+
+INFO = 20
+
+
+def greets(seen):
+    """The node has said hello to its log."""
+    # Both nodes are this file; the greeting of the one that starts first may come too early.
+    nodes = ("hello", "hello_fast")
+    lines = [line["msg"] for node in nodes for _time, line in logged(seen, node)]
+    if any(re.search("hello|привет", text, re.IGNORECASE) for text in lines):
+        return None
+    if any(re.search("hello|привет", text, re.IGNORECASE) for text in seen.logs["hello"]):
+        return {
+            "en": "the greeting is printed, not logged: use self.get_logger().info(...)",
+            "ru": "приветствие напечатано, а не записано: нужен self.get_logger().info(...)",
+        }
+    if lines:
+        return {
+            "en": f"no line with hello or привет; the newest one: {lines[-1]}",
+            "ru": f"нет строки со словом «привет» или hello; последняя: {lines[-1]}",
+        }
+    return {"en": "hello logs nothing", "ru": "hello ничего не пишет в журнал"}
+
+
+def counts_seconds(seen):
+    """The node has logged three numbers in a row, a second apart."""
+    return counts(seen, "hello", 1.0)
+
+
+def counts_faster(seen):
+    """The second node of the same file counts four times a second."""
+    return counts(seen, "hello_fast", 0.25)
+
+
+def counts(seen, node, period_s):
+    """The newest numbers that a node has logged follow each other at this period."""
+    numbered = [
+        (logged_s, numbers)
+        for logged_s, line in logged(seen, node)
+        if (numbers := {int(each) for each in re.findall(r"(?<!ROS )\d+", line["msg"])})
+    ][-3:]
+    if len(numbered) < 3:
+        return {
+            "en": f"{node} has logged {len(numbered)} lines with a number, three are needed",
+            "ru": f"строк с числом в журнале {node}: {len(numbered)}, нужно три",
+        }
+    (first_s, first), (_, second), (third_s, third) = numbered
+    if not any(n + 1 in second and n + 2 in third for n in first):
+        last = [max(numbers) for _, numbers in numbered]
+        return {
+            "en": f"{node} does not count 1, 2, 3: it has logged {last[0]}, {last[1]}, {last[2]}",
+            "ru": f"{node} не считает 1, 2, 3: в журнале {last[0]}, {last[1]}, {last[2]}",
+        }
+    found_s = (third_s - first_s) / 2
+    if not 0.6 * period_s <= found_s <= 1.6 * period_s:
+        return {
+            "en": f"{node} counts every {found_s:.2f} s, not every {period_s:g} s",
+            "ru": f"{node} считает каждые {found_s:.2f} с, а не каждые {period_s:g} с",
+        }
+    return None
+
+
+def logged(seen, node):
+    """What a node has logged: when, and the message."""
+    lines = [
+        (line["stamp"]["sec"] + line["stamp"]["nanosec"] / 1e9, line)
+        for _, line in seen.messages["/rosout"]
+        if line["name"] == node and line["level"] == INFO
+    ]
+    return sorted(lines, key=lambda each: each[0])

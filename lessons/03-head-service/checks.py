@@ -1,0 +1,66 @@
+"""What /head_state must show while the head of lesson 3 turns."""
+
+import itertools
+import math
+
+LONGEST_SILENCE_S = 0.9
+SHORTEST_MOVEMENT_S = 0.8
+LONGEST_MOVEMENT_S = 3.0
+NOT_THERE = {
+    "en": "/head_state does not show the angles that were asked for",
+    "ru": "в /head_state нет углов, которые были запрошены",
+}
+
+
+def takes_a_second(seen):
+    """Between the arrivals of two requests, one after the other, a movement has passed."""
+    first_s = _arrived(seen, 2)
+    second_s = _arrived(seen, 3)
+    if second_s is not None and first_s is None:
+        return {
+            "en": "both requests were answered in no time: no servo is that fast",
+            "ru": "на оба запроса ответ пришёл мгновенно: таких быстрых сервоприводов нет",
+        }
+    if first_s is None or second_s is None:
+        return NOT_THERE
+    took_s = second_s - first_s
+    if took_s < SHORTEST_MOVEMENT_S:
+        return {
+            "en": f"the head was there after {took_s:.1f} s: no servo is that fast",
+            "ru": f"голова была на месте через {took_s:.1f} с: таких быстрых сервоприводов нет",
+        }
+    if took_s > LONGEST_MOVEMENT_S:
+        return {
+            "en": f"the head took {took_s:.1f} s instead of 1 s",
+            "ru": f"поворот занял {took_s:.1f} с вместо 1 с",
+        }
+    return None
+
+
+def never_silent(seen):
+    """/head_state has come all the time, also during the movement, and goes on after it."""
+    if _arrived(seen, 4) is None:
+        return NOT_THERE
+    times = [time_s for time_s, _ in seen.messages["/head_state"]]
+    silence_s = max(
+        (later - sooner for sooner, later in itertools.pairwise(times)), default=math.inf
+    )
+    if silence_s < LONGEST_SILENCE_S:
+        return None
+    return {
+        "en": f"/head_state was silent for {silence_s:.1f} s while the head turned",
+        "ru": f"/head_state молчал {silence_s:.1f} с, пока голова поворачивалась",
+    }
+
+
+def _arrived(seen, tilt_deg):
+    """When the head was first told to be at this tilt."""
+    return next(
+        (
+            time_s
+            for time_s, message in seen.messages["/head_state"]
+            if len(message["position"]) == 2
+            and abs(message["position"][1] - math.radians(tilt_deg)) < 0.002
+        ),
+        None,
+    )

@@ -1,0 +1,27 @@
+"""How often the agent of lesson 7 looks."""
+
+import re
+
+SIZE = re.compile(r"\d+x\d+")
+SHORTEST_S, LONGEST_S = 2.0, 5.0
+
+
+def seldom(seen):
+    """Tell whether the agent logs about a picture every three seconds."""
+    looks_s = sorted(
+        line["stamp"]["sec"] + line["stamp"]["nanosec"] / 1e9
+        for _, line in seen.messages["/rosout"]
+        if line["name"] == "vlm_agent" and SIZE.search(line["msg"])
+    )
+    if len(looks_s) < 2:
+        return {
+            "en": f"the agent has looked {len(looks_s)} times so far",
+            "ru": f"агент посмотрел пока столько раз: {len(looks_s)}",
+        }
+    after_s = looks_s[-1] - looks_s[-2]
+    if SHORTEST_S <= after_s <= LONGEST_S:
+        return None
+    return {
+        "en": f"the agent looks again after {after_s:.1f} s; 3 s is wanted",
+        "ru": f"агент смотрит снова через {after_s:.1f} с, а нужно через 3 с",
+    }

@@ -1,0 +1,100 @@
+"""What the robot does, seen from its topics."""
+
+import math
+
+DRIVE, ODOM, SONAR = "/drive", "/odom", "/sensor/sonar_front"
+STILL = 1e-3
+
+
+def speeds(seen):
+    """Return the speeds on /drive, in order."""
+    return [message["drive"]["speed"] for _, message in seen.messages[DRIVE]]
+
+
+def repeats(seen):
+    """Tell whether a word is repeated for two seconds, ten times in each."""
+    times = [when for when, message in seen.messages[DRIVE] if message["drive"]["speed"] < 0]
+    if len(times) < 2 or times[-1] - times[0] < 1.4:
+        return {
+            "en": f"/drive came {len(times)} times after the word; wanted: for two seconds",
+            "ru": f"после слова в /drive пришло сообщений: {len(times)}; нужны две секунды",
+        }
+    rate = (len(times) - 1) / (times[-1] - times[0])
+    if not 7 <= rate <= 13:
+        return {
+            "en": f"/drive comes {rate:.1f} times a second, not 10",
+            "ru": f"в /drive приходит {rate:.1f} сообщений в секунду, а не 10",
+        }
+    return None
+
+
+def ends_with_a_stop(seen):
+    """Tell whether the last word of the driver is a stop, after some motion."""
+    said = speeds(seen)
+    if not said or max(map(abs, said)) < STILL:
+        return {"en": "nothing that moves came on /drive", "ru": "в /drive не пришло движения"}
+    if abs(said[-1]) > STILL:
+        return {
+            "en": f"the last speed on /drive is {said[-1]:.2f} m/s, not 0",
+            "ru": f"последняя скорость в /drive — {said[-1]:.2f} м/с, а не 0",
+        }
+    first = next(when for when, message in seen.messages[DRIVE] if message["drive"]["speed"])
+    lasted = seen.messages[DRIVE][-1][0] - first
+    if not 1.4 <= lasted <= 3.5:
+        return {
+            "en": f"the stop came {lasted:.1f} s after the first message, not 2 s",
+            "ru": f"остановка пришла через {lasted:.1f} с после первого сообщения, а не через 2 с",
+        }
+    return None
+
+
+def moves(seen):
+    """Tell whether the robot has moved by its odometry."""
+    places = [message["pose"]["pose"]["position"] for _, message in seen.messages[ODOM]]
+    if len(places) < 2:
+        return {"en": "no odometry comes", "ru": "одометрия не приходит"}
+    way = math.hypot(places[-1]["x"] - places[0]["x"], places[-1]["y"] - places[0]["y"])
+    if way < 0.1:
+        return {
+            "en": f"the robot has moved by {way:.2f} m",
+            "ru": f"робот проехал {way:.2f} м",
+        }
+    return None
+
+
+def decides(seen):
+    """Tell whether the word fits what the sonar has just said."""
+    words = seen.messages["/ai_command"]
+    if not words:
+        return {"en": "no word came on /ai_command", "ru": "в /ai_command не пришло слова"}
+    when, message = words[0]
+    before = [each["data"] for time, each in seen.messages[SONAR] if time <= when + 0.2][-8:]
+    word = message["data"]
+    # One measurement in a thousand fails, and is nan.
+    clear = sum(metres >= 1.0 for metres in before) * 2 > len(before)
+    if before and word == ("вперед" if clear else "стоп"):
+        return None
+    return {
+        "en": f"the word is {word}, and the sonar said {before[-1:]}",
+        "ru": f"слово — {word}, а сонар сообщил {before[-1:]}",
+    }
+
+
+def stands_before_the_wall(seen):
+    """Tell whether the robot stands, in front of something, and not in it."""
+    odometry, distances = seen.messages[ODOM], seen.messages[SONAR]
+    if len(odometry) < 2 or not distances:
+        return {"en": "no odometry or distance comes", "ru": "нет одометрии или расстояния"}
+    speed = odometry[-1][1]["twist"]["twist"]["linear"]["x"]
+    nearest = min((each["data"] for _, each in distances if each["data"] > 0), default=math.inf)
+    if speed > 0.02:
+        return {
+            "en": f"the robot still drives, {speed:.2f} m/s",
+            "ru": f"робот всё ещё едет, {speed:.2f} м/с",
+        }
+    if nearest < 0.2:
+        return {
+            "en": f"the robot came as near as {nearest:.2f} m",
+            "ru": f"робот подъехал на {nearest:.2f} м",
+        }
+    return None
