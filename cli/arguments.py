@@ -9,7 +9,8 @@ from __future__ import annotations
 import argparse
 from typing import IO, TYPE_CHECKING, NoReturn
 
-from cli.values import bandwidth, count, domain, folder, rate, seconds
+from cli.values import at_once, bandwidth, count, domain, folder, rate, seconds, whole
+from course.grade.defaults import FORMATS, WITHIN_S
 from text.i18n import LANGUAGES, N_, _, ngettext
 from text.output import harmless
 
@@ -30,6 +31,10 @@ COMMANDS = {
     "watch": N_("open the screen on nodes that others have started in a ROS domain"),
     "record": N_("record topics of running nodes into a folder that `ros2 bag` can read"),
     "replay": N_("open the screen on a recording, without a robot"),
+    "new": N_("make a folder of one's own for a lesson, to write its nodes in"),
+    "lesson": N_("prove a lesson of one's own, or begin one"),
+    "grade": N_("grade the files of folders by the steps of a lesson, whatever they do"),
+    "shell": N_("open a shell in the lesson's domain, with ros2, colcon and Deck's Python"),
     "doctor": N_(
         "check what is installed, which ROS, which ports, and say how to fix what is missing"
     ),
@@ -302,6 +307,117 @@ def _add_replay(parser: Parser) -> None:
     _add_bandwidth(parser)
 
 
+def _add_new(parser: Parser) -> None:
+    parser.add_argument(
+        "lesson", nargs="?", metavar=_("LESSON"), help=_("name or number of the lesson")
+    )
+    parser.add_argument(
+        "--node", metavar=_("NAME"), help=_("instead: an empty node of this name, and its profile")
+    )
+    parser.epilog = _(
+        "The folder is in ~/deck-course, or where DECK_COURSE says. Nothing that is there is"
+        " overwritten without a copy."
+    )
+
+
+def _add_lesson(parser: Parser) -> None:
+    parser.add_argument("action", choices=("check", "new"))
+    parser.add_argument(
+        "lessons", nargs="*", metavar=_("LESSON"), help=_("name, number or folder; all by default")
+    )
+    parser.add_argument(
+        "--jobs",
+        metavar="N",
+        type=at_once,
+        default=2,
+        help=_("how many runs at once, 2 by default"),
+    )
+    _add_seed(parser)
+    parser.epilog = _(
+        "check: the starter must fail, the solution pass, and each mistake in wrong/STEP/ be caught"
+        " at its step. Exit code: 0 if so, else 1."
+    )
+
+
+def _add_seed(parser: Parser) -> None:
+    parser.add_argument(
+        "--seed",
+        metavar="N",
+        type=whole,
+        default=0,
+        help=_("draw the values from this number; by default another one in each run"),
+    )
+
+
+def _add_grade(parser: Parser) -> None:
+    parser.add_argument("lesson", metavar=_("LESSON"), help=_("name, number or folder"))
+    parser.add_argument(
+        "folders",
+        nargs="*",
+        metavar=_("FOLDER"),
+        help=_("with a learner's files; by default your own of this lesson, or the current one"),
+    )
+    parser.add_argument(
+        "--format",
+        choices=FORMATS,
+        help=_("write the grades for a program; gradescope and classroom50: of one folder"),
+    )
+    parser.add_argument(
+        "--output",
+        metavar=_("FILE"),
+        help=_("write them into this file, and what people read to standard output"),
+    )
+    parser.add_argument(
+        "--bag",
+        metavar=_("DIR"),
+        type=folder,
+        help=_("keep a recording of each folder in this one, as evidence"),
+    )
+    parser.add_argument(
+        "--jobs",
+        metavar="N",
+        type=at_once,
+        default=1,
+        help=_("how many folders at once, 1 by default"),
+    )
+    parser.add_argument(
+        "--timeout",
+        dest="within",
+        metavar="S",
+        type=seconds,
+        default=WITHIN_S,
+        help=_("how long a folder may take, 180 s by default"),
+    )
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("ROS domain, with one job; by default one that nobody is in"),
+    )
+    _add_seed(parser)
+    parser.epilog = _(
+        "The folders are left as they are. Exit code: 0 if all steps of all folders have passed, 1"
+        " if not, 2 for a wrong request, 3 if a folder could not be graded; with --format"
+        " classroom50 also 0 if steps have failed."
+    )
+
+
+def _add_shell(parser: Parser) -> None:
+    parser.add_argument(
+        "profile", nargs="?", metavar=_("PROFILE"), help=_("by default the lesson that is running")
+    )
+    parser.add_argument(
+        "-c", dest="line", metavar=_("LINE"), help=_("run this command line and end")
+    )
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("ROS domain; by default that of the running robot"),
+    )
+    parser.epilog = _("The shell is that of SHELL. The exit code is that of the shell or command.")
+
+
 def _add_doctor(parser: Parser) -> None:
     _add_json(parser)
     parser.epilog = _("Exit code: 0, or 1 if something essential is missing.")
@@ -319,6 +435,10 @@ _ADD = {
     "watch": _add_watch,
     "record": _add_record,
     "replay": _add_replay,
+    "new": _add_new,
+    "lesson": _add_lesson,
+    "grade": _add_grade,
+    "shell": _add_shell,
     "doctor": _add_doctor,
 }
 

@@ -11,7 +11,7 @@ from cli.doctor.login import before_logout, collect
 from cli.health import settled, well
 from cli.report import TextReport
 from cli.sessions import as_json, show
-from cli.shared_domain import warn_of_shared_domain
+from cli.shared_domain import in_own_domain
 from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.client import client
 from launcher.client.log_history import newer
@@ -72,7 +72,7 @@ async def _up(options: Namespace) -> int:
         domain=options.domain,
         ports=serial_ports,
     )
-    warn_of_shared_domain(profile)
+    profile = in_own_domain(profile, options.domain)
     try:
         link = await client.launch(
             profile, foreground=False, node_lang=language(), supervisor=options.supervisor

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from launcher.errors import ProfileError
 from launcher.profile.catalog import find_profile, list_profiles
 from launcher.profile.load import load_profile
+from launcher.profile.own_files import faults_of
 from launcher.profile.text import shown
 from text.i18n import _, localized, ngettext, pick
 from text.output import DIM, RED, YELLOW, Paint, json_text, write
@@ -72,9 +73,11 @@ def _checked(path: Path, options: Namespace) -> dict[str, list[dict[str, object]
     problems: tuple[ProfileProblem, ...] = ()
     warnings: tuple[ProfileProblem, ...] = ()
     try:
-        warnings = _load(path, options).warnings
+        profile = _load(path, options)
     except ProfileError as error:
         problems = error.problems
+    else:
+        problems, warnings = faults_of(profile), profile.warnings
     return {
         "path": str(path),
         "problems": [asdict(problem) for problem in problems],
@@ -90,8 +93,13 @@ def _check(path: Path, options: Namespace) -> int:
         for problem in error.problems:
             write(_line(problem, paint, RED))
         return error.exit_code
+    faults = faults_of(profile)
+    for problem in faults:
+        write(_line(problem, paint, RED))
     for problem in profile.warnings:
         write(_line(problem, paint, YELLOW, _("warning") + ": "))
+    if faults:
+        return ProfileError.exit_code
     count = len(profile.nodes)
     nodes = ngettext("{count} node", "{count} nodes", count).format(count=count)
     well = _("all is well")

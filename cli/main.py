@@ -34,6 +34,10 @@ HANDLERS = {
     "down": ("cli.background", "down_command"),
     "record": ("cli.record", "record_command"),
     "replay": ("cli.replay", "replay_command"),
+    "new": ("cli.new", "new_command"),
+    "lesson": ("cli.lesson", "lesson_command"),
+    "grade": ("cli.grade", "grade_command"),
+    "shell": ("cli.shell", "shell_command"),
     "doctor": ("cli.doctor.command", "doctor_command"),
 }
 """Command to module and function: only the module of the given command is imported."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from cli.health import over, settled, well
 from cli.line_writer import LineWriter
 from cli.report import JsonReport, Summary, TextReport
-from cli.shared_domain import warn_of_shared_domain
+from cli.shared_domain import in_own_domain
 from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.errors import SilentSupervisorError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
@@ -47,7 +47,7 @@ def run_command(options: Namespace) -> int:
         domain=options.domain,
         ports=serial_ports,
     )
-    warn_of_shared_domain(profile)
+    profile = in_own_domain(profile, options.domain)
     if stop_is_kept(profile.domain):
         say_error(stop_words(profile.domain))
     return asyncio.run(_main(profile, options))

@@ -5,12 +5,24 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from launcher.errors import DomainTakenError
-from launcher.runs.shared_domain import refuse_shared_domain
+from launcher.runs.shared_domain import apart_from_classmates, refuse_shared_domain
 from text.i18n import _, localized
 from text.output import say_error
 
 if TYPE_CHECKING:
     from launcher.profile.load import Profile
+
+
+def in_own_domain(profile: Profile, asked: int | None) -> Profile:
+    """Return the profile in the domain it is to run in, and say what has to be said of it."""
+    settled = apart_from_classmates(profile, asked)
+    if settled.domain != profile.domain:
+        words = _(
+            "somebody else on this account is in domain {taken}: this one runs in domain {domain}"
+        )
+        say_error(words.format(taken=profile.domain, domain=settled.domain))
+    warn_of_shared_domain(settled)
+    return settled
 
 
 def warn_of_shared_domain(profile: Profile) -> None:

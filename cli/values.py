@@ -9,6 +9,8 @@ from launcher.domain.domain import parse_domain
 from launcher.errors import DomainError
 from text.i18n import _, localized
 
+MOST_AT_ONCE = 64
+
 
 def domain(text: str) -> int:
     """Return a ROS domain, 0 to 232."""
@@ -70,3 +72,19 @@ def count(text: str) -> int:
     if not (text.isascii() and text.isdigit()):
         raise argparse.ArgumentTypeError(_("{text!r} is not a number of lines").format(text=text))
     return int(text)
+
+
+def whole(text: str) -> int:
+    """Return a whole number that is not negative."""
+    if not (text.isascii() and text.isdigit()):
+        raise argparse.ArgumentTypeError(_("{text!r} is not a whole number").format(text=text))
+    return int(text)
+
+
+def at_once(text: str) -> int:
+    """Return how many runs there may be at once."""
+    number = whole(text)
+    if not 1 <= number <= MOST_AT_ONCE:
+        words = _("expected a number from 1 to {most}, got {n}")
+        raise argparse.ArgumentTypeError(words.format(most=MOST_AT_ONCE, n=number))
+    return number

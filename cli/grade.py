@@ -1,0 +1,265 @@
+"""`deck grade`: the files of folders against every step of a lesson, with points."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+from contextlib import aclosing
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.folder.folder import folder_of
+from course.grade.defaults import CLASSROOM50
+from course.grade.formats.choice import writer_of
+from course.grade.formats.words import look, message, remarks, title
+from course.grade.grades import GradeState
+from course.grade.grading import Domains, Terms, grade_all
+from course.grade.submission import check_gradable, default_folder, submissions
+from course.lessons.catalog import find_lesson
+from course.results import State
+from launcher.errors import UsageError
+from launcher.processes.confinement import Confinement, confinement
+from launcher.processes.prctl import become_subreaper
+from text.i18n import N_, _, language
+from text.os_words import os_reason
+from text.output import BOLD, GREEN, RED, YELLOW, Paint, say_error, table, write
+from text.plain import plain
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from collections.abc import Sequence
+
+    from course.grade.grades import Grade, StepGrade
+    from course.grade.submission import Submission
+
+_WIDTH = 20
+"""Room for the longest state."""
+ALL_PASSED, SOME_FAILED, NOT_GRADED = 0, 1, 3
+INTERRUPTED = 130
+_STATES = {
+    "not yet": N_("not yet"),
+    "passed": N_("passed"),
+    "failed": N_("not passed"),
+    "could not be judged": N_("could not be judged"),
+    "could not be graded": N_("could not be graded"),
+    "waits": N_("waits"),
+}
+_COLOURS = {State.PASSED: GREEN, State.FAILED: RED, State.WAITS: YELLOW, State.UNJUDGED: RED}
+
+
+def grade_command(options: Namespace) -> int:
+    """Grade the folders; write the grades; return 0 if all have passed."""
+    lesson = find_lesson(options.lesson)
+    check_gradable(lesson)
+    folders = [Path(name) for name in options.folders]
+    chosen = submissions(lesson, folders or [default_folder(lesson, folder_of(lesson))])
+    terms = Terms(
+        lesson,
+        seed=options.seed,
+        bags=_bags(options.bag, chosen),
+        within_s=options.within,
+        language=language(),
+        adopting=True,
+    )
+    domains = _domains(options)
+    writer = writer_of(options.format, len(chosen)) if options.format else None
+    output = _writable(options.output) if options.output else None
+    _tell_of_confinement()
+    # What escapes from an examiner that was killed becomes a child of this process, and is ended.
+    become_subreaper()
+    report = _GradeReport(len(chosen), aloud=writer is None or output is not None)
+    grades = asyncio.run(_graded(terms, chosen, (options.jobs, domains), report))
+    report.end(grades)
+    if writer is not None:
+        _put(writer(grades), output)
+    elif output is not None:
+        _put("\n".join(report.lines) + "\n", output)
+    return exit_code(grades, options.format)
+
+
+def exit_code(grades: Sequence[Grade], format_name: str | None) -> int:
+    """Return 0 if all have passed, 1 if one has not, 3 if one could not be graded.
+
+    Classroom 50 takes any other code than 0 for a fault of the grader.
+    """
+    states = {grade.state for grade in grades}
+    if GradeState.UNGRADED in states:
+        return NOT_GRADED
+    if GradeState.FAILED in states and format_name != CLASSROOM50:
+        return SOME_FAILED
+    return ALL_PASSED
+
+
+def _bags(folder: str | None, chosen: Sequence[Submission]) -> Path | None:
+    """Return the folder for recordings; raises UsageError if one of them is there already."""
+    if folder is None:
+        return None
+    for one in chosen:
+        path = Path(folder) / one.student.replace("/", "-")
+        if path.exists():
+            raise UsageError(say("{path} is there already: choose another name", path=str(path)))
+    return Path(folder)
+
+
+def _domains(options: Namespace) -> Domains:
+    """Return the domain that was asked for, or any; raises UsageError if several would share it."""
+    if options.domain is None:
+        return Domains()
+    if options.jobs > 1:
+        raise UsageError(say("--domain is for one job at a time: leave out --jobs"))
+    return Domains([options.domain])
+
+
+def _writable(name: str) -> Path:
+    """Make sure, before anything runs, that a file can be written."""
+    path = Path(name)
+    try:
+        path.open("a", encoding="utf-8").close()
+    except OSError as error:
+        raise UsageError(
+            say("{path} cannot be written: {reason}", path=name, reason=os_reason(error))
+        ) from error
+    return path
+
+
+def _put(text: str, output: Path | None) -> None:
+    if output is not None:
+        # Lines end as the format has it.
+        output.write_bytes(text.encode())
+        return
+    sys.stdout.write(text if text.endswith("\n") else f"{text}\n")
+    sys.stdout.flush()
+
+
+def _tell_of_confinement() -> None:
+    kind = confinement()
+    if kind is Confinement.NONE:
+        say_error(
+            _(
+                "deck: this kernel cannot keep what is graded from changing files and ending "
+                "processes of yours; grade only what you would run yourself, or in a container"
+            )
+        )
+    elif kind is Confinement.FILES:
+        say_error(
+            _(
+                "deck: this kernel cannot keep what is graded from ending processes of yours "
+                "(Linux 6.12 and later can)"
+            )
+        )
+
+
+async def _graded(
+    terms: Terms,
+    chosen: Sequence[Submission],
+    room: tuple[int, Domains],
+    report: _GradeReport,
+) -> list[Grade]:
+    """Grade them, as many at once as there is room; return the grades in the folders' order."""
+    grades: dict[int, Grade] = {}
+    loop, task = asyncio.get_running_loop(), asyncio.current_task()
+    assert task is not None
+    for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        loop.add_signal_handler(each, task.cancel)
+    try:
+        async with aclosing(
+            grade_all(terms, chosen, jobs=room[0], domains=room[1], on_step=report.step)
+        ) as coming:
+            async for number, grade in coming:
+                grades[number] = grade
+                report.grade(grade)
+    except asyncio.CancelledError:
+        raise KeyboardInterrupt from None
+    return [grades[number] for number in range(len(chosen))]
+
+
+class _GradeReport:
+    """What people read: of one folder, each step as it is judged; of several, one table."""
+
+    def __init__(self, count: int, *, aloud: bool) -> None:
+        """`aloud`: on standard output, which otherwise belongs to another format."""
+        self.lines: list[str] = []
+        self._count = count
+        self._done = 0
+        self._shown: set[str] = set()
+        self._aloud = aloud
+        self._paint = Paint(sys.stdout)
+
+    def step(self, _submission: Submission, step: StepGrade) -> None:
+        """A step has been judged."""
+        if self._count == 1:
+            self._say_step(step)
+
+    def _say_step(self, step: StepGrade) -> None:
+        self._shown.add(step.step.id)
+        state = step.result.state
+        words = f"{_(_STATES[state.value]):{_WIDTH}}"
+        points = f"{step.result.earned}/{step.result.points}"
+        rest = f"{points:>6}  {plain(step.step.id)}: {title(step)}"
+        self._write(f"{words}{rest}", f"{self._paint(words, _COLOURS.get(state, RED))}{rest}")
+        for more in filter(None, (message(step), look(step))):
+            self._write(f"{'':{_WIDTH + 8}}{more}")
+
+    def grade(self, grade: Grade) -> None:
+        """A folder has been graded."""
+        self._done += 1
+        if self._count > 1:
+            say_error(
+                f"{self._done}/{self._count} {plain(grade.student)}: "
+                f"{grade.points}/{grade.max_points}"
+            )
+
+    def end(self, grades: Sequence[Grade]) -> None:
+        """All have been graded."""
+        if len(grades) == 1:
+            self._end_of_one(grades[0])
+            return
+        steps = [plain(step.id) for step in grades[0].lesson.steps]
+        head = (_("STUDENT"), _("STATE"), _("POINTS"), *steps, _("FIRST TO MEND"))
+        rows = [_row(grade) for grade in grades]
+        first, *others = table(head, rows)
+        self._write(first, self._paint(first, BOLD))
+        for line in others:
+            self._write(line)
+        for grade in grades:
+            for words in remarks(grade):
+                self._write(f"{plain(grade.student)}: {words}")
+        passed = sum(grade.state is GradeState.PASSED for grade in grades)
+        words = _("passed: {passed} of {n}")
+        self._write(words.format(passed=passed, n=len(grades)))
+
+    def _end_of_one(self, grade: Grade) -> None:
+        for step in grade.steps:
+            if step.step.id not in self._shown:
+                self._say_step(step)
+        for words in remarks(grade):
+            self._write(words)
+        self._write(
+            _("{state}: {points} of {most} points in {s:.0f} s (seed {seed})").format(
+                state=_(_STATES[grade.state.value]),
+                points=grade.points,
+                most=grade.max_points,
+                s=grade.seconds,
+                seed=grade.seed,
+            )
+        )
+        if grade.bag is not None:
+            self._write(_("recorded in {folder}").format(folder=plain(str(grade.bag))))
+
+    def _write(self, line: str, painted: str = "") -> None:
+        self.lines.append(line)
+        if self._aloud:
+            write(painted or line)
+
+
+def _row(grade: Grade) -> list[str]:
+    first = next((one for one in grade.steps if one.result.state is not State.PASSED), None)
+    return [
+        grade.student,
+        _(_STATES[grade.state.value]),
+        f"{grade.points}/{grade.max_points}",
+        *(str(step.result.earned) for step in grade.steps),
+        "" if first is None else f"{first.step.id}: {message(first)}",
+    ]

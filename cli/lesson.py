@@ -1,0 +1,63 @@
+"""`deck lesson check` and `deck lesson new`: lessons for those who write them."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.lessons.catalog import find_lesson, lessons
+from course.proof.domains import unused_domains
+from course.proof.proof import ProofVerdict, incomplete, prove, variants
+from course.proof.skeleton import new_lesson
+from launcher.profile.text import shown
+from text.i18n import _, localized, ngettext
+from text.output import GREEN, RED, Paint, write
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from collections.abc import Sequence
+
+    from course.lessons.lesson import LessonFolder
+
+
+def lesson_command(options: Namespace) -> int:
+    """Prove lessons, or begin a new one."""
+    if options.action == "new":
+        folder = new_lesson(Path(options.lessons[0] if options.lessons else "my-lesson"))
+        write(_("made {path}; next: deck lesson check {path}").format(path=plain(shown(folder))))
+        return 0
+    chosen = [find_lesson(name) for name in options.lessons] or list(lessons().values())
+    return asyncio.run(_check(chosen, options.jobs, options.seed))
+
+
+async def _check(chosen: Sequence[LessonFolder], jobs: int, seed: int) -> int:
+    """Report each variant as it is proven; 0 if all do what they should."""
+    paint = Paint(sys.stdout)
+    wrong = 0
+    for lesson in chosen:
+        for words in incomplete(lesson):
+            write(f"{plain(lesson.name)}: {paint(localized(words), RED)}")
+            wrong += 1
+    everything = [variant for lesson in chosen for variant in variants(lesson)]
+    async for verdict in prove(everything, unused_domains(jobs), seed=seed):
+        write(f"{plain(verdict.variant.lesson.name)}: {_line(verdict, paint)}")
+        wrong += bool(verdict.complaint)
+    if wrong:
+        write(_("{n} of it is not as it should be").format(n=wrong))
+        return 1
+    count = len(everything)
+    write(ngettext("proven by {n} run", "proven by {n} runs", count).format(n=count))
+    return 0
+
+
+def _line(verdict: ProofVerdict, paint: Paint) -> str:
+    variant = verdict.variant
+    name = plain(variant.name)
+    if verdict.complaint:
+        seed = "" if verdict.result is None else f" (seed {verdict.result.seed})"
+        return f"{name}: {paint(localized(verdict.complaint), RED)}{seed}"
+    well = _("passes") if variant.fails_at is None else _("fails, as it should")
+    return f"{name}: {paint(well, GREEN)}"

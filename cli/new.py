@@ -1,0 +1,38 @@
+"""`deck new`: the learner's folder of a lesson, or of an empty node."""
+
+from __future__ import annotations
+
+import shlex
+from typing import TYPE_CHECKING
+
+from course.folder.folder import NewFolder, new_folder, new_node
+from course.lessons.catalog import find_lesson
+from launcher.errors import UsageError
+from launcher.profile.text import shown
+from text.i18n import _
+from text.output import write
+from text.plain import plain
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+
+def new_command(options: Namespace) -> int:
+    """Make the folder, and say what is in it and what comes next."""
+    if bool(options.lesson) == bool(options.node):
+        raise UsageError(say("write deck new LESSON or deck new --node NAME"))
+    made = new_node(options.node) if options.node else new_folder(find_lesson(options.lesson))
+    tell(made)
+    return 0
+
+
+def tell(made: NewFolder) -> None:
+    """Say what was made."""
+    for file in made.files:
+        write(_("made {path}").format(path=plain(shown(file))))
+    for copy in made.kept:
+        write(_("kept yours as {path}").format(path=plain(shown(copy))))
+    if not made.files:
+        write(_("all of it is there already: {path}").format(path=plain(shown(made.path))))
+    write(_("next: deck {path}").format(path=plain(shlex.quote(shown(made.path)))))

@@ -1,0 +1,152 @@
+"""`deck shell`: the user's own shell in the domain of the lesson, with `ros2` and Deck's Python.
+
+The shell replaces this process, so its exit code, its signals and its terminal are its own. It
+reads the user's settings as always; after them, a file of ours puts Deck's folders first on the
+path again and shows lesson and domain in the prompt.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cli.running_domain import running_domain
+from launcher.domain.discovery import settings_of_discovery
+from launcher.domain.domain import ros_environment
+from launcher.errors import NotRunningError
+from launcher.ros_tools import own_folders, ros_tools, without_wheels
+from text.i18n import _
+from text.output import say_error
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+KNOWN = ("bash", "zsh", "fish", "sh", "dash", "ksh")
+LABEL = "DECK_SHELL"
+"""The variable with what the prompt shows; it also tells that a shell is one of Deck's."""
+OWN_PATH = "DECK_SHELL_PATH"
+_BASH = """\
+[ -r ~/.bashrc ] && . ~/.bashrc
+PATH=$DECK_SHELL_PATH:$PATH
+PS1="($DECK_SHELL) $PS1"
+"""
+_ZSH = """\
+ZDOTDIR=$DECK_ZDOTDIR
+[[ -r $ZDOTDIR/.zshrc ]] && source $ZDOTDIR/.zshrc
+PATH=$DECK_SHELL_PATH:$PATH
+PS1="($DECK_SHELL) $PS1"
+"""
+_ZSH_ENV = """\
+[[ -r $DECK_ZDOTDIR/.zshenv ]] && ZDOTDIR=$DECK_ZDOTDIR source $DECK_ZDOTDIR/.zshenv
+ZDOTDIR=$DECK_OWN_ZDOTDIR
+"""
+_FISH = """\
+set -gx PATH (string split : -- $DECK_SHELL_PATH) $PATH
+functions -c fish_prompt deck_prompt_before
+function fish_prompt; printf '(%s) ' $DECK_SHELL; deck_prompt_before; end
+"""
+_SH = """\
+[ -n "$DECK_ENV" ] && [ -r "$DECK_ENV" ] && . "$DECK_ENV"
+PATH=$DECK_SHELL_PATH:$PATH
+PS1="($DECK_SHELL) ${PS1-$ }"
+"""
+
+
+def shell_command(options: Namespace) -> int:
+    """Become the shell; return only if that is impossible."""
+    name, domain, discovery = _place(options)
+    environ = _environment(domain, discovery)
+    if options.lang:
+        environ["DECK_LANG"] = options.lang
+    label = f"domain {domain}" if name == f"domain-{domain}" else f"{name}, domain {domain}"
+    environ[LABEL] = plain(label, 80)
+    shell = _shell(environ)
+    if options.line is not None:
+        argv = [shell, "-c", options.line]
+    elif not sys.stdin.isatty():
+        argv = [shell]
+    else:
+        argv = _interactive(shell, environ)
+        words = _("ROS domain {domain}; `ros2 topic list` shows its topics, `exit` leaves")
+        say_error(words.format(domain=domain))
+    sys.stdout.flush()
+    try:
+        os.execve(shell, argv, environ)
+    except OSError as error:
+        say_error(f"deck: {shell}: {error.strerror}")
+    return 127
+
+
+def _place(options: Namespace) -> tuple[str, int, str | tuple[str, ...]]:
+    """Return name, domain and discovery: of the lesson asked for, else of the one that runs."""
+    if options.profile is None:
+        return running_domain(options.domain)
+    from launcher.client.running import find_running
+
+    try:
+        session = find_running(options.profile).session
+    except NotRunningError:
+        from launcher.profile.catalog import find_profile
+        from launcher.profile.load import load_profile
+
+        profile = load_profile(find_profile(options.profile), domain=options.domain)
+        return profile.name, profile.domain, profile.document.discovery
+    return session.name, session.domain, session.discovery
+
+
+def _environment(domain: int, discovery: str | tuple[str, ...]) -> dict[str, str]:
+    """Return the variables of the shell: those of this process, those of ROS, and ours."""
+    environ = ros_environment(os.environ, domain, discovery)
+    changes: dict[str, str | None] = {
+        **without_wheels(environ),
+        **settings_of_discovery(environ, discovery),
+        **ros_tools(environ),
+    }
+    for variable, value in changes.items():
+        if value is None:
+            environ.pop(variable, None)
+        else:
+            environ[variable] = value
+    return environ
+
+
+def _shell(environ: dict[str, str]) -> str:
+    """Return the path of the user's shell if its ways are known here, else of sh."""
+    wanted = environ.get("SHELL", "")
+    if Path(wanted).name in KNOWN and os.access(wanted, os.X_OK):
+        return wanted
+    return shutil.which("sh") or "/bin/sh"
+
+
+def _interactive(shell: str, environ: dict[str, str]) -> list[str]:
+    """Return the command line of the shell; what it must read at its start is written to files."""
+    kind = Path(shell).name
+    ours = os.pathsep.join(own_folders(environ))
+    environ[OWN_PATH] = ours
+    folder = Path(tempfile.gettempdir()) / f"deck-shell-{os.getuid()}-{os.getpid()}"
+    folder.mkdir(mode=0o700)
+    # The shell replaces this process, so nobody is left to remove them: the files do it themselves.
+    gone = f"rm -rf -- {shlex.quote(str(folder))}\n"
+    if kind == "bash":
+        (folder / "bashrc").write_text(gone + _BASH, encoding="utf-8")
+        return [shell, "--rcfile", str(folder / "bashrc"), "-i"]
+    if kind == "zsh":
+        environ["DECK_ZDOTDIR"] = environ.get("ZDOTDIR", environ.get("HOME", "/"))
+        environ["DECK_OWN_ZDOTDIR"] = environ["ZDOTDIR"] = str(folder)
+        (folder / ".zshenv").write_text(_ZSH_ENV, encoding="utf-8")
+        (folder / ".zshrc").write_text(gone + _ZSH, encoding="utf-8")
+        return [shell, "-i"]
+    if kind == "fish":
+        folder.rmdir()
+        return [shell, "--init-command", _FISH, "-i"]
+    environ["DECK_ENV"] = environ.get("ENV", "")
+    environ["ENV"] = str(folder / "shrc")
+    again = 'ENV=$DECK_ENV; unset DECK_ENV; [ -n "$ENV" ] || unset ENV\n'
+    (folder / "shrc").write_text(gone + _SH + again, encoding="utf-8")
+    return [shell, "-i"]
