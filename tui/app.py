@@ -20,6 +20,7 @@ from tui.faults import Faults
 from tui.frame.actions.app import APP_ACTIONS, EmergencyStop
 from tui.frame.actions.recording import RECORDING_ACTIONS, RecordToggle
 from tui.frame.actions.replay import REPLAY_ACTIONS
+from tui.frame.actions.ros2 import CopyAsRos2
 from tui.frame.replay_bar import ReplayBar
 from tui.lifecycle.sessions import Sessions
 from tui.recording.recording import Recording
@@ -27,6 +28,7 @@ from tui.screens import Screens
 from tui.session.bypass import BypassDetector
 from tui.session.feed import Feed, GraphReady
 from tui.session.messages import LanguageChanged, LessonOpened
+from tui.settings import SEEN
 from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.driver import DeckDriver
 from tui.terminal.harmless import Harmless
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
     from textual.screen import Screen
 
     from tui.faults import Journal
+    from tui.frame.host import SharedLesson
     from tui.session.ports import SessionOpener
     from tui.session.requests import OpenRequest
 
@@ -67,7 +70,7 @@ class AppEnvironment(Protocol):
         """Record that the app is now running."""
 
     def remember(self, **values: str) -> None:
-        """Save the current theme, language and lesson for the next run."""
+        """Save what was chosen, such as theme, language and lesson, for the next run."""
 
 
 class DeckApp(App[int], Acting):
@@ -75,7 +78,7 @@ class DeckApp(App[int], Acting):
 
     TITLE = "Deck"
     BINDINGS: ClassVar[list[BindingType]] = bindings(
-        *APP_ACTIONS, *REPLAY_ACTIONS, *RECORDING_ACTIONS
+        *APP_ACTIONS, CopyAsRos2, *REPLAY_ACTIONS, *RECORDING_ACTIONS
     )
     COMMANDS: ClassVar = {_commands}
     ENABLE_COMMAND_PALETTE = False
@@ -87,7 +90,7 @@ class DeckApp(App[int], Acting):
         self,
         opener: SessionOpener,
         request: OpenRequest,
-        first_screen: str = "deck",
+        first_screen: str = "",
         driver_class: type[Driver] | None = None,
         journal: Journal | None = None,
         bandwidth: Bandwidth | None = None,
@@ -100,6 +103,12 @@ class DeckApp(App[int], Acting):
         super().__init__(driver_class=driver_class)
         self._environment = environment
         self.faults = Faults(self, self, journal)
+        self.lesson: SharedLesson | None = None
+        """What is shown of the session's lesson, once something has shown it."""
+        self.editor = ""
+        """The editor that the user has chosen, empty if they were not asked yet."""
+        self.tour_is_due = False
+        """Whether the tour is to be shown above the list of lessons: it never was."""
         self.has_begun = False
         """Whether the first frame has been drawn."""
         self.feed = Feed(self, FOLLOWED, self.faults)
@@ -122,7 +131,7 @@ class DeckApp(App[int], Acting):
         """Counts what is written to the terminal, and limits the share of pictures."""
         self._harmless = Harmless()
         self._key_queue = KeyQueue(self)
-        self._first_screen = "picker" if self.sessions.picking else first_screen
+        self._first_screen = "picker" if self.sessions.picking else first_screen or request.screen
         self.register_theme(HIGH_CONTRAST)
 
     def get_default_screen(self) -> Screen[Any]:
@@ -168,6 +177,8 @@ class DeckApp(App[int], Acting):
         self.has_begun = True
         await self.push_screen(self._screens.made(self._first_screen))
         self.sessions.begin()
+        if self.tour_is_due and self.sessions.picking:
+            self.show_tour()
 
     async def show_screen(self, name: str) -> None:
         """Bring the screen of this name to the front."""
@@ -285,6 +296,14 @@ class DeckApp(App[int], Acting):
         """Return how a key is written."""
         return self.get_key_display(Binding(key, ""))
 
+    def show_tour(self) -> None:
+        """Show the tour, which does not come by itself another time."""
+        from tui.tour.screen import TourScreen
+
+        self._remember(tour=SEEN)
+        if not isinstance(self.screen, TourScreen):
+            self.push_screen(TourScreen())
+
     def show_palette(self) -> None:
         """Open the palette in the current language."""
         from textual.command import CommandPalette
@@ -332,6 +351,11 @@ class DeckApp(App[int], Acting):
         """Redraw everything: a window that was made small and large again has lost its cells."""
         if isinstance(self._driver, DeckDriver):
             self.redraw()
+
+    def use_editor(self, name: str) -> None:
+        """Use this editor from now on."""
+        self.editor = name
+        self._remember(editor=name)
 
     def watch_theme(self, theme: str) -> None:
         """Remember the theme."""

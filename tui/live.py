@@ -62,6 +62,8 @@ class RealTerminal:
             app.theme = self._settings.theme
         app.set_keymap(self._settings.keys)
         app.sessions.last_lesson = self._settings.lesson
+        app.editor = self._settings.editor
+        app.tour_is_due = not self._settings.tour
         loop = asyncio.get_running_loop()
         for number in SIGNALS:
             loop.add_signal_handler(number, self.desert, 128 + number)
@@ -88,7 +90,7 @@ class RealTerminal:
         self.app.set_timer(PATIENCE_S, self.app.sessions.stop_now)
 
     def remember(self, **values: str) -> None:
-        """Save the current theme, language and lesson in the settings file."""
+        """Save what was chosen in the settings file."""
         changed: Any = replace(self._settings, **values)  # type: ignore[arg-type]
         if self._app is None or not self._app.is_running or changed == self._settings:
             return

@@ -21,6 +21,7 @@ from tui.frame.actions.app import (
     ShowDevices,
     ShowFlow,
     ShowGraph,
+    ShowLesson,
     ShowLogs,
     ShowScreen,
     ShowTopics,
@@ -28,6 +29,7 @@ from tui.frame.actions.app import (
 from tui.frame.actions.replay import ReplayAction
 from tui.frame.host import host_of
 from tui.graph.actions import GRAPH_ACTIONS
+from tui.lesson.actions import LESSON_ACTIONS
 from tui.logs.actions import LOGS_ACTIONS
 from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
 from tui.themes import CYCLE
@@ -70,6 +72,7 @@ class ActionPlace:
 PLACES = (
     ActionPlace(ShowDeck, (*DECK_ACTIONS, OpenTeleop)),
     ActionPlace(ShowDeck, TELEOP_ACTIONS, OpenTeleop),
+    ActionPlace(ShowLesson, LESSON_ACTIONS),
     ActionPlace(ShowTopics, TOPICS_ACTIONS),
     ActionPlace(ShowTopics, PUBLISH_ACTIONS, OpenPublish),
     ActionPlace(ShowComposer, COMPOSER_ACTIONS),

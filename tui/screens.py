@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 SCREENS = {
     "picker": ("tui.picker.screen", "PickerScreen"),
     "deck": ("tui.deck.screen", "LessonDeck"),
+    "lesson": ("tui.lesson.screen", "LessonScreen"),
     "topics": ("tui.topics.screen", "TopicsScreen"),
     "composer": ("tui.composer.screen", "ComposerScreen"),
     "logs": ("tui.logs.screen", "LogsScreen"),
@@ -26,12 +27,14 @@ SCREENS = {
 """Imported when first shown: the first frame needs only one of them."""
 
 DIALOGS = (
+    "tui.dialogs.choice",
     "tui.help.screen",
     "tui.lifecycle.domain_taken",
     "tui.lifecycle.end_session",
     "tui.lifecycle.refused",
     "tui.lifecycle.stopping",
     "tui.lifecycle.strays",
+    "tui.tour.screen",
 )
 """Modules that define actions of their own, imported when first shown."""
 

@@ -1,4 +1,4 @@
-"""Settings that outlast a run: theme, language, keys and last lesson, in a small JSON file.
+"""Settings that outlast a run: theme, language, keys, last lesson and editor, in a small JSON file.
 
 `$XDG_CONFIG_HOME/deck/settings.json`, by default under `~/.config`::
 
@@ -13,8 +13,14 @@ from pathlib import Path
 
 from platformdirs import user_config_path
 
-from text.i18n import LANGUAGES, _, localized
+from text.i18n import LANGUAGES, N_, _, localized
 from text.os_words import os_reason
+
+SEEN = "seen"
+_TEXTS = {
+    "lesson": (N_("lesson: expected the name of a profile, such as {example}"), '"05-tf2"'),
+    "editor": (N_("editor: expected a command, such as {example}"), '"nano"'),
+}
 
 
 class SettingsError(Exception):
@@ -31,6 +37,10 @@ class Settings:
     """Maps a binding id to its keys, comma-separated."""
     lesson: str = ""
     """Name of the profile that was opened last."""
+    editor: str = ""
+    """The command that opens the learner's files, where EDITOR names none."""
+    tour: str = ""
+    """`SEEN` once the tour of the first start was shown."""
 
 
 def settings_path() -> Path:
@@ -101,17 +111,20 @@ def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collect
             found = _keys_problem(value, actions())
             if found:
                 return found
-        elif name == "lesson":
+        elif name in _TEXTS:
             if not isinstance(value, str):
-                return _("lesson: expected the name of a profile, such as {example}").format(
-                    example='"05-tf2"'
-                )
-        elif value not in (known_values := sorted(themes if name == "theme" else LANGUAGES)):
+                words, example = _TEXTS[name]
+                return _(words).format(example=example)
+        elif value not in (known_values := sorted(_values(name, themes))):
             known = ", ".join(known_values)
             return _("{name}: unknown value {value!r}; available: {known}").format(
                 name=name, value=value, known=known
             )
     return ""
+
+
+def _values(name: str, themes: Collection[str]) -> Collection[str]:
+    return {"theme": themes, "language": LANGUAGES, "tour": (SEEN,)}[name]
 
 
 def _keys_problem(value: object, actions: Collection[str]) -> str:

@@ -11,6 +11,7 @@ from textual.widgets import Static, TextArea
 
 from robot.commands.schema import MAX_BYTES, CommandError, parse_llm
 from robot.topics import LLM_RAW_JSON
+from text import ros2_words
 from text.i18n import N_, _, decimal
 from text.plain import plain
 from tui import clock
@@ -218,6 +219,10 @@ class ComposerScreen(DeckScreen):
         except Exception as error:  # noqa: BLE001 - any failure is reported
             trail.failure = reason_words(error)
             self._say()
+
+    async def ros2_command(self) -> str:
+        """Return what publishes the text once."""
+        return ros2_words.pub(LLM_RAW_JSON, TYPE, {"data": self.editor.text})
 
     def choose_template(self) -> None:
         """Ask for an example, and replace the text with it."""

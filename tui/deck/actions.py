@@ -38,6 +38,10 @@ class DeckTarget(Protocol):
         """The state of the chosen node."""
 
     @property
+    def chosen_file(self) -> str:
+        """The learner's own file that the chosen node runs, empty for other nodes."""
+
+    @property
     def log_filter(self) -> LogFilter:
         """The filter of the log."""
 
@@ -52,6 +56,12 @@ class DeckTarget(Protocol):
     def ask(self, what: str, *names: str) -> Worker[None]:
         """Request this of these nodes, or of all if none is named."""
 
+    def exchange(self) -> Worker[None]:
+        """Run one's own file in the place of the chosen node, or Deck's node again."""
+
+    def edit(self) -> None:
+        """Open the file of the chosen node in an editor."""
+
     def filter_log(self, chosen: LogFilter) -> None:
         """Apply a filter to the log."""
 
@@ -60,6 +70,13 @@ class DeckTarget(Protocol):
 
     def turn_page(self) -> None:
         """Show the next page of panels."""
+
+    @property
+    def fits_lesson(self) -> bool:
+        """Whether there is room for the lesson beside the nodes."""
+
+    async def toggle_lesson(self) -> None:
+        """Show the lesson beside the nodes, or not any more."""
 
     def write_command(self) -> None:
         """Focus the command line."""
@@ -152,6 +169,55 @@ class RestartNode(_AskNode):
     asked = "restart"
 
 
+class EditNode(_OfNode):
+    """Edit the file of a node."""
+
+    id = "node.edit"
+    key = "e,у"
+    title = N_("Edit")
+    means = "edit"
+    tooltip = N_("Open your file in $EDITOR, at the line of the mistake if there is one.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: DeckTarget) -> bool | None:
+        """Only for a file of the learner's own."""
+        return bool(target.chosen_file) and super().possible(target)
+
+    @classmethod
+    async def run(cls, target: DeckTarget) -> None:
+        """Open it."""
+        target.edit()
+
+
+class ExchangeNode(_OfNode):
+    """Exchange one node for the learner's own, and back."""
+
+    id = "node.exchange"
+    key = "u,г"
+    title = N_("My own")
+    means = "own or Deck's"
+    tooltip = N_("Run a file of your own in the place of the selected node, or Deck's node again.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: DeckTarget) -> bool | None:
+        """Only for a node of a profile that runs."""
+        if target.feed.link is None or target.chosen_node not in target.feed.nodes:
+            return False
+        return super().possible(target)
+
+    @classmethod
+    def label(cls, target: DeckTarget) -> str:
+        """Named after what would run."""
+        return N_("Deck's own") if target.chosen_file else cls.title
+
+    @classmethod
+    async def run(cls, target: DeckTarget) -> None:
+        """Exchange it."""
+        target.exchange()
+
+
 class _AskAll(DeckAction):
     """Asks the supervisor to do something with all nodes."""
 
@@ -234,7 +300,7 @@ class RaiseLogSeverity(DeckAction):
     """Hide the least severe lines."""
 
     id = "log.severity"
-    key = "u,г"
+    key = "F,А"
     title = N_("Severity")
     means = "how much of the log"
     tooltip = N_("Hide the least severe lines that are shown; after FATAL all are shown again.")
@@ -284,6 +350,27 @@ class TurnPage(DeckAction):
         target.turn_page()
 
 
+class LessonBeside(DeckAction):
+    """Show the lesson beside the nodes, or not any more."""
+
+    id = "deck.lesson"
+    key = "shift+f2"
+    title = N_("Lesson beside")
+    tooltip = N_("Show the step, its task and its checks beside the nodes, from 120x34 on.")
+
+    @classmethod
+    def possible(cls, target: DeckTarget) -> bool | None:
+        """Only where there is room, and nodes that could be judged."""
+        if target.feed.watching or target.feed.replay is not None or not target.feed.nodes:
+            return False
+        return True if target.fits_lesson else None
+
+    @classmethod
+    async def run(cls, target: DeckTarget) -> None:
+        """Show or remove it."""
+        await target.toggle_lesson()
+
+
 class WriteCommand(DeckAction):
     """Type a command to the robot."""
 
@@ -310,10 +397,13 @@ DECK_ACTIONS = (
     StartNode,
     StopNode,
     RestartNode,
+    EditNode,
+    ExchangeNode,
     MuteChosenNode,
     HearOnly,
     WriteCommand,
     TurnPage,
+    LessonBeside,
     RaiseLogSeverity,
     HearAllNodes,
     StartAll,

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 OUTSIDE = ("◇", N_("outside"))
 UNKNOWN = "—"
+OWN, MUTED = "✎", "⊘"
+"""Follow the name of a node that runs the learner's own file, or is left out of the log."""
 
 FULL, TOLD = 42, 66
 """Cells besides the names from which on there are columns for the process, and for the detail."""
@@ -67,8 +69,9 @@ class NodesTable(Rows):
             return
         alive = [word for state, (_sign, word, _meaning) in STATES.items() if state.alive]
         self._word = max(cell_len(_(word)) for word in alive) + 2
-        names = [node.name for node in self._statuses]
-        name = max((cell_len(self._named(each)) for each in (*names, *self.outside)), default=4)
+        names = [self._named(node.name, own=bool(node.file)) for node in self._statuses]
+        names += map(self._named, self.outside)
+        name = max(map(cell_len, names), default=4)
         pid = max((len(str(node.pid or "")) for node in self._statuses), default=0)
         self._full = width >= name + FULL
         columns = [Column(_("Node"), name if self._full else 0), Column(_("State"), self._word)]
@@ -102,8 +105,9 @@ class NodesTable(Rows):
         sign, word, _meaning = state_words(node)
         return (node.name, f"{sign} {_(word)} · {why(node)}")
 
-    def _named(self, name: str) -> str:
-        return plain(name) + (" ⊘" if name in self._muted else "")
+    def _named(self, name: str, *, own: bool = False) -> str:
+        marks = (OWN if own else "") + (MUTED if name in self._muted else "")
+        return f"{plain(name)} {marks}" if marks else plain(name)
 
     def _cells_of(self, name: str) -> tuple[Cell, ...]:
         """Return the row of a node that Deck did not start, of which only the name is known."""
@@ -117,11 +121,12 @@ class NodesTable(Rows):
     def _cells(self, node: NodeStatus) -> tuple[Cell, ...]:
         sign, word, meaning = state_words(node)
         state = f"{sign} {_(word)}"
-        if not node.state.alive:
+        name = Cell(self._named(node.name, own=bool(node.file)))
+        if not node.state.alive or node.fault is not None:
             # One cell up to the edge: a long state would widen the column for all rows.
-            told = f"{state:<{self._word}} {why(node)}"
-            return (Cell(self._named(node.name)), Cell(told, meaning))
-        cells = [Cell(self._named(node.name)), Cell(state, meaning)]
+            told = f"{state:<{self._word}} {'✗ ' if node.fault else ''}{why(node)}"
+            return (name, Cell(told, "bad" if node.fault else meaning))
+        cells = [name, Cell(state, meaning)]
         if self._full:
             cells += [
                 Cell("" if node.pid is None else str(node.pid), "dim"),

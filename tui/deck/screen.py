@@ -13,21 +13,26 @@ from textual.widgets import Static
 from launcher.errors import LauncherError
 from launcher.status import NodeState, Severity
 from robot.topics import AI_COMMAND
+from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
 from text.sentences import reason_of
 from tui.actions import bindings
 from tui.deck.actions import DECK_ACTIONS
 from tui.deck.command_line import CommandLine
+from tui.deck.lesson_beside import LessonBesideNodes
 from tui.deck.nodes_table import NodesTable
 from tui.deck.panels import DeckPanels
+from tui.editing import edit_node
 from tui.frame.screen import DeckScreen
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
 from tui.panels.panel import row_of
 from tui.session.messages import SessionChanged
+from tui.session.node_command import node_command
 from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
 from tui.teleop.dock import TeleopDock
+from tui.widgets.fault_words import fault_lines
 from tui.widgets.name_head import NameHead
 from tui.widgets.words import word_strips
 
@@ -70,7 +75,8 @@ class LessonDeck(DeckScreen):
     ]
     DEFAULT_CSS = """
     LessonDeck {
-        #board { layout: grid; height: 1fr; grid-size: 1; grid-gutter: 0 1; }
+        #desk { height: 1fr; layout: horizontal; }
+        #board { layout: grid; width: 2fr; height: 1fr; grid-size: 1; grid-gutter: 0 1; }
         &.-with-panels #board { grid-size: 2; grid-columns: 11fr 9fr; }
         #nodes { height: 1fr; }
         #nodes NameHead { display: none; max-height: 100%; }
@@ -98,19 +104,20 @@ class LessonDeck(DeckScreen):
 
     _cut: tuple[str, str] = ("", "")
     """Name and state of the chosen node, if the table cannot show them in full."""
-    _offered_for: NodeState | None = None
-    """The state of the chosen node for which its keys were last updated."""
+    _offered_for: tuple[NodeState | None, str] = (None, "")
+    """State and own file of the chosen node for which its keys were last updated."""
 
     def __init__(self) -> None:
         super().__init__()
         self._panels = DeckPanels(self)
         self._dock = TeleopDock(self, self.focus_usual)
+        self._beside = LessonBesideNodes(self)
 
     def compose_body(self) -> ComposeResult:
         """The nodes above the log; the session adds the panels."""
         yield Static(id="small", markup=False)
         yield Static(id="watched", markup=False)
-        with Container(id="board"):
+        with Container(id="desk"), Container(id="board"):
             with Vertical(id="nodes"):
                 yield NodesTable()
                 yield NameHead()
@@ -142,6 +149,28 @@ class LessonDeck(DeckScreen):
         """The state of the chosen node; None without one, or if Deck did not start it."""
         node = self.feed.nodes.get(self.chosen_node)
         return None if node is None else node.state
+
+    @property
+    def chosen_file(self) -> str:
+        """The learner's own file that the chosen node runs, empty for other nodes."""
+        node = self.feed.nodes.get(self.chosen_node)
+        return "" if node is None else node.file
+
+    @work(exclusive=True, group="exchange")
+    async def exchange(self) -> None:
+        """Run one's own file in the place of the chosen node, or Deck's node again."""
+        # Not needed for the first frame.
+        from tui.deck.exchange import exchange_node
+
+        node = self.feed.nodes.get(self.chosen_node)
+        if node is not None:
+            await exchange_node(self, node)
+
+    def edit(self) -> None:
+        """Open the file of the chosen node in an editor, at the line of its mistake."""
+        node = self.feed.nodes.get(self.chosen_node)
+        if node is not None and node.file:
+            edit_node(self, node)
 
     @work(group="ask")
     async def ask(self, what: str, *names: str) -> None:
@@ -175,11 +204,26 @@ class LessonDeck(DeckScreen):
             return row is not None and row.subscribers > 0
         if self.feed.link is None:
             return False
-        return any(node.command == DRIVER for node in self.feed.nodes.values())
+        return any(
+            DRIVER in (node.command, f"nodes.{node.name}") for node in self.feed.nodes.values()
+        )
 
     def write_command(self) -> None:
         """Focus the command line at once, so that it receives the next key."""
         self.set_focus(self.query_one(CommandLine).field)
+
+    async def ros2_command(self) -> str:
+        """Return what sends the command that is being typed, plays the recording, starts a node."""
+        line = self.query_one(CommandLine).field
+        if line.has_focus:
+            return ros2_words.pub(AI_COMMAND, COMMANDS_TYPE, {"data": line.value.strip()})
+        if self.feed.replay is not None and self.feed.link is not None:
+            return ros2_words.play(self.feed.link.session.profile)
+        name = self.chosen_node
+        status = self.feed.nodes.get(name)
+        if status is None or self.feed.link is None:
+            return ros2_words.node_info(f"/{name.lstrip('/')}") if name else ""
+        return await node_command(self.feed.link.session, status)
 
     def on_command_line_command_sent(self, message: CommandLine.CommandSent) -> None:
         """Publish it for the driver."""
@@ -218,6 +262,15 @@ class LessonDeck(DeckScreen):
         """Show the next page of panels."""
         self._panels.turn_page()
 
+    @property
+    def fits_lesson(self) -> bool:
+        """Whether there is room for the lesson beside the nodes."""
+        return self._beside.fits
+
+    async def toggle_lesson(self) -> None:
+        """Show the lesson beside the nodes, or not any more."""
+        await self._beside.toggle()
+
     async def open_teleop(self) -> None:
         """Open the panel for driving with keys."""
         await self._dock.open()
@@ -251,12 +304,14 @@ class LessonDeck(DeckScreen):
     def on_resize(self, event: Resize) -> None:
         """Hide the panels if they do not fit."""
         self._panels.measure_room(*event.size)
+        self._beside.measure_room()
         self._lay_out(event.size.height)
 
     @on(SessionChanged)
     async def _session_changed(self, message: SessionChanged) -> None:
         """Create what belongs to the session; without one there is nothing to drive."""
         await self._bring_panels()
+        await self._beside.session_changed(message)
         if message.ended or self.feed.link is None:
             await self._dock.close()
 
@@ -278,10 +333,11 @@ class LessonDeck(DeckScreen):
         """Show the new states of the nodes."""
         self.set_class(self.driven, "-driven")
         self.pane.view.know_nodes(message.nodes)
+        self._beside.status_changed()
         self._show_nodes()
         self._lay_out(self.size.height)
-        if self._offered_for is not self.chosen_state:
-            self._offered_for = self.chosen_state
+        if self._offered_for != (self.chosen_state, self.chosen_file):
+            self._offered_for = (self.chosen_state, self.chosen_file)
             self.refresh_bindings()
 
     def on_log_arrived(self, message: LogArrived) -> None:
@@ -325,10 +381,12 @@ class LessonDeck(DeckScreen):
         self.query_one(CommandLine).words_changed()
         self._panels.words_changed()
         self._dock.words_changed()
+        self._beside.words_changed()
 
     def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
-        """Update the possible keys."""
+        """Update the possible keys, and what is said of the node."""
         message.stop()
+        self._lay_out(self.size.height)
         self.refresh_bindings()
 
     def on_nodes_table_cut(self, message: NodesTable.Cut) -> None:
@@ -358,14 +416,23 @@ class LessonDeck(DeckScreen):
         self.query_one("#board").styles.grid_rows = f"{rows} 1fr"
 
     def _lay_out_head(self, most: int) -> int:
-        """Reserve lines for the text that the table has cut, and return how many."""
-        head = self.query_one(NameHead)
-        head.display = any(self._cut)
+        """Reserve lines for the mistake of the chosen node, or for the text that the table has cut.
+
+        Return how many.
+        """
+        head, width = self.query_one(NameHead), self.table.size.width - 2
+        node = self.feed.nodes.get(self.chosen_node)
+        fault = [] if node is None else fault_lines(node)
+        head.display = any(self._cut) or bool(fault)
         if not head.display:
             return 0
-        head.show(*self._cut)
-        width = self.table.size.width - 2
-        wanted = len(word_strips(self._cut, width, self.rich_style, self.app.console))
+        if fault:
+            head.show_lines(fault)
+            wanted = sum(line.get_height({}, max(1, width)) for line in fault)
+            most += 2
+        else:
+            head.show(*self._cut)
+            wanted = len(word_strips(self._cut, width, self.rich_style, self.app.console))
         lines = max(1, min(wanted, most))
         head.styles.height = lines
         return lines

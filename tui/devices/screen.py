@@ -11,6 +11,7 @@ from textual.widgets import Static
 from launcher.status import Severity
 from robot.frames.lines import decode
 from robot.topics import DIAGNOSTICS
+from text import ros2_words
 from text.i18n import N_, _
 from tui import clock
 from tui.actions import bindings
@@ -166,6 +167,10 @@ class DevicesScreen(DeckScreen):
         self.table.focus()
 
     # Actions
+
+    async def ros2_command(self) -> str:
+        """Return what prints the reports of the drivers."""
+        return ros2_words.echo(DIAGNOSTICS) if self.chosen else ""
 
     def next_way(self) -> None:
         """Switch between both directions, in, and out."""

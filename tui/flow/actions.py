@@ -163,7 +163,7 @@ class OtherLogs(FlowAction):
     """Show the log lines of other nodes."""
 
     id = "flow.logs"
-    key = "u,г"
+    key = "F,А"
     title = N_("Other logs")
     means = "how much of the log"
     tooltip = N_("Show or hide what other nodes wrote into their logs meanwhile.")

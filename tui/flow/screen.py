@@ -10,6 +10,7 @@ from textual.content import Content
 from textual.style import Style
 from textual.widgets import Static
 
+from text import ros2_words
 from text.i18n import N_, _, ngettext
 from text.plain import plain
 from tui import clock
@@ -167,6 +168,15 @@ class FlowScreen(DeckScreen):
 
     # Actions
 
+    async def ros2_command(self) -> str:
+        """Return what prints the topic of the chosen step, or the log of its node."""
+        step = self.chosen_step
+        if step is None:
+            return ""
+        if step.source.startswith("/") and step.lane is not Lane.LOG:
+            return ros2_words.echo(step.source)
+        return ros2_words.log_of(step.source)
+
     def neighbour(self, step: int) -> Chain | None:
         """The chain this many places below the chosen one."""
         chains, chosen = list(self.chains), self.chosen_chain
@@ -265,20 +275,26 @@ class FlowScreen(DeckScreen):
         self.refresh_bindings()
 
     def _say_lanes(self) -> None:
-        pieces: list[Content] = []
-        for lane, name in words.LANES.items():
-            mark = "○" if lane in self._hidden else "●"
-            click = Style.from_meta({"@click": f"screen.lane({lane.value!r})"})
-            label = f"{mark} {_(name)}".replace(" ", "\N{NO-BREAK SPACE}")
-            pieces.append(Content.styled(label, click))
+        pieces = [self._lanes()]
         if self.paused:
             waiting = len(self._book.chains) - len(self._held)
             more = f" +{waiting}" if waiting > 0 else ""
             pieces.append(Content.styled(_("paused") + more, "bold"))
         if self._since_s is not None:
             since = _("collected since {time}").format(time=clock.time_of_day(self._since_s))
-            pieces.append(Content.styled(since.replace(" ", "\N{NO-BREAK SPACE}"), "dim"))
+            pieces.append(Content.styled(since, "dim"))
         self.query_one("#flow-lanes", Static).update(Content("  ").join(pieces))
+
+    def _lanes(self) -> Content:
+        """Return marks and names, closer together where no mark would stay beside its name."""
+        labels = []
+        for lane, name in words.LANES.items():
+            mark = "○" if lane in self._hidden else "●"
+            click = Style.from_meta({"@click": f"screen.lane({lane.value!r})"})
+            labels.append(Content.styled(f"{mark} {_(name)}", click))
+        wide = Content("  ").join(labels)
+        room = self.query_one("#flow-lanes").content_size.width
+        return wide if wide.cell_length <= room else Content(" ").join(labels)
 
     def _say_empty(self) -> None:
         empty = not self.chains

@@ -42,6 +42,9 @@ class SessionControl(Protocol):
     def open(self, request: OpenRequest) -> None:
         """Start or attach to a session, and show it until it ends."""
 
+    def move_to(self, request: OpenRequest) -> None:
+        """Close the session on the screen, and open another."""
+
     def close(self) -> None:
         """Stop the nodes that this screen started, or detach from others; then show the picker."""
 
@@ -56,6 +59,13 @@ class SessionControl(Protocol):
 
     def tell_damage(self, words: str) -> None:
         """Report that part of the recording cannot be read, when playback first gets there."""
+
+
+class SharedLesson(Protocol):
+    """The session's lesson, which several screens show; it is `tui.lesson.at_work`."""
+
+    beside_nodes: bool
+    """Whether it is wished beside the nodes on the Deck, too."""
 
 
 class KeyNames(Protocol):
@@ -92,11 +102,27 @@ class Host(KeyNames, Protocol):
     def stall_detector(self) -> KeyStallDetector:
         """Knows for how long the screen was stalled."""
 
+    lesson: SharedLesson | None
+    """What is shown of the session's lesson, once something has shown it."""
+
+    editor: str
+    """The editor that the user has chosen, empty if they were not asked yet."""
+
+    def use_editor(self, name: str) -> None:
+        """Use this editor from now on."""
+
+    @property
+    def terminal_fd(self) -> int:
+        """The descriptor of the terminal."""
+
     async def show_screen(self, name: str) -> None:
         """Bring the screen of this name to the front."""
 
     def show_help(self) -> None:
         """Open the help page of the screen in front."""
+
+    def show_tour(self) -> None:
+        """Show the tour of the first start."""
 
     def show_palette(self) -> None:
         """Open the palette."""
@@ -115,6 +141,9 @@ class Host(KeyNames, Protocol):
 
     def redraw(self) -> None:
         """Redraw everything."""
+
+    def copy_to_clipboard(self, text: str) -> None:
+        """Copy text to the clipboard of the terminal."""
 
     def notify(
         self,

@@ -38,7 +38,7 @@ class DeckScreen(Screen[None], Acting, Working):
     A subclass yields its widgets in `compose_body`, names its topics in `watch_topics` and
     `follow_topics`, and handles the messages of `tui.session.messages` that it needs. When the
     topics it wants have changed, it calls `topics_changed`. The keys space, Ctrl+X, Ctrl+R, Ctrl+P,
-    Ctrl+Q, q, F1 to F5 and 1 to 7 belong to the app.
+    Ctrl+Q, q, L, F1 to F5 and 1 to 7 belong to the app.
     """
 
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
@@ -93,6 +93,10 @@ class DeckScreen(Screen[None], Acting, Working):
     def watch_goals(self) -> set[str]:
         """Return the actions whose goals from others are needed while this screen is in front."""
         return set()
+
+    async def ros2_command(self) -> str:
+        """Return what is chosen or filled in as a command line of `ros2`, empty if nothing is."""
+        return ""
 
     def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
         """Yield headings and actions of the parts of the screen that have keys of their own."""

@@ -16,6 +16,7 @@ from tui.frame.actions.app import (
     ShowDevices,
     ShowFlow,
     ShowGraph,
+    ShowLesson,
     ShowLogs,
     ShowTopics,
 )
@@ -28,7 +29,16 @@ if TYPE_CHECKING:
     from tui.frame.host import Host
     from tui.frame.title_bar import TitleBar
 
-TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow, ShowDevices)
+TABS = (
+    ShowDeck,
+    ShowLesson,
+    ShowTopics,
+    ShowComposer,
+    ShowLogs,
+    ShowGraph,
+    ShowFlow,
+    ShowDevices,
+)
 COMING = frozenset({"waiting", "starting", "backoff"})
 
 

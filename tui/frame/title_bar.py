@@ -16,7 +16,7 @@ ENOUGH = 16
 """Cells of an alarm that are enough; its full text would hide the names of the tabs."""
 SHORT = 3
 """Letters of a tab's name if there is little room."""
-NAMED = 3
+NAMED = 4
 """This many of the levels show a part of each name."""
 
 
@@ -90,8 +90,9 @@ class TitleBar(Widget):
         `look` is `state`, `alarm`, `danger` or `stop`; with the last the whole line is red. The
         texts of the last two take precedence over the tabs. Otherwise, tabs that are not in front
         are shortened before the state is: to a few letters, then moved together, then to their
-        keys. `aside` follows the state if there is room for it beside tabs with a few letters each,
-        or beside all tabs that the state leaves.
+        keys; where room is left, the names that lack the fewest letters are whole again. `aside`
+        follows the state if there is room for it beside tabs with a few letters each, or beside all
+        tabs that the state leaves.
         """
         shown = (tuple(tabs), tuple(states), look, aside)
         if shown != (self._tabs, self._states, self._look, self._aside):
@@ -107,7 +108,7 @@ class TitleBar(Widget):
     def render(self) -> Content:
         """Draw the tabs, then as much of the state as fits."""
         level, state = self._with_aside(*self._fitting())
-        left = self._left(level)
+        left = self._left(self._completed(level, self._room() - level.width - cell_len(state)))
         gap = " " * max(0, self.size.width - left.cell_length - cell_len(state) - 2)
         style = self.get_visual_style(f"title-bar--{self._look}")
         return left.append(gap).append(Content.styled(f" {state} ", style))
@@ -147,15 +148,31 @@ class TitleBar(Widget):
                 return other, told
         return level, state
 
+    def _completed(self, level: _Level, spare: int) -> _Level:
+        """Return the tabs with as many whole names as `spare` cells allow: `Deck` for `Dec`."""
+        tabs = list(level.tabs)
+        lacking = [
+            (cell_len(whole[0]) - cell_len(cut[0]), at)
+            for at, (whole, cut) in enumerate(zip(self._tabs, tabs, strict=False))
+            if cut[0] != whole[0] and " " in cut[0]
+        ]
+        for cells, at in sorted(lacking):
+            if cells <= spare:
+                tabs[at] = self._tabs[at]
+                spare -= cells
+        return level._replace(tabs=tabs)
+
     def _room(self) -> int:
         """Return the cells that the name of the program leaves for tabs and state."""
         return self.size.width - cell_len(NAME) - 3
 
     def _levels(self) -> list[_Level]:
         """Return all tabs, shorter and shorter; the first NAMED levels show a part of each name."""
-        shapes = ((None, 2), (SHORT, 2), (SHORT, 1), (0, 2))
-        levels = [_Level(_shortened(self._tabs, letters), gap) for letters, gap in shapes]
-        return [*levels, _Level(_keys(self._tabs), 2)]
+        shapes = ((None, "", 2), (SHORT, ".", 2), (SHORT, ".", 1), (SHORT, "", 1), (0, "", 2))
+        levels = [
+            _Level(_shortened(self._tabs, letters, mark), gap) for letters, mark, gap in shapes
+        ]
+        return [*levels, *(_Level(_keys(self._tabs), gap) for gap in (2, 1))]
 
     def _left(self, level: _Level) -> Content:
         parts = [Content.styled(NAME, self.get_visual_style("title-bar--name"))]
@@ -168,13 +185,17 @@ class TitleBar(Widget):
 
 
 def _shortened(
-    tabs: Sequence[tuple[str, str, bool]], letters: int | None
+    tabs: Sequence[tuple[str, str, bool]], letters: int | None, mark: str
 ) -> Sequence[tuple[str, str, bool]]:
-    """Shorten all tabs but the one in front; their keys stay. With None nothing is shortened."""
+    """Shorten all tabs but the one in front; their keys stay. With None nothing is shortened.
+
+    `mark` follows what was shortened.
+    """
     if letters is None:
         return tabs
     return [
-        (text if front else _initials(text, letters), action, front) for text, action, front in tabs
+        (text if front else _initials(text, letters, mark), action, front)
+        for text, action, front in tabs
     ]
 
 
@@ -182,10 +203,10 @@ def _keys(tabs: Sequence[tuple[str, str, bool]]) -> Sequence[tuple[str, str, boo
     return [(_initials(text, 0), action, front) for text, action, front in tabs]
 
 
-def _initials(text: str, letters: int) -> str:
+def _initials(text: str, letters: int, mark: str = "") -> str:
     key, _blank, word = text.partition(" ")
-    if letters and len(word) > letters + 1:
-        word = f"{word[:letters]}."
+    if letters and len(word) > letters + len(mark):
+        word = f"{word[:letters]}{mark}"
     return f"{key} {word}" if letters else key
 
 

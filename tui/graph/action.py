@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual.content import Content
 
 from graph.data import Goal, GoalStatus, SeenGoal
+from text import ros2_words
 from text.figures import figure
 from text.i18n import N_, _, localized
 from text.plain import plain
@@ -128,6 +129,14 @@ class ActionPane(AskPane):
             count = _("feedback {n}").format(n=goal.feedback_count)
             return f"{state} · {count}", name, goal.feedback
         return state, name, (_("no feedback yet"), "")
+
+    def ros2_line(self, type_name: str, value: Mapping[str, Any]) -> str:
+        """Return what sends the goal."""
+        return ros2_words.send_goal(self.name_shown, type_name, value)
+
+    def ros2_info(self) -> str:
+        """Return what tells who serves it."""
+        return ros2_words.action_info(self.name_shown)
 
     def ask(self, value: Mapping[str, Any]) -> None:
         """Send a goal."""

@@ -160,6 +160,21 @@ class AskPane(GraphPane):
             self._settling = self.set_timer(SETTLED_S, self.load_form)
         super().show_name(name)
 
+    def ros2_line(self, type_name: str, value: Mapping[str, Any]) -> str:
+        """Return what sends this request, as a command line of `ros2`."""
+        raise NotImplementedError
+
+    def ros2_info(self) -> str:
+        """Return what tells of the name, while the form cannot be sent."""
+        raise NotImplementedError
+
+    def ros2_command(self) -> str:
+        """Return what sends the form, or tells of the name while there is nothing to be sent."""
+        types, value = self.type_names(), self.form.value
+        if types and value is not None and self._form_for == self.name_shown:
+            return self.ros2_line(types[0], value)
+        return self.ros2_info() if self.name_shown else ""
+
     def load_form(self) -> None:
         """Replace the previous form with that of the current name."""
         self._settling = None

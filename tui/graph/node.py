@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 
+from text import ros2_words
 from text.i18n import _
 from tui.graph import parameter_changes
 from tui.graph.links import GraphLinks, heading, link, short
@@ -83,6 +84,17 @@ class NodePane(GraphPane):
         else:
             self.links.focus()
         self.screen.refresh_bindings()
+
+    def ros2_command(self) -> str:
+        """Return what tells of the node, or reads its parameters or the chosen one."""
+        if not self.name_shown:
+            return ""
+        if not self.shows_parameters:
+            return ros2_words.node_info(self.name_shown)
+        chosen = self.parameters.chosen
+        if chosen is None:
+            return ros2_words.parameters(self.name_shown)
+        return ros2_words.parameter(self.name_shown, chosen.name)
 
     def save_parameters(self) -> None:
         """Ask for a file, and save the parameters to it."""

@@ -63,6 +63,10 @@ class GraphPane(Vertical, Working):
         """The newest update of the graph."""
         return self.deck.feed.update
 
+    def ros2_command(self) -> str:
+        """Return what shows or does the same, as a command line of `ros2`."""
+        return ""
+
     @property
     def is_settling(self) -> bool:
         """Whether something is to be loaded once the choice stands."""

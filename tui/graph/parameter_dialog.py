@@ -12,9 +12,12 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Input, Static
 
+from text import ros2_words
 from text.i18n import _
 from text.plain import plain
+from tui.actions import bindings
 from tui.dialogs.dialog import Dialog
+from tui.dialogs.ros2 import CopyDialogAsRos2
 from tui.graph.parameter_words import allowed_words, meant, typed
 from tui.widgets.field import Field
 
@@ -36,7 +39,10 @@ Apply = Callable[["Value"], Awaitable[str]]
 class ParameterDialog(Dialog[bool]):
     """Returns whether it was set; stays open, with the reason, while the value is refused."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape", "leave", show=False),
+        *bindings(CopyDialogAsRos2),
+    ]
     DEFAULT_CSS: ClassVar[str] = """
     ParameterDialog Input { width: 1fr; margin: 0 1; }
     ParameterDialog #parameter-remark { height: auto; padding: 1 1 0 1; color: $text-warning; }
@@ -88,6 +94,13 @@ class ParameterDialog(Dialog[bool]):
         if self._row.read_only:
             keys = _("Escape leaves")
         self.query_one("#parameter-keys", Static).update(keys)
+
+    async def ros2_command(self) -> str:
+        """Return what sets the parameter to what is typed."""
+        value = self._value(self.query_one(Input).value)
+        is_yaml = isinstance(value, str) and self._row.type_name not in TEXTS
+        text = str(value) if is_yaml else ros2_words.flow(value)
+        return ros2_words.set_parameter(self._node, self._row.name, text)
 
     def action_leave(self) -> None:
         """Close without changing anything."""

@@ -359,6 +359,10 @@ class GraphScreen(DeckScreen):
         at = LISTED.index(self.history.kind) + by
         self.list_kind(LISTED[at % len(LISTED)])
 
+    async def ros2_command(self) -> str:
+        """Return what does the same as the detail: tells of a node, calls a service."""
+        return "" if self.pane is None else self.pane.ros2_command()
+
     def focus_filter(self) -> None:
         """Focus the filter."""
         self.set_focus(self.filter)

@@ -13,6 +13,7 @@ from textual.widgets import Input, Static
 
 from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import CallResult
+from text import ros2_words
 from text.figures import figure
 from text.i18n import N_, _, decimal, localized
 from text.plain import plain
@@ -226,6 +227,14 @@ class ServicePane(AskPane):
         key = self.deck.keys_of(CancelRequest)[0]
         way_out = _("{key} stops waiting for it.").format(key=key)
         return title, name, (_("the call is under way"), way_out)
+
+    def ros2_line(self, type_name: str, value: Mapping[str, Any]) -> str:
+        """Return what calls it."""
+        return ros2_words.call(self.name_shown, type_name, value)
+
+    def ros2_info(self) -> str:
+        """Return what tells its type."""
+        return ros2_words.service_type(self.name_shown)
 
     def ask(self, value: Mapping[str, Any]) -> None:
         """Call the service."""

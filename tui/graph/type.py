@@ -12,6 +12,7 @@ from textual.widgets import Tree
 
 from graph.messages.browse import Constant, Definition, MessageField, definition
 from graph.messages.types import UnknownTypeError
+from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
 from tui.graph.index import users_of
@@ -179,6 +180,10 @@ class TypePane(GraphPane):
         GraphLinks { height: auto; max-height: 25%; min-height: 1; }
     }
     """
+
+    def ros2_command(self) -> str:
+        """Return what shows its definition."""
+        return ros2_words.interface(self.name_shown) if self.name_shown else ""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)

@@ -12,22 +12,27 @@ import os
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from launcher.errors import LauncherError
+from launcher.profile.defaults import FOLDERS_OWN
 from text.i18n import language
 from tui.lifecycle.replay import replayed
 from tui.panels.registry import PANELS
-from tui.session.requests import Lesson
+from tui.session.requests import Lesson, Score, Task
 from tui.session.watching import watched
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
+    from course.lessons.lesson import LessonFolder
+    from course.progress.progress import Progress
     from graph.replay.replay import Replay
     from launcher.client.client import SupervisorClient
     from launcher.client.start import StartingSupervisor
     from launcher.profile.catalog import ProfileEntry
     from launcher.profile.load import Profile
     from launcher.status import SessionInfo
-    from tui.session.ports import GraphLink, SessionLink
+    from tui.session.ports import GraphLink, JudgeLink, SessionLink
     from tui.session.requests import OpenRequest, ReplayRequest
 
 OF_ROS = ("rclpy.node", "rclpy.event_handler", "rclpy.serialization", "sensor_msgs.msg")
@@ -47,8 +52,12 @@ class LiveOpener:
         """The recording that was opened, if the last session was one."""
 
     async def lessons(self) -> list[Lesson]:
-        """Return all profiles; broken ones have their error."""
+        """Return all profiles, without scores; broken ones have their error."""
         return await asyncio.to_thread(_lessons)
+
+    async def scored(self, lessons: Sequence[Lesson]) -> list[Lesson]:
+        """Return the same with scores, which takes longer; a lesson without steps has no task."""
+        return await asyncio.to_thread(_scored, lessons)
 
     async def running(self) -> list[SessionInfo]:
         """Return the sessions that run in the background."""
@@ -123,11 +132,36 @@ class LiveOpener:
 
         return Observer(session.domain, session.discovery)
 
+    async def lesson(self, session: SessionInfo) -> LessonFolder | None:
+        """Return the lesson that a running profile belongs to, already read; None without one."""
+        return await asyncio.to_thread(_lesson_of, session)
+
+    async def judge(
+        self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]
+    ) -> JudgeLink:
+        """Start a judge, which begins once it is told what to judge."""
+        from course.judging import RemoteJudge
+
+        return await RemoteJudge.start(lesson.path, session.run_id, passed=passed)
+
+
+def _lesson_of(session: SessionInfo) -> LessonFolder | None:
+    from course.lessons.catalog import lesson_of
+    from launcher.profile.load import load_profile
+
+    try:
+        folder = lesson_of(load_profile(session.profile))
+        # Reading it takes time that a handler of the screen does not have.
+        has_steps = folder is not None and bool(folder.steps)
+    except (LauncherError, OSError):
+        return None
+    return folder if has_steps else None
+
 
 def _read(path: Path, request: OpenRequest) -> Profile:
     """Read the profile, and make sure that nobody else is in its domain."""
     from launcher.profile.load import load_profile
-    from launcher.runs.shared_domain import refuse_shared_domain
+    from launcher.runs.shared_domain import apart_from_classmates, refuse_shared_domain
     from launcher.serial_ports import serial_ports
 
     profile = load_profile(
@@ -138,6 +172,7 @@ def _read(path: Path, request: OpenRequest) -> Profile:
         ports=serial_ports,
     )
     if not request.beside:
+        profile = apart_from_classmates(profile, request.domain)
         refuse_shared_domain(profile)
     return profile
 
@@ -160,12 +195,59 @@ async def _imported(*modules: str) -> None:
 
 
 def _lessons() -> list[Lesson]:
+    from course.lessons.catalog import lessons
+    from course.progress.progress import load_progress
     from launcher.profile.catalog import list_profiles
 
-    return [_lesson(entry) for entry in list_profiles()]
+    tasks, progress = lessons(), load_progress()
+    profiles = list_profiles()
+    names = {entry.name for entry in profiles}
+    # A lesson of a teacher's own has no profile beside it.
+    others = [task.path / FOLDERS_OWN for name, task in tasks.items() if name not in names]
+    return [
+        _lesson(entry, _task(tasks.get(entry.name), progress))
+        for entry in (list_profiles(others) if others else profiles)
+    ]
 
 
-def _lesson(entry: ProfileEntry) -> Lesson:
+def _task(folder: LessonFolder | None, progress: Progress) -> Task | None:
+    from course.folder.folder import folder_of
+
+    if folder is None:
+        return None
+    own = folder_of(folder) / FOLDERS_OWN
+    return Task(
+        folder=folder.path,
+        own=own if own.is_file() else None,
+        left_off=progress.last == folder.name,
+    )
+
+
+def _scored(lessons: Iterable[Lesson]) -> list[Lesson]:
+    from course.progress.progress import load_progress
+
+    progress = load_progress()
+    return [
+        lesson if lesson.task is None else lesson._replace(task=_with_score(lesson.task, progress))
+        for lesson in lessons
+    ]
+
+
+def _with_score(task: Task, progress: Progress) -> Task | None:
+    from course.lessons.lesson import LessonFolder
+
+    folder = LessonFolder(task.folder)
+    try:
+        steps = {step.id for step in folder.steps}
+    except (LauncherError, OSError):
+        return None
+    passed = progress.passed(folder.name) & steps
+    earned = sum(progress.step(folder.name, step).points for step in passed)
+    score = Score(len(steps), folder.points, len(passed), earned)
+    return task._replace(score=score) if steps else None
+
+
+def _lesson(entry: ProfileEntry, task: Task | None) -> Lesson:
     return Lesson(
         name=entry.name,
         path=entry.path,
@@ -174,5 +256,6 @@ def _lesson(entry: ProfileEntry) -> Lesson:
         lesson=entry.lesson,
         nodes=entry.nodes,
         panels=entry.panels,
+        task=task,
         error=entry.error,
     )

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.errors import DomainTakenError, LauncherError
+from launcher.profile.defaults import name_of
 from text.i18n import _, localized
 from text.plain import plain
 from text.sentences import reason_of
@@ -81,6 +82,10 @@ class Sessions:
         """Start or attach to a session, and show it until it ends."""
         self._app.run_worker(self._open(request), exclusive=True, group="session")
 
+    def move_to(self, request: OpenRequest) -> None:
+        """Close the session on the screen, and open another."""
+        self._app.run_worker(self._move_to(request), exclusive=True, group="leaving")
+
     def close(self) -> None:
         """Stop the nodes that this screen started, or detach from others; then show the picker."""
         self._app.run_worker(self._close(), exclusive=True, group="leaving")
@@ -131,7 +136,7 @@ class Sessions:
         opening = asyncio.create_task(self.opener.open(request))
         try:
             if self.picking:
-                await self._screens.show("deck")
+                await self._screens.show(request.screen)
             link = await opening
         except DomainTakenError as error:
             await self._ask_for_domain(request, error)
@@ -212,6 +217,10 @@ class Sessions:
         async with self._going_back:
             await self._end()
             await self._back_to_picker()
+
+    async def _move_to(self, request: OpenRequest) -> None:
+        await self._close()
+        self.open(request)
 
     async def _leave(self) -> None:
         try:
@@ -311,4 +320,4 @@ def _name_of(request: OpenRequest) -> str:
         return Path(os.path.realpath(request.replay.bag)).stem
     if request.watch is not None:
         return WATCH
-    return request.attach or (request.profile or Path()).stem
+    return request.attach or name_of(request.profile or Path())

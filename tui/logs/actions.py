@@ -102,7 +102,7 @@ class RaiseSeverity(LogsAction):
     """Raise the lowest severity shown."""
 
     id = "logs.severity"
-    key = "u,г"
+    key = "F,А"
     title = N_("Severity")
     means = "how much of the log"
     tooltip = N_("Hide the least severe lines that are shown; after FATAL all are shown again.")
@@ -118,7 +118,7 @@ class ShowNodes(LogsAction):
     """Go to the list of nodes."""
 
     id = "logs.nodes"
-    key = "e,у"
+    key = "I,Ш"
     title = N_("Nodes")
     means = "nodes behind it"
     tooltip = N_("Go to the list of nodes, where Enter mutes or unmutes one.")
@@ -207,7 +207,7 @@ class CopyWholeLog(LogsAction):
     """Copy all lines shown."""
 
     id = "logs.copy_all"
-    key = "Y,Н"
+    key = "ctrl+y"
     title = N_("Copy all")
     tooltip = N_("Copy all lines that are shown to the clipboard of your terminal.")
     from_elsewhere = False

@@ -11,6 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 
 from launcher.status import Severity
+from text import ros2_words
 from text.i18n import N_
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
@@ -128,6 +129,12 @@ class LogsScreen(DeckScreen):
     @on(LogNodes.Opened)
     def _mute(self, event: LogNodes.Opened) -> None:
         self.choose(self.pane.view.log_filter.toggled(event.key))
+
+    async def ros2_command(self) -> str:
+        """Return what prints the log, of one node if the others are muted."""
+        nodes = [name for name in self.feed.nodes if self.pane.view.log_filter.shows_node(name)]
+        alone = len(nodes) == 1 and len(self.feed.nodes) > 1
+        return ros2_words.log_of(nodes[0] if alone else "")
 
     def choose(self, chosen: LogFilter) -> None:
         """Apply a filter."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar
 
@@ -14,6 +15,7 @@ from textual.widgets import Static
 from launcher.errors import LauncherError
 from text.i18n import N_, _, localized, ngettext, pick
 from text.plain import plain
+from text.sentences import reason_of
 from tui.actions import Acting, Action, bindings
 from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
@@ -32,8 +34,12 @@ if TYPE_CHECKING:
 
     from launcher.status import SessionInfo
     from tui.session.messages import LanguageChanged
-    from tui.session.requests import Lesson, OpenRequest
+    from tui.session.requests import Lesson, OpenRequest, Score, Task
 
+STEPS, POINTS = 6, 8
+"""Widths of the columns."""
+OWN = "✎"
+"""Marks a lesson for which the learner has files."""
 RUNNING = "running:"
 WATCHED = "watch:"
 """Prefix of the row for nodes that others have started."""
@@ -45,9 +51,18 @@ class StartLesson(Action["PickerScreen"]):
     id = "lesson.start"
     key = "enter"
     title = N_("Start")
-    tooltip = N_("Start the selected lesson's nodes and show them.")
+    tooltip = N_("Start the selected lesson: your own files if there are any, else Deck's nodes.")
     footer = True
     priority = True
+
+    @classmethod
+    def label(cls, target: PickerScreen) -> str:
+        """Named after what would be started."""
+        return (
+            StartOwn.title
+            if target.chosen_task is not None and target.chosen_task.own
+            else cls.title
+        )
 
     @classmethod
     def possible(cls, target: PickerScreen) -> bool | None:
@@ -60,10 +75,53 @@ class StartLesson(Action["PickerScreen"]):
         target.open_chosen()
 
 
+class StartOwn(Action["PickerScreen"]):
+    """Make the learner's folder, and start it."""
+
+    id = "lesson.start_own"
+    key = "C,С"
+    title = N_("My own files")
+    means = "files of one's own"
+    tooltip = N_("Make a folder of your own for the selected lesson, and start your files.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: PickerScreen) -> bool | None:
+        """Only for a lesson with something to do; Enter starts a folder that is there."""
+        task = target.chosen_task
+        return task is not None and task.own is None
+
+    @classmethod
+    async def run(cls, target: PickerScreen) -> None:
+        """Make it, and start it."""
+        target.start_own()
+
+
+class StartDecks(Action["PickerScreen"]):
+    """Start Deck's own nodes where the learner has files."""
+
+    id = "lesson.start_decks"
+    key = "u,г"
+    title = N_("Deck's nodes")
+    means = "own or Deck's"
+    tooltip = N_("Start the selected lesson with Deck's own nodes in the place of your files.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: PickerScreen) -> bool | None:
+        """Only where Enter would start the learner's files."""
+        return target.chosen_task is not None and target.chosen_task.own is not None
+
+    @classmethod
+    async def run(cls, target: PickerScreen) -> None:
+        """Start them."""
+        target.open_chosen(own=False)
+
+
 class PickerScreen(Screen[None], Acting, Working):
     """A list of lessons, and beside or below it the details of the chosen one."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(StartLesson)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(StartLesson, StartOwn, StartDecks)
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
     VERTICAL_BREAKPOINTS = HEIGHTS
     DEFAULT_CSS = """
@@ -122,12 +180,24 @@ class PickerScreen(Screen[None], Acting, Working):
         """Read the lessons and the running sessions."""
         with suppress(LauncherError):
             self._domain = self.deck.sessions.opener.domain(self.deck.sessions.request.domain)
-        self._lessons = await self.deck.sessions.opener.lessons()
+        self._lessons = self._with_known_scores(await self.deck.sessions.opener.lessons())
         self._offer()
         self._sessions = await self.deck.sessions.opener.running()
         self._offer()
+        self._lessons = await self.deck.sessions.opener.scored(self._lessons)
+        self.redraw()
         if self.is_current:
             await self.deck.sessions.opener.prepare()
+
+    def _with_known_scores(self, lessons: list[Lesson]) -> list[Lesson]:
+        """Return lessons with the scores from before, which are shown until they are read again."""
+        known = {one.task.folder: one.task.score for one in self._lessons if one.task is not None}
+        return [
+            lesson
+            if lesson.task is None or lesson.task.score is not None
+            else lesson._replace(task=lesson.task._replace(score=known.get(lesson.task.folder)))
+            for lesson in lessons
+        ]
 
     def _offer(self) -> None:
         """Show the list, with the likeliest row chosen unless the user has chosen another."""
@@ -144,7 +214,8 @@ class PickerScreen(Screen[None], Acting, Working):
             return f"{RUNNING}{self._sessions[0].name}"
         last = self.deck.sessions.last_lesson
         named = [_key(lesson) for lesson in self._lessons if lesson.name == last]
-        return next(iter(named or map(_key, self._lessons)), "")
+        left = [_key(one) for one in self._lessons if one.task is not None and one.task.left_off]
+        return next(iter(named or left or map(_key, self._lessons)), "")
 
     def redraw(self) -> None:
         """Redraw everything in the current language."""
@@ -158,25 +229,51 @@ class PickerScreen(Screen[None], Acting, Working):
         if self._domain is not None:
             words = _("Look at what runs in domain {domain}").format(domain=self._domain)
             rows += [Row(WATCHED, (Cell("⌕"), Cell(words))), _heading("")]
-        rows.append(_heading(_("Lessons") if self._lessons else _("Looking for lessons…")))
-        rows += [self._lesson_row(lesson) for lesson in self._lessons]
-        self.query_one(Rows).show([Column("", 4, right=True), Column("")], rows)
+        rows += [self._lessons_heading(), *map(self._lesson_row, self._lessons)]
+        columns = [Column("", 4, right=True), Column("")]
+        if any(lesson.task for lesson in self._lessons):
+            columns += [Column("", STEPS, right=True), Column("", POINTS, right=True)]
+        self.query_one(Rows).show(columns, rows)
         self._show_about()
+        self.refresh_bindings()
 
-    def request(self) -> OpenRequest | None:
-        """Return what Enter would open, None for nothing."""
+    @property
+    def chosen_task(self) -> Task | None:
+        """What there is to do in the chosen lesson."""
+        lesson = self._chosen_lesson()
+        return None if lesson is None else lesson.task
+
+    def request(self, *, own: bool = True) -> OpenRequest | None:
+        """Return what Enter would open, None for nothing; not `own`: with Deck's nodes."""
         session, lesson = self._chosen_session(), self._chosen_lesson()
         if self._chosen == WATCHED and self._domain is not None:
             return self.deck.sessions.request._replace(watch=WatchRequest(self._domain))
         if session is not None:
             return self.deck.sessions.request._replace(attach=session.name)
         if lesson is not None and not lesson.error:
-            return self.deck.sessions.request._replace(profile=lesson.path)
+            mine = lesson.task.own if own and lesson.task is not None else None
+            return self.deck.sessions.request._replace(profile=mine or lesson.path)
         return None
 
-    def open_chosen(self) -> None:
-        """Open the chosen entry."""
-        request = self.request()
+    @work(exclusive=True, group="own")
+    async def start_own(self) -> None:
+        """Make the learner's folder of the chosen lesson, and start it."""
+        # Not needed for the first frame.
+        from course.folder.folder import own_profile
+        from course.lessons.lesson import LessonFolder
+
+        if self.chosen_task is None:
+            return
+        try:
+            profile = await asyncio.to_thread(own_profile, LessonFolder(self.chosen_task.folder))
+        except (LauncherError, OSError) as error:
+            self.notify(plain(localized(reason_of(error))), severity="error", markup=False)
+            return
+        self.deck.sessions.open(self.deck.sessions.request._replace(profile=profile))
+
+    def open_chosen(self, *, own: bool = True) -> None:
+        """Open the chosen entry; not `own`: with Deck's nodes."""
+        request = self.request(own=own)
         if request is not None:
             self.deck.sessions.open(request)
 
@@ -218,9 +315,19 @@ class PickerScreen(Screen[None], Acting, Working):
     def _lesson_row(self, lesson: Lesson) -> Row:
         if lesson.error:
             return Row(_key(lesson), (Cell("✗", "bad"), Cell(plain(lesson.name), "bad")))
-        return Row(
-            _key(lesson), (Cell(plain(lesson.lesson)), Cell(_title(lesson.name, lesson.title)))
-        )
+        task = lesson.task
+        title = _title(lesson.name, lesson.title)
+        mine = f"{title} {OWN}" if task is not None and task.own else title
+        cells = (Cell(plain(lesson.lesson)), Cell(mine))
+        return Row(_key(lesson), cells if task is None else (*cells, *_progress_cells(task)))
+
+    def _lessons_heading(self) -> Row:
+        words = _("Lessons") if self._lessons else _("Looking for lessons…")
+        if not any(lesson.task for lesson in self._lessons):
+            return _heading(words)
+        points = _("points")
+        cells = ("", words, _("steps"), f"{points} ")
+        return Row("", tuple(Cell(text, "dim") for text in cells))
 
     def _show_about(self) -> None:
         session, lesson = self._chosen_session(), self._chosen_lesson()
@@ -247,6 +354,33 @@ def _heading(text: str) -> Row:
 def _title(name: str, title: object) -> str:
     text = pick(title) if isinstance(title, dict) else ""
     return plain(text or name, 200)
+
+
+def _progress_cells(task: Task) -> tuple[Cell, Cell]:
+    """Return the steps that have passed, and the points; nothing while they are being read."""
+    score = task.score
+    if score is None:
+        return Cell(""), Cell("")
+    meaning = "good" if score.passed == score.steps else "" if score.passed else "dim"
+    sign = "✓ " if score.passed == score.steps else ""
+    steps, points = f"{sign}{score.passed}/{score.steps}", f"{score.earned}/{score.points} "
+    return Cell(steps, meaning), Cell(points, meaning)
+
+
+def _about_task(task: Task) -> list[Content]:
+    """Return how far the learner is, and whose nodes Enter starts."""
+    lines = [Content("") if task.score is None else _about_score(task.score)]
+    if task.own is not None:
+        lines.append(_field(_("Your files"), plain(str(task.own.parent))))
+    return lines
+
+
+def _about_score(score: Score) -> Content:
+    steps = ngettext("{done} of {n} step", "{done} of {n} steps", score.steps)
+    points = _("{points} of {all} points").format(points=score.earned, all=score.points)
+    line = f"{steps.format(done=score.passed, n=score.steps)} · {points}"
+    done = score.passed == score.steps
+    return Content.styled(f"✓ {line}" if done else line, "$text-success" if done else "")
 
 
 def _about_session(session: SessionInfo) -> Content:
@@ -283,7 +417,10 @@ def _about_watching(domain: int | None) -> Content:
 
 
 def _about_lesson(lesson: Lesson) -> Content:
-    lines = [Content.styled(_title(lesson.name, lesson.title), "bold $accent"), Content("")]
+    lines = [Content.styled(_title(lesson.name, lesson.title), "bold $accent")]
+    if lesson.task is not None and not lesson.error:
+        lines += _about_task(lesson.task)
+    lines.append(Content(""))
     if lesson.error:
         lines.append(Content.styled(_("✗ cannot be started"), "bold $text-error"))
         lines += [Content(plain(line)) for line in localized(lesson.error).splitlines()]

@@ -60,6 +60,9 @@ class SessionScreen(Protocol):
     def show_frame(self) -> None:
         """Show title, session and emergency stop in their current state."""
 
+    async def ros2_command(self) -> str:
+        """Return what is chosen as a command line of `ros2`, empty if there is none."""
+
     def post_message(self, message: Message) -> bool:
         """Receive a message."""
 

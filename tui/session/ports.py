@@ -7,13 +7,17 @@ type checkers only: nothing here is needed at run time.
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Callable, Iterable, Mapping
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future
 from typing import TYPE_CHECKING, Protocol
 
 from graph.calls.timeouts import ANSWER_WITHIN_S
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.judging import JudgeEvent
+    from course.lessons.lesson import LessonFolder
     from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
     from graph.publishing.dead_man_switch import HeldCommand
     from graph.replay.replay import Replay
@@ -52,6 +56,9 @@ class SessionLink(Protocol):
 
     async def restart(self, *names: str) -> None:
         """Stop and start these nodes, or all if none is named."""
+
+    async def exchange(self, name: str, program: Path | str | None) -> None:
+        """Run this file or module of Deck in the node's place; with None what the profile names."""
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """Stop processes that an earlier run left behind."""
@@ -147,6 +154,19 @@ class GraphLink(Protocol):
         """Stop reporting a goal; one that has not ended is cancelled."""
 
 
+class JudgeLink(Protocol):
+    """Judges one step at a time of a lesson that runs; `course.judging.RemoteJudge` is one."""
+
+    def judge(self, step: str) -> None:
+        """Judge this step from now on, until it has passed, and no other one."""
+
+    def events(self) -> AsyncIterator[JudgeEvent]:
+        """Yield what the judge says, that it has ended last."""
+
+    async def close(self) -> None:
+        """End it."""
+
+
 class SessionOpener(Protocol):
     """What can be opened, and how."""
 
@@ -155,7 +175,10 @@ class SessionOpener(Protocol):
         """The recording that was opened, if the last session was one."""
 
     async def lessons(self) -> list[Lesson]:
-        """Return all profiles; broken ones have their error."""
+        """Return all profiles, without scores; broken ones have their error."""
+
+    async def scored(self, lessons: Sequence[Lesson]) -> list[Lesson]:
+        """Return the same with scores, which takes longer; a lesson without steps has no task."""
 
     async def running(self) -> list[SessionInfo]:
         """Return the sessions that run in the background."""
@@ -171,3 +194,11 @@ class SessionOpener(Protocol):
 
     def observe(self, session: SessionInfo) -> GraphLink:
         """Return the ROS graph of this session's nodes, not yet observed."""
+
+    async def lesson(self, session: SessionInfo) -> LessonFolder | None:
+        """Return the lesson that a running profile belongs to, already read; None without one."""
+
+    async def judge(
+        self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]
+    ) -> JudgeLink:
+        """Start a judge, which begins once it is told what to judge."""

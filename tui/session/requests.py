@@ -6,6 +6,33 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from launcher.profile.defaults import FOLDERS_OWN
+
+
+class Score(NamedTuple):
+    """How far the learner is with a lesson."""
+
+    steps: int
+    """Of the lesson."""
+    points: int
+    """To be earned."""
+    passed: int = 0
+    """Steps that have passed."""
+    earned: int = 0
+
+
+class Task(NamedTuple):
+    """What there is to do in a lesson."""
+
+    folder: Path
+    """That of the lesson."""
+    score: Score | None = None
+    """None until its steps have been read."""
+    own: Path | None = None
+    """The profile of the learner's own folder, None if there is no such folder yet."""
+    left_off: bool = False
+    """Whether it is the lesson that the learner did last."""
+
 
 class Lesson(NamedTuple):
     """One profile in the picker."""
@@ -20,6 +47,8 @@ class Lesson(NamedTuple):
     lesson: str = ""
     nodes: tuple[str, ...] = ()
     panels: tuple[str, ...] = ()
+    task: Task | None = None
+    """What there is to do in it, if it has steps."""
     error: str = ""
     """Why it cannot be started: `file:line:column: field: message`; empty if it can."""
 
@@ -53,3 +82,9 @@ class OpenRequest(NamedTuple):
     watch: WatchRequest | None = None
     beside: bool = False
     """Whether it may share its domain with other sessions."""
+
+    @property
+    def screen(self) -> str:
+        """The screen to show first: for files of the learner's own, what is to be done."""
+        own = self.profile is not None and self.profile.name == FOLDERS_OWN
+        return "lesson" if own else "deck"

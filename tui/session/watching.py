@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from graph.housekeeping import is_housekeeping
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from graph.data import GraphUpdate
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
@@ -43,6 +45,9 @@ class NodelessLink:
 
     async def restart(self, *names: str) -> None:
         """Nothing to restart."""
+
+    async def exchange(self, name: str, program: Path | str | None) -> None:
+        """Nothing to exchange."""
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """Nothing was left behind."""

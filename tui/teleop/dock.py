@@ -16,7 +16,7 @@ QUICK_S, USUAL_S = 0.1, 0.25
 
 
 class TeleopDock:
-    """Shows the panel for driving below the `#board` of a screen.
+    """Shows the panel for driving below the `#desk` of a screen.
 
     The screen passes it updates, and tells it when something else receives the keys.
     """
@@ -37,7 +37,7 @@ class TeleopDock:
             from tui.teleop.widget import TeleopPanel
 
             self._panel = TeleopPanel()
-            await self._screen.mount(self._panel, after="#board")
+            await self._screen.mount(self._panel, after="#desk")
             self._screen.period_s = QUICK_S
             self._screen.topics_changed()
         self._panel.focus()

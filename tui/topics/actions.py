@@ -290,7 +290,7 @@ class ShowEndpoints(TopicsAction):
     """Show the endpoints of the topic."""
 
     id = "topics.endpoints"
-    key = "e,у"
+    key = "I,Ш"
     title = N_("Endpoints")
     means = "nodes behind it"
     tooltip = N_(

@@ -10,6 +10,8 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
 from graph.housekeeping import is_housekeeping
+from graph.qos import to_hear
+from text import ros2_words
 from text.i18n import N_, _, ngettext
 from tui.actions import bindings
 from tui.echo.tree import EchoTree
@@ -312,6 +314,18 @@ class TopicsScreen(DeckScreen):
 
         row = self.table.chosen_row
         self.app.push_screen(PublishDialog(row, lambda: self.detail.sample))
+
+    async def ros2_command(self) -> str:
+        """Return what prints the chosen topic, or the value at the cursor of the message."""
+        row = self.table.chosen_row
+        if row is None:
+            return ros2_words.echo(self.table.chosen) if self.table.chosen else ""
+        qos = to_hear(row.published_by)
+        echo = self.detail.echo
+        path = echo.at_cursor or () if echo.has_focus else ()
+        return ros2_words.echo(
+            row.name, path, reliability=qos.reliability, durability=qos.durability
+        )
 
     # Display
 

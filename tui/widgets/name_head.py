@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from textual.content import Content
 from textual.widgets import Static
 
 from text.plain import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 LONGEST = 300
 
@@ -23,9 +28,16 @@ class NameHead(Static):
 
     def show(self, name: str, *facts: str) -> None:
         """Show the name and the facts, made harmless, each fact on its own line."""
-        said = (name, *(fact for fact in facts if fact))
+        said: tuple[str, ...] = (name, *(fact for fact in facts if fact))
         if said != self._said:
             self._said = said
             lines = [Content.styled(plain(name, LONGEST), "bold")]
             lines += [Content.styled(plain(fact, LONGEST), "$text-muted") for fact in said[1:]]
+            self.update(Content("\n").join(lines))
+
+    def show_lines(self, lines: Sequence[Content]) -> None:
+        """Show lines with styles of their own in the place of name and facts."""
+        said = tuple(line.markup for line in lines)
+        if said != self._said:
+            self._said = said
             self.update(Content("\n").join(lines))

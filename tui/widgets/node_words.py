@@ -38,6 +38,8 @@ def state_words(node: NodeStatus) -> tuple[str, str, str]:
 
 def why(node: NodeStatus) -> str:
     """Return why the node is in its state, or what it runs if there is no reason."""
+    if node.fault is not None:
+        return plain(localized(node.fault.words))
     if node.detail:
         return plain(localized(node.detail))
     if node.signal:

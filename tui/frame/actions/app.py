@@ -100,6 +100,16 @@ class ShowDeck(ShowScreen):
     screen = "deck"
 
 
+class ShowLesson(ShowScreen):
+    """What the lesson asks for."""
+
+    id = "screen.lesson"
+    key = "L,Д"
+    title = N_("Lesson")
+    tooltip = N_("The task of this step, what is judged of your nodes, and hints.")
+    screen = "lesson"
+
+
 class ShowTopics(ShowScreen):
     """Every topic."""
 
@@ -191,6 +201,20 @@ class ShowPalette(AppAction):
     async def run(cls, target: Host) -> None:
         """Open it."""
         target.show_palette()
+
+
+class ShowTour(AppAction):
+    """The tour of the first start."""
+
+    id = "app.tour"
+    key = "shift+f1"
+    title = N_("Tour")
+    tooltip = N_("What Deck is for and which keys matter, in five pages.")
+
+    @classmethod
+    async def run(cls, target: Host) -> None:
+        """Show it again."""
+        target.show_tour()
 
 
 class SwitchLanguage(AppAction):
@@ -298,6 +322,7 @@ APP_ACTIONS = (
     EmergencyRelease,
     ShowHelp,
     ShowDeck,
+    ShowLesson,
     ShowTopics,
     ShowComposer,
     ShowLogs,
@@ -305,6 +330,7 @@ APP_ACTIONS = (
     ShowFlow,
     ShowDevices,
     ShowPalette,
+    ShowTour,
     CloseSession,
     EndSession,
     SwitchLanguage,

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from text import ros2_words
 from text.i18n import N_
 from tui.actions.action import Action
+from tui.frame.actions.ros2 import copy_command
 
 if TYPE_CHECKING:
     from tui.frame.host import Host
@@ -57,4 +59,24 @@ class RecordWithoutImages(Action["Host"]):
         target.recording.toggle(images=False)
 
 
-RECORDING_ACTIONS = (RecordToggle, RecordWithoutImages)
+class RecordAsRos2(Action["Host"]):
+    """Copy what records the same as a command line of `ros2`."""
+
+    id = "recording.ros2"
+    key = "alt+f6"
+    title = N_("Record as ros2 command")
+    tooltip = N_("Copy the `ros2 bag record` that records the same from a shell, and show it.")
+    priority = True
+
+    @classmethod
+    def possible(cls, target: Host) -> bool | None:
+        """Only where something could be recorded."""
+        return RecordToggle.possible(target)
+
+    @classmethod
+    async def run(cls, target: Host) -> None:
+        """Copy it."""
+        copy_command(target, ros2_words.record())
+
+
+RECORDING_ACTIONS = (RecordToggle, RecordWithoutImages, RecordAsRos2)

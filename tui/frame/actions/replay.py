@@ -131,7 +131,7 @@ class Loop(ReplayAction):
     """Repeat the recording."""
 
     id = "replay.loop"
-    key = "L,Д"
+    key = "shift+f7"
     title = N_("Loop")
     tooltip = N_("At the end of the recording start again, or stay there.")
 

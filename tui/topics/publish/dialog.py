@@ -11,9 +11,11 @@ from textual.content import Content
 
 from graph.messages.yaml_form import filled
 from graph.messages.yaml_text import is_cut
+from text import ros2_words
 from text.i18n import _, decimal, ngettext
 from tui.actions import bindings
 from tui.dialogs.dialog import Dialog
+from tui.dialogs.ros2 import CopyDialogAsRos2
 from tui.frame import title
 from tui.frame.actions.app import EmergencyStop
 from tui.frame.key_bar import KeyBar
@@ -45,7 +47,7 @@ LONGEST_ARRAY = 1000
 class PublishDialog(Dialog[None]):
     """Topic, type and form; below them a rate, and what is being published now."""
 
-    BINDINGS: ClassVar = bindings(*PUBLISH_ACTIONS)
+    BINDINGS: ClassVar = bindings(*PUBLISH_ACTIONS, CopyDialogAsRos2)
     DEFAULT_CSS: ClassVar[str] = """
     PublishDialog {
         align: center top; background: $background;
@@ -133,6 +135,15 @@ class PublishDialog(Dialog[None]):
         self.rate.relabel()
         self._listed = None
         self._look()
+
+    async def ros2_command(self) -> str:
+        """Return what publishes the message, at a rate if one is going on for this topic."""
+        value = self.form.value
+        if value is None or not self.target.is_name:
+            return ""
+        rates = [one.hz for one in self._listed or () if one.topic == self.target.topic]
+        hz = rates[0] if rates else None
+        return ros2_words.pub(self.target.topic, self.form.type_name, value, hz)
 
     def publish_once(self) -> None:
         """Publish the message, and say how many received it."""

@@ -1,0 +1,257 @@
+"""The lesson of the session: the step at hand, and what a judge says of it.
+
+The Lesson screen and the column on the Deck show the same one. A judge is at work from when the
+first of them asks until the session ends.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+from course.progress.progress import Progress, load_progress, noted
+from course.results import State, StepResult
+from text.i18n import _, localized
+from text.plain import plain
+from tui.frame.host import host_of
+from tui.lesson.reading import StepTexts
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from textual.screen import Screen
+    from textual.worker import Worker
+    from typing_extensions import Unpack
+
+    from course.judging import JudgeEvent
+    from course.lessons.lesson import LessonFolder
+    from course.progress.progress import StepChanges
+    from launcher.profile.steps.model import StepDocument
+    from launcher.status import NodeStatus, SessionInfo
+    from tui.frame.host import Host
+    from tui.session.messages import SessionChanged
+    from tui.session.ports import JudgeLink
+
+
+class LessonAtWork:
+    """The lesson, from the side of whoever shows it; there is one for the app, see `of`."""
+
+    def __init__(self, host: Host) -> None:
+        """Know nothing yet."""
+        self._host = host
+        self.folder: LessonFolder | None = None
+        """The lesson, None while there is none."""
+        self.sought = False
+        """Whether it is known if the session belongs to a lesson."""
+        self.reading: StepTexts | None = None
+        self.beside_nodes = False
+        """Whether it is wished beside the nodes on the Deck, too."""
+        self.progress = Progress()
+        self.seed = 0
+        """What the judge draws its values from; 0 until it is at work."""
+        self._step = ""
+        """Id of the step at hand."""
+        self._results: dict[str, StepResult] = {}
+        self._judge: JudgeLink | None = None
+        self._judged = ""
+        """The step that the judge was asked for."""
+        self._run = ""
+        """The run whose lesson this is."""
+        self._following: Worker[None] | None = None
+        self._shown_by: dict[Screen[None], Callable[[], object]] = {}
+
+    @classmethod
+    def of(cls, screen: Screen[None]) -> LessonAtWork:
+        """Return that of the app."""
+        host = host_of(screen)
+        if host.lesson is None:
+            host.lesson = cls(host)
+        return cast("LessonAtWork", host.lesson)
+
+    # The lesson and its judge
+
+    def show_on(self, screen: Screen[None], show: Callable[[], object]) -> None:
+        """Call `show` whenever something has changed, as long as that screen is there."""
+        self._shown_by[screen] = show
+        self._follow(screen)
+
+    def session_changed(self, screen: Screen[None], message: SessionChanged) -> None:
+        """Read the lesson of another session; when it has ended, so does its judge."""
+        if message.ended or self._session is None:
+            self._run = ""
+            if self._following is not None:
+                self._following.cancel()
+            return
+        self._follow(screen)
+
+    def status_changed(self, screen: Screen[None]) -> None:
+        """Begin to judge once there are nodes of the learner's."""
+        if self.own and self._judge is None and self.folder is not None:
+            done = self._following is None or self._following.is_finished
+            self._run = "" if done else self._run
+            self._follow(screen)
+
+    @property
+    def _session(self) -> SessionInfo | None:
+        """The session, None if there is none with nodes that could be judged."""
+        feed = self._host.feed
+        judgeable = feed.link is not None and feed.replay is None and not feed.watching
+        return feed.session if judgeable else None
+
+    def _follow(self, screen: Screen[None]) -> None:
+        """Begin with a session that is another than the one before."""
+        session = self._session
+        if session is not None and session.run_id != self._run:
+            self._run = session.run_id
+            self._following = screen.app.run_worker(
+                self._judge_session(session), group="judge", exclusive=True
+            )
+
+    async def _judge_session(self, session: SessionInfo) -> None:
+        """Read the lesson of the session, and take what the judge says of it until it ends."""
+        opener = self._host.sessions.opener
+        folder = await opener.lesson(session)
+        self.progress = await asyncio.to_thread(load_progress)
+        self.folder, self._results, self.sought = folder, {}, True
+        if folder is None:
+            self._changed()
+            return
+        self.reading = StepTexts(folder)
+        passed = self.progress.passed(folder.name)
+        ids = [step.id for step in folder.steps]
+        self._step = next((id_ for id_ in ids if id_ not in passed), ids[0])
+        self._changed()
+        if not self.own:
+            return
+        self.note()
+        judge = await opener.judge(folder, session, passed)
+        self._judge = judge
+        try:
+            self._ask_judge()
+            async for event in judge.events():
+                self._take(event)
+        finally:
+            self._judge, self._judged = None, ""
+            await judge.close()
+
+    def _ask_judge(self) -> None:
+        """Have the step at hand judged, unless it has passed already."""
+        if self._judge is not None and self._judged != self._step and not self.passed_now:
+            self._judged = self._step
+            self._judge.judge(self._step)
+
+    def _take(self, event: JudgeEvent) -> None:
+        if isinstance(event, StepResult):
+            if self._results.get(event.id) == event:
+                return
+            self._results[event.id] = event
+            if event.state is State.PASSED:
+                self.note(event.id, passed=True, points=event.points)
+        elif seed := getattr(event, "seed", 0):
+            self.seed = seed
+        elif reason := getattr(event, "reason", ""):
+            self._host.notify(plain(localized(reason)), severity="warning")
+        self._changed()
+
+    def note(self, step: str = "", **changes: Unpack[StepChanges]) -> None:
+        """Write down how far a step is."""
+        if self.folder is None:
+            return
+        try:
+            self.progress = noted(self.folder.name, step, changes)
+        except OSError as error:
+            if step:
+                self.progress = self.progress.with_step(self.folder.name, step, changes)
+            told = _("Your progress could not be saved: {reason}").format(reason=error.strerror)
+            self._host.notify(plain(told), severity="warning")
+
+    def _changed(self) -> None:
+        for screen, show in list(self._shown_by.items()):
+            if screen.is_attached:
+                show()
+            else:
+                del self._shown_by[screen]
+
+    # How things stand
+
+    @property
+    def own(self) -> bool:
+        """Whether files of the learner run."""
+        return any(node.file for node in self._host.feed.nodes.values())
+
+    @property
+    def step(self) -> StepDocument | None:
+        """The step at hand."""
+        steps = () if self.folder is None else self.folder.steps
+        return next((step for step in steps if step.id == self._step), None)
+
+    @property
+    def passed(self) -> frozenset[str]:
+        """The steps that have passed, now or earlier."""
+        return frozenset() if self.folder is None else self.progress.passed(self.folder.name)
+
+    @property
+    def passed_now(self) -> bool:
+        """Whether the step at hand has passed."""
+        return self.step is not None and self._step in self.passed
+
+    @property
+    def taken(self) -> int:
+        """How many hints have been asked for."""
+        name = "" if self.folder is None else self.folder.name
+        return self.progress.step(name, self._step).hints
+
+    @property
+    def saw_solution(self) -> bool:
+        """Whether the solution was asked for."""
+        name = "" if self.folder is None else self.folder.name
+        return self.progress.step(name, self._step).solution
+
+    @property
+    def more_help(self) -> bool:
+        """Whether there is a hint left, or the solution."""
+        step = self.step
+        return step is not None and (self.taken < len(step.hints) or not self.saw_solution)
+
+    @property
+    def node(self) -> NodeStatus | None:
+        """The node that runs the file of this step, else any that runs a file of the learner."""
+        nodes = [node for node in self._host.feed.nodes.values() if node.file]
+        wanted = self.step.file if self.step is not None else None
+        named = [node for node in nodes if wanted and Path(node.file).name == wanted]
+        return next(iter(named or nodes), None)
+
+    def result(self, step: StepDocument) -> StepResult:
+        """Return what is known of a step; one that has passed stays passed."""
+        result = self._results.get(step.id, StepResult(step.id, State.NOT_YET, step.points))
+        if step.id in self.passed and result.state is not State.PASSED:
+            return StepResult(step.id, State.PASSED, step.points)
+        return result
+
+    def neighbour(self, by: int) -> str:
+        """The id of the step this many places further, empty if there is none."""
+        ids = [] if self.folder is None else [step.id for step in self.folder.steps]
+        if self._step not in ids:
+            return ""
+        at = ids.index(self._step) + by
+        return ids[at] if 0 <= at < len(ids) else ""
+
+    def go(self, by: int) -> None:
+        """Go to that step."""
+        self._step = self.neighbour(by) or self._step
+        self._ask_judge()
+        self._changed()
+
+    def help(self) -> bool:
+        """Take the next hint, and after the last one the solution; return whether it is that."""
+        step = self.step
+        if step is None:
+            return False
+        solution = self.taken >= len(step.hints)
+        if solution:
+            self.note(step.id, solution=True)
+        else:
+            self.note(step.id, hints=self.taken + 1)
+        self._changed()
+        return solution

@@ -1,0 +1,112 @@
+"""What the tour says, page by page; each fits 80x24 in both languages."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from text.i18n import N_
+from tui.deck.actions import EditNode, ExchangeNode, RestartNode
+from tui.frame.actions.app import (
+    CloseSession,
+    EmergencyRelease,
+    EmergencyStop,
+    Quit,
+    ShowDeck,
+    ShowHelp,
+    ShowLesson,
+    ShowPalette,
+    ShowTopics,
+    SwitchLanguage,
+)
+from tui.lesson.actions import GoOn, MakeOwnFolder, TakeHint
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from tui.actions import Action
+
+
+class TourPage(NamedTuple):
+    """A title, a few sentences, and keys with what they do."""
+
+    title: str
+    sentences: Sequence[str]
+    keys: Sequence[tuple[type[Action[Any]], str]] = ()
+
+
+PAGES = (
+    TourPage(
+        N_("Welcome to Deck"),
+        (
+            N_(
+                "A robot's program is made of many small ones, called nodes. One measures a "
+                "distance, another decides, a third turns the wheels. ROS 2 connects them: nodes "
+                "talk by topics, services and actions."
+            ),
+            N_(
+                "Deck starts the nodes of a lesson and shows what they say. The robot is "
+                "simulated: nothing here can break. Lesson by lesson you replace Deck's nodes by "
+                "your own, until the robot drives by your files."
+            ),
+            N_("The next four pages say how. Escape leaves the tour at once."),
+        ),
+    ),
+    TourPage(
+        N_("The list of lessons"),
+        (
+            N_(
+                "It shows how many steps of each lesson you have done, and your points. It opens "
+                "on the lesson where you left off."
+            ),
+        ),
+        (
+            (GoOn, N_("start the lesson and watch, or go on with your own files")),
+            (MakeOwnFolder, N_("make your own folder for it, in ~/deck-course, and start it")),
+            (CloseSession, N_("come back to the list")),
+        ),
+    ),
+    TourPage(
+        N_("Write, save, see"),
+        (
+            N_(
+                "The Lesson screen has the task of the step, and checks that look at your running "
+                "node. Save your file in any editor: Deck starts the node again, and tells of each "
+                "check what it expected and what it saw."
+            ),
+            N_("A step that has passed stays green. Nothing goes on before you do."),
+        ),
+        (
+            (ShowLesson, N_("the Lesson screen")),
+            (EditNode, N_("open your file in your editor, at the line of the mistake")),
+            (TakeHint, N_("a hint, then a plainer one, then the solution")),
+            (GoOn, N_("go on to the next step")),
+        ),
+    ),
+    TourPage(
+        N_("Look inside"),
+        (
+            N_(
+                "The other screens show what the nodes do: their states and logs, every topic with "
+                "its messages, who talks to whom, and what followed from what."
+            ),
+        ),
+        (
+            (ShowDeck, N_("the nodes, the sensors and the wheels")),
+            (ShowTopics, N_("every topic, the selected one live; the other numbers show more")),
+            (RestartNode, N_("start the selected node again")),
+            (ExchangeNode, N_("put your own node in the place of Deck's, and back")),
+            (ShowHelp, N_("all keys of the screen in front")),
+            (ShowPalette, N_("find anything by its name")),
+        ),
+    ),
+    TourPage(
+        N_("Stop and leave"),
+        (N_("When the robot does what it should not, there is one key to know:"),),
+        (
+            (EmergencyStop, N_("emergency stop: the wheels stand still at once")),
+            (EmergencyRelease, N_("release it")),
+            (Quit, N_("leave Deck; no node is left running")),
+            (SwitchLanguage, N_("English / Русский")),
+        ),
+    ),
+)

@@ -1,0 +1,118 @@
+"""The pages of the tour, one at a time over the list of lessons; Escape leaves at once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from rich.cells import cell_len
+from textual.content import Content
+
+from text.i18n import N_, _
+from tui.actions import Action, bindings
+from tui.dialogs.dialog import Dialog
+from tui.tour.pages import PAGES
+
+if TYPE_CHECKING:
+    from textual.binding import BindingType
+
+
+class NextPage(Action["TourScreen"]):
+    """Go on."""
+
+    id = "tour.next"
+    key = "enter,n,т"
+    title = N_("Next page")
+    means = "next"
+    tooltip = N_("Show the next page of the tour; after the last one, close it.")
+    footer = True
+    palette = False
+
+    @classmethod
+    def label(cls, target: TourScreen) -> str:
+        """Named after what comes next."""
+        return N_("To the lessons") if target.is_last else cls.title
+
+    @classmethod
+    async def run(cls, target: TourScreen) -> None:
+        """Show it."""
+        target.turn(1)
+
+
+class PreviousPage(Action["TourScreen"]):
+    """Go back."""
+
+    id = "tour.back"
+    key = "N,Т"
+    title = N_("Previous page")
+    means = "previous"
+    tooltip = N_("Show the page before.")
+    footer = True
+    palette = False
+
+    @classmethod
+    def possible(cls, target: TourScreen) -> bool | None:
+        """Not on the first one."""
+        return True if target.page else None
+
+    @classmethod
+    async def run(cls, target: TourScreen) -> None:
+        """Show it."""
+        target.turn(-1)
+
+
+class LeaveTour(Action["TourScreen"]):
+    """Leave."""
+
+    id = "tour.leave"
+    key = "escape"
+    title = N_("Leave the tour")
+    tooltip = N_("Close the tour; it is not shown again by itself.")
+    footer = True
+    palette = False
+
+    @classmethod
+    async def run(cls, target: TourScreen) -> None:
+        """Close it."""
+        target.dismiss(None)
+
+
+class TourScreen(Dialog[None]):
+    """Shows the pages."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(NextPage, PreviousPage, LeaveTour)
+    DEFAULT_CSS = "TourScreen { #dialog { height: 22; } #dialog-scroll { height: 1fr; } }"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.page = 0
+        """From 0."""
+
+    @property
+    def is_last(self) -> bool:
+        """Whether no page follows."""
+        return self.page == len(PAGES) - 1
+
+    def turn(self, by: int) -> None:
+        """Show another page; after the last one, close the tour."""
+        if by > 0 and self.is_last:
+            self.dismiss(None)
+            return
+        self.page = max(0, self.page + by)
+        self.redraw()
+        self.refresh_bindings()
+
+    def title_words(self) -> str:
+        """Return the title of the page, and which one it is."""
+        return f"{_(PAGES[self.page].title)} · {self.page + 1}/{len(PAGES)}"
+
+    def words(self) -> Content:
+        """Return the sentences, then the keys."""
+        page = PAGES[self.page]
+        lines = [Content(f"{_(sentence)}\n") for sentence in page.sentences]
+        keys = [self.deck.keys_of(action)[0] for action, _words in page.keys]
+        width = max(map(cell_len, keys), default=0)
+        lines += [
+            Content.assemble((f"  {key:>{width}}", "bold $accent"), f"  {_(words)}")
+            for key, (_action, words) in zip(keys, page.keys, strict=True)
+        ]
+        return Content("\n").join(lines)
