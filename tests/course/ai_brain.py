@@ -23,25 +23,30 @@ class AiBrain(Node):
     def see(self, message: Float32) -> None:
         self.distance_m = message.data
 
-    def answer(self, _: ByteMultiArray) -> None:
+    def answer(self, message: ByteMultiArray) -> None:
+        heard = b"".join(message.data).decode("utf-8")
+        self.get_logger().info(f"heard {heard}")
         near = self.distance_m < 1.0
         if not near and self.head.wait_for_service(timeout_sec=1.0):
             self.head.call_async(AddTwoInts.Request(a=45, b=0))
         words = b"I stopped" if near else b"Moving forward"
-        self.speaker.publish(ByteMultiArray(data=[bytes([byte]) for byte in words]))
+        voice = ByteMultiArray()
+        voice.data = words
+        self.speaker.publish(voice)
         self.word.publish(String(data="стоп" if near else "вперед"))
 
 
 def main() -> None:
     rclpy.init()
     node = AiBrain()
+    node.get_logger().info("started")
     try:
         rclpy.spin(node)
     except KeyboardInterrupt:
         pass
     finally:
         node.destroy_node()
-        rclpy.try_shutdown()
+        rclpy.shutdown()
 
 
 if __name__ == "__main__":

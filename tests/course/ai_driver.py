@@ -35,13 +35,14 @@ class AiDriver(Node):
 def main() -> None:
     rclpy.init()
     node = AiDriver()
+    node.get_logger().info("started")
     try:
         rclpy.spin(node)
     except KeyboardInterrupt:
         pass
     finally:
         node.destroy_node()
-        rclpy.try_shutdown()
+        rclpy.shutdown()
 
 
 if __name__ == "__main__":

@@ -23,13 +23,14 @@ class ElectronicDifferential(Node):
 def main() -> None:
     rclpy.init()
     node = ElectronicDifferential()
+    node.get_logger().info("started")
     try:
         rclpy.spin(node)
     except KeyboardInterrupt:
         pass
     finally:
         node.destroy_node()
-        rclpy.try_shutdown()
+        rclpy.shutdown()
 
 
 if __name__ == "__main__":

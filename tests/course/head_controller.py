@@ -26,13 +26,14 @@ class HeadController(Node):
 def main() -> None:
     rclpy.init()
     node = HeadController()
+    node.get_logger().info("started")
     try:
         rclpy.spin(node)
     except KeyboardInterrupt:
         pass
     finally:
         node.destroy_node()
-        rclpy.try_shutdown()
+        rclpy.shutdown()
 
 
 if __name__ == "__main__":

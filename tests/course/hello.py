@@ -20,13 +20,9 @@ class Hello(Node):
 def main() -> None:
     rclpy.init()
     node = Hello()
-    try:
-        rclpy.spin(node)
-    except KeyboardInterrupt:
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    node.get_logger().info("started")
+    rclpy.spin(node)
+    rclpy.shutdown()
 
 
 if __name__ == "__main__":

@@ -15,8 +15,9 @@ class MockAudio(Node):
         self.create_timer(10.0, self.speak)
 
     def speak(self) -> None:
-        words = b"VOICE_COMMAND: Look around and tell me what you see!"
-        self.microphone.publish(ByteMultiArray(data=[bytes([byte]) for byte in words]))
+        message = ByteMultiArray()
+        message.data = b"VOICE_COMMAND: Look around and tell me what you see!"
+        self.microphone.publish(message)
 
     def play(self, message: ByteMultiArray) -> None:
         words = b"".join(message.data).decode("utf-8", errors="ignore")
@@ -26,13 +27,14 @@ class MockAudio(Node):
 def main() -> None:
     rclpy.init()
     node = MockAudio()
+    node.get_logger().info("started")
     try:
         rclpy.spin(node)
     except KeyboardInterrupt:
         pass
     finally:
         node.destroy_node()
-        rclpy.try_shutdown()
+        rclpy.shutdown()
 
 
 if __name__ == "__main__":

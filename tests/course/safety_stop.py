@@ -22,13 +22,14 @@ class SafetyStop(Node):
 def main() -> None:
     rclpy.init()
     node = SafetyStop()
+    node.get_logger().info("started")
     try:
         rclpy.spin(node)
     except KeyboardInterrupt:
         pass
     finally:
         node.destroy_node()
-        rclpy.try_shutdown()
+        rclpy.shutdown()
 
 
 if __name__ == "__main__":

@@ -50,8 +50,13 @@ def deck(ros_domain: int, tmp_path: Path) -> Iterator[Deck]:
         "ROS_DOMAIN_ID": str(ros_domain),
         "XDG_CONFIG_HOME": str(tmp_path / "config"),
         "XDG_STATE_HOME": str(tmp_path / "state"),
+        "DECK_COURSE": str(tmp_path / "course"),
         "DECK_LANG": "en",
     }
+    # The tour of the first start would cover the list of lessons.
+    settings = tmp_path / "config" / "deck" / "settings.json"
+    settings.parent.mkdir(parents=True)
+    settings.write_text('{"tour": "seen"}')
     started = Deck(mark, env, [])
     yield started
     for terminal in started.terminals:

@@ -42,6 +42,7 @@ KEYS = {
     "f3": "\x1bOR",
     "f4": "\x1bOS",
     "f5": "\x1b[15~",
+    "f8": "\x1b[19~",
 }
 """What a terminal sends for the keys that have names; `ctrl+x` is understood besides."""
 

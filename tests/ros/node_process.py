@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from tests import ports
 from tests.middleware_words import own_words
 from tests.ros.peer import DISCOVERY, ROOT
+from tests.ros.warm_node import WarmNode
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
@@ -28,7 +29,8 @@ def _as_anyone() -> tuple[str, ...]:
 class NodeProcess:
     """`python -m MODULE --ros-args -p NAME:=VALUE ...`; its output goes to a file.
 
-    `mortal`: whoever runs the tests, it may not open what it has no permission for.
+    It is forked, warm, as Deck does it. `cold`: it is started by Python. `mortal`: it is cold, and
+    may not open what it has no permission for, whoever runs the tests.
     """
 
     def __init__(
@@ -40,16 +42,17 @@ class NodeProcess:
         params: dict[str, object] | None = None,
         lang: str = "en",
         arguments: tuple[str, ...] = (),
+        cold: bool = False,
         mortal: bool = False,
     ) -> None:
         self.module = module
-        command = [*(_as_anyone() if mortal else ()), sys.executable, "-m", module, *arguments]
+        argv = [module, *arguments]
         if name or params:
-            command.append("--ros-args")
+            argv.append("--ros-args")
         if name:
-            command += ["-r", f"__node:={name}"]
+            argv += ["-r", f"__node:={name}"]
         for key, value in (params or {}).items():
-            command += ["-p", f"{key}:={str(value).lower() if value in (True, False) else value}"]
+            argv += ["-p", f"{key}:={str(value).lower() if value in (True, False) else value}"]
         environment = {
             **os.environ,
             "ROS_DOMAIN_ID": str(domain),
@@ -62,8 +65,13 @@ class NodeProcess:
         self._held: set[str] = set()
         self.hung = False
         """Whether it has ever been told to."""
+        if not (cold or mortal):
+            self.process: WarmNode | subprocess.Popen[bytes] = WarmNode(
+                argv, cwd=str(ROOT), env=environment, log=self._log.fileno()
+            )
+            return
         self.process = subprocess.Popen(
-            command,
+            [*(_as_anyone() if mortal else ()), sys.executable, "-m", *argv],
             cwd=ROOT,
             env=environment,
             stdin=subprocess.DEVNULL,

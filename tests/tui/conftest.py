@@ -17,6 +17,7 @@ from syrupy.assertion import SnapshotAssertion
 from textual.css.model import RuleSet
 from textual.css.stylesheet import Stylesheet
 from textual.css.types import CSSLocation
+from textual.screen import Screen
 
 from tests.tui.recorded import NOW_S
 from tests.tui.snapshots import SnapCompare
@@ -47,6 +48,31 @@ def _css_is_parsed_once() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Stylesheet, "_parse_rules", remembered)
         yield
+
+
+@pytest.fixture(autouse=True)
+def _only_what_is_looked_at_is_drawn(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Draw no frame that no terminal gets: it was two fifths of the time of these tests.
+
+    Of a picture the whole screen is drawn once. Tests marked `every_frame` are about what is drawn
+    on the way to it, or about a widget that takes its size from it.
+    """
+    if request.node.get_closest_marker("every_frame"):
+        return
+    refresh = Screen._compositor_refresh
+
+    def seen(screen: Screen[object]) -> None:
+        app = screen.app
+        if screen is not app.screen or not app.is_headless:
+            refresh(screen)
+            return
+        screen._compositor._dirty_regions.clear()
+        screen._dirty_widgets.clear()
+        app._update_mouse_over(screen)
+
+    monkeypatch.setattr(Screen, "_compositor_refresh", seen)
 
 
 @pytest.fixture(autouse=True)

@@ -8,7 +8,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Iterable, Mapping
+from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +33,10 @@ from tui.session.ports import SessionLink
 from tui.session.requests import Lesson, OpenRequest
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.judging import JudgeEvent
+    from course.lessons.lesson import LessonFolder
     from graph.replay.replay import Replay
 
 __all__ = [
@@ -109,6 +113,9 @@ class RecordedSession:
     async def restart(self, *names: str) -> None:
         self.asked.append(("restart", *names))
 
+    async def exchange(self, name: str, program: Path | str | None) -> None:
+        self.asked.append(("exchange", name, "" if program is None else str(program)))
+
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         self.asked.append(("stop_strays", *(stray.node for stray in strays)))
 
@@ -121,6 +128,31 @@ class RecordedSession:
 
     async def aclose(self) -> None:
         self.asked.append(("aclose",))
+
+
+class RecordedJudge:
+    """A judge that says what it is told to, and notes what it is asked to judge."""
+
+    def __init__(self) -> None:
+        self.passed: frozenset[str] = frozenset()
+        self.asked: list[str] = []
+        self.closed = False
+        self._queue: asyncio.Queue[JudgeEvent] = asyncio.Queue()
+
+    def say(self, event: JudgeEvent) -> None:
+        """Let the judge say this."""
+        self._queue.put_nowait(event)
+
+    def judge(self, step: str) -> None:
+        self.asked.append(step)
+
+    async def events(self) -> AsyncIterator[JudgeEvent]:
+        """Yield what was said."""
+        while True:
+            yield await self._queue.get()
+
+    async def close(self) -> None:
+        self.closed = True
 
 
 @dataclass
@@ -138,9 +170,15 @@ class RecordedOpener:
     orders: list[OpenRequest] = field(default_factory=list)
     replay: Replay | None = None
     """What is played in place of a robot."""
+    task: LessonFolder | None = None
+    """The lesson that the session belongs to."""
+    judged: RecordedJudge = field(default_factory=RecordedJudge)
 
     async def lessons(self) -> list[Lesson]:
         return self.known
+
+    async def scored(self, lessons: Sequence[Lesson]) -> list[Lesson]:
+        return [*lessons]
 
     async def running(self) -> list[SessionInfo]:
         return self.sessions
@@ -156,6 +194,17 @@ class RecordedOpener:
         if self.refusal is not None:
             raise self.refusal
         return self.link
+
+    async def lesson(self, session: SessionInfo) -> LessonFolder | None:
+        del session
+        return self.task
+
+    async def judge(
+        self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]
+    ) -> RecordedJudge:
+        del lesson, session
+        self.judged.passed = frozenset(passed)
+        return self.judged
 
     def observe(self, session: SessionInfo) -> RecordedGraph:
         del session

@@ -10,7 +10,7 @@ from typing import Any
 from graph.data import GraphUpdate, NodeRow, Sample, ServiceRow, TopicRow, Trouble
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity
 from tests.tui.recorded_image import colour_bars
-from tui.session.requests import Lesson
+from tui.session.requests import Lesson, Score, Task
 
 NOW_S = 1_767_225_600.0
 """Unix time of the recording: 2026-01-01 00:00:00 UTC."""
@@ -234,6 +234,7 @@ LESSONS = [
         },
         lesson="1",
         nodes=("hello_node",),
+        task=Task(Path("lessons/01-hello"), Score(4, 6, passed=4, earned=6)),
     ),
     Lesson(
         name="02-sonar-safety",
@@ -242,6 +243,11 @@ LESSONS = [
         lesson="2",
         nodes=("sonar_front", "safety_stop"),
         panels=("sonar",),
+        task=Task(
+            Path("lessons/02-sonar-safety"),
+            Score(5, 10, passed=2, earned=3),
+            own=Path("/home/eve/deck-course/02-sonar-safety/lesson.yaml"),
+        ),
     ),
     Lesson(
         name="09-brain",
@@ -254,6 +260,7 @@ LESSONS = [
         lesson="9",
         nodes=tuple(NODES),
         panels=SESSION.panels,
+        task=Task(Path("lessons/09-brain"), Score(6, 14)),
     ),
     Lesson(
         name="my-robot",

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import pty
 import signal
 import subprocess
 import sys
-from collections.abc import AsyncIterator
+import threading
+from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 
 import pytest
 
 from launcher.client.client import running
+from tests.forked_deck import forked_deck
 from tests.hostile_text import EVIL, EVIL_NAME, WORST, harm_in, quoted
 from tests.ros.supervised import end_sessions
 from tests.unit.bags import write_bag
 from tests.waiting import wait_until
+
+Said = Callable[..., bytes]
 
 
 @pytest.fixture(autouse=True)
@@ -87,8 +92,29 @@ def bad(folder: Path, text: str = BAD) -> Path:
     return path
 
 
-def said(*arguments: str, **env: str) -> bytes:
+@pytest.fixture
+def said(tmp_path: Path) -> Said:
     """Return all that a command writes, both streams, having seen that there is something."""
+
+    def said(*arguments: str, **env: str) -> bytes:
+        out, err = tmp_path / "out.txt", tmp_path / "err.txt"
+        for each in (out, err):
+            each.write_bytes(b"")
+        forked_deck(*arguments, out=out, err=err, env=env)
+        return both(out.read_bytes(), err.read_bytes())
+
+    return said
+
+
+def both(output: bytes, errors: bytes) -> bytes:
+    """Return the two together; they are not empty, and no traceback."""
+    assert b"Traceback" not in errors, errors.decode(errors="replace")
+    assert output + errors
+    return output + errors
+
+
+def started(*arguments: str, **env: str) -> bytes:
+    """Return all that a command writes, started in another environment."""
     done = subprocess.run(
         [sys.executable, "-m", "tui", *arguments],
         stdin=subprocess.DEVNULL,
@@ -97,37 +123,33 @@ def said(*arguments: str, **env: str) -> bytes:
         timeout=60,
         check=False,
     )
-    assert b"Traceback" not in done.stderr, done.stderr.decode(errors="replace")
-    output = done.stdout + done.stderr
-    assert output
-    return output
+    return both(done.stdout, done.stderr)
 
 
 def shown(*arguments: str) -> bytes:
     """Return all that a command writes to a terminal, its colours included."""
     master, slave = pty.openpty()
-    with subprocess.Popen(
-        [sys.executable, "-m", "tui", *arguments],
-        stdin=subprocess.DEVNULL,
-        stdout=slave,
-        stderr=slave,
-        env={**os.environ, "TERM": "xterm-256color"},
-    ) as process:
-        os.close(slave)
-        output = b""
-        try:
+    output = b""
+
+    def read() -> None:
+        nonlocal output
+        with contextlib.suppress(OSError):  # The other end is closed.
             while data := os.read(master, 65536):
                 output += data
-        except OSError:  # The other end is closed.
-            pass
-        os.close(master)
-        process.wait(60)
+
+    terminal = Path(os.ttyname(slave))
+    reader = threading.Thread(target=read, daemon=True)
+    reader.start()
+    forked_deck(*arguments, out=terminal, err=terminal, env={"TERM": "xterm-256color"})
+    os.close(slave)
+    reader.join(60)
+    os.close(master)
     assert output
     return output
 
 
 @pytest.mark.parametrize("lang", ["en", "ru"])
-def test_what_is_wrong_in_a_profile_is_told_harmlessly(folder: Path, lang: str) -> None:
+def test_what_is_wrong_in_a_profile_is_told_harmlessly(said: Said, folder: Path, lang: str) -> None:
     path = str(bad(folder))
     for command in ("check", "run", "up"):
         output = said(command, path, "--lang", lang)
@@ -140,18 +162,18 @@ def test_what_is_wrong_in_a_profile_is_told_harmlessly(folder: Path, lang: str) 
     "text",
     ["nodes: {{a: [", "{WORST}", "a: 1\na: 2\n{WORST}: 1\n{WORST}: 2", "a: *x", "\t{WORST}: !!x 1"],
 )
-def test_what_is_no_yaml_is_told_harmlessly(folder: Path, text: str) -> None:
+def test_what_is_no_yaml_is_told_harmlessly(said: Said, folder: Path, text: str) -> None:
     assert not harm_in(said("check", str(bad(folder, text))))
 
 
-def test_raw_bytes_in_a_profile_are_told_harmlessly(folder: Path) -> None:
+def test_raw_bytes_in_a_profile_are_told_harmlessly(said: Said, folder: Path) -> None:
     path = folder / "raw.yaml"
     for evil in (b"nodes: {\x1b]52;c;x\x07: 1}", "nodes: {\u202ea: 1}".encode(), b"\xff\x9b"):
         path.write_bytes(evil)
         assert not harm_in(said("check", str(path)))
 
 
-def test_words_on_the_command_line_are_repeated_harmlessly(folder: Path) -> None:
+def test_words_on_the_command_line_are_repeated_harmlessly(said: Said, folder: Path) -> None:
     nowhere = str(folder / "nowhere.yaml")
     for words in (
         (EVIL,),
@@ -189,10 +211,10 @@ def test_words_on_the_command_line_are_repeated_harmlessly(folder: Path) -> None
 )
 def test_the_environment_is_told_harmlessly(command: str, name: str, tmp_path: Path) -> None:
     value = str(tmp_path / EVIL_NAME) if name.endswith("_DIR") else EVIL
-    assert not harm_in(said(command, **{name: value}))
+    assert not harm_in(started(command, **{name: value}))
 
 
-def test_devices_and_domains_of_the_environment_are_told_harmlessly() -> None:
+def test_devices_and_domains_of_the_environment_are_told_harmlessly(said: Said) -> None:
     for env in (
         {"ROS_DOMAIN_ID": EVIL},
         {"DECK_PICO_PORT": EVIL, "DECK_CAMERA_PORT": EVIL, "DECK_SERVO_PORT": EVIL},
@@ -206,7 +228,7 @@ def test_devices_and_domains_of_the_environment_are_told_harmlessly() -> None:
         assert not harm_in(said("up", "nowhere", **env)), env
 
 
-def test_a_lesson_that_runs_says_all_harmlessly(folder: Path) -> None:
+def test_a_lesson_that_runs_says_all_harmlessly(said: Said, folder: Path) -> None:
     path = str(good(folder))
     assert not harm_in(said("check", path))
     run = said("run", path, "--for", "1")
@@ -215,7 +237,9 @@ def test_a_lesson_that_runs_says_all_harmlessly(folder: Path) -> None:
     assert not harm_in(shown("run", path, "--for", "1"), coloured=True)
 
 
-def test_what_runs_in_the_background_is_told_harmlessly(folder: Path, tmp_path: Path) -> None:
+def test_what_runs_in_the_background_is_told_harmlessly(
+    said: Said, folder: Path, tmp_path: Path
+) -> None:
     path = str(good(folder))
     assert not harm_in(said("up", path))
     assert not harm_in(said("up", path))
@@ -228,7 +252,7 @@ def test_what_runs_in_the_background_is_told_harmlessly(folder: Path, tmp_path: 
     assert not harm_in(said("down"))
 
 
-def test_json_says_the_same_text_with_escapes(folder: Path) -> None:
+def test_json_says_the_same_text_with_escapes(said: Said, folder: Path) -> None:
     listed = said("check", "--json", str(bad(folder)))
     assert not harm_in(listed)
     assert "\u202e" in json.loads(listed)[0]["path"]
@@ -242,7 +266,7 @@ def test_json_says_the_same_text_with_escapes(folder: Path) -> None:
     assert not harm_in(said("ps", "--json"))
 
 
-def test_folders_and_topics_of_recordings_are_told_harmlessly(folder: Path) -> None:
+def test_folders_and_topics_of_recordings_are_told_harmlessly(said: Said, folder: Path) -> None:
     walk = folder / "walk"
     assert not harm_in(said("record", "-o", str(walk), "--for", "0.2"))
     bag = write_bag(folder / "bag", 1.0)
@@ -263,7 +287,9 @@ def test_a_fault_of_its_own_is_told_harmlessly() -> None:
     assert not harm_in(done.stderr)
 
 
-def test_log_files_hold_what_the_supervisor_says_harmlessly(folder: Path, tmp_path: Path) -> None:
+def test_log_files_hold_what_the_supervisor_says_harmlessly(
+    said: Said, folder: Path, tmp_path: Path
+) -> None:
     said("up", str(good(folder)))
     files = wait_until(
         lambda: [*(tmp_path / "logs").rglob("missing.log")], "the log of what could not start"

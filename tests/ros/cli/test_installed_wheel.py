@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+
 import pytest
 
 from tests.installed_wheel import Installed
@@ -32,4 +34,21 @@ def test_a_node_runs_alone(installed: Installed) -> None:
     words = ("--ros-args", "-p", "no_such_parameter:=1")
     said = installed.python("-m", "deck.nodes.hello", *words, code=2)
     assert "no_such_parameter" in said
+    assert not installed.imported.exists()
+
+
+@pytest.mark.usefixtures("ros_domain")
+def test_the_commands_of_the_shell_are_executable(installed: Installed) -> None:
+    """A wheel is a zip, which need not keep who may execute a file."""
+    (installed.site.parent / "mine.py").write_text("import cv_bridge, no_such_module\n")
+    line = (
+        "which ros2 python3; ros2 pkg executables tf2_ros; ros2 run deck_nodes hello --help;"
+        f" python3 {shlex.quote(str(installed.site.parent / 'mine.py'))}"
+    )
+    said = installed.deck("shell", "-c", line, code=1)
+    commands = installed.site / "deck" / "launcher" / "prefix" / "bin"
+    assert said.startswith(f"{commands / 'ros2'}\n{commands / 'python3'}\n"), said
+    assert "\ntf2_ros static_transform_publisher\ntf2_ros tf2_echo\n" in said
+    assert "--ros-args" in said
+    assert "mine.py:1: There is no module no_such_module" in said
     assert not installed.imported.exists()

@@ -51,7 +51,7 @@ def test_the_lesson_of_the_page_is_well(tmp_path: Path, page: str) -> None:
         ("create_timer(0.1", "create_timer(1.0", "arrives at 1"),
         ("/sensor/sonar_front", "/sensor/sonar_frnt", "/sensor/sonar_front"),
         ("rclpy.init()", "raise SystemExit(3)", "3"),
-        ("rclpy.spin(MySonar())", "MySonar()", "ended by itself"),
+        ("rclpy.spin(MySonar())", "MySonar()", "rclpy.spin(node) is missing"),
     ],
 )
 def test_what_a_learner_does_wrong_ends_the_run_with_one(

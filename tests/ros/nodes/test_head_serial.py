@@ -70,9 +70,7 @@ class Head:
         return self._client.call_async(AddTwoInts.Request(a=pan, b=tilt))
 
     def turn(self, pan: int, tilt: int) -> int:
-        future = self.ask(pan, tilt)
-        wait_until(future.done, "the head's answer")
-        return int(future.result().sum)
+        return int(self.peer.insist(lambda: self.ask(pan, tilt), "the head's answer").sum)
 
     def wait_pose(self, pan: float, tilt: float) -> None:
         def there() -> bool:

@@ -66,7 +66,7 @@ def test_every_node_ends_with_code_0_and_no_traceback(
         "camera": {"source": "/dev/null"},
     }
     started = [
-        NodeProcess(f"nodes.{module}", module_domain, params=params.get(module, {}))
+        NodeProcess(f"nodes.{module}", module_domain, params=params.get(module, {}), cold=True)
         for module in NODES
     ]
     try:
@@ -85,14 +85,14 @@ def test_every_node_ends_with_code_0_and_no_traceback(
 def test_a_callback_that_does_not_come_back_is_not_waited_for(
     module_domain: int, number: signal.Signals
 ) -> None:
-    with NodeProcess("tests.ros.sleepy_node", module_domain) as process:
+    with NodeProcess("tests.ros.sleepy_node", module_domain, cold=True) as process:
         process.wait_for_words("asleep")
         process.send(number)
         assert_ended_well(process)
 
 
 def test_a_middleware_that_does_not_let_go_is_not_waited_for(module_domain: int) -> None:
-    with NodeProcess("tests.ros.stuck_node", module_domain) as process:
+    with NodeProcess("tests.ros.stuck_node", module_domain, cold=True) as process:
         process.wait_for_words("up")
         process.send(signal.SIGTERM)
         assert process.wait() == 1
@@ -105,7 +105,9 @@ def test_the_head_ends_in_the_middle_of_a_movement(
     # Under a name of its own: a head that ended without a good-bye is in the graph for 20 s more.
     service = f"head_{number.name.lower()}"
     arguments = ("--ros-args", "-r", f"set_head_position:={service}", "-p", "move_time:=30.0")
-    with NodeProcess("nodes.head_controller", module_domain, arguments=arguments) as process:
+    with NodeProcess(
+        "nodes.head_controller", module_domain, arguments=arguments, cold=True
+    ) as process:
         client = peer.node.create_client(AddTwoInts, service)
         wait_until(client.service_is_ready, "the head's service")
         client.call_async(AddTwoInts.Request(a=45, b=15))
@@ -121,7 +123,7 @@ def test_a_signal_while_the_node_is_still_loading_leaves_no_traceback(
 ) -> None:
     early = 0
     for _ in range(20):
-        with NodeProcess("nodes.mock_sonar", module_domain) as process:
+        with NodeProcess("nodes.mock_sonar", module_domain, cold=True) as process:
             wait_until(
                 lambda process=process: handles_signals(process),  # type: ignore[misc]
                 "a handler of SIGTERM",
@@ -150,7 +152,7 @@ def test_an_idle_node_says_good_bye_to_the_graph(
     peer: Peer, module_domain: int, number: signal.Signals
 ) -> None:
     """One that just vanished would be believed to be there for its lease of 20 s."""
-    with NodeProcess("nodes.ai_driver", module_domain) as process:
+    with NodeProcess("nodes.ai_driver", module_domain, cold=True) as process:
         # One in the graph may still be that of a test before.
         process.wait_for_words("[ai_driver_translator]")
         wait_until(lambda: peer.node.count_subscribers("/ai_command") == 1, "a subscriber")

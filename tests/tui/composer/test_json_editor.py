@@ -70,6 +70,7 @@ def test_tokens_of_any_line_follow_each_other(line: str) -> None:
         end = token.end
 
 
+@pytest.mark.every_frame
 async def test_the_line_of_the_cursor_keeps_its_colours() -> None:
     app = EditorApp()
     async with app.run_test() as pilot:

@@ -86,6 +86,7 @@ def test_accepted(look: Look, snap_compare: SnapCompare) -> None:
 
 
 @one_look
+@pytest.mark.every_frame
 def test_wrong(look: Look, dump_compare: SnapCompare) -> None:
     """Wrong values underlined, their lines marked, each problem listed with its place."""
     app = look.app("composer", with_parser())
@@ -93,6 +94,7 @@ def test_wrong(look: Look, dump_compare: SnapCompare) -> None:
 
 
 @one_look
+@pytest.mark.every_frame
 def test_refused_and_held(look: Look, dump_compare: SnapCompare) -> None:
     """Sent all the same: refused with its reasons; the safety node holds the wheels meanwhile."""
     problem = {

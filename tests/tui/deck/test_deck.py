@@ -95,7 +95,7 @@ async def test_what_is_done_already_is_not_offered(state: NodeState, keys: str) 
         await pilot.pause()
         await pilot.pause()
         shown = str(app.screen.query_one(KeyBar).render()).strip()
-        assert shown.startswith(f"{keys}  m Mute")
+        assert shown.startswith(f"{keys}  u My own  m Mute")
 
 
 async def test_a_node_is_chosen_by_a_click_and_stopped_by_a_click() -> None:
@@ -119,7 +119,7 @@ async def test_a_node_is_muted_heard_alone_and_heard_again() -> None:
         assert deck.log_filter.only == "camera"
         shown = {entry.node for entry in deck.pane.view.index.shown}
         assert shown == {"camera"}
-        await pilot.press("u", "u", "a")
+        await pilot.press("F", "F", "a")
         assert deck.log_filter.muted == frozenset()
         assert deck.log_filter.minimum is Severity.DEBUG
 

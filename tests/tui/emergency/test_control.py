@@ -203,7 +203,7 @@ async def test_long_words_of_the_safety_node_leave_the_tabs_their_names() -> Non
         )
         await settle(pilot)
         line = app.screen.query_one(TitleBar).text
-        for name in ("1 Deck", "2 Top.", "3 Com.", "4 Logs", "5 Gra.", "6 Flow", "7 Dev."):
+        for name in ("1 Deck", "L Les", "2 Top", "3 Com", "4 Log", "5 Gra", "6 Flo", "7 Dev"):
             assert name in line
         assert "⚠ Front 0.38 m" in line
         assert line.rstrip().endswith("…")

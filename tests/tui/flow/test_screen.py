@@ -130,7 +130,7 @@ async def test_the_logs_of_other_nodes_come_when_asked() -> None:
         at.session.say(LogEvent((line("sonar_front", 1, "Distance: 2.35 m", at_s=0.4),)))
         await at.pilot.pause()
         assert not any("sonar_front" in row for row in at.rows())
-        await at.press("u")
+        await at.press("F")
         assert any("sonar_front" in row for row in at.rows())
 
 

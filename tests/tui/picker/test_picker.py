@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,19 +13,23 @@ import pytest
 from textual.screen import Screen
 from textual.widgets import Static
 
+from course.lessons.catalog import SHIPPED
 from launcher.errors import DomainTakenError, ProfileError, ProfileProblem
 from launcher.status import Who
 from tests.tui.app_runs import opened
 from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedOpener
 from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
+from tests.waiting import until
 from text.sentences import say
 from tui.app import DeckApp
 from tui.lifecycle.domain_taken import DomainTakenScreen
 from tui.lifecycle.refused import RefusedScreen
 from tui.picker.screen import PickerScreen
-from tui.session.requests import OpenRequest
+from tui.session.requests import Lesson, OpenRequest, Task
 from tui.widgets.rows import Rows
 
+OWN = Path("/home/eve/deck-course/02-sonar-safety/lesson.yaml")
+"""The learner's files of lesson 2."""
 PICK = OpenRequest(hardware="mock", domain=42)
 RUNNING = replace(
     SESSION,
@@ -145,7 +150,7 @@ async def test_one_click_chooses_a_lesson_and_two_open_it() -> None:
         assert opener.orders == []
         await pilot.click(Rows, offset=(10, 4), times=2)
         await pilot.pause()
-        assert opener.orders[0].profile == Path("profiles/02-sonar-safety.yaml")
+        assert opener.orders[0].profile == OWN
 
 
 async def test_a_broken_profile_says_what_is_wrong_and_is_not_started() -> None:
@@ -156,6 +161,81 @@ async def test_a_broken_profile_says_what_is_wrong_and_is_not_started() -> None:
         assert "cannot be started" in about(app.screen)
         assert "my-robot.yaml:7:5" in about(app.screen)
         assert opener.orders == []
+
+
+async def test_the_list_tells_how_far_one_is_and_whose_files_there_are() -> None:
+    async with opened(order=PICK) as (app, pilot):
+        await pilot.press("home", "down", "down")
+        await pilot.pause()
+        (row,) = (line for line in shown(app).splitlines() if " ✎ " in line)
+        assert "2/5" in row
+        assert "3/10" in row
+        assert "2 of 5 steps · 3 of 10 points" in about(app.screen)
+        assert str(OWN.parent) in about(app.screen)
+        await pilot.press("up")
+        await pilot.pause()
+        assert "✓ 4 of 4 steps" in about(app.screen)
+
+
+@dataclass
+class SlowOpener(RecordedOpener):
+    """Reads the steps of the lessons when it is let."""
+
+    let: asyncio.Event = field(default_factory=asyncio.Event)
+
+    async def lessons(self) -> list[Lesson]:
+        """Return them as they are first known."""
+        return [
+            lesson._replace(task=lesson.task._replace(score=None)) if lesson.task else lesson
+            for lesson in self.known
+        ]
+
+    async def scored(self, lessons: Sequence[Lesson]) -> list[Lesson]:
+        """Wait, and read them."""
+        del lessons
+        await self.let.wait()
+        return self.known
+
+
+async def test_the_list_is_there_and_can_be_used_before_the_steps_have_been_read() -> None:
+    opener = SlowOpener()
+    async with opened(opener, order=PICK) as (app, pilot):
+        await pilot.press("home", "down", "down")
+        await pilot.pause()
+        assert "Topics: sonar" in shown(app)
+        assert "2/5" not in shown(app)
+        opener.let.set()
+        await until(lambda: "2/5" in shown(app), "the steps")
+        assert "2 of 5 steps" in about(app.screen)
+        opener.let.clear()
+        await pilot.press("f1", "escape")
+        await until(lambda: isinstance(app.screen, PickerScreen), "the list again")
+        assert "2/5" in shown(app)
+        await pilot.press("enter")
+        await until(lambda: opener.orders, "the lesson to be opened")
+        assert opener.orders == [PICK._replace(profile=OWN)]
+
+
+async def test_decks_own_nodes_can_be_started_where_there_are_files_of_ones_own() -> None:
+    opener = RecordedOpener()
+    async with opened(opener, order=PICK) as (_app, pilot):
+        await pilot.press("home", "down", "down", "u")
+        await settle(pilot)
+        assert opener.orders == [PICK._replace(profile=LESSONS[1].path)]
+
+
+async def test_a_key_makes_the_folder_of_a_lesson_and_starts_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DECK_COURSE", str(tmp_path))
+    task = Task(SHIPPED / "01-hello", left_off=True)
+    opener = RecordedOpener(known=[LESSONS[1], LESSONS[0]._replace(task=task)])
+    async with opened(opener, order=PICK) as (_app, pilot):
+        await pilot.press("C")
+        own = tmp_path / "01-hello" / "lesson.yaml"
+        await until(lambda: opener.orders, "the lesson to be opened")
+        assert opener.orders == [PICK._replace(profile=own)]
+        assert own.is_file()
 
 
 async def test_what_runs_in_the_background_is_attached_to() -> None:

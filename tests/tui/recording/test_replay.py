@@ -101,13 +101,14 @@ async def test_keys_play_pause_step_jump_and_change_the_rate(drive: Path) -> Non
         await until(lambda: state_is(replay, rate=2.0), "twice the rate")
         await pilot.press("minus", "minus")
         await until(lambda: state_is(replay, rate=0.5), "half the rate")
-        await pilot.press("L")
+        await pilot.press("shift+f7")
         await until(lambda: state_is(replay, loop=True), "the loop")
         await pilot.press("f7")
         await until(lambda: state_is(replay, paused=False), "the replay at work")
         await until(lambda: replay.state.position_s > 0.2, "the next messages")
 
 
+@pytest.mark.every_frame
 async def test_a_click_on_the_track_jumps_there(drive: Path) -> None:
     async with replayed(drive) as (app, pilot, replay):
         bar = app.screen.query_one(ReplayBar)

@@ -165,7 +165,7 @@ async def test_a_key_brings_the_endpoints_to_the_front_and_back() -> None:
             for row in TOPICS
         ]
         app.feed.graph.show(lesson_update(topics=tuple(rows)))  # type: ignore[union-attr]
-        await pilot.press("enter", "e")
+        await pilot.press("enter", "I")
         await pilot.pause()
         assert screen.detail.endpoints.has_focus
         assert "/brain does not hear /lidar" in screen.detail.endpoints.text
@@ -177,5 +177,5 @@ async def test_a_key_brings_the_endpoints_to_the_front_and_back() -> None:
         app.feed.graph.show(lesson_update(topics=tuple(rows)))  # type: ignore[union-attr]
         await pilot.pause()
         assert "Deck itself publishes here" in screen.detail.endpoints.text
-        await pilot.press("e")
+        await pilot.press("I")
         assert screen.detail.echo.has_focus

@@ -150,7 +150,7 @@ async def test_a_picture_asks_for_ten_updates_a_second_and_rates_stay_as_they_ar
     assert stage.screen.table.chosen_row.hz == 10.0  # type: ignore[union-attr]
     await stage.show(lesson_update(time_s=NOW_S + 0.2, topics=tuple(faster)))
     assert stage.screen.table.chosen_row.hz == 99.0  # type: ignore[union-attr]
-    for key in ("p", "e", "i"):
+    for key in ("p", "I", "i"):
         await stage.pilot.press(key)
         await stage.pilot.pause()
         assert stage.graph.period_s == 0.25, key

@@ -264,6 +264,7 @@ async def test_a_click_on_a_title_sorts_and_a_click_on_a_row_chooses() -> None:
         assert app.table.chosen == names(app)[2]
 
 
+@pytest.mark.every_frame
 async def test_an_update_draws_only_the_cells_whose_text_changed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -54,7 +54,19 @@ def test_every_lesson_is_listed_and_no_other(readme: str) -> None:
 def test_every_command_shown_exists(readme: str) -> None:
     shown = set(re.findall(r"^deck ([a-z]+) ", readme, re.MULTILINE))
     shown -= {entry.name for entry in list_profiles()}
-    assert shown == {"run", "list", "check", "up", "record", "replay", "watch", "doctor"}
+    assert shown == {
+        "run",
+        "list",
+        "check",
+        "up",
+        "new",
+        "grade",
+        "shell",
+        "record",
+        "replay",
+        "watch",
+        "doctor",
+    }
     assert shown | {"ps", "logs", "attach", "down"} <= set(COMMANDS)
 
 
@@ -71,7 +83,7 @@ def test_every_file_linked_is_there(page: str) -> None:
 @pytest.mark.parametrize("page", ["docs/profiles.md", "docs/profiles.ru.md"])
 def test_the_page_on_profiles_tells_every_key_and_panel(page: str) -> None:
     text = (ROOT / page).read_text()
-    keys = {*ProfileDocument.model_fields, *NodeDocument.model_fields} - {"steps", "warm"}
+    keys = {*ProfileDocument.model_fields, *NodeDocument.model_fields} - {"warm"}
     assert not [key for key in keys if f"`{key}`" not in text]
     assert not [panel for panel in get_args(Panel) if f"`{panel}`" not in text]
 

@@ -11,7 +11,7 @@ import pytest
 from tests.installed_wheel import INSIDE, ROOT, Installed, build_wheel
 
 CHANGELOG = ROOT / "CHANGELOG.md"
-FOLDERS = (*INSIDE, "profiles")
+FOLDERS = (*INSIDE, "bridges", "lessons", "profiles")
 
 
 @pytest.fixture(scope="module")
@@ -39,8 +39,11 @@ def test_the_wheel_holds_every_file_of_every_room(wheel: zipfile.ZipFile) -> Non
 
 
 def test_the_wheel_takes_one_name_in_site_packages(wheel: zipfile.ZipFile) -> None:
+    """And a line at the end of the search path: cv_bridge and tf2_ros, if there are no others."""
     names = {Path(name).parts[0] for name in record_of(wheel)}
-    assert {name for name in names if not name.endswith(".dist-info")} == {"deck"}
+    last = "deck_robot_bridges.pth"
+    assert {name for name in names if not name.endswith(".dist-info")} == {"deck", last}
+    assert wheel.read(last).decode() == "deck/bridges\n"
 
 
 def test_the_wheel_holds_the_rooms_and_nothing_besides(wheel: zipfile.ZipFile) -> None:
@@ -85,6 +88,13 @@ def test_an_installed_deck_goes_beside_packages_of_the_same_names(installed: Ins
     assert "узлы:" in installed.deck("list", "--lang", "ru")
     installed.deck("check", "09-brain")
     assert not installed.imported.exists()
+
+
+def test_an_installed_deck_brings_cv_bridge(installed: Installed) -> None:
+    found = installed.said_by(
+        str(installed.bin / "python"), "-c", "import cv_bridge; print(cv_bridge.__file__)"
+    )
+    assert str(installed.site / "deck" / "bridges") in found
 
 
 def test_an_installed_deck_uses_its_own_modules(installed: Installed) -> None:

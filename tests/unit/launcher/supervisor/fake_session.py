@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from launcher.processes.exit import Exit
 from launcher.processes.table import Process
 from launcher.spawn_server.spawner import SpawnError
-from launcher.status import NodeState, Severity
+from launcher.status import NodeFault, NodeState, Severity
 from launcher.supervisor.node import SupervisedNode
 from launcher.supervisor.plan import NodePlan
 from launcher.supervisor.readiness import ReadyCondition, Seen, UnwatchableError
@@ -67,6 +67,7 @@ class FakeSession:
         self.lines: list[str] = []
         self.gravest = Severity.DEBUG
         self.said_last = "no such port"
+        self.fault: NodeFault | None = None
 
     @property
     def process(self) -> FakeProcess:
@@ -90,6 +91,12 @@ class FakeSession:
 
     def last_words(self, _name: str) -> str:
         return self.said_last
+
+    def crash(self, _plan: NodePlan) -> NodeFault | None:
+        return self.fault
+
+    def ended_early(self, _plan: NodePlan) -> NodeFault | None:
+        return None
 
     def say(self, _name: str, severity: Severity, words: str) -> None:
         self.lines.append(words)

@@ -1,0 +1,1 @@
+"""Tests of grading with real nodes, most of them hostile."""

@@ -1,0 +1,142 @@
+"""The judge as a process of its own, as the screen has it: it watches while a learner mends."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import aclosing
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import psutil
+import pytest
+import yaml
+
+from course.judging import JudgeEnded, JudgeEvent, RemoteJudge, ValuesDrawn
+from course.results import State, StepResult
+from launcher.client.client import launch
+
+if TYPE_CHECKING:
+    from launcher.client.client import SupervisorClient
+
+TALKER = """
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import Float32, String
+
+rclpy.init()
+node = rclpy.create_node("talker")
+publisher = node.create_publisher({type}, "/chatter", 10)
+node.create_timer({period}, lambda: publisher.publish({type}(data={data})))
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+"""
+RIGHT = TALKER.format(type="Float32", period=0.1, data="1.0")
+AS_TEXT = TALKER.format(type="String", period=0.1, data="'1.0'")
+ENDS_BADLY = RIGHT.replace("(KeyboardInterrupt, ExternalShutdownException)", "ZeroDivisionError")
+STARTS_SLOWLY = RIGHT.replace("rclpy.init()", "import time; time.sleep(0.4); rclpy.init()")
+FLOOD = TALKER.format(type="Float32", period=0.0001, data="1.0")
+CHATTER = {"field": "/chatter", "type": "std_msgs/msg/Float32", "path": "data", "equals": 1}
+STEPS = [
+    {"id": "field", "checks": [{**CHATTER, "within": 1}]},
+    {"id": "ends", "needs": ["field"], "checks": [{"ends": "talker"}]},
+    {"id": "late", "needs": ["ends"], "checks": [{"node": "/talker"}]},
+]
+
+Begin = Callable[[str], Awaitable[tuple["SupervisorClient", RemoteJudge]]]
+
+
+@pytest.fixture
+async def begin(tmp_path: Path, ros_domain: int) -> AsyncIterator[Begin]:
+    """Have a lesson run whose only node is this, with a judge beside it."""
+    clients: list[SupervisorClient] = []
+    judges: list[RemoteJudge] = []
+
+    async def started(node: str) -> tuple[SupervisorClient, RemoteJudge]:
+        (tmp_path / "talker.py").write_text(node)
+        profile = tmp_path / "lesson.yaml"
+        values = {"n": {"between": [10, 99]}}
+        nodes = {"talker": {"run": "./talker.py"}}
+        profile.write_text(yaml.safe_dump({"nodes": nodes, "values": values, "steps": STEPS}))
+        clients.append(await launch(profile, domain=ros_domain))
+        judges.append(await RemoteJudge.start(tmp_path, clients[0].session.run_id, seed=7))
+        return clients[0], judges[0]
+
+    yield started
+    for judge in judges:
+        await judge.close()
+    for client in clients:
+        await client.shutdown()
+
+
+async def step_in(events: AsyncIterator[JudgeEvent], state: State, seen: str = "") -> StepResult:
+    """The next step in this state, of which this was seen; those before are passed over."""
+    said: list[str] = []
+    async for event in events:
+        assert not isinstance(event, JudgeEnded), event.reason
+        if isinstance(event, StepResult) and event.state is state:
+            said.append("".join(check.seen for check in event.checks))
+            if seen in said[-1]:
+                return event
+    raise AssertionError(f"the judge has only said: {said}")
+
+
+@pytest.mark.timeout(90)
+async def test_a_mended_node_passes_and_a_passed_step_lets_the_next_one_begin(
+    begin: Begin, tmp_path: Path
+) -> None:
+    client, judge = await begin(AS_TEXT)
+    async with aclosing(judge.events()) as events:
+        drawn = await anext(events)
+        assert isinstance(drawn, ValuesDrawn)
+        assert drawn.seed == 7
+        assert 10 <= float(drawn.values["n"]) <= 99
+
+        judge.judge("ends")
+        waiting = await step_in(events, State.WAITS)
+        assert waiting.reason == "waits for: field"
+
+        judge.judge("field")
+        await step_in(events, State.FAILED, "std_msgs/msg/String, not std_msgs/msg/Float32")
+
+        (tmp_path / "talker.py").write_text(RIGHT)
+        await client.restart("talker")
+        assert (await step_in(events, State.PASSED)).id == "field"
+
+        judge.judge("ends")
+        before = client.nodes["talker"].pid
+        assert (await step_in(events, State.PASSED)).id == "ends"
+        judge.judge("late")
+        assert (await step_in(events, State.PASSED)).id == "late"
+        assert client.nodes["talker"].pid != before
+
+
+@pytest.mark.timeout(90)
+async def test_a_saved_node_has_begun_before_it_is_told_to_end(
+    begin: Begin, tmp_path: Path
+) -> None:
+    """One that is still importing cannot catch Ctrl-C yet, and that is no mistake of its file."""
+    _client, judge = await begin(ENDS_BADLY)
+    async with aclosing(judge.events()) as events:
+        judge.judge("field")
+        await step_in(events, State.PASSED)
+        judge.judge("ends")
+        await step_in(events, State.FAILED, "SIGINT")
+        (tmp_path / "talker.py").write_text(STARTS_SLOWLY)
+        assert (await step_in(events, State.PASSED)).id == "ends"
+
+
+@pytest.mark.timeout(90)
+async def test_a_flood_is_judged_and_the_judge_ends_with_its_session(begin: Begin) -> None:
+    client, judge = await begin(FLOOD)
+    async with aclosing(judge.events()) as events:
+        judge.judge("field")
+        assert (await step_in(events, State.PASSED)).points == 1
+        await client.shutdown()
+        last = [event async for event in events][-1]
+        assert isinstance(last, JudgeEnded)
+    await judge.close()
+    assert not [
+        each for each in psutil.Process().children() if "course.judge" in " ".join(each.cmdline())
+    ]

@@ -1,0 +1,254 @@
+"""The Lesson screen with a judge that was written down: ticks, hints, the solution, going on."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Static
+
+from course.judge.kinds import expected
+from course.judging import ValuesDrawn
+from course.lessons.catalog import SHIPPED
+from course.lessons.lesson import LessonFolder
+from course.progress.progress import load_progress
+from course.results import CheckResult, State, StepResult
+from launcher.status import NodeFault, NodeState, NodeStatus
+from tests.tui.app_runs import opened
+from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession
+from tests.tui.replayed import replayed
+from tests.tui.snapshots import Look, SnapCompare, both_languages
+from tests.unit.bags import write_robot_bag
+from tests.waiting import until
+from text.i18n import set_language
+from text.sentences import say
+from tui.app import DeckApp
+from tui.session.ports import SessionLink
+from tui.session.requests import OpenRequest
+from tui.session.watching import watched
+
+LESSON = "02-sonar-safety"
+LONG_TASK = "03-head-service"
+WORD = re.compile(r"[^\W\d_]{4,}|/\w+")
+"""What can be found again however it is wrapped."""
+SEED = 4711
+SEEN = StepResult(
+    "topic",
+    State.FAILED,
+    2,
+    (
+        CheckResult(
+            State.FAILED,
+            expected(LessonFolder(SHIPPED / LESSON).steps[0].checks[0]),
+            say("nobody publishes {topic}", topic="/sensor/sonar_front"),
+            say("Is create_publisher called in __init__, and is the name of the topic right?"),
+        ),
+    ),
+)
+PASSED = StepResult("topic", State.PASSED, 2, (CheckResult(State.PASSED, "/sensor/sonar_front"),))
+
+
+@pytest.fixture(autouse=True)
+def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A course folder of the test's own."""
+    monkeypatch.setenv("DECK_COURSE", str(tmp_path))
+    return tmp_path
+
+
+class Watching(RecordedOpener):
+    """A robot that somebody else has started."""
+
+    async def open(self, order: OpenRequest) -> SessionLink:
+        """Watch it."""
+        await super().open(order)
+        return watched(42)
+
+
+def own_opener(file: str = "/home/eve/deck-course/02-sonar-safety/mock_sonar.py") -> RecordedOpener:
+    """Lesson 2 with the learner's own sonar, which has a mistake."""
+    fault = NodeFault("crash", file, 12, 0, "self.publiser = 1", "NameError: name 'x'", "")
+    nodes = {
+        "sonar_front": NodeStatus(
+            "sonar_front", "./mock_sonar.py", NodeState.READY, pid=7, file=file, fault=fault
+        ),
+        "safety_stop": NodeStatus("safety_stop", "nodes.safety_stop", NodeState.READY, pid=8),
+    }
+    session = replace(SESSION, name=LESSON, lesson="2", title={}, panels=())
+    task = LessonFolder(SHIPPED / LESSON)
+    return RecordedOpener(link=RecordedSession(session, nodes, ()), task=task)
+
+
+@asynccontextmanager
+async def learning(opener: RecordedOpener) -> AsyncIterator[tuple[DeckApp, Pilot[Any]]]:
+    """Open the lesson, until it is shown."""
+    async with opened(opener, "lesson") as (app, pilot):
+        await until(lambda: opener.judged.asked, "the first step to be judged")
+        yield app, pilot
+
+
+def text(app: DeckApp, name: str) -> str:
+    """What stands in a part of the screen."""
+    return str(app.screen.query_one(f"#lesson-{name}", Static).content)
+
+
+def seen(app: DeckApp) -> str:
+    """All that the screen shows."""
+    return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
+
+
+@both_languages
+def test_a_step_that_is_not_right_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """Text, the check with what was seen and where to look, file and fault; not yet passed."""
+    opener = own_opener()
+
+    async def judge(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        await until(lambda: opener.judged.asked, "the first step to be judged")
+        opener.judged.say(ValuesDrawn(SEED))
+        opener.judged.say(SEEN)
+        assert isinstance(pilot.app, DeckApp)
+        app = pilot.app
+        await until(lambda: "→" in text(app, "checks"), "the result")
+        await pilot.pause()
+
+    assert snap_compare(look.app("lesson", opener), terminal_size=look.size, run_before=judge)
+
+
+async def test_at_80x24_a_task_is_seen_whole_above_its_check_however_far_one_reads() -> None:
+    set_language("ru")
+    opener = replace(own_opener(), task=LessonFolder(SHIPPED / LONG_TASK))
+    async with opened(opener, "lesson", (80, 24)) as (app, pilot):
+        await until(lambda: opener.judged.asked, "the first step to be judged")
+        step = opener.judged.asked[0]
+        assert opener.task is not None
+        told = WORD.findall(opener.task.texts("ru").task(step))
+        opener.judged.say(replace(SEEN, id=step))
+        await until(lambda: "→" in text(app, "checks"), "the result")
+        for keys in ((), ("end",)):
+            await pilot.press(*keys)
+            await pilot.pause()
+            shown = seen(app)
+            words = WORD.findall(shown)
+            assert told
+            assert [word for word in told if word not in words] == []
+            assert "✗ /sensor/sonar_front" in shown
+
+
+async def test_a_recording_and_a_watched_robot_are_not_called_profiles(tmp_path: Path) -> None:
+    async with replayed(write_robot_bag(tmp_path / "drive"), "lesson") as (app, _pilot, _replay):
+        await until(lambda: "A recording is played" in text(app, "none"), "why there is no lesson")
+        assert "f8 opens the list" in text(app, "none")
+    async with opened(Watching(), "lesson") as (app, _pilot):
+        await until(lambda: "only watches" in text(app, "none"), "why there is no lesson")
+    async with opened(RecordedOpener(), "lesson") as (app, _pilot):
+        await until(lambda: "has no steps" in text(app, "none"), "why there is no lesson")
+
+
+async def test_a_passed_step_stays_until_a_key_goes_on_and_is_noted() -> None:
+    opener = own_opener()
+    async with learning(opener) as (app, pilot):
+        assert opener.judged.asked == ["topic"]
+        await pilot.press("enter")
+        assert text(app, "head").startswith("1/")
+        opener.judged.say(ValuesDrawn(SEED))
+        opener.judged.say(SEEN)
+        await until(lambda: "nobody publishes" in text(app, "checks"), "what was seen")
+        assert str(SEED) in text(app, "overview")
+        opener.judged.say(PASSED)
+        await until(lambda: "Enter" in text(app, "checks"), "the tick")
+        assert text(app, "head").startswith("1/")
+        assert load_progress().passed(LESSON) == {"topic"}
+        await pilot.press("enter")
+        await until(lambda: opener.judged.asked == ["topic", "rate"], "the next step judged")
+        assert text(app, "head").startswith("2/")
+    assert opener.judged.closed
+
+
+async def test_a_step_that_waits_names_the_steps_it_waits_for_as_they_are_numbered() -> None:
+    opener = own_opener()
+    async with learning(opener) as (app, pilot):
+        await pilot.press("n")
+        await until(lambda: opener.judged.asked == ["topic", "rate"], "the next step judged")
+        opener.judged.say(StepResult("rate", State.WAITS, 2, (), say("waits for: topic")))
+        await until(lambda: "waits for" in text(app, "checks"), "what it waits for")
+        assert text(app, "checks") == "waits for step 1: A publisher"
+
+
+async def test_after_the_last_step_the_list_of_lessons_is_named() -> None:
+    opener = own_opener()
+    async with learning(opener) as (app, pilot):
+        await pilot.press("n", "n", "n", "n")
+        await until(lambda: "ends" in opener.judged.asked, "the last step judged")
+        opener.judged.say(replace(PASSED, id="ends"))
+        await until(lambda: "the last step" in text(app, "checks"), "the tick")
+        assert "f8 opens the list of lessons" in text(app, "checks")
+
+
+async def test_the_next_time_it_goes_on_where_the_learner_left_off(course: Path) -> None:
+    (course / "progress.json").write_text(
+        '{"lessons": {"02-sonar-safety": {"topic": {"passed": true, "points": 2}}}}'
+    )
+    opener = own_opener()
+    async with learning(opener) as (app, _pilot):
+        assert opener.judged.asked == ["rate"]
+        assert opener.judged.passed == {"topic"}
+        assert "2 of 10 points" in text(app, "overview")
+
+
+async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(
+    course: Path,
+) -> None:
+    file = course / "mock_sonar.py"
+    file.write_text("mine = 1\n")
+    async with learning(own_opener(str(file))) as (app, pilot):
+        await pilot.press("T")
+        assert "Hint 1" in text(app, "hints")
+        assert "Hint 2" not in text(app, "hints")
+        await pilot.press("T")
+        assert "Hint 2" in text(app, "hints")
+        assert "mine" not in text(app, "text")
+        await pilot.press("T")
+        await until(lambda: "- mine = 1" in text(app, "text"), "the difference")
+        assert "+ import rclpy" in text(app, "text")
+        await pilot.press("tab")
+        assert app.focused is app.screen.query_one("#lesson-side")
+        step = load_progress().step(LESSON, "topic")
+        assert (step.hints, step.solution, step.passed) == (2, True, False)
+
+
+async def test_at_80x24_the_solution_has_the_screen_until_the_text_is_wanted_again(
+    course: Path,
+) -> None:
+    file = course / "mock_sonar.py"
+    file.write_text("mine = 1\n")
+    async with opened(own_opener(str(file)), "lesson", (80, 24)) as (app, pilot):
+        await until(lambda: "Your task" in seen(app), "the lesson")
+        await pilot.press("T", "T", "T")
+        await until(lambda: "- mine = 1" in seen(app), "the difference")
+        assert "class MockSonar(Node):" in seen(app)
+        await pilot.press("v")
+        await until(lambda: "Your task" in seen(app), "the text again")
+
+
+async def test_what_starts_ones_own_node_is_copied_for_a_shell(course: Path) -> None:
+    async with learning(own_opener(str(course / "mock_sonar.py"))) as (app, pilot):
+        await pilot.press("Y")
+        await until(lambda: "python3" in app.clipboard, "the command line")
+        assert app.clipboard.startswith(f"python3 {course}/mock_sonar.py --ros-args")
+
+
+async def test_decks_own_nodes_are_not_judged_and_a_folder_is_offered(course: Path) -> None:
+    opener = own_opener(file="")
+    async with opened(opener, "lesson") as (app, pilot):
+        await until(lambda: "C starts files" in text(app, "checks"), "the offer")
+        assert not opener.judged.asked
+        await pilot.press("C")
+        await until(lambda: len(opener.orders) == 2, "the folder to be opened")
+    assert opener.orders[-1].profile == course / LESSON / "lesson.yaml"
+    assert (course / LESSON / "mock_sonar.py").is_file()

@@ -1,0 +1,107 @@
+"""The tour of the first start: five pages above the list of lessons, left at once by Escape."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.tui.app_runs import opened
+from tests.tui.recorded import RecordedOpener
+from tests.tui.snapshots import Look, SnapCompare, both_languages, settle
+from text.i18n import LANGUAGES, set_language
+from tui.app import DeckApp
+from tui.picker.screen import PickerScreen
+from tui.session.requests import OpenRequest
+from tui.tour.pages import PAGES
+from tui.tour.screen import TourScreen
+
+
+class Environment:
+    """What the app finds on a terminal, and what it was told to remember."""
+
+    terminal_fd = 1
+
+    def __init__(self, *, due: bool) -> None:
+        self.due = due
+        self.kept: dict[str, str] = {}
+
+    def arrive(self, app: DeckApp) -> None:
+        app.tour_is_due = self.due
+
+    def remember(self, **values: str) -> None:
+        self.kept.update(values)
+
+
+def started(environment: Environment, order: OpenRequest) -> DeckApp:
+    """An app at its start."""
+    return DeckApp(RecordedOpener(), order, environment=environment)
+
+
+def shown(app: DeckApp) -> str:
+    """What is on the screen."""
+    return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
+
+
+async def test_the_first_start_shows_it_and_escape_leaves_it_for_good() -> None:
+    environment = Environment(due=True)
+    app = started(environment, OpenRequest())
+    async with app.run_test(size=(80, 24)) as pilot:
+        await settle(pilot)
+        assert isinstance(app.screen, TourScreen)
+        assert environment.kept["tour"] == "seen"
+        await pilot.press("enter", "escape")
+        await settle(pilot)
+        assert isinstance(app.screen, PickerScreen)
+
+
+async def test_its_pages_end_at_the_list_of_lessons() -> None:
+    app = started(Environment(due=True), OpenRequest())
+    async with app.run_test(size=(80, 24)) as pilot:
+        await settle(pilot)
+        assert len(PAGES) <= 5
+        for number in range(1, len(PAGES) + 1):
+            assert f"{number}/{len(PAGES)}" in shown(app)
+            await pilot.press("enter")
+            await pilot.pause()
+        assert isinstance(app.screen, PickerScreen)
+
+
+async def test_a_named_lesson_and_a_later_start_are_not_in_its_way() -> None:
+    for environment, order in (
+        (Environment(due=False), OpenRequest()),
+        (Environment(due=True), OpenRequest(attach="09-brain")),
+    ):
+        app = started(environment, order)
+        async with app.run_test(size=(80, 24)) as pilot:
+            await settle(pilot)
+            assert not isinstance(app.screen, TourScreen)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+async def test_every_page_fits_80x24(language: str) -> None:
+    async with opened(order=OpenRequest(), size=(80, 24)) as (app, pilot):
+        set_language(language)
+        app.show_tour()
+        await pilot.pause()
+        for _page in PAGES:
+            scroll = app.screen.query_one("#dialog-scroll")
+            assert scroll.max_scroll_y == 0, shown(app)
+            await pilot.press("n")
+            await pilot.pause()
+
+
+@both_languages
+def test_the_third_page_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """A box over the list: title, page number, sentences, keys with what they do."""
+
+    async def turn(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        assert isinstance(pilot.app, DeckApp)
+        pilot.app.show_tour()
+        await pilot.pause()
+        await pilot.press("enter", "enter")
+        await pilot.pause()
+
+    assert snap_compare(look.app("picker"), terminal_size=look.size, run_before=turn)

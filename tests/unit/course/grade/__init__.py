@@ -1,0 +1,1 @@
+"""Tests of grading without nodes: formats, folders, names."""

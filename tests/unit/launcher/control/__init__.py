@@ -1,0 +1,1 @@
+"""Tests of the control protocol without a supervisor."""

@@ -1,0 +1,26 @@
+"""What a supervisor tells of a node, as it arrives at the other end."""
+
+from __future__ import annotations
+
+import json
+
+from launcher.control.protocol import encode, pack_status, unpack_status
+from launcher.status import NodeFault, NodeState, NodeStatus
+from text.i18n import localized, set_language
+from text.sentences import say
+
+
+def test_all_words_of_a_fault_can_be_translated_at_the_other_end() -> None:
+    fault = NodeFault(
+        "warning",
+        "/course/hello_node.py",
+        26,
+        exception=say("the program came to its end"),
+        meaning=say("the program came to its end"),
+    )
+    status = NodeStatus("hello", "hello_node.py", NodeState.EXITED, fault=fault)
+    told = unpack_status(json.loads(encode(pack_status(status))))
+    assert told.fault == fault
+    set_language("ru")
+    assert localized(told.fault.exception) == "программа дошла до конца"
+    assert localized(told.fault.meaning) == "программа дошла до конца"
