@@ -20,7 +20,7 @@ ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
 .PHONY: .venv/.ready
 endif
 
-ROOMS := bench cli deck graph launcher nodes robot scripts tests text tui
+ROOMS := bench bridges cli course deck graph launcher nodes robot ros2 scripts tests text tui
 
 .PHONY: help setup run test lint lock architecture clean
 .DEFAULT_GOAL := help
@@ -51,7 +51,7 @@ run: catalogues
 	exec .venv/bin/deck run $(or $(PROFILE),09-brain) $(ARGS)
 
 test: catalogues
-	@exec .venv/bin/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ARGS)
+	@exec .venv/bin/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 lint: .venv/.ready
 	@.venv/bin/ruff check .

@@ -21,6 +21,10 @@ RESULTS = Path(__file__).with_name("RESULTS.md")
 
 MEASUREMENTS = {
     "launch": "Starting lesson 9: Deck against `&` in a shell",
+    "lessons.own_node": "From saving a file of one's own to the node ready again",
+    "lessons.first_tick": "From a learner's node being ready to the tick of its check",
+    "lessons.screen": "The Lesson screen at rest, at 120x40",
+    "lessons.grading": "From `deck grade` on lesson 2's solution to its grade",
     "screen": "The screen on lesson 9, at 120x40",
     "topics_live": "Topics open, under ten Float32 at 50 Hz and one image at 30 Hz",
     "many_topics": "Topics open, under a hundred Float32 at 100 Hz",

@@ -137,7 +137,7 @@ def by_picker(profile: Profile) -> Iterator[Started]:
     config = tempfile.TemporaryDirectory()
     settings = Path(config.name) / "deck" / "settings.json"
     settings.parent.mkdir()
-    settings.write_text(json.dumps({"lesson": profile.path.stem}))
+    settings.write_text(json.dumps({"lesson": profile.path.stem, "tour": "seen"}))
     terminal = Terminal(argv, 120, 40, {**environment(), "XDG_CONFIG_HOME": config.name})
     try:
         terminal.wait_for(profile.document.title["en"])

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import statistics
 import subprocess
@@ -58,8 +59,12 @@ def deck(folder: Path, *args: str) -> Iterator[Terminal]:
         "DECK_LOG_DIR": str(folder / "logs"),
         "XDG_CONFIG_HOME": str(folder / "config"),
         "XDG_STATE_HOME": str(folder / "state"),
+        "DECK_COURSE": str(folder / "course"),
         "LANG": "C.UTF-8",
     }
+    settings = folder / "config" / "deck" / "settings.json"
+    settings.parent.mkdir(parents=True, exist_ok=True)
+    settings.write_text(json.dumps({"tour": "seen"}))
     argv = [sys.executable, "-m", "tui", *args, "--domain", str(DOMAIN), "--lang", "en"]
     terminal = Terminal(argv, 120, 40, env)
     try:
@@ -92,9 +97,8 @@ def screen_processes(terminal: Terminal) -> list[int]:
     return [screen, *(pid for pid in children(screen) if "supervisor" in command(pid))]
 
 
-def at_rest(terminal: Terminal) -> tuple[float, float, float]:
+def at_rest(terminal: Terminal, pids: list[int]) -> tuple[float, float, float]:
     """Return CPU in percent of a core, PSS in MB, and bytes per second to the terminal."""
-    pids = screen_processes(terminal)
     cpu, sent, started = cpu_s(pids), terminal.received, time.monotonic()
     time.sleep(REST_S)
     passed = time.monotonic() - started
@@ -167,7 +171,7 @@ def main() -> None:
         with deck(folder, "09-brain") as terminal:
             terminal.wait_for("8/8")
             time.sleep(5)
-            cpu, pss, sent = at_rest(terminal)
+            cpu, pss, sent = at_rest(terminal, screen_processes(terminal))
             keys = key_delays_ms(terminal)
         delays, growth, written, kept = flooded(folder)
     print("| what | measured | goal |")

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 from tests.e2e.terminal import Terminal
@@ -21,6 +22,7 @@ WIDTH_PX = 1320
 SPOKEN = {"en": "wheel slower", "ru": "колесо медленнее"}
 """Text that the deck shows while the robot turns."""
 TURN_LEFT = "налево"
+PAUSE_S = 0.1
 
 
 def say_left(terminal: Terminal, field_keys: str) -> None:
@@ -32,6 +34,14 @@ def say_left(terminal: Terminal, field_keys: str) -> None:
     terminal.wait_gone(field_keys)
 
 
+def wait_for_whole_frame(terminal: Terminal) -> None:
+    """Wait for a pause in what the program writes, so that no frame is half drawn."""
+    received = -1
+    while received != terminal.received:
+        received = terminal.received
+        time.sleep(PAUSE_S)
+
+
 def picture(language: str) -> None:
     """Run lesson 9, make the robot turn left, and draw the screen at that moment."""
     with tempfile.TemporaryDirectory() as folder:
@@ -40,6 +50,7 @@ def picture(language: str) -> None:
             "DECK_LOG_DIR": f"{folder}/logs",
             "XDG_CONFIG_HOME": f"{folder}/config",
             "XDG_STATE_HOME": f"{folder}/state",
+            "DECK_COURSE": f"{folder}/course",
         }
         arguments = ["09-brain", "--lang", language, "--domain", str(DOMAIN)]
         sonar = ["--set", "sonar_front.pattern=sweep"]
@@ -51,6 +62,7 @@ def picture(language: str) -> None:
                 # A wall may be near just then, or the brain may give another command.
                 say_left(terminal, "^x STOP" if language == "en" else "^x СТОП")
                 comes(lambda: SPOKEN[language] in terminal.text(), within_s=3)
+            wait_for_whole_frame(terminal)
             svg = Path(folder) / "deck.svg"
             svg.write_text(terminal.svg("deck 09-brain"))
         finally:

@@ -1,0 +1,1 @@
+"""What a learner waits for while writing a node."""
