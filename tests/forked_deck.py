@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tests.forks import FORKS
+from tests.forks import fork
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,10 +29,7 @@ def forked_deck(
     `env` is added to this process's environment. Without an end in time it is killed.
     """
     environ = {**os.environ, **(env or {})}
-    command = FORKS.Process(
-        target=_become, args=(arguments, environ, str(Path.cwd()), str(out), str(err))
-    )
-    command.start()
+    command = fork(_become, arguments, environ, str(Path.cwd()), str(out), str(err))
     command.join(within_s)
     if command.exitcode is None:
         command.kill()

@@ -3,11 +3,29 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
+from typing import TYPE_CHECKING
+from unittest import mock
 
-FORKS = multiprocessing.get_context("forkserver")
-FORKS.set_forkserver_preload(
+from launcher.processes.title import room_for_marks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from multiprocessing.context import ForkServerProcess
+
+_FORKS = multiprocessing.get_context("forkserver")
+_FORKS.set_forkserver_preload(
     [
         *("cli.main", "cli.listing", "cli.background", "cli.run", "cli.record", "cli.replay"),
-        "tests.ros.warm_imports",
+        *("launcher.supervisor.run", "tests.ros.warm_imports"),
     ]
 )
+
+
+def fork(target: Callable[..., None], *arguments: object) -> ForkServerProcess:
+    """Start a process that does this."""
+    # The process that all are forked from starts with the first one.
+    with mock.patch.dict(os.environ, room_for_marks()):
+        process = _FORKS.Process(target=target, args=arguments, daemon=True)
+        process.start()
+    return process

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import subprocess
 from typing import TYPE_CHECKING
 
 import pytest
 
+import launcher.client.start
+from tests.ros import warm_supervisor
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.ros.supervised import start
@@ -15,6 +18,21 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 __all__ = ["start", "unfinished"]
+
+
+@pytest.fixture(autouse=True, scope="package")
+def _warm_supervisors() -> Iterator[None]:
+    """Have supervisors forked: most tests are about what they do, and not about how they begin."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(launcher.client.start, "subprocess", warm_supervisor)
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _cold_supervisors(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start it as Deck does where a test is marked `cold`."""
+    if request.node.get_closest_marker("cold"):
+        monkeypatch.setattr(launcher.client.start, "subprocess", subprocess)
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from launcher import node_program
 from launcher.spawn_server.node import check_fields, renew_streams
-from tests.forks import FORKS
+from tests.forks import fork
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,10 +25,7 @@ class WarmNode:
     def __init__(self, argv: Sequence[str], *, cwd: str, env: Mapping[str, str], log: int) -> None:
         """Run a module with its arguments; what it prints goes to the descriptor `log`."""
         output = f"/proc/{os.getpid()}/fd/{log}"
-        self._process = FORKS.Process(
-            target=_become, args=(tuple(argv), cwd, dict(env), output), daemon=True
-        )
-        self._process.start()
+        self._process = fork(_become, tuple(argv), cwd, dict(env), output)
         self.args = tuple(argv)
 
     @property

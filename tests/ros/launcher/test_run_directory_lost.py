@@ -75,6 +75,7 @@ async def test_what_is_removed_is_made_again_and_told(
     )
 
 
+@pytest.mark.cold
 async def test_one_whose_directory_was_moved_is_reached_at_once(
     start: Launch, tmp_path: Path
 ) -> None:
@@ -90,6 +91,7 @@ async def test_one_whose_directory_was_moved_is_reached_at_once(
     assert [path for path in left if not path.is_dir()] == [], "nothing that looks like a session"
 
 
+@pytest.mark.cold
 async def test_one_that_finds_no_place_where_it_was_is_reached_by_its_process(
     start: Launch, tmp_path: Path
 ) -> None:

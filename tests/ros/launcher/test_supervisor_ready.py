@@ -291,6 +291,7 @@ async def test_a_killed_node_is_not_ready_before_it_really_is(
     assert client.nodes["node"].state is NodeState.STARTING
 
 
+@pytest.mark.cold
 async def test_where_rclpy_is_missing_nodes_run_and_nobody_waits_for_ever(
     start: Launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,0 +1,131 @@
+"""A supervisor forked from a process that has its modules, and those of its nodes, already.
+
+Saved is the start of Python and the imports, of the supervisor and of its spawn server: most of
+what a short session costs. What is read when a program starts, its environment as others see it for
+one, differs here: tests of that are marked `cold`, and start it as Deck does.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import signal
+import subprocess
+import sys
+import threading
+from multiprocessing import reduction
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from tests.forks import fork
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+PIPE = subprocess.PIPE
+
+
+class Popen:
+    """Such a process, with what of `subprocess.Popen` the client uses."""
+
+    def __init__(
+        self,
+        argv: Sequence[str],
+        *,
+        cwd: Path,
+        env: Mapping[str, str],
+        stderr: int,
+        **_as_always: object,
+    ) -> None:
+        """Start `PYTHON -m launcher.supervisor ...`; stdin and stdout are pipes."""
+        theirs_in, ours_in = os.pipe()
+        ours_out, theirs_out = os.pipe()
+        streams = tuple(_Passed(fd) for fd in (theirs_in, theirs_out, stderr))
+        self._process = fork(_become, tuple(argv[2:]), str(cwd), dict(env), streams, os.getpid())
+        os.close(theirs_in)
+        os.close(theirs_out)
+        self.stdin, self.stdout = os.fdopen(ours_in, "wb", 0), os.fdopen(ours_out, "rb", 0)
+
+    @property
+    def pid(self) -> int:
+        assert self._process.pid is not None
+        return self._process.pid
+
+    def poll(self) -> int | None:
+        return self._process.exitcode
+
+    def wait(self) -> int | None:
+        self._process.join()
+        return self._process.exitcode
+
+    def send_signal(self, number: signal.Signals) -> None:
+        if self.poll() is None:
+            os.kill(self.pid, number)
+
+    def kill(self) -> None:
+        self._process.kill()
+
+
+class _Passed:
+    """A descriptor that the process gets; in it, it is a number again."""
+
+    def __init__(self, fd: int) -> None:
+        self._fd = fd
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _number, (reduction.DupFd(self._fd),)
+
+
+def _number(passed: Any) -> int:
+    fd: int = passed.detach()
+    return fd
+
+
+def _become(
+    argv: tuple[str, ...], cwd: str, env: dict[str, str], streams: tuple[int, ...], client: int
+) -> None:
+    os.setsid()
+    for stream, fd in enumerate(streams):
+        os.dup2(fd, stream)
+        os.close(fd)
+    os.environ.clear()
+    os.environ.update(env)
+    os.chdir(cwd)
+
+    from launcher.spawn_server.node import check_fields, renew_streams
+    from launcher.supervisor import __main__ as program
+
+    renew_streams()
+    check_fields(env.get("ROS_PYTHON_CHECK_FIELDS", ""))
+    sys.argv[:] = argv
+    parent = os.getppid
+
+    def started_by() -> int:
+        os.getppid = parent
+        return client
+
+    os.getppid = started_by
+    # The guardian, the supervisor, the spawn server and its nodes: all of them come back here.
+    try:
+        program.main()
+    except BaseException as error:  # noqa: BLE001 - as Python itself
+        _end(error)
+    _end(SystemExit(0))
+
+
+def _end(error: BaseException) -> NoReturn:
+    """End this process as Python ends a program."""
+    code = error.code if isinstance(error, SystemExit) else 1
+    if not isinstance(error, SystemExit):
+        trace = error.__traceback__
+        # Without the frame here.
+        sys.excepthook(type(error), error, trace and trace.tb_next)
+    elif isinstance(code, str):
+        sys.stderr.write(f"{code}\n")
+    threading._shutdown()  # type: ignore[attr-defined]
+    atexit._run_exitfuncs()
+    sys.stdout.flush()
+    if isinstance(error, KeyboardInterrupt):
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        os.kill(os.getpid(), signal.SIGINT)
+    os._exit(1 if isinstance(code, str) else code or 0)
