@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from course.proof.proof import ProofVerdict, Variant
     from tests.domains import DomainPool
 
-AT_ONCE = 4
+AT_ONCE = 8
 """More than the cores of a small machine: most of the time a run waits."""
 MISTAKES_AT_LEAST = 5
 NAMES = [folder.name for folder in folders(SHIPPED)]
