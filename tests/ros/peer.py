@@ -71,6 +71,9 @@ class Peer:
         self._executor.create_task(lambda: None)
         self._thread.join(timeout=10)
         self._executor.shutdown()
+        # Clients of actions, which would keep its participant in the domain.
+        for waitable in list(self.node.waitables):
+            waitable.destroy()
         self.node.destroy_node()
         self._context.try_shutdown()
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import yaml
 
+from tests.middleware_words import own_words
 from tests.ros.peer import ROOT
 from tests.ros.ros2.typed import typed
 from tests.waiting import wait_until
@@ -282,7 +283,7 @@ def test_as_a_program_it_ends_quietly() -> None:
         command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as echo:
         assert echo.stdout is not None
-        assert echo.stdout.readline() == "data: 0.25\n"
+        assert next(filter(own_words, echo.stdout)) == "data: 0.25\n"
         echo.send_signal(signal.SIGINT)
         _rest, err = echo.communicate(timeout=20)
         assert (echo.returncode, err) == (signal.SIGINT, "")
