@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -64,7 +65,7 @@ class StartingSupervisor:
     @property
     def waits(self) -> bool:
         """Whether it is running and can be given a plan."""
-        return self._words >= 0 and self._process.poll() is None
+        return self._words >= 0 and self._process.poll() is None and not self._hung_up()
 
     def give_up(self) -> None:
         """Release it: it ends if it has not started anything."""
@@ -133,6 +134,13 @@ class StartingSupervisor:
                 await asyncio.sleep(_LOOK_EVERY_S)
         finally:
             self._kill()
+
+    def _hung_up(self) -> bool:
+        """Whether nobody will answer: its guardian, which outlives it, has closed its stdout."""
+        assert self._process.stdout is not None
+        looking = select.poll()
+        looking.register(self._process.stdout, 0)
+        return bool(looking.poll(0))
 
     def _kill(self) -> None:
         """Kill the supervisor; its guardian, the process started here, ends the rest."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from launcher.client.client import attach, running
+from launcher.client.start import StartingSupervisor
 from launcher.events import ClosedEvent
 from launcher.processes.table import (
     NODE_MARK,
@@ -325,3 +326,20 @@ def test_strays_of_runs_that_are_kept_apart_are_nobody_elses(
             assert find_strays(tmp_path) == ()
         finally:
             left.kill()
+
+
+async def test_one_that_dies_before_it_is_given_a_plan_is_not_given_one() -> None:
+    """Its guardian, the process that was started, lives a moment longer."""
+    with StartingSupervisor() as starting:
+        guardian = starting._process.pid
+
+        def supervisor() -> int | None:
+            return next((one.pid for one in processes() if one.parent == guardian), None)
+
+        pid = await until(supervisor, "a supervisor")
+        assert starting.waits
+        kill(guardian, signal.SIGSTOP)
+        kill(pid, signal.SIGKILL)
+        await until(lambda: not starting.waits, "no supervisor")
+        assert alive(guardian)
+        kill(guardian, signal.SIGCONT)
