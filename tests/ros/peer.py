@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import pytest
 import rclpy
+from rclpy.action import ActionClient
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.logging import LoggingSeverity
@@ -73,7 +74,8 @@ class Peer:
         self._executor.shutdown()
         # Clients of actions, which would keep its participant in the domain.
         for waitable in list(self.node.waitables):
-            waitable.destroy()
+            if isinstance(waitable, ActionClient):
+                waitable.destroy()
         self.node.destroy_node()
         self._context.try_shutdown()
 

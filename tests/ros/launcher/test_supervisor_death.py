@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -43,7 +44,6 @@ from text.run_path import OWN_RUN_DIR
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
-    from pathlib import Path
 
 GONE_WITHIN_S = 15.0
 """After 2 s no node is alive; a machine under load is given more."""
@@ -337,6 +337,8 @@ async def test_one_that_dies_before_it_is_given_a_plan_is_not_given_one() -> Non
             return next((one.pid for one in processes() if one.parent == guardian), None)
 
         pid = await until(supervisor, "a supervisor")
+        place = Path(f"/proc/{guardian}/cwd")
+        await until(lambda: str(place.readlink()) == "/", "a guardian at work")
         assert starting.waits
         kill(guardian, signal.SIGSTOP)
         kill(pid, signal.SIGKILL)
