@@ -48,7 +48,9 @@ class DeckProcess:
     def said(self, text: str, within_s: float = 30.0) -> str:
         """Wait for a line that contains `text`; return it."""
         return wait_until(
-            lambda: next((line for line in self.lines if text in line), ""), text, within_s
+            lambda: next((line for line in self.lines if text in line), ""),
+            lambda: f"{text!r} in {self.lines[-30:]}, {self.errors[-30:]}",
+            within_s,
         )
 
     def signal(self, number: signal.Signals) -> None:

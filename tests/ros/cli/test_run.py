@@ -310,7 +310,8 @@ def test_interrupting_twice_ends_a_run_whose_supervisor_hangs(tmp_path: Path) ->
         run.said("stopping")
         run.signal(signal.SIGINT)
         run.finish()
-        run.said(f"the supervisor (pid {session.supervisor_pid}) did not answer; it was killed")
+        # On a busy machine what it has started may outlive it by more than 3 s; that is told then.
+        run.said(f"the supervisor (pid {session.supervisor_pid}) did not answer")
         assert not alive(session.supervisor_pid)
     finally:
         run.close()
