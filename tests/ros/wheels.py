@@ -90,11 +90,6 @@ class Wheels:
             0.01,
         )
 
-    def wait_off(self) -> None:
-        """Wait until no wheel turns and no motor is driven."""
-        seen = len(self.told)
-        wait_until(lambda: len(self.told) > seen and is_off(self.told[-1]), "motors off")
-
     def assert_stays(self, since: int | None = None) -> None:
         """See no wheel turn for a while, or from that message until then."""
         begin = len(self.told) - 1 if since is None else since

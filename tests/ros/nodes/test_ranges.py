@@ -285,9 +285,11 @@ def test_whatever_is_asked_the_pico_is_never_sent_more_than_it_takes(robot: Robo
     publisher = robot.peer.publisher("/wheel_commands", JointState)
     wait_until(publisher.get_subscription_count, "a subscription")
     seen = len(robot.wheels.told)
-    for _ in range(500):
+    for _ in range(400):
         publisher.publish(extreme())
-        time.sleep(0.002)  # the queue is ten long: a pace, and no synchronisation
+        # A pace, and no synchronisation: the queue is ten long, and the device has 4 KiB, of which
+        # a second's worth is to be enough where it is held up. A line cut short would be refused.
+        time.sleep(0.007)
     robot.wheels.command("/wheel_commands", lambda: wheels(2.0))
     robot.wheels.wait_moving()
     efforts = [abs(one) for told in robot.wheels.told[seen:] for one in told.effort[:2]]

@@ -47,7 +47,8 @@ def nodes(request: pytest.FixtureRequest, module_nodes: RobotNodes) -> Iterator[
     yield module_nodes
     request.node.add_report_section("teardown", "nodes", module_nodes.said())
     module_nodes.wheels.drive(0.0)
-    module_nodes.wheels.wait_off()
+    # Not only in a pause, after which a node that was held up hears older commands first.
+    module_nodes.wheels.assert_stands()
     module_nodes.wheels.quiet()
 
 
