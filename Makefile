@@ -51,7 +51,7 @@ run: catalogues
 	exec .venv/bin/deck run $(or $(PROFILE),09-brain) $(ARGS)
 
 test: catalogues
-	@exec .venv/bin/python -m pytest -n 6 --dist loadfile --no-loadscope-reorder $(ARGS)
+	@exec .venv/bin/python -m pytest -n 5 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 lint: .venv/.ready
 	@.venv/bin/ruff check .
