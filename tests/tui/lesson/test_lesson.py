@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
@@ -240,7 +241,8 @@ async def test_what_starts_ones_own_node_is_copied_for_a_shell(course: Path) -> 
     async with learning(own_opener(str(course / "mock_sonar.py"))) as (app, pilot):
         await pilot.press("Y")
         await until(lambda: "python3" in app.clipboard, "the command line")
-        assert app.clipboard.startswith(f"python3 {course}/mock_sonar.py --ros-args")
+        file = shlex.quote(f"{course}/mock_sonar.py")
+        assert app.clipboard.startswith(f"python3 {file} --ros-args")
 
 
 async def test_decks_own_nodes_are_not_judged_and_a_folder_is_offered(course: Path) -> None:
