@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from course.lessons.lesson import LessonFolder, folders
 from launcher.errors import UsageError
-from launcher.profile.catalog import fitting
+from launcher.profile.catalog import fitting, meant
 from launcher.profile.defaults import FOLDERS_OWN
 from text.sentences import say
 from text.suggestions import did_you_mean
@@ -49,14 +49,9 @@ def find_lesson(name: str | Path) -> LessonFolder:
     if (Path(text) / FOLDERS_OWN).is_file() and (os.sep in text or text not in known):
         # `..` is a name as little as `.` is.
         return LessonFolder(Path(os.path.abspath(text)))  # noqa: PTH100
-    if text in known:
-        return known[text]
-    fits = fitting(text, known)
-    if len(fits) == 1:
-        return known[fits[0]]
-    if fits:
-        names = ", ".join(sorted(fits))
-        raise UsageError(say("{name!r} matches several: {names}", name=text, names=names))
+    chosen = meant(text, known)
+    if chosen is not None:
+        return known[chosen]
     hint = did_you_mean(text, known) or say("there are: {names}", names=", ".join(known))
     raise UsageError(say("there is no lesson {name!r}; {hint}", name=text, hint=hint))
 

@@ -76,21 +76,31 @@ def find_profile(name: str | Path) -> Path:
     known = {
         file.stem: file for folder in (SHIPPED, Path("profiles")) for file in _files_of(folder)
     }
-    if text in known:
-        return known[text]
-    fits = fitting(text, known)
-    if len(fits) == 1:
-        return known[fits[0]]
-    if fits:
-        raise UsageError(
-            say("{name!r} matches several: {names}", name=text, names=", ".join(sorted(fits)))
-        )
-    raise ProfileNotFoundError(text, _likely(text, known))
+    chosen = meant(text, known)
+    if chosen is None:
+        raise ProfileNotFoundError(text, _likely(text, known))
+    return known[chosen]
 
 
 def is_path(text: str) -> bool:
     """Whether this is the path of a profile rather than its name."""
     return os.sep in text or text.endswith(ENDINGS) or os.path.isfile(text)  # noqa: PTH113
+
+
+def meant(text: str, known: Iterable[str]) -> str | None:
+    """Return the one of these names that is meant: by itself, its number or its beginning.
+
+    Raises UsageError if there are several.
+    """
+    names = list(known)
+    if text in names:
+        return text
+    fits = fitting(text, names)
+    if len(fits) > 1:
+        raise UsageError(
+            say("{name!r} matches several: {names}", name=text, names=", ".join(sorted(fits)))
+        )
+    return fits[0] if fits else None
 
 
 def fitting(text: str, known: Iterable[str]) -> list[str]:
