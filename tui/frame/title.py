@@ -9,17 +9,7 @@ from text.i18n import _, localized, ngettext, pick
 from text.plain import plain
 from tui.emergency.state import held_reason
 from tui.emergency.words import stop_words
-from tui.frame.actions.app import (
-    EmergencyRelease,
-    ShowComposer,
-    ShowDeck,
-    ShowDevices,
-    ShowFlow,
-    ShowGraph,
-    ShowLesson,
-    ShowLogs,
-    ShowTopics,
-)
+from tui.frame.actions.app import TABS, EmergencyRelease
 from tui.session.hardware_words import hardware_words
 from tui.session.watching import robot_nodes
 
@@ -29,16 +19,6 @@ if TYPE_CHECKING:
     from tui.frame.host import Host
     from tui.frame.title_bar import TitleBar
 
-TABS = (
-    ShowDeck,
-    ShowLesson,
-    ShowTopics,
-    ShowComposer,
-    ShowLogs,
-    ShowGraph,
-    ShowFlow,
-    ShowDevices,
-)
 COMING = frozenset({"waiting", "starting", "backoff"})
 
 

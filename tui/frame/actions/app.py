@@ -317,10 +317,7 @@ class Quit(AppAction):
         target.sessions.leave()
 
 
-APP_ACTIONS = (
-    EmergencyStop,
-    EmergencyRelease,
-    ShowHelp,
+TABS = (
     ShowDeck,
     ShowLesson,
     ShowTopics,
@@ -329,6 +326,13 @@ APP_ACTIONS = (
     ShowGraph,
     ShowFlow,
     ShowDevices,
+)
+"""In the order in which the top line names them."""
+APP_ACTIONS = (
+    EmergencyStop,
+    EmergencyRelease,
+    ShowHelp,
+    *TABS,
     ShowPalette,
     ShowTour,
     CloseSession,
