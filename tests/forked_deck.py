@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tests.forks import fork
+from tests.forks import enter, fork
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,9 +43,7 @@ def _become(
 ) -> None:
     from cli import main
 
-    os.environ.clear()
-    os.environ.update(environ)
-    os.chdir(folder)
+    enter(folder, environ)
     for path, stream in ((out, 1), (err, 2)):
         opened = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_NOCTTY, 0o600)
         os.dup2(opened, stream)

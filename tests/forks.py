@@ -10,7 +10,8 @@ from unittest import mock
 from launcher.processes.title import room_for_marks
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    import signal
+    from collections.abc import Callable, Mapping
     from multiprocessing.context import ForkServerProcess
 
 _FORKS = multiprocessing.get_context("forkserver")
@@ -29,3 +30,17 @@ def fork(target: Callable[..., None], *arguments: object) -> ForkServerProcess:
         process = _FORKS.Process(target=target, args=arguments, daemon=True)
         process.start()
     return process
+
+
+def enter(cwd: str, env: Mapping[str, str]) -> None:
+    """In such a process: have this working folder, and this environment and no other."""
+    os.environ.clear()
+    os.environ.update(env)
+    os.chdir(cwd)
+
+
+def send(process: ForkServerProcess, number: signal.Signals) -> None:
+    """Send a signal, unless it has ended."""
+    if process.exitcode is None:
+        assert process.pid is not None
+        os.kill(process.pid, number)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from launcher import node_program
 from launcher.spawn_server.node import check_fields, renew_streams
-from tests.forks import fork
+from tests.forks import enter, fork, send
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -47,8 +47,7 @@ class WarmNode:
         return self._process.exitcode
 
     def send_signal(self, number: signal.Signals) -> None:
-        if self.poll() is None:
-            os.kill(self.pid, number)
+        send(self._process, number)
 
 
 def _become(argv: tuple[str, ...], cwd: str, env: dict[str, str], output: str) -> None:
@@ -59,9 +58,7 @@ def _become(argv: tuple[str, ...], cwd: str, env: dict[str, str], output: str) -
     for stream in (1, 2):
         os.dup2(opened, stream)
     os.close(opened)
-    os.environ.clear()
-    os.environ.update(env)
-    os.chdir(cwd)
+    enter(cwd, env)
     renew_streams()
     node_program.prepare(argv)
     warm_imports.SHARED.renew(argv[0])

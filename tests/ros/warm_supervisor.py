@@ -16,7 +16,7 @@ import threading
 from multiprocessing import reduction
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from tests.forks import fork
+from tests.forks import enter, fork, send
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -59,8 +59,7 @@ class Popen:
         return self._process.exitcode
 
     def send_signal(self, number: signal.Signals) -> None:
-        if self.poll() is None:
-            os.kill(self.pid, number)
+        send(self._process, number)
 
     def kill(self) -> None:
         self._process.kill()
@@ -88,9 +87,7 @@ def _become(
     for stream, fd in enumerate(streams):
         os.dup2(fd, stream)
         os.close(fd)
-    os.environ.clear()
-    os.environ.update(env)
-    os.chdir(cwd)
+    enter(cwd, env)
 
     from launcher.spawn_server.node import check_fields, renew_streams
     from launcher.supervisor import __main__ as program
