@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent
 LOCALE = ROOT / "text" / "locale"
 DOMAIN = "deck"
-ROOMS = ("cli", "course", "graph", "launcher", "nodes", "robot", "text", "tui")
+ROOMS = ("brain", "cli", "course", "graph", "launcher", "nodes", "robot", "text", "tui")
 KEYWORDS = (
     *("_", "N_", "ngettext:1,2", "say"),
     # The descriptions of node parameters.

@@ -1,0 +1,58 @@
+"""A transport that ends an answer which is too long.
+
+The OpenAI client reads whatever comes: ten megabytes of one line would all be kept.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import httpx2
+
+from brain.faults import FaultKind, ModelError
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+LONGEST_ANSWER = 4 << 20
+"""Bytes on the wire, of one answer: a token takes some 200 of them in a stream."""
+
+
+class BoundedTransport(httpx2.AsyncBaseTransport):
+    """Passes requests on, and counts the bytes of what comes back."""
+
+    def __init__(self, longest: int = LONGEST_ANSWER) -> None:
+        self._inner = httpx2.AsyncHTTPTransport()
+        self._longest = longest
+
+    async def handle_async_request(self, request: httpx2.Request) -> httpx2.Response:
+        """Send a request; its answer's body raises ModelError beyond the limit."""
+        response = await self._inner.handle_async_request(request)
+        stream = response.stream
+        assert isinstance(stream, httpx2.AsyncByteStream)
+        return httpx2.Response(
+            response.status_code,
+            headers=response.headers,
+            stream=_BoundedStream(stream, self._longest),
+            extensions=response.extensions,
+        )
+
+    async def aclose(self) -> None:
+        """Close all connections."""
+        await self._inner.aclose()
+
+
+class _BoundedStream(httpx2.AsyncByteStream):
+    def __init__(self, inner: httpx2.AsyncByteStream, longest: int) -> None:
+        self._inner, self._left = inner, longest
+
+    async def __aiter__(self) -> AsyncIterator[bytes]:
+        async for block in self._inner:
+            self._left -= len(block)
+            if self._left < 0:
+                raise ModelError(FaultKind.TOO_LONG, say("the answer has no end: cut off"))
+            yield block
+
+    async def aclose(self) -> None:
+        await self._inner.aclose()
