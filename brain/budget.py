@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from brain.faults import FaultKind, ModelError
 from text.os_words import os_reason
+from text.run_path import MODEL_USAGE
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 
     from brain.settings import BudgetSettings, PriceSettings
 
-FILE = "llm_usage.jsonl"
 MINUTE_S = 60.0
 CHARS_PER_TOKEN = 4
 """For servers that do not count: the usual rule for English."""
@@ -76,7 +76,7 @@ class Ledger:
 
     def __init__(self, folder: Path | None = None) -> None:
         """Keep the ledger in this folder; None for one in memory."""
-        self._path = None if folder is None else folder / FILE
+        self._path = None if folder is None else folder / MODEL_USAGE
         self._lines: list[dict[str, Any]] = []
 
     def begin(self, who: str, budget: BudgetSettings) -> None:

@@ -7,12 +7,14 @@ Protocol: https://platform.openai.com/docs/api-reference/chat/streaming.
 
 from __future__ import annotations
 
-import asyncio
+import math
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping, Sequence
+from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
+
+import anyio
 
 from brain.budget import Usage, estimated_tokens
 from brain.faults import FaultKind, ModelError
@@ -122,10 +124,10 @@ class ModelClient:
         self._ledger.begin(self._who, self.settings.budget)
         begun_s, received = time.monotonic(), _Received()
         try:
-            async with self._faults():
-                await asyncio.wait_for(
-                    self._receive(request, received, on_text), self.settings.timeout_s
-                )
+            with self._faults(received):
+                # Not asyncio.wait_for, which before Python 3.12 can lose a cancellation.
+                with anyio.fail_after(self.settings.timeout_s):
+                    await self._receive(request, received, on_text)
         finally:
             usage = _usage(request, received, begun_s)
             self._ledger.end(self._who, usage)
@@ -140,32 +142,19 @@ class ModelClient:
     async def _receive(
         self, request: Request, received: _Received, on_text: Callable[[str], None]
     ) -> None:
-        async with self._open(request) as stream:
-            chunks = stream.__aiter__()
-            while True:
-                patience = self._patience(received.first_s is None)
-                try:
-                    chunk = await patience(chunks.__anext__())
-                except StopAsyncIteration:
-                    return
-                if piece := received.take(chunk, time.monotonic()):
-                    on_text(piece)
-                if received.length > LONGEST_TEXT:
-                    raise ModelError(FaultKind.TOO_LONG, say("the answer has no end: cut off"))
-
-    def _patience(self, waiting: bool) -> Callable[[Awaitable[Any]], Awaitable[Any]]:
-        """Return what awaits a step of the answer: until it has begun, for `first_token_s` only."""
-
-        async def await_it(step: Awaitable[Any]) -> Any:  # noqa: ANN401 - as the client's stream
-            limit_s = self.settings.first_token_s
-            try:
-                return await asyncio.wait_for(step, limit_s)
-            except asyncio.TimeoutError:
-                words = say("no answer began within {limit:g} s", limit=limit_s)
-                fix = say("first_token_s in llm.yaml")
-                raise ModelError(FaultKind.TIMEOUT, words, fix) from None
-
-        return await_it if waiting else _awaited
+        limit_s = self.settings.first_token_s
+        with anyio.move_on_after(limit_s) as beginning:
+            async with self._open(request) as stream:
+                async for chunk in stream:
+                    if piece := received.take(chunk, time.monotonic()):
+                        on_text(piece)
+                    if received.first_s is not None:
+                        beginning.deadline = math.inf
+                    if received.length > LONGEST_TEXT:
+                        raise ModelError(FaultKind.TOO_LONG, say("the answer has no end: cut off"))
+        if beginning.cancelled_caught:
+            words = say("no answer began within {limit:g} s", limit=limit_s)
+            raise ModelError(FaultKind.TIMEOUT, words, say("first_token_s in llm.yaml"))
 
     @asynccontextmanager
     async def _open(self, request: Request) -> AsyncIterator[Any]:
@@ -178,15 +167,11 @@ class ModelClient:
             **request.form,
         }
         completions: Any = self._client().chat.completions.with_streaming_response
-        manner = completions.create(**fields)
-        response = await self._patience(True)(manner.__aenter__())
-        try:
+        async with completions.create(**fields) as response:
             kind = response.headers.get("content-type", "").split(";")[0].strip()
             if kind != "text/event-stream":
                 raise _not_an_api(self.settings.base_url, kind)
             yield await response.parse()
-        finally:
-            await manner.__aexit__(None, None, None)
 
     def _client(self) -> openai.AsyncOpenAI:
         if self._made is None:
@@ -208,12 +193,12 @@ class ModelClient:
             )
         return self._made
 
-    @asynccontextmanager
-    async def _faults(self) -> AsyncIterator[None]:
+    @contextmanager
+    def _faults(self, received: _Received) -> Iterator[None]:
         """Say in words what the client raises."""
         try:
             yield
-        except asyncio.TimeoutError:
+        except TimeoutError:
             words = say("no answer within {limit:g} s", limit=self.settings.timeout_s)
             raise ModelError(FaultKind.TIMEOUT, words, say("timeout_s in llm.yaml")) from None
         except ModelError:
@@ -221,17 +206,14 @@ class ModelClient:
         except Exception as error:
             from brain.client_faults import fault_of
 
-            fault = fault_of(error, self.settings, self._key)
+            begun = received.first_s is not None
+            fault = fault_of(error, self.settings, self._key, begun=begun)
             if fault is None:
                 raise
             if fault.kind is FaultKind.BUSY:
                 self._not_before_s = time.monotonic() + (fault.retry_after_s or _FIRST_BUSY_S)
             # Not `from error`: its text and its request hold what must not be shown.
             raise fault from None
-
-
-async def _awaited(step: Awaitable[Any]) -> Any:  # noqa: ANN401 - as the client's stream
-    return await step
 
 
 def _not_an_api(base_url: str, kind: str) -> ModelError:

@@ -21,8 +21,16 @@ _LONGEST_WORDS = 200
 _LONGEST_WAIT_S = 3600.0
 
 
-def fault_of(error: Exception, settings: ModelSettings, key: Key) -> ModelError | None:
-    """Return what an error means, None for one that is a mistake of Deck's own."""
+def fault_of(
+    error: Exception, settings: ModelSettings, key: Key, *, begun: bool = False
+) -> ModelError | None:
+    """Return what an error means, None for one that is a mistake of Deck's own.
+
+    `begun`: whether some of the answer has come.
+    """
+    if begun and isinstance(error, httpx2.TransportError | openai.APIConnectionError):
+        inner = error.__cause__
+        return inner if isinstance(inner, ModelError) else _cut()
     if isinstance(error, openai.APITimeoutError | httpx2.TimeoutException):
         words = say("no answer within {limit:g} s", limit=settings.timeout_s)
         return ModelError(FaultKind.TIMEOUT, words, say("timeout_s in llm.yaml"))
@@ -35,6 +43,11 @@ def fault_of(error: Exception, settings: ModelSettings, key: Key) -> ModelError 
         words = say("what the server sent cannot be read")
         return ModelError(FaultKind.NOT_AN_API, words)
     return None
+
+
+def _cut() -> ModelError:
+    words = say("the connection was lost in the middle of the answer")
+    return ModelError(FaultKind.CUT, words)
 
 
 def _of_api(error: openai.APIError, settings: ModelSettings, key: Key) -> ModelError:

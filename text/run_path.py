@@ -11,6 +11,10 @@ if TYPE_CHECKING:
 
 OWN_RUN_DIR = "DECK_RUN_DIR"
 """Environment variable that keeps some runs separate from all others."""
+RUN_ID = "DECK_RUN_ID"
+"""Environment variable that tells a node which run it belongs to."""
+MODEL_USAGE = "llm_usage.jsonl"
+"""File in the folder of a run: what all its processes asked of language models."""
 
 
 def run_path(environ: Mapping[str, str]) -> Path:
@@ -26,3 +30,10 @@ def run_path(environ: Mapping[str, str]) -> Path:
     if runtime.is_dir() and runtime.stat().st_uid == os.getuid():
         return runtime / "deck"
     return Path(f"/tmp/deck-{os.getuid()}")
+
+
+def run_folder(environ: Mapping[str, str]) -> Path | None:
+    """Return the folder of the run that a node belongs to, None for one that was started alone."""
+    run = environ.get(RUN_ID)
+    folder = run_path(environ) / run if run else None
+    return folder if folder is not None and folder.is_dir() else None

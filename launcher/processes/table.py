@@ -11,14 +11,14 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from text.run_path import OWN_RUN_DIR
+from text.run_path import OWN_RUN_DIR, RUN_ID
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
-RUN_MARK = "DECK_RUN_ID"
+RUN_MARK = RUN_ID
 """Environment variable that says which run of Deck a process belongs to."""
 NODE_MARK = "DECK_NODE"
 """Environment variable that says which node of that run a process is, or descends from."""

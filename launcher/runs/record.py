@@ -18,6 +18,7 @@ from launcher.control.protocol import pack_session, unpack_session
 from launcher.control.socket import SOCKET_NAME
 from launcher.private_files import make_folder, open_file, open_own_folder, remove_files
 from launcher.run_id import supervisor_runs
+from text.run_path import MODEL_USAGE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -72,7 +73,8 @@ class RunRecord:
         with contextlib.suppress(OSError):
             descriptor = open_own_folder(self.folder)
             try:
-                remove_files(self.folder, descriptor, [_DRAFT_NAME, RECORD_NAME, SOCKET_NAME])
+                names = [_DRAFT_NAME, RECORD_NAME, SOCKET_NAME, MODEL_USAGE]
+                remove_files(self.folder, descriptor, names)
             finally:
                 os.close(descriptor)
 

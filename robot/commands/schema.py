@@ -7,7 +7,7 @@ to an API as a response format. The ranges are enforced here, whatever the API d
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Union
+from typing import Annotated, Literal, TypeVar, Union, overload
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
@@ -28,6 +28,7 @@ __all__ = [
     "HeadCommand",
     "LlmResponse",
     "Problem",
+    "SpokenResponse",
     "parse_llm",
 ]
 
@@ -94,7 +95,26 @@ class LlmResponse(_Strict):
     ]
 
 
-def parse_llm(text: str | bytes) -> LlmResponse:
+class SpokenResponse(LlmResponse):
+    """The same with something to say: what the robot's brain asks a model for."""
+
+    say: Annotated[
+        str, Field(strict=True, description="What to say aloud, one short sentence; may be empty")
+    ]
+
+    def silent(self) -> LlmResponse:
+        """Return it without the words: what goes to `llm_parser`."""
+        return LlmResponse(thought=self.thought, commands=self.commands)
+
+
+Response = TypeVar("Response", bound=LlmResponse)
+
+
+@overload
+def parse_llm(text: str | bytes) -> LlmResponse: ...
+@overload
+def parse_llm(text: str | bytes, kind: type[Response]) -> Response: ...
+def parse_llm(text: str | bytes, kind: type[LlmResponse] = LlmResponse) -> LlmResponse:
     """Parse and check a response; raises `CommandError` with every problem found and its place."""
     decoded = _decode(text)
     try:
@@ -103,10 +123,10 @@ def parse_llm(text: str | bytes) -> LlmResponse:
         place = json_places.line_column(decoded, error.offset)
         raise CommandError([Problem.of(error.code, error.path, place, **error.details)]) from None
     try:
-        return LlmResponse.model_validate(found.value)
+        return kind.model_validate(found.value)
     except ValidationError:
         models: dict[str, type[BaseModel]] = {"drive": DriveCommand, "turn_head": HeadCommand}
-        problems = Explainer(decoded, found, LlmResponse, models).problems()
+        problems = Explainer(decoded, found, kind, models).problems()
         raise CommandError(problems) from None
 
 

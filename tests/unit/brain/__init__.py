@@ -1,0 +1,1 @@
+"""Tests of `brain` against real sockets; they need no ROS and no terminal."""

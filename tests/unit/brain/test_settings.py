@@ -1,0 +1,138 @@
+"""Settings: mistakes are named by place, and no key can be seen."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import pytest
+
+from brain.faults import ModelError
+from brain.key import Key, key_of
+from brain.settings import ModelSettings, load
+from tests.model_server import KEY
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+GOOD = "base_url: http://127.0.0.1:8080/v1/\nmodel: qwen3-1.7b\n"
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "llm.yaml"
+
+
+def test_without_a_file_and_variables_there_are_no_settings(path: Path) -> None:
+    assert load(path, {}) is None
+    path.write_text("# nothing yet\n")
+    assert load(path, {}) is None
+
+
+def test_the_file_is_read_and_variables_go_before_it(path: Path) -> None:
+    path.write_text(
+        GOOD
+        + "budget: {calls_per_minute: 3}\nprices: {input_per_million: 1, output_per_million: 2.5}\n"
+    )
+    settings = load(path, {"DECK_LLM_MODEL": "other"})
+    assert settings is not None
+    assert (settings.base_url, settings.model) == ("http://127.0.0.1:8080/v1", "other")
+    assert settings.budget.calls_per_minute == 3
+    assert settings.prices is not None
+    assert settings.prices.output_per_million == 2.5
+    alone = load(
+        path.with_name("none"), {"DECK_LLM_BASE_URL": "https://x/v1", "DECK_LLM_MODEL": "m"}
+    )
+    assert alone is not None
+    assert alone.base_url == "https://x/v1"
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "fix"),
+    [
+        ("model: m\n", ":1:1: base_url: is missing", "base_url: http"),
+        (GOOD + "modle: x\n", ":3:1: modle: there is no such setting", "did you mean model?"),
+        (GOOD + f"key: {KEY}\n", ":3:1: key: a key does not belong in this file", "key_env"),
+        ("base_url: localhost\nmodel: m\n", ":1:11: base_url: expected an address", "http"),
+        ("base_url: http://u:p@h/v1\nmodel: m\n", "an address must hold no key", ""),
+        (GOOD + "timeout_s: soon\n", ":3:12: timeout_s: expected a number", ""),
+        (GOOD + "timeout_s: -1\n", ":3:12: timeout_s: is out of range", ""),
+        (GOOD + "budget: 7\n", ":3:9: budget: expected settings", ""),
+        (GOOD + "budget: {calls: 7}\n", "budget.calls: there is no such setting", ""),
+        ("base_url: [\n", "llm.yaml:", ""),
+        ("- a\n", "expected `name: value`, found a list", ""),
+    ],
+)
+def test_a_mistake_is_named_by_its_place(path: Path, text: str, words: str, fix: str) -> None:
+    path.write_text(text)
+    with pytest.raises(ModelError) as raised:
+        load(path, {})
+    assert str(path) in str(raised.value)
+    assert words in str(raised.value)
+    assert fix in raised.value.fix
+    assert KEY not in f"{raised.value} {raised.value.fix}"
+
+
+def test_a_variable_with_a_mistake_is_named(path: Path) -> None:
+    path.write_text(GOOD)
+    with pytest.raises(ModelError, match="DECK_LLM_BASE_URL: expected an address"):
+        load(path, {"DECK_LLM_BASE_URL": "nowhere"})
+
+
+def test_a_file_that_is_no_text(path: Path) -> None:
+    path.write_bytes(b"\xff\xfe")
+    with pytest.raises(ModelError, match="is not UTF-8"):
+        load(path, {})
+    path.unlink()
+    path.mkdir()
+    with pytest.raises(ModelError, match="cannot be read"):
+        load(path, {})
+
+
+def settings(**fields: str) -> ModelSettings:
+    return ModelSettings(base_url="http://h/v1", model="m", **fields)  # type: ignore[arg-type]
+
+
+def test_the_key_comes_from_where_the_settings_say(tmp_path: Path) -> None:
+    file = tmp_path / "key"
+    file.write_text(f"{KEY}\n")
+    file.chmod(0o600)
+    environ = {"MINE": KEY, "DECK_LLM_KEY": "sk-other"}
+    assert key_of(settings(key_env="MINE"), environ).reveal() == KEY
+    assert key_of(settings(key_file=str(file)), environ).reveal() == KEY
+    assert key_of(settings(), environ).reveal() == "sk-other"
+    assert not key_of(settings(), {})
+
+
+def test_a_key_that_others_can_read_is_not_used(tmp_path: Path) -> None:
+    file = tmp_path / "key"
+    file.write_text(KEY)
+    for mode in (0o644, 0o640, 0o604):
+        file.chmod(mode)
+        with pytest.raises(ModelError, match="others may read the key") as raised:
+            key_of(settings(key_file=str(file)), {})
+        assert raised.value.fix == f"chmod 600 {file}"
+
+
+@pytest.mark.parametrize("text", ["", "two words", "a\nb", "ключ", "x" * 5000])
+def test_what_is_no_key_is_not_shown(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "key"
+    file.write_text(text)
+    os.chmod(file, 0o600)  # noqa: PTH101
+    with pytest.raises(ModelError, match="is no key") as raised:
+        key_of(settings(key_file=str(file)), {})
+    assert not text or text not in str(raised.value)
+
+
+def test_a_missing_key_is_told_by_name(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="the variable MINE with the key is not set"):
+        key_of(settings(key_env="MINE"), {})
+    with pytest.raises(ModelError, match=r"no key in .*none: "):
+        key_of(settings(key_file=str(tmp_path / "none")), {})
+
+
+def test_a_key_prints_as_stars() -> None:
+    key = Key(KEY)
+    assert KEY not in f"{key} {key!r} {[key]}"
+    assert key.hidden_in(f"bad key {KEY}!") == "bad key ***!"
+    assert Key().hidden_in("as it is") == "as it is"
