@@ -419,6 +419,9 @@ def _add_shell(parser: Parser) -> None:
 
 
 def _add_doctor(parser: Parser) -> None:
+    parser.add_argument(
+        "what", nargs="?", choices=("llm",), help=_("llm: ask the language model for a test")
+    )
     _add_json(parser)
     parser.epilog = _("Exit code: 0, or 1 if something essential is missing.")
 

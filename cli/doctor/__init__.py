@@ -15,7 +15,7 @@ __all__ = ["Finding", "Level", "examine"]
 
 THINGS = (
     *("python", "ros", "network", "terminal"),
-    *("serial_ports", "media", "groups", "power", "shared_memory", "login", "runs"),
+    *("serial_ports", "media", "groups", "power", "shared_memory", "login", "runs", "model"),
 )
 
 

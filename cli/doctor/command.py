@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from cli.doctor import Level, examine
+from launcher.errors import UsageError
 from text.i18n import N_, _
 from text.output import DIM, GREEN, RED, YELLOW, Paint, json_text, write
 from text.plain import plain
@@ -24,13 +25,24 @@ LOOKS = {
 
 
 def doctor_command(options: Namespace) -> int:
-    """Examine everything; return 1 if something essential is missing."""
-    findings = examine()
+    """Examine everything, or try the language model; return 1 if something essential is missing."""
+    findings = _tried() if options.what == "llm" else examine()
     if options.json:
         write(json_text([finding.for_programs() for finding in findings], indent=2))
     else:
         show(findings, Paint(sys.stdout))
     return 1 if any(finding.level is Level.FAIL for finding in findings) else 0
+
+
+def _tried() -> list[Finding]:
+    """Ask the language model. Raises UsageError if there are no settings that can be used."""
+    from brain.faults import ModelError
+    from cli.doctor.llm import try_model
+
+    try:
+        return try_model()
+    except ModelError as error:
+        raise UsageError(*filter(None, (error.words, error.fix))) from None
 
 
 def show(findings: Iterable[Finding], paint: Paint) -> None:
