@@ -19,6 +19,8 @@ class FaultKind(Enum):
 
     SETTINGS = "settings"
     """The settings or the key cannot be used, or there are none."""
+    PROMPT = "prompt"
+    """The user's own prompt cannot be read."""
     BUDGET = "budget"
     """Deck did not ask: the budget is spent."""
     UNREACHABLE = "unreachable"

@@ -14,20 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from brain.client import Message
+    from robot.motion.odometry import Pose
 
 LONGEST_HEARD = 2000
 """Characters of what was heard."""
 _LONGEST_REASON = 300
-
-
-@dataclass(frozen=True)
-class Pose:
-    """Where the odometry takes the robot to be."""
-
-    x_m: float
-    y_m: float
-    heading_deg: float
-    """Counter-clockwise from the x axis."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +30,7 @@ class Situation:
     """inf: nothing in range; nan: no valid reading (REP-117)."""
     rear_m: float | None = None
     pose: Pose | None = None
+    """By the odometry."""
     gate: str = ""
     """What the gate says of itself: what is blocked, and why."""
     refused: str = ""
@@ -63,7 +55,8 @@ class Situation:
         ]
         if self.pose is not None:
             at = f"x {self.pose.x_m:.2f} m, y {self.pose.y_m:.2f} m"
-            lines.append(f"Position: {at}, heading {self.pose.heading_deg:.0f} deg")
+            heading_deg = math.degrees(self.pose.heading_rad)
+            lines.append(f"Position: {at}, heading {heading_deg:.0f} deg, + is left")
         for name, words in (
             ("Safety gate", self.gate),
             ("Your last commands", self.refused),

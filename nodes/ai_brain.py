@@ -1,9 +1,15 @@
 """The brain of lesson 9: hears a voice, checks the distance, and makes the robot act.
 
-The reasoning that an LLM would do is a few rules in `robot.commands.brain`: with an obstacle within
+With `backend: rules` the reasoning is that of `robot.commands.brain`: with an obstacle within
 `stop_distance`, or without a fresh and valid distance, the robot is told to stop; otherwise the
 head turns, the robot drives forward, and the loudspeaker announces it. A drive command ("стоп",
 "left") is obeyed directly, unless it leads into the unknown.
+
+With `backend: llm` the model of the user's settings is asked (`brain.settings`): it is told what
+was heard, the distances, the pose, what the gate says, and what the camera sees. Its commands go to
+/llm_raw_json, and so through llm_parser and the gate; it has no other way to the wheels. If there
+are no settings, or nobody answers there, the rules decide, and the log says so; if an answer is
+unusable, the robot stands. The word for stop never waits for a model.
 """
 
 from __future__ import annotations
@@ -11,23 +17,40 @@ from __future__ import annotations
 import math
 import sys
 import time
+from typing import TYPE_CHECKING
 
+from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image
-from std_msgs.msg import ByteMultiArray, Float32, String
+from std_msgs.msg import Bool, ByteMultiArray, Float32, String
 
+from brain.faults import FaultKind, ModelError
 from nodes.parts.head_client import HeadAnswer, HeadClient
 from nodes.parts.node import LessonNode
-from nodes.parts.parameters import Number
+from nodes.parts.parameters import Choice, Number, Text
+from nodes.parts.pictures import BadPictureError, jpeg_of
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
 from nodes.parts.sound import from_message, to_message
-from robot.commands.brain import Decision, decide, spoken
+from robot.commands.brain import Decision, asks_to_stop, decide, spoken
+from robot.commands.schema import DriveCommand, LlmResponse, SpokenResponse
 from robot.safety.distance import Reading, range_state
 from robot.sound import text_in
-from robot.topics import AI_COMMAND, CAMERA, MICROPHONE, SONAR_FRONT, SPEAKER
+from robot.topics import (
+    AI_COMMAND,
+    CAMERA,
+    EMERGENCY_STOP,
+    LLM_RAW_JSON,
+    MICROPHONE,
+    SONAR_FRONT,
+    SPEAKER,
+)
 from robot.words import WORDS, parse_word
 from text.i18n import N_
+
+if TYPE_CHECKING:
+    from brain.situation import Situation
+    from nodes.thinking.mind import ModelMind
 
 LOOK_PAN_DEG, LOOK_TILT_DEG = 45, 0
 FORWARD, STOP_WORD = WORDS["ru"][0], WORDS["ru"][4]
@@ -58,6 +81,17 @@ _REPLIES = {
     Decision.OBEY: N_("As you say."),
 }
 _DECIDED = N_("Decision: {thought}")
+_NO_MODEL = N_("No model: {problem}; I follow my rules")
+_NO_ANSWER = N_("No answer: {problem}; I stand")
+_NO_ANSWER_ALOUD = N_("I cannot think just now, I stand still.")
+_MODEL_THINKS = N_('The model thinks: "{thought}" ({count} commands)')
+_NOBODY_LISTENS = N_("Nobody listens to {topic}: is llm_parser running?")
+_BAD_PICTURE = N_("The picture is not sent: {problem}")
+_BY_RULES = (FaultKind.SETTINGS, FaultKind.UNREACHABLE)
+"""Without a model, or without a network, the brain is that of the course."""
+_STANDS = LlmResponse(
+    thought="no answer: stand", commands=[DriveCommand(action="drive", speed=0, steering=0)]
+)
 _HEAD_ASKED = N_("Asking the head for pan {pan}°, tilt {tilt}°")
 _HEAD_DONE = N_("The head has turned")
 _HEAD_REFUSED = N_("The head refused")
@@ -69,6 +103,14 @@ class AiBrain(LessonNode):
 
     NAME = "ai_brain"
     SETTINGS = (
+        Choice("backend", "rules", "Who thinks", fixed=True, choices=("rules", "llm")),
+        Text("prompt", "", "File with the system prompt; empty: Deck's own", may_be_empty=True),
+        Choice(
+            "picture",
+            "described",
+            "What the model gets of the camera: words of vlm_agent, the picture, nothing",
+            choices=("described", "sent", "none"),
+        ),
         Number("stop_distance", 1.0, "Nearer than this it stops", low=0.05, high=100.0, unit="m"),
         Number("stale_after_s", 2.5, "An older distance is ignored", low=0.1, high=60.0, unit="s"),
         Number(
@@ -84,7 +126,7 @@ class AiBrain(LessonNode):
     def __init__(self) -> None:
         super().__init__()
         self._picture: bytes | None = None
-        """Serialized: it is not decoded until there is a vision model."""
+        """Serialized: it is decoded only if a model asks for it."""
         self._front_m: float | None = None
         self._front_s = 0.0
         self._command = self.create_publisher(String, AI_COMMAND, DEPTH)
@@ -92,8 +134,34 @@ class AiBrain(LessonNode):
         self._head = HeadClient(self, lambda: self.number("head_timeout"))
         SensorListener(self, Image, CAMERA, self._see, depth=1, raw=True)
         SensorListener(self, Float32, SONAR_FRONT, self._measure)
+        self._mind = self._model_mind() if self.text("backend") == "llm" else None
         self.create_subscription(ByteMultiArray, MICROPHONE, self._hear, DEPTH)
         self.say.info(_STARTED)
+
+    def before_end(self) -> None:
+        """Hang up on the model."""
+        if self._mind is not None:
+            self._mind.close()
+
+    def _model_mind(self) -> ModelMind | None:
+        from nodes.thinking.mind import ModelMind
+        from nodes.thinking.senses import Senses
+        from nodes.thinking.state import BrainState
+
+        try:
+            mind = ModelMind(self, lambda: self.text("prompt"), self._say_and_do, self._no_answer)
+        except ModelError as error:
+            self.say.warn(_NO_MODEL, problem=error.words)
+            self._state = BrainState(self, None)
+            return None
+        self._senses = Senses(self, self.number("stale_after_s"))
+        self._json = self.create_publisher(String, LLM_RAW_JSON, DEPTH)
+        self.create_subscription(Bool, EMERGENCY_STOP, self._emergency, DEPTH)
+        return mind
+
+    def _emergency(self, message: Bool) -> None:
+        if message.data and self._mind is not None:
+            self._mind.stop()
 
     def _see(self, picture: bytes) -> None:
         self._picture = picture
@@ -110,10 +178,59 @@ class AiBrain(LessonNode):
         words = spoken(sound)
         self.say.info(_HEARD, words=words)
         self._tell_what_is_known()
-        order = parse_word(words)
+        if self._mind is None:
+            self._by_rules(words)
+        elif asks_to_stop(words):
+            self._mind.stop()
+            self._act(Decision.OBEY, STOP_WORD)
+        else:
+            self._mind.think(self._senses.situation(words, self._fresh_front(), self._jpeg()))
+
+    def _by_rules(self, words: str) -> None:
         reading = Reading(self._front_m, time.monotonic() - self._front_s)
         front = range_state(reading, self.number("stop_distance"), self.number("stale_after_s"))
-        self._act(decide(order, front), words)
+        self._act(decide(parse_word(words), front), words)
+
+    def _fresh_front(self) -> float | None:
+        fresh = time.monotonic() - self._front_s <= self.number("stale_after_s")
+        return self._front_m if fresh else None
+
+    def _jpeg(self) -> bytes:
+        if self.text("picture") != "sent" or self._picture is None:
+            return b""
+        try:
+            return jpeg_of(deserialize_message(self._picture, Image))
+        except BadPictureError as error:
+            self.say.warn(_BAD_PICTURE, problem=self.say.text(error.phrase, **error.values))
+            return b""
+
+    # ---------------------------------------------------------------- what the model answers
+
+    def _say_and_do(self, response: SpokenResponse) -> None:
+        thought, count = response.thought, len(response.commands)
+        self.say.info(_MODEL_THINKS, thought=thought, count=count)
+        self._to_parser(response.silent())
+        if response.say.strip():
+            self._speak(response.say)
+
+    def _no_answer(self, error: ModelError, situation: Situation) -> None:
+        if error.kind in _BY_RULES:
+            self.say.warn(_NO_MODEL, problem=error.words)
+            self._by_rules(situation.heard)
+            return
+        self.say.error(_NO_ANSWER, problem=error.words)
+        self._drive(STOP_WORD)
+        self._speak(self.say.text(_NO_ANSWER_ALOUD))
+
+    def _to_parser(self, response: LlmResponse) -> None:
+        if not self._json.get_subscription_count():
+            self.say.warn(_NOBODY_LISTENS, topic=LLM_RAW_JSON)
+        self._json.publish(String(data=response.model_dump_json()))
+
+    def _speak(self, words: str) -> None:
+        self._speaker.publish(to_message(words.encode()))
+
+    # ---------------------------------------------------------------- what the rules decide
 
     def _tell_what_is_known(self) -> None:
         distance = self.say.text(_ahead(self._front_m), metres=self._front_m)
@@ -130,11 +247,13 @@ class AiBrain(LessonNode):
             self._drive(FORWARD)
         else:
             self._drive(STOP_WORD)
-        reply = self.say.text(_REPLIES[decision])
-        self._speaker.publish(to_message(reply.encode()))
+        self._speak(self.say.text(_REPLIES[decision]))
 
     def _drive(self, word: str) -> None:
         self._command.publish(String(data=word))
+        if word == STOP_WORD and self._mind is not None:
+            # The parser may still be repeating what the model said before.
+            self._to_parser(_STANDS)
 
     def _head_answered(self, answer: HeadAnswer) -> None:
         if answer.trouble:

@@ -14,7 +14,7 @@ from sensor_msgs.msg import Image
 
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Text, Whole
-from nodes.parts.pictures import BadPictureError, bgr
+from nodes.parts.pictures import BadPictureError, jpeg_of
 from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
 from robot.topics import CAMERA
@@ -69,15 +69,12 @@ class VlmAgentStub(LessonNode):
             self.say.warn(_BAD, reason=self.say.text(error.phrase, **error.values))
 
     def _send(self, message: Image) -> None:
-        picture = bgr(message)
         size = {"width": message.width, "height": message.height}
         try:
-            import cv2
+            jpeg = jpeg_of(message, int(self.number("quality")))
         except ImportError:
             self.say.warn(_NO_OPENCV, **size)
             return
-        quality = [cv2.IMWRITE_JPEG_QUALITY, int(self.number("quality"))]
-        _made, jpeg = cv2.imencode(".jpg", picture, quality)
         self.say.info(_SENT, size=len(jpeg) / 1000, **size)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 AI_COMMAND = "/ai_command"
 AUDIO_LEVEL = "/audio/level"
 BATTERY = "/battery"
+BRAIN_STATE = "/brain_state"
 CAMERA = "/camera/color/image_raw"
 DIAGNOSTICS = "/diagnostics"
 DRIVE = "/drive"
@@ -36,6 +37,8 @@ SONAR_REAR = "/sensor/sonar_rear"
 SPEAKER = "/audio/speaker_raw"
 TF = "/tf"
 TF_STATIC = "/tf_static"
+VLM_DESCRIPTION = "/vlm/description"
+VLM_DETECTIONS = "/vlm/detections"
 WHEEL_COMMANDS = "/wheel_commands"
 
 COMMAND_SOURCES = (DRIVE_TELEOP, DRIVE_ACTION, DRIVE)

@@ -45,6 +45,19 @@ def bgr(message: Image) -> NDArray[np.uint8]:
     return picture if message.encoding == "bgr8" else picture[:, :, ::-1]
 
 
+def jpeg_of(message: Image, quality: int = 80) -> bytes:
+    """Return the picture as a JPEG; `quality` is 1 to 100.
+
+    Raises `BadPictureError` for a message that is not a valid picture, and ImportError without
+    OpenCV.
+    """
+    picture = bgr(message)
+    import cv2
+
+    _made, jpeg = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    return jpeg.tobytes()
+
+
 def fit(picture: NDArray[np.uint8], into: NDArray[np.uint8]) -> None:
     """Copy a picture into an array of (rows, columns, 3), blue first.
 

@@ -9,12 +9,16 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 from robot.safety.distance import RangeState
+from robot.words import STOP, parse_word
 
 if TYPE_CHECKING:
     from robot.words import DriveSetpoint
 
 CALL = "voice_command:"
 """Prefix that the mock microphone puts before the words."""
+_STOPS = frozenset(("halt", "freeze", "стой", "стоять", "остановись", "остановитесь"))
+"""Other words for stop, which people shout."""
+_PUNCTUATION = ".,;:!?…\"'«»()-"
 
 
 class Decision(Enum):
@@ -34,6 +38,15 @@ def spoken(sound: bytes) -> str:
     """The words in the mock microphone's bytes; invalid UTF-8 is replaced."""
     text = sound.decode("utf-8", "replace").strip()
     return text[len(CALL) :].strip() if text.casefold().startswith(CALL) else text
+
+
+def asks_to_stop(words: str) -> bool:
+    """Whether the word for stop is among these: it is obeyed without waiting for a model.
+
+    So "do not stop" stops as well: that is the safe mistake.
+    """
+    spoken_words = (word.strip(_PUNCTUATION).casefold() for word in words.split())
+    return any(word in _STOPS or parse_word(word) == STOP for word in spoken_words)
 
 
 def decide(order: DriveSetpoint | None, front: RangeState) -> Decision:

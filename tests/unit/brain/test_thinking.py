@@ -11,10 +11,11 @@ import pytest
 from brain.faults import FaultKind, ModelError
 from brain.ladder import Ladder
 from brain.looking import look, parse_seen
-from brain.situation import LONGEST_HEARD, Memory, Pose, Situation, conversation
+from brain.situation import LONGEST_HEARD, Memory, Situation, conversation
 from brain.thinking import think
 from robot.commands.problems import CommandError
 from robot.commands.schema import SpokenResponse, parse_llm
+from robot.motion.odometry import Pose
 from tests.model_server import ModelServer, obeys, rung_of
 from tests.unit.brain.asking import HELLO, client_of
 
@@ -93,7 +94,7 @@ def test_the_model_is_told_what_the_senses_say() -> None:
         "go on",
         1.234,
         math.nan,
-        Pose(1, -2, 90),
+        Pose(1, -2, math.pi / 2),
         "forward is blocked",
         "refused: too fast",
         "a wall",
@@ -102,7 +103,7 @@ def test_the_model_is_told_what_the_senses_say() -> None:
     assert message["content"].splitlines() == [
         "Distance ahead: 1.23 m",
         "Distance behind: no valid reading",
-        "Position: x 1.00 m, y -2.00 m, heading 90 deg",
+        "Position: x 1.00 m, y -2.00 m, heading 90 deg, + is left",
         "Safety gate: forward is blocked",
         "Your last commands: refused: too fast",
         "Camera: a wall",

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.commands.brain import Decision, decide, spoken
+from robot.commands.brain import Decision, asks_to_stop, decide, spoken
 from robot.safety.distance import RangeState
 from robot.words import STOP, DriveSetpoint, parse_word
 
@@ -49,3 +49,13 @@ def test_forward_is_obeyed_only_where_the_way_is_free(front: RangeState) -> None
 )
 def test_the_words_are_taken_from_the_bytes(sound: bytes, words: str) -> None:
     assert spoken(sound) == words
+
+
+@pytest.mark.parametrize("words", ["stop", "STOP!!", "please stop, robot", "Стоп, машина", "стой!"])
+def test_the_word_for_stop_is_found_among_others(words: str) -> None:
+    assert asks_to_stop(words)
+
+
+@pytest.mark.parametrize("words", ["", "forward", "what do you see?", "поехали", "unstoppable"])
+def test_other_words_are_no_stop(words: str) -> None:
+    assert not asks_to_stop(words)

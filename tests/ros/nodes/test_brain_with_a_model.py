@@ -1,0 +1,311 @@
+"""The brain with a model: a real server's answer goes to the wheels, a broken one stops them."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from ackermann_msgs.msg import AckermannDriveStamped
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from std_msgs.msg import Bool, ByteMultiArray, Float32, String
+
+from tests.model_server import KEY, ModelServer, obeys
+from tests.ros.node_process import NodeProcess
+from tests.ros.nodes.test_brain import text, voice
+from tests.ros.peer import Peer
+from tests.waiting import comes, wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from tests.model_server import Exchange, Script
+
+DRIVE = {"action": "drive", "speed": 0.3, "steering": 0.1}
+
+
+def answer(*commands: object, say: str = "I go.") -> str:
+    return json.dumps({"thought": "clear", "commands": commands, "say": say})
+
+
+GO = answer(DRIVE)
+
+
+class Robot:
+    """Brain and parser as processes of their own, the model as a server of the test."""
+
+    def __init__(self, domain: int, server: ModelServer, **params: object) -> None:
+        self.server = server
+        given: dict[str, object] = {"backend": "llm", "stale_after_s": 60.0, **params}
+        self.brain = NodeProcess("nodes.ai_brain", domain, params=given)
+        self.parser = NodeProcess("nodes.llm_parser", domain, params={"repeat_for_s": 0.5})
+        self.peer = Peer(domain)
+        self.drives = self.peer.hear("/drive", AckermannDriveStamped)
+        self.words = self.peer.hear("/ai_command", String)
+        self.spoken = self.peer.hear("/audio/speaker_raw", ByteMultiArray)
+        self.states = self.peer.hear("/brain_state", DiagnosticArray)
+        self.asked = 0
+        script, self.server.script = server.script, obeys(answer(say="Here I am."))
+        wait_until(lambda: self._answers("Here I am"), "an answer on every way")
+        self.server.script = script
+        self.forget()
+
+    def close(self) -> None:
+        self.peer.close()
+        self.brain.close()
+        self.parser.close()
+
+    def forget(self) -> None:
+        for heard in (self.drives, self.words, self.spoken, self.states):
+            heard.clear()
+
+    def hear(self, words: str) -> None:
+        self.peer.say("/audio/mic_raw", voice(words.encode()))
+
+    @property
+    def state(self) -> dict[str, str]:
+        """The values of the newest /brain_state, with its level and its words."""
+        status: DiagnosticStatus = self.states[-1].status[0]
+        values = {value.key: value.value for value in status.values}
+        return {**values, "level": str(status.level[0]), "words": status.message}
+
+    def said(self, words: str) -> bool:
+        return any(words in text(message) for message in self.spoken)
+
+    def speeds(self) -> list[float]:
+        return [round(float(message.drive.speed), 3) for message in self.drives]
+
+    def _answers(self, reply: str) -> bool:
+        self.forget()
+        self.hear("are you there?")
+        everything = (self.spoken, self.states)
+        if not comes(lambda: all(everything) and self.said(reply), within_s=2.0):
+            return False
+        self.hear("stop")
+        return comes(lambda: self.drives and self.words, within_s=1.0)
+
+
+@pytest.fixture
+def set_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The user's own folders; returns that of the settings."""
+    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME"):
+        monkeypatch.setenv(name, str(tmp_path))
+    (tmp_path / "deck").mkdir()
+    return tmp_path / "deck"
+
+
+def settings(folder: Path, url: str, **fields: object) -> None:
+    (folder / "key").write_text(KEY)
+    (folder / "key").chmod(0o600)
+    given = {"base_url": url, "model": "m-1", "key_file": f"{folder}/key", **fields}
+    given.setdefault("budget", {"calls_per_minute": 1000})
+    # JSON is YAML.
+    (folder / "llm.yaml").write_text(json.dumps(given))
+
+
+@pytest.fixture
+def server() -> Iterator[ModelServer]:
+    with ModelServer(obeys(GO)) as server:
+        yield server
+
+
+@pytest.fixture
+def robot(ros_domain: int, set_up: Path, server: ModelServer) -> Iterator[Robot]:
+    prices = {"input_per_million": 1.0, "output_per_million": 2.0}
+    settings(set_up, server.url, prices=prices, timeout_s=3.0, first_token_s=1.0)
+    robot = Robot(ros_domain, server)
+    yield robot
+    said = robot.brain.output + robot.parser.output
+    robot.close()
+    assert KEY not in said
+    assert "Traceback" not in said
+
+
+def test_what_was_heard_becomes_motion_and_words(robot: Robot) -> None:
+    """The model is told the distance and the words; its drive ends by itself, its reply is said."""
+    robot.peer.say("/sensor/sonar_front", Float32(data=2.5))
+    wait_until(
+        lambda: _asks(robot, "go on") and "Distance ahead: 2.50 m" in _content(robot),
+        "the distance in the question",
+    )
+    wait_until(lambda: 0.3 in robot.speeds(), "/drive by the model")
+    wait_until(lambda: robot.speeds()[-1:] == [0.0], "the stop after the repetitions")
+    wait_until(lambda: robot.said("I go."), "the reply")
+    wait_until(lambda: robot.state.get("cost"), "what it took")
+    state = robot.state
+    assert (state["backend"], state["model"], state["fault"]) == ("llm", "m-1", "")
+    assert (state["input_tokens"], state["output_tokens"]) == ("120", "40")
+    assert float(state["cost"]) == pytest.approx(0.0002)
+    assert 0 < float(state["first_token_s"]) <= float(state["total_s"])
+    robot.brain.wait_for_words('The model thinks: "clear" (1 commands)', "m-1: 120 + 40 tokens")
+
+
+def test_the_talk_is_remembered(robot: Robot) -> None:
+    robot.hear("my name is Ada")
+    wait_until(lambda: 0.3 in robot.speeds(), "the first answer")
+    wait_until(lambda: _asks(robot, "what is my name?"), "the second question")
+    said = [message["content"] for message in robot.server.exchanges[-1].request["messages"]]
+    assert any("my name is Ada" in words for words in said)
+    assert GO in said
+
+
+def breaks(exchange: Exchange) -> None:
+    exchange.begins()
+    exchange.piece({"content": GO[:40]})
+    raise OSError
+
+
+def endless(exchange: Exchange) -> None:
+    exchange.begins()
+    for _ in range(10 * (1 << 20) // 4096):
+        exchange.piece({"content": "x" * 4096})
+
+
+@pytest.mark.parametrize(
+    ("script", "fault", "words"),
+    [
+        (breaks, "cut", "in the middle of the answer"),
+        (lambda exchange: exchange.fails(401, KEY), "key", "does not take the key"),
+        (lambda exchange: exchange.fails(404), "model", "does not know the model m-1"),
+        (lambda exchange: exchange.fails(429, Retry_After="1"), "busy", "too many requests"),
+        (lambda exchange: exchange.fails(500), "server", "failed (500)"),
+        (lambda exchange: exchange.says(""), "empty", "is empty"),
+        (endless, "too long", "has no end"),
+        (lambda exchange: exchange.fails(200, "<html>", "text/html"), "not an API", "no server"),
+        (obeys(answer({**DRIVE, "speed": 9})), "shape", "nor is the second"),
+        (obeys(answer({**DRIVE, "action": "fly"})), "shape", "nor is the second"),
+        (obeys(GO[:-20]), "shape", "nor is the second"),
+    ],
+)
+def test_whatever_a_server_does_wrong_the_robot_stands(
+    robot: Robot, script: Script, fault: str, words: str
+) -> None:
+    """Each has its own words, on the log and on /brain_state, and no wheel moves."""
+    robot.server.script = script
+    wait_until(lambda: _fails(robot), "the failure")
+    assert robot.state["fault"] == fault
+    assert words in robot.state["words"]
+    robot.brain.wait_for_words("No answer: ", words)
+    wait_until(lambda: robot.said("I cannot think just now"), "the reply")
+    wait_until(robot.speeds, "the stop")
+    assert set(robot.speeds()) == {0.0}
+
+
+def test_a_server_that_says_nothing_is_not_waited_for(robot: Robot) -> None:
+    """Silence ends with its limit; the newest words take the place of those that wait."""
+
+    def silent(exchange: Exchange) -> None:
+        exchange.begins()
+        robot.server.closing.wait(20)
+
+    robot.server.script = silent
+    wait_until(lambda: _fails(robot), "the end of patience")
+    assert robot.state["fault"] == "timeout"
+    robot.hear("nobody hears this")
+    wait_until(lambda: "thinks" in robot.state["words"], "the question that gets no answer")
+    robot.server.script = obeys(GO)
+    wait_until(lambda: _asks(robot, "go on") and 0.3 in robot.speeds(), "the newer answer")
+
+
+@pytest.mark.parametrize("said", ["stop", "Стоп, машина!", "emergency stop"])
+def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
+    """Neither the word nor the emergency stop; what the model answers afterwards is not done."""
+
+    def slow(exchange: Exchange) -> None:
+        exchange.begins()
+        exchange.piece({"content": GO[:9]})
+        robot.server.closing.wait(0.7)
+        exchange.piece({"content": GO[9:]})
+        exchange.ends()
+
+    robot.server.script = slow
+    robot.forget()
+    wait_until(lambda: _asks(robot, "go on"), "the question")
+    if said == "emergency stop":
+        robot.peer.say("/emergency_stop", Bool(data=True))
+    else:
+        robot.hear(said)
+        wait_until(robot.speeds, "the stop on /drive")
+    wait_until(lambda: "waits for a voice" in robot.state["words"], "no more thinking")
+    robot.server.script = obeys(answer(say="Another one."))
+    if said != "emergency stop":
+        wait_until(
+            lambda: _asks(robot, "and now?") and robot.said("Another one"), "the next answer"
+        )
+    assert not any(robot.speeds())
+
+
+def test_a_picture_goes_along_if_asked_to(
+    ros_domain: int, set_up: Path, server: ModelServer
+) -> None:
+    settings(set_up, server.url)
+    robot = Robot(ros_domain, server, picture="sent")
+    camera = NodeProcess("nodes.mock_camera", ros_domain)
+    try:
+        wait_until(lambda: _asks(robot, "look") and isinstance(_content(robot), list), "a picture")
+        assert _content(robot)[1]["image_url"]["url"].startswith("data:image/jpeg;base64,/9j/")
+    finally:
+        camera.close()
+        robot.close()
+
+
+@pytest.mark.parametrize("setting", ["none", "unreachable", "no key", "broken"])
+def test_without_a_model_it_works_by_its_rules_and_says_so(
+    ros_domain: int, set_up: Path, setting: str
+) -> None:
+    """No settings, no network, no key: lesson 9 runs as it did before there were models."""
+    with ModelServer(lambda _: None) as closed:
+        url = closed.url
+    words = {
+        "none": "no language model is set up",
+        "unreachable": f"nobody answers at {url}",
+        "no key": "the variable NOT_SET with the key is not set",
+        "broken": "llm.yaml:1:1: model: is missing",
+    }
+    if setting == "unreachable":
+        settings(set_up, url)
+    elif setting == "no key":
+        (set_up / "llm.yaml").write_text(f"base_url: {url}\nmodel: m\nkey_env: NOT_SET\n")
+    elif setting == "broken":
+        (set_up / "llm.yaml").write_text(f"base_url: {url}\n")
+    params: dict[str, object] = {"backend": "llm", "stale_after_s": 60.0}
+    brain = NodeProcess("nodes.ai_brain", ros_domain, params=params)
+    try:
+        with Peer(ros_domain) as peer:
+            commands = peer.hear("/ai_command", String)
+            states = peer.hear("/brain_state", DiagnosticArray)
+
+            def obeyed() -> bool:
+                peer.say("/sensor/sonar_front", Float32(data=math.inf))
+                peer.say("/audio/mic_raw", voice(b"have a look"))
+                return comes(lambda: any(each.data == "вперед" for each in commands), 1.0)
+
+            wait_until(obeyed, "вперед")
+            brain.wait_for_words("No model: ", words[setting], "I follow my rules")
+            wait_until(lambda: states, "a state")
+        assert "Traceback" not in brain.output
+    finally:
+        brain.close()
+
+
+def _content(robot: Robot) -> Any:
+    """What the newest question says of the situation."""
+    return robot.server.exchanges[-1].request["messages"][-1]["content"]
+
+
+def _asks(robot: Robot, words: str) -> bool:
+    """Say something; whether the server is asked about it."""
+    before = len(robot.server.exchanges)
+    robot.hear(words)
+    return comes(
+        lambda: any(words in str(each.request) for each in robot.server.exchanges[before:]), 2.0
+    )
+
+
+def _fails(robot: Robot) -> bool:
+    """Say something; whether that ends in a fault."""
+    robot.forget()
+    robot.hear("go on")
+    return comes(lambda: robot.states and robot.state["fault"], within_s=4.0)
