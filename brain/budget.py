@@ -32,7 +32,7 @@ _FLAGS = os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
 
 
 @dataclass(frozen=True)
-class Usage:
+class TokenUsage:
     """What one answer took."""
 
     model: str
@@ -104,7 +104,7 @@ class Ledger:
                 raise ModelError(FaultKind.BUDGET, words, say("tokens_per_session in llm.yaml"))
             lines.append({"begun_s": time.time(), "who": who})
 
-    def end(self, who: str, usage: Usage) -> None:
+    def end(self, who: str, usage: TokenUsage) -> None:
         """Note what a call took."""
         with self._locked() as lines:
             lines.append({"ended_s": time.time(), "who": who, **asdict(usage)})

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import anyio
 
-from brain.budget import Usage, estimated_tokens
+from brain.budget import TokenUsage, estimated_tokens
 from brain.faults import FaultKind, ModelError
 from text.sentences import say
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from brain.budget import Ledger
-    from brain.key import Key
+    from brain.key import ServerKey
     from brain.settings import ModelSettings
 
 Message: TypeAlias = "dict[str, Any]"
@@ -38,7 +38,7 @@ _FIRST_BUSY_S = 5.0
 
 
 @dataclass(frozen=True)
-class Request:
+class ModelRequest:
     """What is asked, and in which form the answer shall come."""
 
     messages: Sequence[Message]
@@ -53,7 +53,7 @@ class Answer:
 
     text: str
     """What the model wrote, or the arguments of the tool that it called."""
-    usage: Usage
+    usage: TokenUsage
 
 
 @dataclass
@@ -93,7 +93,7 @@ class _Received:
 class ModelClient:
     """Asks one server; close it at the end, or use it in an `async with`."""
 
-    def __init__(self, settings: ModelSettings, key: Key, ledger: Ledger, who: str) -> None:
+    def __init__(self, settings: ModelSettings, key: ServerKey, ledger: Ledger, who: str) -> None:
         """`who` stands in the ledger: the node, or the part of Deck, that asks."""
         self.settings = settings
         self._key, self._ledger, self._who = key, ledger, who
@@ -113,7 +113,7 @@ class ModelClient:
             self._made = None
 
     async def ask(
-        self, request: Request, on_text: Callable[[str], None] = lambda _: None
+        self, request: ModelRequest, on_text: Callable[[str], None] = lambda _: None
     ) -> Answer:
         """Return the answer; `on_text` gets its pieces as they come.
 
@@ -140,7 +140,7 @@ class ModelClient:
             raise ModelError(FaultKind.BUSY, words, retry_after_s=wait_s)
 
     async def _receive(
-        self, request: Request, received: _Received, on_text: Callable[[str], None]
+        self, request: ModelRequest, received: _Received, on_text: Callable[[str], None]
     ) -> None:
         limit_s = self.settings.first_token_s
         with anyio.move_on_after(limit_s) as beginning:
@@ -157,7 +157,7 @@ class ModelClient:
             raise ModelError(FaultKind.TIMEOUT, words, say("first_token_s in llm.yaml"))
 
     @asynccontextmanager
-    async def _open(self, request: Request) -> AsyncIterator[Any]:
+    async def _open(self, request: ModelRequest) -> AsyncIterator[Any]:
         """Send the request, and give its stream once it is known to be one."""
         fields: dict[str, Any] = {
             "model": request.model,
@@ -218,20 +218,20 @@ class ModelClient:
 
 def _not_an_api(base_url: str, kind: str) -> ModelError:
     words = say(
-        "what answers at {url} is no server of models: it sent {kind}",
+        "{url} is not the address of a model server: it sent {kind}",
         url=base_url,
         kind=kind or "-",
     )
     return ModelError(FaultKind.NOT_AN_API, words, say("base_url usually ends in /v1"))
 
 
-def _usage(request: Request, received: _Received, begun_s: float) -> Usage:
+def _usage(request: ModelRequest, received: _Received, begun_s: float) -> TokenUsage:
     now_s = time.monotonic()
     counted = received.tokens is not None
     asked = sum(estimated_tokens(str(message.get("content", ""))) for message in request.messages)
     tokens = received.tokens or (asked, (received.length + 3) // 4)
     first_s = (now_s if received.first_s is None else received.first_s) - begun_s
-    return Usage(request.model, *tokens, first_s, now_s - begun_s, counted)
+    return TokenUsage(request.model, *tokens, first_s, now_s - begun_s, counted)
 
 
 def _whole(received: _Received) -> str:

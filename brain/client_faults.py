@@ -14,7 +14,7 @@ from text.plain import plain
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from brain.key import Key
+    from brain.key import ServerKey
     from brain.settings import ModelSettings
 
 _LONGEST_WORDS = 200
@@ -22,7 +22,7 @@ _LONGEST_WAIT_S = 3600.0
 
 
 def fault_of(
-    error: Exception, settings: ModelSettings, key: Key, *, begun: bool = False
+    error: Exception, settings: ModelSettings, key: ServerKey, *, begun: bool = False
 ) -> ModelError | None:
     """Return what an error means, None for one that is a mistake of Deck's own.
 
@@ -50,7 +50,7 @@ def _cut() -> ModelError:
     return ModelError(FaultKind.CUT, words)
 
 
-def _of_api(error: openai.APIError, settings: ModelSettings, key: Key) -> ModelError:
+def _of_api(error: openai.APIError, settings: ModelSettings, key: ServerKey) -> ModelError:
     if isinstance(error, openai.APIStatusError):
         return _of_status(error, settings, key)
     if isinstance(error, openai.APIConnectionError):
@@ -70,7 +70,7 @@ def _unreachable(settings: ModelSettings, inner: BaseException | None) -> ModelE
     return ModelError(FaultKind.UNREACHABLE, words, fix)
 
 
-def _of_status(error: openai.APIStatusError, settings: ModelSettings, key: Key) -> ModelError:
+def _of_status(error: openai.APIStatusError, settings: ModelSettings, key: ServerKey) -> ModelError:
     said = _words(error.message, key)
     status = error.status_code
     if status in (401, 403):
@@ -111,6 +111,6 @@ def retry_after_s(header: str) -> float | None:
     return min(max(wait_s, 0.0), _LONGEST_WAIT_S) if wait_s == wait_s else None  # noqa: PLR0124
 
 
-def _words(message: str, key: Key) -> str:
+def _words(message: str, key: ServerKey) -> str:
     """Return what a server said: short, printable, and without the key."""
     return plain(key.hidden_in(message)[:_LONGEST_WORDS])

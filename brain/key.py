@@ -27,7 +27,7 @@ _PRINTABLE = re.compile(r"[!-~]+")
 _HIDDEN = "***"
 
 
-class Key:
+class ServerKey:
     """A key that prints as `***`, whoever prints it."""
 
     __slots__ = ("_text",)
@@ -52,7 +52,7 @@ class Key:
         return _HIDDEN if self._text else "-"
 
 
-def key_of(settings: ModelSettings, environ: Mapping[str, str] | None = None) -> Key:
+def key_of(settings: ModelSettings, environ: Mapping[str, str] | None = None) -> ServerKey:
     """Return the key that the settings name.
 
     Raises:
@@ -71,7 +71,9 @@ def key_of(settings: ModelSettings, environ: Mapping[str, str] | None = None) ->
     if settings.key_file is not None:
         path = Path(settings.key_file).expanduser()
         return _checked(_read(path), str(path))
-    return _checked(environ[KEY_VARIABLE], KEY_VARIABLE) if environ.get(KEY_VARIABLE) else Key()
+    return (
+        _checked(environ[KEY_VARIABLE], KEY_VARIABLE) if environ.get(KEY_VARIABLE) else ServerKey()
+    )
 
 
 def _read(path: Path) -> str:
@@ -90,10 +92,12 @@ def _read(path: Path) -> str:
         raise ModelError(FaultKind.SETTINGS, words) from None
 
 
-def _checked(text: str, place: str) -> Key:
+def _checked(text: str, place: str) -> ServerKey:
     """Refuse what no header can hold: an HTTP library would show it in its error."""
     text = text.strip()
     if len(text) > _LONGEST or not _PRINTABLE.fullmatch(text):
-        words = say("what is in {place} is no key: one line of letters and digits", place=place)
+        words = say(
+            "{place} does not hold a key, which is one line of letters and digits", place=place
+        )
         raise ModelError(FaultKind.SETTINGS, words)
-    return Key(text)
+    return ServerKey(text)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from platformdirs import user_cache_path
 
-from brain.client import Answer, Message, Request
+from brain.client import Answer, Message, ModelRequest
 from brain.faults import FaultKind, ModelError
 from text.sentences import say
 
@@ -46,7 +46,7 @@ class Rung(Enum):
 
 def request_for(
     rung: Rung, schema: Mapping[str, Any], messages: Sequence[Message], model: str
-) -> Request:
+) -> ModelRequest:
     """Return the request for an answer that obeys a JSON schema."""
     asked = list(messages)
     form: dict[str, Any]
@@ -65,7 +65,7 @@ def request_for(
             "tools": [{"type": "function", "function": tool}],
             "tool_choice": {"type": "function", "function": {"name": NAME}},
         }
-    return Request(asked, model, form)
+    return ModelRequest(asked, model, form)
 
 
 class Ladder:

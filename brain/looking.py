@@ -21,11 +21,11 @@ MOST_THINGS = 32
 LONGEST_DESCRIPTION = 2000
 
 
-class _Strict(BaseModel):
+class _StrictShape(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-class Box(_Strict):
+class PictureBox(_StrictShape):
     """Where something is on the picture; the origin is its upper left corner."""
 
     left: Share
@@ -34,21 +34,23 @@ class Box(_Strict):
     bottom: Share
 
 
-class Thing(_Strict):
+class PictureThing(_StrictShape):
     """Something on the picture."""
 
     label: Annotated[str, Field(description="What it is, in one or two words")]
-    box: Box | None
+    box: PictureBox | None
 
 
-class Seen(_Strict):
+class PictureSeen(_StrictShape):
     """What is on a picture."""
 
     description: Annotated[str, Field(description="What is on the picture, in a sentence or two")]
-    things: Annotated[list[Thing], Field(description="What stands out, with boxes if you can")]
+    things: Annotated[
+        list[PictureThing], Field(description="What stands out, with boxes if you can")
+    ]
 
 
-async def look(ladder: Ladder, prompt: str, jpeg: bytes) -> Thought[Seen]:
+async def look(ladder: Ladder, prompt: str, jpeg: bytes) -> Thought[PictureSeen]:
     """Return what a model sees on a picture.
 
     Raises:
@@ -58,10 +60,10 @@ async def look(ladder: Ladder, prompt: str, jpeg: bytes) -> Thought[Seen]:
         {"role": "system", "content": prompt},
         {"role": "user", "content": [picture_part(jpeg)]},
     ]
-    return await think(ladder, Seen.model_json_schema(), messages, parse_seen)
+    return await think(ladder, PictureSeen.model_json_schema(), messages, parse_seen)
 
 
-def parse_seen(text: str) -> Seen:
+def parse_seen(text: str) -> PictureSeen:
     """Return what an answer says, shortened to what a message holds.
 
     Raises:
@@ -69,7 +71,7 @@ def parse_seen(text: str) -> Seen:
     """
     try:
         found: Any = json.loads(text)
-        seen = Seen.model_validate(found)
+        seen = PictureSeen.model_validate(found)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         raise CommandError([Problem.of("invalid", first["loc"])]) from None
@@ -80,4 +82,4 @@ def parse_seen(text: str) -> Seen:
         if box is not None and not (box.left < box.right and box.top < box.bottom):
             raise CommandError([Problem.of("invalid", ("things", index, "box"))])
     description = seen.description.strip()[:LONGEST_DESCRIPTION]
-    return Seen(description=description, things=seen.things[:MOST_THINGS])
+    return PictureSeen(description=description, things=seen.things[:MOST_THINGS])

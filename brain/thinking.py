@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from typing import Any
 
-    from brain.budget import Usage
+    from brain.budget import TokenUsage
     from brain.client import Message
     from brain.ladder import Ladder
 
@@ -36,7 +36,7 @@ class Thought(Generic[T]):
     value: T
     text: str
     """Its JSON."""
-    usages: tuple[Usage, ...]
+    usages: tuple[TokenUsage, ...]
     """Of the answer, and before it of the one that had to be repaired."""
 
 

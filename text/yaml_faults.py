@@ -68,6 +68,7 @@ _BEGUN_BEFORE = {
 }
 """How PyYAML's own words begin (of both its parsers), and what is meant; told of where it began."""
 _WORDS = {
+    "exceeded maximum nesting depth": N_("is nested too deeply"),
     "found character that cannot start any token": N_(
         "nothing can begin with this character: put the text in quotes"
     ),

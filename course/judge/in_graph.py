@@ -135,16 +135,16 @@ def qos(check: QosCheck, evidence: Evidence, _since_s: float) -> Observation:
 
 
 async def no_publisher(check: NoPublisherCheck, evidence: Evidence) -> Observation:
-    """Nobody publishes a topic for some time, except one node."""
-    since_s = time.monotonic()
+    """Nobody publishes a topic for some time, except the nodes that may."""
+    since_s, given = time.monotonic(), check.except_nodes or []
+    allowed = [given] if isinstance(given, str) else given
 
     def look() -> Observation | None:
         row = evidence.topic(check.no_publisher)
         ends = [
             end
             for end in (row.published_by if row is not None else ())
-            if not (check.except_node and same_name(end.node, check.except_node))
-            and not is_decks(end.node)
+            if not any(same_name(end.node, node) for node in allowed) and not is_decks(end.node)
         ]
         if ends:
             seen = _published_by_others(check.no_publisher, ends)

@@ -204,13 +204,13 @@ def expected(check: CheckDocument) -> str:
         )
     kind = str(kind_of(check))
     about: dict[str, Any] = {
-        name.removesuffix("_node"): _shown(value)
+        name.removesuffix("_nodes").removesuffix("_node"): _shown(value)
         for name, value in check
         if name not in ("look", "what", "within")
     }
     if isinstance(check, ActionCheck):
         return say(_expected_end(check), **about)
-    if isinstance(check, NoPublisherCheck) and check.except_node:
+    if isinstance(check, NoPublisherCheck) and check.except_nodes:
         return say("nobody but {except} publishes {no_publisher}", **about)
     if isinstance(check, LogCheck):
         about["matches"] = _plainly(check.matches)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from brain.situation import Memory, Situation, conversation
-from nodes.thinking.model import Model
+from nodes.thinking.model import AskedModel
 from nodes.thinking.prompt import prompt_file, read_prompt
 from nodes.thinking.state import BrainState
 from robot.commands.schema import SpokenResponse, parse_llm
@@ -14,7 +14,7 @@ from text.i18n import N_
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from brain.budget import Usage
+    from brain.budget import TokenUsage
     from brain.faults import ModelError
     from brain.ladder import Ladder
     from brain.thinking import Thought
@@ -43,7 +43,7 @@ class ModelMind:
         Raises:
             ModelError: if no model is set up, or not rightly.
         """
-        self.model = Model(node, lambda settings: settings.model)
+        self.model = AskedModel(node, lambda settings: settings.model)
         self.state = BrainState(node, self.model)
         self._say, self._prompt = node.say, prompt
         self._answered, self._failed = answered, failed
@@ -90,7 +90,7 @@ class ModelMind:
         self.state.answered(thought.usages[-1])
         self._answered(thought.value)
 
-    def _tell(self, usage: Usage) -> None:
+    def _tell(self, usage: TokenUsage) -> None:
         self._say.info(
             _USED,
             model=usage.model,

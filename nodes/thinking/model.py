@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 
-class Model:
+class AskedModel:
     """Asks one question at a time; `close` it at the node's end."""
 
     def __init__(self, node: LessonNode, name: Callable[[ModelSettings], str]) -> None:

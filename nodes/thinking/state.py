@@ -15,10 +15,10 @@ from robot.topics import BRAIN_STATE
 from text.i18n import N_
 
 if TYPE_CHECKING:
-    from brain.budget import Usage
+    from brain.budget import TokenUsage
     from brain.faults import ModelError
     from nodes.parts.node import LessonNode
-    from nodes.thinking.model import Model
+    from nodes.thinking.model import AskedModel
 
 _EVERY_S = 1.0
 _RULES = N_("follows its rules")
@@ -30,10 +30,10 @@ _ANSWERED = N_("has answered; {model}")
 class BrainState:
     """Publishes at each change, and once a second."""
 
-    def __init__(self, node: LessonNode, model: Model | None) -> None:
+    def __init__(self, node: LessonNode, model: AskedModel | None) -> None:
         self._node, self._model = node, model
         self._status = DiagnosticStatus(name=str(node.get_name()))
-        self._usage: Usage | None = None
+        self._usage: TokenUsage | None = None
         self._fault = ""
         self._publisher = node.create_publisher(DiagnosticArray, BRAIN_STATE, DEPTH)
         if model is None:
@@ -50,7 +50,7 @@ class BrainState:
         """A question is under way."""
         self._say(DiagnosticStatus.OK, _THINKS)
 
-    def answered(self, usage: Usage) -> None:
+    def answered(self, usage: TokenUsage) -> None:
         """An answer was accepted."""
         self._usage, self._fault = usage, ""
         self._say(DiagnosticStatus.OK, _ANSWERED)

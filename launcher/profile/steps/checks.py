@@ -240,7 +240,9 @@ class NoPublisherCheck(CheckDocument):
     model_config = ConfigDict(populate_by_name=True)
 
     no_publisher: RosName = Field(description="Nobody publishes this topic.")
-    except_node: RosName | None = Field(None, alias="except", description="But this node may.")
+    except_nodes: RosName | list[RosName] | None = Field(
+        None, alias="except", description="But this node may, or these."
+    )
 
 
 class GateCheck(CheckDocument):

@@ -173,7 +173,11 @@ def endless(exchange: Exchange) -> None:
         (lambda exchange: exchange.fails(500), "server", "failed (500)"),
         (lambda exchange: exchange.says(""), "empty", "is empty"),
         (endless, "too long", "has no end"),
-        (lambda exchange: exchange.fails(200, "<html>", "text/html"), "not an API", "no server"),
+        (
+            lambda exchange: exchange.fails(200, "<html>", "text/html"),
+            "not an API",
+            "not the address",
+        ),
         (obeys(answer({**DRIVE, "speed": 9})), "shape", "nor is the second"),
         (obeys(answer({**DRIVE, "action": "fly"})), "shape", "nor is the second"),
         (obeys(GO[:-20]), "shape", "nor is the second"),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from brain.budget import Ledger
 from brain.client import ModelClient
-from brain.key import Key
+from brain.key import ServerKey
 from brain.settings import ModelSettings
 from tests.model_server import KEY
 
@@ -23,4 +23,4 @@ def settings_for(server: ModelServer, **fields: Any) -> ModelSettings:
 
 def client_of(server: ModelServer, ledger: Ledger | None = None, **fields: Any) -> ModelClient:
     """Return a client with a key; close it."""
-    return ModelClient(settings_for(server, **fields), Key(KEY), ledger or Ledger(), "test")
+    return ModelClient(settings_for(server, **fields), ServerKey(KEY), ledger or Ledger(), "test")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from brain.budget import Ledger, Usage
+from brain.budget import Ledger, TokenUsage
 from brain.faults import ModelError
 from brain.settings import BudgetSettings, PriceSettings
 from text.run_path import MODEL_USAGE, run_folder
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 BUDGET = BudgetSettings(calls_per_minute=40)
-USAGE = Usage("m", 100, 20, 0.1, 0.5)
+USAGE = TokenUsage("m", 100, 20, 0.1, 0.5)
 
 
 def _calls(folder: Path, count: int) -> None:

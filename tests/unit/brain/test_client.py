@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from brain.budget import Ledger
-from brain.client import LONGEST_TEXT, Request
+from brain.client import LONGEST_TEXT, ModelRequest
 from brain.faults import FaultKind, ModelError
 from brain.settings import BudgetSettings, ModelSettings
 from tests.model_server import KEY, ModelServer
@@ -19,7 +19,7 @@ from tests.unit.brain.asking import HELLO, client_of
 if TYPE_CHECKING:
     from tests.model_server import Exchange, Script
 
-ASKED = Request(HELLO, "m-1")
+ASKED = ModelRequest(HELLO, "m-1")
 
 
 def piecemeal(exchange: Exchange, *pieces: str) -> None:

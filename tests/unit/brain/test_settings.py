@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from brain.faults import ModelError
-from brain.key import Key, key_of
+from brain.key import ServerKey, key_of
 from brain.settings import ModelSettings, load
 from tests.model_server import KEY
 
@@ -119,7 +119,7 @@ def test_what_is_no_key_is_not_shown(tmp_path: Path, text: str) -> None:
     file = tmp_path / "key"
     file.write_text(text)
     os.chmod(file, 0o600)  # noqa: PTH101
-    with pytest.raises(ModelError, match="is no key") as raised:
+    with pytest.raises(ModelError, match="does not hold a key") as raised:
         key_of(settings(key_file=str(file)), {})
     assert not text or text not in str(raised.value)
 
@@ -132,7 +132,7 @@ def test_a_missing_key_is_told_by_name(tmp_path: Path) -> None:
 
 
 def test_a_key_prints_as_stars() -> None:
-    key = Key(KEY)
+    key = ServerKey(KEY)
     assert KEY not in f"{key} {key!r} {[key]}"
     assert key.hidden_in(f"bad key {KEY}!") == "bad key ***!"
-    assert Key().hidden_in("as it is") == "as it is"
+    assert ServerKey().hidden_in("as it is") == "as it is"

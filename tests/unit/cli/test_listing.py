@@ -38,7 +38,7 @@ def test_the_list_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str
     entries = {entry["name"]: entry for entry in json.loads(capsys.readouterr().out)}
     assert entries["09-brain"]["lesson"] == "9"
     assert entries["09-brain"]["title"]["ru"] == "Один экран вместо пяти терминалов"
-    assert len(entries["09-brain"]["nodes"]) == 8
+    assert len(entries["09-brain"]["nodes"]) == 9
     assert entries["09-brain"]["error"] == ""
     assert "expected keys and values" in entries["zz-broken"]["error"]
 

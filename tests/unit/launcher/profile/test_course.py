@@ -61,11 +61,11 @@ def test_the_schema_names_every_key_and_choice() -> None:
     assert schema["additionalProperties"] is False
 
 
-def test_the_brain_lesson_has_its_eight_nodes() -> None:
+def test_the_brain_lesson_has_its_nine_nodes() -> None:
     profile = load_profile(PROFILES / "09-brain.yaml")
     assert list(profile.nodes) == [
         *("sonar_front", "camera", "audio", "head_controller", "ai_driver"),
-        *("safety_stop", "electronic_differential", "ai_brain"),
+        *("safety_stop", "electronic_differential", "llm_parser", "ai_brain"),
     ]
     assert profile.nodes["safety_stop"].params["gate"] is True
     assert profile.nodes["electronic_differential"].params["drive_topic"] == "/drive_safe"
