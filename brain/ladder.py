@@ -114,9 +114,18 @@ class Ladder:
         self._remember(None)
 
     async def _found_out(self) -> Rung:
+        faults: list[ModelError] = []
         for rung in Rung:
-            if await self._obeyed(rung):
-                return rung
+            try:
+                if await self._obeyed(rung):
+                    return rung
+            except ModelError as fault:
+                if fault.kind not in _OF_THIS_WAY:
+                    raise
+                faults.append(fault)
+        if len(faults) == len(Rung):
+            # It has not answered anything at all: the reason is not the form.
+            raise faults[-1]
         words = say("{model} gives no answers in the form that is asked for", model=self._model)
         raise ModelError(FaultKind.SHAPE, words, say("docs/models.md names models that do"))
 
@@ -136,12 +145,7 @@ class Ladder:
             {"role": "system", "content": "You answer in JSON, in the form that you are given."},
             {"role": "user", "content": "Fill in the form."},
         ]
-        try:
-            answer = await self._client.ask(request_for(rung, schema, messages, self._model))
-        except ModelError as fault:
-            if fault.kind in _OF_THIS_WAY:
-                return False
-            raise
+        answer = await self._client.ask(request_for(rung, schema, messages, self._model))
         try:
             found = json.loads(bare(answer.text))
         except ValueError:

@@ -107,9 +107,10 @@ class AiBrain(LessonNode):
         Text("prompt", "", "File with the system prompt; empty: Deck's own", may_be_empty=True),
         Choice(
             "picture",
-            "described",
-            "What the model gets of the camera: words of vlm_agent, the picture, nothing",
-            choices=("described", "sent", "none"),
+            "auto",
+            "Whether the model gets the newest picture; auto: if vision_model is set",
+            choices=("auto", "sent", "none"),
+            fixed=True,
         ),
         Number("stop_distance", 1.0, "Nearer than this it stops", low=0.05, high=100.0, unit="m"),
         Number("stale_after_s", 2.5, "An older distance is ignored", low=0.1, high=60.0, unit="s"),
@@ -149,7 +150,7 @@ class AiBrain(LessonNode):
         from nodes.thinking.state import BrainState
 
         try:
-            mind = ModelMind(self, lambda: self.text("prompt"), self._say_and_do, self._no_answer)
+            mind = ModelMind(self, self._say_and_do, self._no_answer)
         except ModelError as error:
             self.say.warn(_NO_MODEL, problem=error.words)
             self._state = BrainState(self, None)
@@ -196,7 +197,7 @@ class AiBrain(LessonNode):
         return self._front_m if fresh else None
 
     def _jpeg(self) -> bytes:
-        if self.text("picture") != "sent" or self._picture is None:
+        if self._picture is None or self._mind is None or not self._mind.sees:
             return b""
         try:
             return jpeg_of(deserialize_message(self._picture, Image))

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from brain.budget import TokenUsage
     from brain.faults import ModelError
     from brain.ladder import Ladder
+    from brain.settings import ModelSettings
     from brain.thinking import Thought
     from nodes.parts.node import LessonNode
 
@@ -34,20 +35,25 @@ class ModelMind:
     def __init__(
         self,
         node: LessonNode,
-        prompt: Callable[[], str],
         answered: Callable[[SpokenResponse], None],
         failed: Callable[[ModelError, Situation], None],
     ) -> None:
-        """`prompt` gives the user's own file, empty for Deck's.
+        """The node has the settings `prompt` and `picture`.
 
         Raises:
             ModelError: if no model is set up, or not rightly.
         """
-        self.model = AskedModel(node, lambda settings: settings.model)
+        self._node = node
+        self.model = AskedModel(node, self._name)
         self.state = BrainState(node, self.model)
-        self._say, self._prompt = node.say, prompt
+        self._say = node.say
         self._answered, self._failed = answered, failed
         self._memory = Memory()
+
+    @property
+    def sees(self) -> bool:
+        """Whether the model gets pictures."""
+        return self._sees(self.model.settings)
 
     def think(self, situation: Situation) -> None:
         """Think about this, in place of what is being thought about."""
@@ -69,10 +75,17 @@ class ModelMind:
         """End all connections."""
         self.model.close()
 
+    def _sees(self, settings: ModelSettings) -> bool:
+        wish = self._node.text("picture")
+        return wish == "sent" or (wish == "auto" and settings.vision_model is not None)
+
+    def _name(self, settings: ModelSettings) -> str:
+        return (self._sees(settings) and settings.vision_model) or settings.model
+
     async def _question(self, ladder: Ladder, situation: Situation) -> Thought[SpokenResponse]:
         from brain.thinking import think
 
-        prompt = read_prompt(prompt_file(self._prompt(), "brain", self._say.language))
+        prompt = read_prompt(prompt_file(self._node.text("prompt"), "brain", self._say.language))
         return await think(
             ladder,
             SpokenResponse.model_json_schema(),

@@ -241,15 +241,19 @@ def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
     assert not any(robot.speeds())
 
 
-def test_a_picture_goes_along_if_asked_to(
-    ros_domain: int, set_up: Path, server: ModelServer
+@pytest.mark.parametrize("wish", ["sent", "auto"])
+def test_a_picture_goes_along_if_a_model_sees(
+    ros_domain: int, set_up: Path, server: ModelServer, wish: str
 ) -> None:
-    settings(set_up, server.url)
-    robot = Robot(ros_domain, server, picture="sent")
+    """By default only to a `vision_model`, which then thinks as well."""
+    settings(set_up, server.url, **({"vision_model": "m-sees"} if wish == "auto" else {}))
+    robot = Robot(ros_domain, server, picture=wish)
     camera = NodeProcess("nodes.mock_camera", ros_domain)
     try:
         wait_until(lambda: _asks(robot, "look") and isinstance(_content(robot), list), "a picture")
         assert _content(robot)[1]["image_url"]["url"].startswith("data:image/jpeg;base64,/9j/")
+        model = server.exchanges[-1].request["model"]
+        assert model == ("m-sees" if wish == "auto" else "m-1")
     finally:
         camera.close()
         robot.close()

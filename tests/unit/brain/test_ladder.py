@@ -88,6 +88,15 @@ async def test_a_server_that_obeys_nothing_is_told(tmp_path: Path) -> None:
     assert raised.value.kind is FaultKind.SHAPE
 
 
+async def test_a_server_that_always_fails_is_told_as_that(tmp_path: Path) -> None:
+    """Not as a model that cannot answer in a form."""
+    with ModelServer(lambda exchange: exchange.fails(500)) as server:
+        async with client_of(server) as client:
+            with pytest.raises(ModelError) as raised:
+                await Ladder(client, "m-1", tmp_path).rung()
+    assert raised.value.kind is FaultKind.SERVER
+
+
 async def test_a_wrong_key_ends_the_search(tmp_path: Path) -> None:
     """The three other ways would be refused as well, and the account locked at last."""
     with ModelServer(lambda exchange: exchange.fails(401)) as server:

@@ -1,0 +1,144 @@
+"""Has a model with vision look through the camera, now and then.
+
+Each `period` the newest picture goes to the model of the user's settings (`vision_model`, else
+`model`), as a JPEG. Its words come on /vlm/description, and what stands out on /vlm/detections, as
+JSON: `{"width", "height", "things": [{"label", "box"}]}`, where a box is `{"left", "top", "right",
+"bottom"}` in shares of the picture, or null. While an answer is awaited pictures are passed over:
+none is ever queued. What that takes is told on /brain_state.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import Image
+from std_msgs.msg import String
+
+from brain.faults import ModelError
+from nodes.parts.node import LessonNode, change_period
+from nodes.parts.parameters import Number, Text, Whole
+from nodes.parts.pictures import BadPictureError, jpeg_of
+from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
+from nodes.parts.sensor import SensorListener
+from nodes.thinking.model import AskedModel
+from nodes.thinking.prompt import prompt_file, read_prompt
+from nodes.thinking.state import BrainState
+from robot.topics import CAMERA, VLM_DESCRIPTION, VLM_DETECTIONS
+from text.i18n import N_
+
+if TYPE_CHECKING:
+    from brain.ladder import Ladder
+    from brain.looking import PictureSeen
+    from brain.thinking import Thought
+
+_STARTED = N_("Pictures from {topic} go to {model} at {url}")
+_NO_MODEL = N_("No picture goes anywhere: {problem}")
+_NONE = N_("No picture yet on {topic}")
+_OLD = N_("No new picture on {topic} since the last one")
+_SEES = N_("{model} sees: {description}")
+_BAD = N_("The picture is refused: {reason}")
+_FAILED = N_("No description: {problem}")
+_SAY_EVERY_S = 30.0
+
+
+class VlmAgent(LessonNode):
+    """Takes the newest picture, and asks about one at a time."""
+
+    NAME = "vlm_agent"
+    SETTINGS = (
+        Text("topic", CAMERA, "Where the pictures come from", fixed=True),
+        Number("period", 5.0, "Time between two looks", low=0.1, high=3600.0, unit="s"),
+        Whole("quality", 80, "Quality of the JPEG", low=1, high=100),
+        Text("prompt", "", "File with the system prompt; empty: Deck's own", may_be_empty=True),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._newest: bytes | None = None
+        """Serialized: decoding ten pictures a second to use one in fifty would be wasteful."""
+        self._any = False
+        self._description = self.create_publisher(String, VLM_DESCRIPTION, DEPTH)
+        self._detections = self.create_publisher(String, VLM_DETECTIONS, DEPTH)
+        self._problem: ModelError | None = None
+        self._model = self._made()
+        self._state = BrainState(self, self._model)
+        SensorListener(self, Image, self.text("topic"), self._keep, depth=1, raw=True)
+        self._timer = self.every(self.number("period"), self._look)
+
+    def parameters_changed(self) -> None:
+        """Apply the new period."""
+        change_period(self._timer, self.number("period"))
+
+    def before_end(self) -> None:
+        """Hang up on the model."""
+        if self._model is not None:
+            self._model.close()
+
+    def _made(self) -> AskedModel | None:
+        try:
+            model = AskedModel(self, lambda settings: settings.vision_model or settings.model)
+        except ModelError as error:
+            self._problem = error
+            self.say.warn(_NO_MODEL, problem=error.words)
+            return None
+        url = model.settings.base_url
+        self.say.info(_STARTED, topic=self.text("topic"), model=model.name, url=url)
+        return model
+
+    def _keep(self, serialized: bytes) -> None:
+        self._newest, self._any = serialized, True
+
+    def _look(self) -> None:
+        if self._model is None:
+            if self._problem is not None:
+                self.say.warn(_NO_MODEL, every_s=_SAY_EVERY_S, problem=self._problem.words)
+            return
+        if self._model.busy:
+            return
+        if self._newest is None:
+            self.say.warn(_OLD if self._any else _NONE, every_s=1.0, topic=self.text("topic"))
+            return
+        message, self._newest = deserialize_message(self._newest, Image), None
+        try:
+            jpeg = jpeg_of(message, int(self.number("quality")))
+        except BadPictureError as error:
+            self.say.warn(_BAD, reason=self.say.text(error.phrase, **error.values))
+            return
+        self._state.thinks()
+        self._model.ask(
+            lambda ladder: self._question(ladder, jpeg),
+            lambda thought: self._tell(thought, message.width, message.height),
+            self._fail,
+        )
+
+    async def _question(self, ladder: Ladder, jpeg: bytes) -> Thought[PictureSeen]:
+        from brain.looking import look
+
+        prompt = read_prompt(prompt_file(self.text("prompt"), "vlm", self.say.language))
+        return await look(ladder, prompt, jpeg)
+
+    def _tell(self, thought: Thought[PictureSeen], width: int, height: int) -> None:
+        seen, usage = thought.value, thought.usages[-1]
+        self._state.answered(usage)
+        self.say.info(_SEES, model=usage.model, description=seen.description)
+        self._description.publish(String(data=seen.description))
+        things = [thing.model_dump() for thing in seen.things]
+        report = {"width": width, "height": height, "things": things}
+        self._detections.publish(String(data=json.dumps(report, ensure_ascii=False)))
+
+    def _fail(self, error: ModelError) -> None:
+        self._state.failed(error)
+        self.say.warn(_FAILED, problem=error.words)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(VlmAgent, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

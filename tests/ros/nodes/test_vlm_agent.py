@@ -1,0 +1,119 @@
+"""The vision agent: pictures go to a real server, words and boxes come back, none is queued."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+from diagnostic_msgs.msg import DiagnosticArray
+from std_msgs.msg import String
+
+from tests.model_server import KEY, ModelServer, obeys
+from tests.ros.node_process import NodeProcess
+from tests.ros.nodes.test_brain_with_a_model import settings
+from tests.ros.peer import Peer
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from tests.model_server import Exchange
+
+BOX = {"left": 0.1, "top": 0.2, "right": 0.5, "bottom": 0.9}
+SEEN = json.dumps({"description": "A red cup.", "things": [{"label": "cup", "box": BOX}]})
+
+
+@pytest.fixture
+def set_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME"):
+        monkeypatch.setenv(name, str(tmp_path))
+    (tmp_path / "deck").mkdir()
+    return tmp_path / "deck"
+
+
+@pytest.fixture
+def camera(ros_domain: int) -> Iterator[NodeProcess]:
+    camera = NodeProcess("nodes.mock_camera", ros_domain)
+    yield camera
+    camera.close()
+
+
+def pictures(server: ModelServer) -> list[str]:
+    """Return what came of pictures, as addresses."""
+    contents = [each.request["messages"][1]["content"] for each in server.exchanges]
+    return [parts[0]["image_url"]["url"] for parts in contents if isinstance(parts, list)]
+
+
+@pytest.mark.usefixtures("camera")
+def test_a_picture_becomes_words_and_boxes(ros_domain: int, set_up: Path) -> None:
+    with ModelServer(obeys(SEEN)) as server, Peer(ros_domain) as peer:
+        settings(set_up, server.url, vision_model="m-sees")
+        described = peer.hear("/vlm/description", String)
+        detected = peer.hear("/vlm/detections", String)
+        states = peer.hear("/brain_state", DiagnosticArray)
+        agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.3})
+        try:
+            wait_until(lambda: described and detected and states, "a description")
+            assert described[0].data == "A red cup."
+            report = json.loads(detected[0].data)
+            assert report == {
+                "width": 640,
+                "height": 480,
+                "things": [{"label": "cup", "box": BOX}],
+            }
+            assert pictures(server)[0].startswith("data:image/jpeg;base64,/9j/")
+            assert {each.request["model"] for each in server.exchanges} == {"m-sees"}
+            agent.wait_for_words(f"go to m-sees at {server.url}", "m-sees sees: A red cup.")
+            assert states[-1].status[0].name == "vlm_agent"
+            assert KEY not in agent.output
+        finally:
+            agent.close()
+
+
+@pytest.mark.usefixtures("camera")
+def test_while_one_is_under_way_none_is_sent_and_none_waits(ros_domain: int, set_up: Path) -> None:
+    """A slow model gets the newest picture after its answer, not those of meanwhile."""
+    answers = iter(range(100))
+
+    def slow(exchange: Exchange) -> None:
+        if "deck-" not in json.dumps(exchange.request) and next(answers) == 0:
+            server.closing.wait(1.5)
+            overlapping.append(len(pictures(server)))
+        obeys(SEEN)(exchange)
+
+    overlapping: list[int] = []
+    with ModelServer(slow) as server, Peer(ros_domain) as peer:
+        settings(set_up, server.url)
+        described = peer.hear("/vlm/description", String)
+        agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.1})
+        try:
+            wait_until(lambda: len(described) >= 2, "two descriptions")
+            assert overlapping == [1]
+            assert len(set(pictures(server))) == len(pictures(server))
+        finally:
+            agent.close()
+
+
+@pytest.mark.usefixtures("camera")
+def test_a_failure_is_told_and_the_next_picture_is_tried(ros_domain: int, set_up: Path) -> None:
+    with ModelServer(lambda exchange: exchange.fails(500)) as server, Peer(ros_domain) as peer:
+        settings(set_up, server.url)
+        described = peer.hear("/vlm/description", String)
+        agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.2})
+        try:
+            agent.wait_for_words("No description: the server failed (500)")
+            server.script = obeys(SEEN)
+            wait_until(lambda: described, "a description after all")
+        finally:
+            agent.close()
+
+
+def test_without_a_model_nothing_is_sent(ros_domain: int, set_up: Path) -> None:
+    del set_up
+    agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.2})
+    try:
+        agent.wait_for_words("No picture goes anywhere: no language model is set up")
+    finally:
+        agent.close()
