@@ -119,7 +119,7 @@ class Ladder:
             try:
                 if await self._obeyed(rung):
                     return rung
-            except ModelError as fault:
+            except ModelError as fault:  # noqa: PERF203 - four times at most
                 if fault.kind not in _OF_THIS_WAY:
                     raise
                 faults.append(fault)
