@@ -6,6 +6,7 @@ test's to say.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -134,7 +135,12 @@ class ModelServer:
             protocol_version = "HTTP/1.1"
 
             def do_POST(self) -> None:
-                body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
+                length = int(self.headers.get("Content-Length", 0))
+                body = self.rfile.read(length)
+                if len(body) < length:
+                    # A question that was cancelled while it was being asked.
+                    self.close_connection = True
+                    return
                 is_json = self.headers.get("Content-Type", "").startswith("application/json")
                 exchange = Exchange(self, json.loads(body) if is_json else body)
                 server.exchanges.append(exchange)
@@ -143,6 +149,11 @@ class ModelServer:
                 except OSError:
                     # The other end has hung up, as some tests want.
                     self.close_connection = True
+
+            def handle(self) -> None:
+                """Serve a connection, until the other end closes it in whatever way."""
+                with contextlib.suppress(ConnectionResetError):
+                    super().handle()
 
             def log_message(self, format: str, *args: object) -> None:  # noqa: A002
                 """Say nothing."""
