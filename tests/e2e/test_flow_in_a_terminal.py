@@ -43,7 +43,7 @@ def in_rising_order(steps: list[tuple[float, str]], *sources: str) -> None:
 def test_a_typed_command_and_a_voice_are_followed_to_the_wheels(deck: Deck, tmp_path: Path) -> None:
     profile = written(tmp_path, PROFILE)
     terminal = deck.open(str(profile), "--lang", "en", columns=200, rows=60)
-    terminal.wait_for("6/6")
+    terminal.wait_for("7/7")
     terminal.press("6")
     voice = ("/audio/mic_raw", "ai_brain", "/ai_command", "/drive", "/audio/speaker_raw")
     screen = terminal.wait_until(has(*voice, words="VOICE"), "a voice")
