@@ -57,7 +57,7 @@ def _of_api(error: openai.APIError, settings: ModelSettings, key: ServerKey) -> 
         # The fault of the transport's own limit comes wrapped.
         inner = error.__cause__
         return inner if isinstance(inner, ModelError) else _unreachable(settings, inner)
-    words = say("the server broke off: {words}", words=_words(error.message, key))
+    words = say("the server broke off: {words}", words=words_of(error.message, key))
     return ModelError(FaultKind.SERVER, words)
 
 
@@ -71,8 +71,12 @@ def _unreachable(settings: ModelSettings, inner: BaseException | None) -> ModelE
 
 
 def _of_status(error: openai.APIStatusError, settings: ModelSettings, key: ServerKey) -> ModelError:
-    said = _words(error.message, key)
-    status = error.status_code
+    retry_after = error.response.headers.get("retry-after", "")
+    return of_status(error.status_code, words_of(error.message, key), retry_after, settings)
+
+
+def of_status(status: int, said: str, retry_after: str, settings: ModelSettings) -> ModelError:
+    """Return what an HTTP status means; `said` are the server's own words, without the key."""
     if status in (401, 403):
         words = say("the server does not take the key ({status})", status=status)
         return ModelError(FaultKind.KEY, words, say("key_env or key_file in llm.yaml"))
@@ -84,7 +88,7 @@ def _of_status(error: openai.APIStatusError, settings: ModelSettings, key: Serve
         )
         return ModelError(FaultKind.MODEL, words, say("base_url and model in llm.yaml"))
     if status == 429:
-        wait_s = retry_after_s(error.response.headers.get("retry-after", ""))
+        wait_s = retry_after_s(retry_after)
         words = say("the server has too many requests, or the account is empty (429)")
         return ModelError(FaultKind.BUSY, words, retry_after_s=wait_s)
     if status >= 500:
@@ -111,6 +115,6 @@ def retry_after_s(header: str) -> float | None:
     return min(max(wait_s, 0.0), _LONGEST_WAIT_S) if wait_s == wait_s else None  # noqa: PLR0124
 
 
-def _words(message: str, key: ServerKey) -> str:
+def words_of(message: str, key: ServerKey) -> str:
     """Return what a server said: short, printable, and without the key."""
     return plain(key.hidden_in(message)[:_LONGEST_WORDS])

@@ -1,0 +1,258 @@
+"""A talk by voice with a model that hears and speaks itself: OpenAI's Realtime protocol.
+
+Sound goes up and comes down over one WebSocket; the server hears when somebody begins and ends to
+speak, and breaks its answer off when interrupted. What the model wants done comes as the call of a
+function, is checked here, and is answered by what became of it.
+Protocol: https://platform.openai.com/docs/guides/realtime-websocket.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import binascii
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import openai
+import websockets.exceptions
+
+from brain.budget import TokenUsage
+from brain.client_faults import fault_of, of_status, words_of
+from brain.faults import FaultKind, ModelError
+from robot.commands.problems import CommandError
+from robot.commands.schema import LlmResponse, parse_llm
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from brain.budget import Ledger
+    from brain.key import ServerKey
+    from brain.settings import ModelSettings
+
+RATE_HZ = 24_000
+"""Of the sound both ways: 16-bit little-endian samples, one channel."""
+ACT, SENSE = "act", "sense"
+"""The functions that the model can call."""
+_WAITING = 50
+"""Blocks of sound that may wait for the connection; beyond that the oldest is dropped."""
+_LONGEST_EVENT = 4 << 20
+_STOPPED = "not done: wait until somebody speaks"
+
+
+@dataclass(frozen=True)
+class TalkHandlers:
+    """What is called as things come, on the thread of the connection."""
+
+    sound: Callable[[bytes], None]
+    """The next PCM bytes of the model's voice."""
+    interrupted: Callable[[], None]
+    """Somebody speaks: what is still to be played is to be dropped."""
+    heard: Callable[[str], None]
+    """What somebody said, as the server understood it."""
+    said: Callable[[str], None]
+    """What the model says, in words."""
+    act: Callable[[LlmResponse], None]
+    """Commands that were checked."""
+    refused: Callable[[str], None]
+    """What was wrong with commands that were not."""
+    sense: Callable[[], str]
+    """Returns what the senses say now."""
+    used: Callable[[TokenUsage], None]
+
+
+class RealtimeTalk:
+    """One connection; `run` it until it ends."""
+
+    def __init__(
+        self,
+        settings: ModelSettings,
+        key: ServerKey,
+        ledger: Ledger,
+        who: str,
+        instructions: str,
+        handlers: TalkHandlers,
+    ) -> None:
+        """`instructions` is the system prompt; `who` stands in the ledger."""
+        self._settings, self._key = settings, key
+        self._ledger, self._who = ledger, who
+        self._instructions, self._handlers = instructions, handlers
+        self._sound: asyncio.Queue[bytes] = asyncio.Queue(_WAITING)
+        self._connection: Any = None
+        self._stopped = True
+        """Whether nobody has spoken since the beginning, or since a stop."""
+        self._done: set[str] = set()
+        """Calls that were carried out: none is twice."""
+        self._asked_s = self._first_s = 0.0
+
+    def hear(self, pcm: bytes) -> None:
+        """Send sound of the microphone, at `RATE_HZ`; on the connection's thread."""
+        if self._sound.full():
+            self._sound.get_nowait()
+        self._sound.put_nowait(pcm)
+
+    async def stop(self) -> None:
+        """Break the model's answer off; until somebody speaks, it can do nothing."""
+        self._stopped = True
+        self._handlers.interrupted()
+        if self._connection is not None:
+            await self._send({"type": "response.cancel"})
+
+    async def run(self) -> None:
+        """Talk until the connection ends.
+
+        Raises:
+            ModelError: it always ends with one, unless it is cancelled.
+        """
+        client = openai.AsyncOpenAI(
+            base_url=self._settings.base_url,
+            api_key=self._key.reveal() or "none",
+            max_retries=0,
+            timeout=self._settings.timeout_s,
+        )
+        try:
+            await self._talk(client)
+        except ModelError:
+            raise
+        except Exception as error:  # noqa: BLE001 - told in words, or raised again
+            raise self._fault(error) from None
+        finally:
+            self._connection = None
+            await client.close()
+        raise ModelError(FaultKind.CUT, say("the server ended the talk"))
+
+    async def _talk(self, client: openai.AsyncOpenAI) -> None:
+        async with client.realtime.connect(
+            model=self._settings.realtime_model,
+            websocket_connection_options={"max_size": _LONGEST_EVENT},
+        ) as self._connection:
+            await self._send({"type": "session.update", "session": self._session()})
+            sending = asyncio.create_task(self._send_sound())
+            try:
+                async for event in self._connection:
+                    await self._take(event)
+            finally:
+                sending.cancel()
+
+    def _fault(self, error: Exception) -> ModelError:
+        if isinstance(error, websockets.exceptions.InvalidStatus):
+            response = error.response
+            said = words_of(response.body.decode("utf-8", "replace"), self._key)
+            retry_after = response.headers.get("retry-after", "")
+            return of_status(response.status_code, said, retry_after, self._settings)
+        if isinstance(error, websockets.exceptions.ConnectionClosed):
+            return ModelError(FaultKind.CUT, say("the connection of the talk was lost"))
+        known = fault_of(error, self._settings, self._key)
+        if known is not None:
+            return known
+        if isinstance(error, OSError | websockets.exceptions.WebSocketException):
+            words = say("nobody answers at {url}", url=self._settings.base_url)
+            fix = say("start the server, or correct base_url in llm.yaml")
+            return ModelError(FaultKind.UNREACHABLE, words, fix)
+        raise error
+
+    def _session(self) -> dict[str, Any]:
+        form = {"type": "audio/pcm", "rate": RATE_HZ}
+        turns = {"type": "server_vad", "create_response": True, "interrupt_response": True}
+        heard = {"model": self._settings.transcription_model}
+        return {
+            "type": "realtime",
+            "instructions": self._instructions,
+            "output_modalities": ["audio"],
+            "audio": {
+                "input": {"format": form, "turn_detection": turns, "transcription": heard},
+                "output": {"format": form, "voice": self._settings.speech_voice},
+            },
+            "tools": [
+                _function(ACT, "Has the robot do something.", LlmResponse.model_json_schema()),
+                _function(SENSE, "Tells what the robot's sensors say now.", _NOTHING),
+            ],
+            "tool_choice": "auto",
+        }
+
+    async def _send_sound(self) -> None:
+        while True:
+            pcm = await self._sound.get()
+            audio = base64.b64encode(pcm).decode()
+            await self._send({"type": "input_audio_buffer.append", "audio": audio})
+
+    async def _send(self, event: dict[str, Any]) -> None:
+        await self._connection.send(event)
+
+    # ---------------------------------------------------------------- what the server sends
+
+    async def _take(self, event: Any) -> None:  # noqa: ANN401 - a server may send anything
+        kind = event.type
+        if kind == "response.output_audio.delta":
+            self._first_s = self._first_s or time.monotonic()
+            self._play(event.delta)
+        elif kind == "input_audio_buffer.speech_started":
+            self._stopped = False
+            self._handlers.interrupted()
+        elif kind == "conversation.item.input_audio_transcription.completed":
+            self._handlers.heard(str(event.transcript))
+        elif kind == "response.output_audio_transcript.done":
+            self._handlers.said(str(event.transcript))
+        elif kind == "response.function_call_arguments.done":
+            await self._call(str(event.name), str(event.call_id), str(event.arguments))
+        elif kind == "response.created":
+            self._asked_s, self._first_s = time.monotonic(), 0.0
+            self._ledger.begin(self._who, self._settings.budget)
+        elif kind == "response.done":
+            self._count(event.response)
+        elif kind == "error":
+            words = words_of(str(event.error.message), self._key)
+            raise ModelError(FaultKind.SERVER, say("the server broke off: {words}", words=words))
+
+    def _play(self, delta: str) -> None:
+        try:
+            self._handlers.sound(base64.b64decode(delta, validate=True))
+        except binascii.Error:
+            words = say("what the server sent cannot be read")
+            raise ModelError(FaultKind.NOT_AN_API, words) from None
+
+    async def _call(self, name: str, call: str, arguments: str) -> None:
+        if call in self._done:
+            return
+        self._done.add(call)
+        output = self._handlers.sense() if name == SENSE else self._acted(name, arguments)
+        item = {"type": "function_call_output", "call_id": call, "output": output}
+        await self._send({"type": "conversation.item.create", "item": item})
+        await self._send({"type": "response.create"})
+
+    def _acted(self, name: str, arguments: str) -> str:
+        """Do what was asked, or not; return what to tell the model."""
+        if name != ACT:
+            return f"there is no function {name[:40]}"
+        if self._stopped:
+            return _STOPPED
+        try:
+            response = parse_llm(arguments)
+        except CommandError as error:
+            self._handlers.refused(str(error))
+            return f"refused, nothing was done: {error}"
+        self._handlers.act(response)
+        return "accepted"
+
+    def _count(self, response: Any) -> None:  # noqa: ANN401 - a server may send anything
+        usage, now_s = response.usage, time.monotonic()
+        taken = (usage.input_tokens or 0, usage.output_tokens or 0) if usage else (0, 0)
+        first_s = (self._first_s or now_s) - self._asked_s
+        used = TokenUsage(
+            self._settings.realtime_model, *taken, first_s, now_s - self._asked_s, bool(usage)
+        )
+        self._ledger.end(self._who, used)
+        self._handlers.used(used)
+        if getattr(response, "status", "") == "failed":
+            details = getattr(response, "status_details", None)
+            message = getattr(getattr(details, "error", None), "message", "") or "-"
+            words = words_of(str(message), self._key)
+            raise ModelError(FaultKind.SERVER, say("the server broke off: {words}", words=words))
+
+
+_NOTHING = {"type": "object", "properties": {}, "required": [], "additionalProperties": False}
+
+
+def _function(name: str, about: str, schema: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "function", "name": name, "description": about, "parameters": schema}
