@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from launcher.consent import Agents
 from launcher.status import LogLine, NodeStatus, Stray
 
 
@@ -33,10 +34,17 @@ class StraysEvent:
 
 
 @dataclass(frozen=True)
+class AgentsEvent:
+    """The agents, and what they ask for."""
+
+    agents: Agents
+
+
+@dataclass(frozen=True)
 class ClosedEvent:
     """The session has ended, or the supervisor is gone; no event follows."""
 
     reason: str
 
 
-Event: TypeAlias = StatusEvent | LogEvent | StraysEvent | ClosedEvent
+Event: TypeAlias = StatusEvent | LogEvent | StraysEvent | AgentsEvent | ClosedEvent

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
+from launcher.consent import DEFAULT_RULES, AgentRules
 from text.sentences import Words, say
 
 NOT_READY = "not ready"
@@ -146,7 +147,8 @@ class LogLine:
     logger: str = ""
     """Name of the ROS logger, empty for a plain line."""
     source: str = "stderr"
-    """`stdout`, `stderr`, or `deck` for the supervisor's own lines about the node."""
+    """`stdout`, `stderr`, `deck` for the supervisor's own lines about the node, or `agent` for what
+    is said about agents."""
 
 
 @dataclass(frozen=True)
@@ -184,6 +186,8 @@ class SessionInfo:
     started_by: Who = Who()
     since_s: float = 0.0
     """Unix time of its start."""
+    agents: AgentRules = DEFAULT_RULES
+    """What agents may do."""
 
 
 @dataclass(frozen=True)

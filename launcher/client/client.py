@@ -14,11 +14,14 @@ from launcher.client.inbox import Inbox
 from launcher.client.log_history import newer
 from launcher.client.running import find_running, running_records
 from launcher.client.start import StartingSupervisor
+from launcher.consent import Agents, Verdict
 from launcher.control.protocol import (
     MAX_MESSAGE_BYTES,
     VERSION,
     encode,
     pack_stray,
+    pack_text,
+    unpack_agents,
     unpack_line,
     unpack_session,
     unpack_status,
@@ -43,9 +46,10 @@ from text.sentences import say
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterable
 
+    from launcher.consent import Answer, Approval
     from launcher.events import Event
     from launcher.profile.load import Profile
-    from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+    from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
     from text.sentences import Words
 
 HELLO_WITHIN_S = 10.0
@@ -217,6 +221,8 @@ class SupervisorClient:
         """All nodes in the profile's order, kept up to date."""
         self.strays: tuple[Stray, ...] = ()
         """Processes that an earlier run left behind, kept up to date."""
+        self.agents = Agents()
+        """The agents, and what they ask for, kept up to date."""
         self._reader = reader
         self._writer = writer
         self._lifeline = lifeline
@@ -227,6 +233,7 @@ class SupervisorClient:
         self._parting: asyncio.Task[Words] | None = None
         self._hear({"event": "status", "nodes": hello["nodes"]})
         self._hear({"event": "strays", "strays": hello["strays"]})
+        self._hear({"event": "agents", "agents": hello["agents"]})
         self._listening = asyncio.create_task(self._listen())
 
     async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
@@ -292,6 +299,35 @@ class SupervisorClient:
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """End these processes of an earlier run; return when they have ended."""
         await self._ask("stop_strays", strays=[pack_stray(stray) for stray in strays])
+
+    async def attend(self) -> None:
+        """Say that a person at this screen can answer the questions of agents."""
+        await self._ask("attend")
+
+    async def answer(self, question: int, answer: Answer) -> bool:
+        """Answer a question; return False if it is no longer asked."""
+        answered: bool = await self._ask("answer", question=question, answer=answer.value)
+        return answered
+
+    async def end_consent(self) -> None:
+        """End every question, and every allowance for a time."""
+        await self._ask("end_consent")
+
+    async def join(self, key: str, name: str, approval: Approval) -> None:
+        """Say that an agent is connected; `key` distinguishes those of this client."""
+        await self._ask("join", key=key, name=name, approval=approval.value)
+
+    async def ask_consent(self, key: str, lines: Iterable[str]) -> Verdict:
+        """Ask the person at the screen whether an agent may do this; takes a while."""
+        return Verdict(await self._ask("ask", key=key, lines=[pack_text(line) for line in lines]))
+
+    async def withdraw(self, key: str | None = None) -> None:
+        """Withdraw the questions of one agent, or of all agents of this client."""
+        await self._ask("withdraw", key=key)
+
+    async def tell(self, severity: Severity, words: str) -> None:
+        """Add a line about an agent to the log."""
+        await self._ask("tell", severity=severity.value, words=pack_text(words))
 
     async def shutdown(self, now: bool = False) -> None:
         """Stop all nodes, dependants first, then the supervisor; return when it has ended.
@@ -383,6 +419,9 @@ class SupervisorClient:
         elif event == "strays":
             self.strays = tuple(unpack_stray(fields) for fields in message["strays"])
             self._inbox.put_strays(self.strays)
+        elif event == "agents":
+            self.agents = unpack_agents(message["agents"])
+            self._inbox.put_agents(self.agents)
         elif event == "closed":
             self._inbox.close(unpack_text(message["reason"]))
         elif "reply" in message:

@@ -6,11 +6,12 @@ import asyncio
 from collections import deque
 from typing import TYPE_CHECKING
 
-from launcher.events import ClosedEvent, LogEvent, StatusEvent, StraysEvent
+from launcher.events import AgentsEvent, ClosedEvent, LogEvent, StatusEvent, StraysEvent
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterable, Mapping
 
+    from launcher.consent import Agents
     from launcher.events import Event
     from launcher.status import LogLine, NodeStatus, Stray
 
@@ -26,6 +27,7 @@ class Inbox:
         self._lines: deque[LogLine] = deque()
         self._skipped: dict[str, int] = {}
         self._strays: tuple[Stray, ...] | None = None
+        self._agents: Agents | None = None
         self._closed: ClosedEvent | None = None
         self._filled = asyncio.Event()
 
@@ -46,6 +48,11 @@ class Inbox:
     def put_strays(self, strays: tuple[Stray, ...]) -> None:
         """Replace the strays."""
         self._strays = strays
+        self._filled.set()
+
+    def put_agents(self, agents: Agents) -> None:
+        """Replace the agents."""
+        self._agents = agents
         self._filled.set()
 
     def close(self, reason: str) -> None:
@@ -74,7 +81,10 @@ class Inbox:
             events.append(LogEvent(tuple(self._lines), self._skipped))
         if self._strays is not None:
             events.append(StraysEvent(self._strays))
-        self._nodes, self._lines, self._skipped, self._strays = {}, deque(), {}, None
+        if self._agents is not None:
+            events.append(AgentsEvent(self._agents))
+        self._nodes, self._lines, self._skipped = {}, deque(), {}
+        self._strays = self._agents = None
         return events
 
     def _skip(self, name: str, count: int) -> None:

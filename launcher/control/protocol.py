@@ -1,9 +1,10 @@
 """The protocol of the control socket: one JSON object per line, both ways, versioned.
 
-The supervisor speaks first: `{"deck": VERSION, "session": ..., "nodes": [...], "strays": [...]}`.
+The supervisor speaks first: `{"deck": VERSION, "session": ..., "nodes": [...], "strays": [...],
+"agents": ...}`.
 A client answers `{"deck": VERSION}`, then sends requests such as `{"id": 1, "op": "start", "nodes":
 ["sonar"]}`. It receives `{"reply": 1, "result": ...}` or `{"reply": 1, "error": {...}}`, and in
-between events: `{"event": "status" | "log" | "strays" | "closed", ...}`.
+between events: `{"event": "status" | "log" | "strays" | "agents" | "closed", ...}`.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from launcher.consent import Agent, AgentRules, Agents, Approval, Question
 from launcher.status import (
     LogLine,
     NodeFault,
@@ -27,7 +29,7 @@ from text.sentences import InLanguages, Words, say
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-VERSION = 3
+VERSION = 4
 
 MAX_REQUEST_BYTES = 1 << 20
 """Longest line from a client; a longer one is an error."""
@@ -133,8 +135,35 @@ def unpack_session(fields: dict[str, Any]) -> SessionInfo:
             "panels": tuple(fields["panels"]),
             "discovery": discovery if isinstance(discovery, str) else tuple(discovery),
             "started_by": Who(**fields["started_by"]),
+            "agents": unpack_rules(fields["agents"]),
         }
     )
+
+
+def unpack_rules(fields: dict[str, Any]) -> AgentRules:
+    """Return the rules that `dataclasses.asdict` was given."""
+    lists = {name: tuple(fields[name]) for name in ("publish", "call")}
+    return AgentRules(**{**fields, **lists})
+
+
+def pack_agents(agents: Agents) -> dict[str, Any]:
+    """Return agents and their questions as JSON."""
+    questions = [
+        {**vars(one), "lines": [pack_text(line) for line in one.lines]} for one in agents.questions
+    ]
+    return {"connected": [vars(one) for one in agents.connected], "questions": questions}
+
+
+def unpack_agents(fields: dict[str, Any]) -> Agents:
+    """Return the agents that `pack_agents` was given."""
+    connected = [
+        Agent(**{**one, "approval": Approval(one["approval"])}) for one in fields["connected"]
+    ]
+    questions = [
+        Question(**{**one, "lines": tuple(map(unpack_text, one["lines"]))})
+        for one in fields["questions"]
+    ]
+    return Agents(tuple(connected), tuple(questions))
 
 
 def pack_stray(stray: Stray) -> dict[str, Any]:

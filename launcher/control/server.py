@@ -11,6 +11,9 @@ import struct
 import time
 from typing import TYPE_CHECKING, Any, Protocol
 
+from launcher.control.agent_requests import AGENT_OPS, serve_agents
+from launcher.control.bad_request import BadRequestError
+from launcher.control.consent import ConsentDesk, TooManyError
 from launcher.control.feed import ClientFeed
 from launcher.control.protocol import (
     MAX_HISTORY_CHARS,
@@ -18,6 +21,7 @@ from launcher.control.protocol import (
     MAX_REQUEST_BYTES,
     VERSION,
     encode,
+    pack_agents,
     pack_line,
     pack_session,
     pack_status,
@@ -32,7 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 
     from launcher.logs.ring import LogRing
-    from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+    from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
 
 LOG_PERIOD_S = 0.1
 STATUS_DELAY_S = 0.01
@@ -88,12 +92,11 @@ class Controlled(Protocol):
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """End these processes that an earlier run left behind."""
 
+    def tell_of_agents(self, severity: Severity, words: str) -> None:
+        """Add a line about an agent to the log."""
+
     def shut_down(self, asked_by: int, *, now: bool) -> None:
         """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""
-
-
-class BadRequestError(Exception):
-    """A client's request is invalid; the text says why."""
 
 
 class ControlServer:
@@ -101,6 +104,7 @@ class ControlServer:
 
     def __init__(self, controlled: Controlled) -> None:
         self._controlled = controlled
+        self.consent = ConsentDesk(self._agents_changed, controlled.tell_of_agents)
         self._clients: dict[_Client, None] = {}
         """In the order in which they connected."""
         self._server: asyncio.AbstractServer | None = None
@@ -136,10 +140,16 @@ class ControlServer:
         for client in self._clients:
             client.tell(news)
 
+    def _agents_changed(self) -> None:
+        news = {"event": "agents", "agents": pack_agents(self.consent.state)}
+        for client in self._clients:
+            client.tell(news)
+
     async def close(self, reason: str) -> None:
         """Tell every client how the session ended, and disconnect."""
         if self._server is not None:
             self._server.close()
+        self.consent.end_all()
         self._tell_statuses()
         self._tell_lines()
         for client in tuple(self._clients):
@@ -183,6 +193,7 @@ class ControlServer:
                 "session": pack_session(self._controlled.info),
                 "nodes": [pack_status(one) for one in self._controlled.statuses().values()],
                 "strays": [pack_stray(one) for one in self._controlled.strays],
+                "agents": pack_agents(self.consent.state),
             }
         )
         self._clients[client] = None
@@ -192,6 +203,7 @@ class ControlServer:
             pass
         finally:
             self._clients.pop(client, None)
+            self.consent.leave(client)
             writer.close()
 
     def _has_room(self) -> bool:
@@ -233,13 +245,15 @@ class ControlServer:
     async def _serve(self, client: _Client, request: dict[str, Any]) -> None:
         request_id = request.get("id")
         try:
-            result = await self._answer(request, client.pid)
+            result = await self._answer(request, client)
         except UnknownNodeError as error:
             client.refuse(
                 request_id, "unknown_node", str(error), name=error.name, known=error.known
             )
         except BadRequestError as error:
             client.refuse(request_id, "bad_request", str(error))
+        except TooManyError:
+            client.refuse(request_id, "too_many", say("too many agents ask at once"))
         except Exception as error:
             # A bug of ours, traced in the supervisor's log; the client must not wait for ever.
             client.refuse(request_id, "fault", f"{type(error).__name__}: {error}")
@@ -249,7 +263,14 @@ class ControlServer:
             client.tell(client.feed.status_news(self._controlled.statuses()))
             client.tell({"reply": request_id, "result": result})
 
-    async def _answer(self, request: dict[str, Any], asked_by: int) -> object:
+    async def _answer(self, request: dict[str, Any], client: _Client) -> object:
+        op = request.get("op")
+        if isinstance(op, str) and op in AGENT_OPS:
+            tell = self._controlled.tell_of_agents
+            return await serve_agents(self.consent, client, request, tell)
+        return await self._serve_nodes(request, client.pid)
+
+    async def _serve_nodes(self, request: dict[str, Any], asked_by: int) -> object:
         controlled = self._controlled
         op = request.get("op")
         if op == "start":

@@ -12,6 +12,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from launcher.consent import AUDIT_FILE
 from launcher.logs.files import MAX_OLD_FILES
 from launcher.private_files import make_folder, open_file, open_own_folder, remove_files
 from launcher.run_id import supervisor_runs
@@ -71,7 +72,7 @@ def _remove(run: Path) -> None:
             if logs is not None:
                 olds = ["", *(f".{number}" for number in range(1, MAX_OLD_FILES + 1))]
                 names = [f"{log}.log{old}" for log in logs for old in olds]
-                remove_files(run, descriptor, [*names, MARK])
+                remove_files(run, descriptor, [*names, AUDIT_FILE, MARK])
         finally:
             os.close(descriptor)
 

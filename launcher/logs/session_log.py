@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 DECK = "deck"
 """The node name under which the supervisor logs about itself, and the `source` of its lines."""
+AGENT = "agent"
+"""The same of what is said about agents."""
 CRASH_LINES = 400
 """As many lines as the traceback of a crash, and what is printed after it, may have."""
 
@@ -31,7 +33,7 @@ class SessionLog:
 
     def __init__(self, nodes: Iterable[str], files: LogFiles, on_line: Callable[[], None]) -> None:
         """`on_line` is called whenever there is a new line."""
-        self.rings = {name: LogRing() for name in (DECK, *nodes)}
+        self.rings = {name: LogRing() for name in (DECK, AGENT, *nodes)}
         self._files = files
         self._on_line = on_line
         self.heard: Callable[[LogLine], None] = lambda _line: None
@@ -47,11 +49,11 @@ class SessionLog:
         return PipeReader(fd, lambda data: self._files.write(node, data), take)
 
     def say(self, node: str, severity: Severity, words: str) -> None:
-        """Add a line from the supervisor about a node, or about itself (`DECK`)."""
+        """Add a line from the supervisor about a node, itself (`DECK`) or an agent (`AGENT`)."""
         now = time.time()
-        ring = self.rings[node]
-        ring.append(LogLine(node, ring.last_seq + 1, now, severity, words, "", DECK))
-        stamped = f"[{severity.name}] [{now:.9f}] [{DECK}]: {plain(words)}\n"
+        ring, source = self.rings[node], AGENT if node == AGENT else DECK
+        ring.append(LogLine(node, ring.last_seq + 1, now, severity, words, "", source))
+        stamped = f"[{severity.name}] [{now:.9f}] [{source}]: {plain(words)}\n"
         self._files.write(node, stamped.encode(errors="backslashreplace"))
         self._on_line()
 

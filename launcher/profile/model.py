@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
+from launcher.consent import DEFAULT_RULES as RULES
 from launcher.domain.domain import LAST_DOMAIN
 from launcher.profile.defaults import READY_WITHIN_S
 from launcher.profile.field_marks import AsText, Joined, PathFromProfile
@@ -207,6 +208,31 @@ class NodeDocument(Document):
     )
 
 
+class AgentsDocument(Document):
+    """What agents that speak to `deck mcp` may do, whatever a person allows them."""
+
+    max_speed_m_s: float = Field(
+        RULES.max_speed_m_s, ge=0, le=10, description="Fastest speed of a proposal, m/s."
+    )
+    max_distance_m: float = Field(
+        RULES.max_distance_m, ge=0, le=100, description="Longest way of one proposal, m."
+    )
+    max_total_m: float = Field(
+        RULES.max_total_m,
+        ge=0,
+        le=1000,
+        description="Longest way within five minutes of all that nobody was asked about, m.",
+    )
+    publish: tuple[RosName, ...] = Field(
+        (),
+        strict=False,
+        description="Topics that agents may publish on; one that moves the robot stays refused.",
+    )
+    call: tuple[RosName, ...] = Field(
+        (), strict=False, description="Services that agents may call."
+    )
+
+
 class ProfileDocument(Document):
     """A profile of Deck: nodes started, supervised and shown together."""
 
@@ -243,6 +269,10 @@ class ProfileDocument(Document):
     )
     panels: tuple[Panel, ...] = Field(
         (), strict=False, description="Panels that the deck shows beside nodes and logs."
+    )
+    agents: Annotated[AgentsDocument, Joined()] = Field(
+        default_factory=lambda: AgentsDocument.model_validate({}),
+        description="Limits for agents, and what else they may do.",
     )
     values: Values = Field(
         {}, description="Values that differ from run to run, used in checks as `${near_m}`."

@@ -11,6 +11,7 @@ import os
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from launcher.consent import DEFAULT_RULES, AgentRules
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
 from launcher.faults.meanings import CHECK_FIELDS
@@ -70,6 +71,8 @@ class Plan:
     foreground: bool = True
     confined_to: tuple[str, ...] = ()
     """The only folders in which nodes may write; empty: they are not confined."""
+    agents: AgentRules = DEFAULT_RULES
+    """What agents may do."""
 
     @property
     def needs(self) -> dict[str, tuple[str, ...]]:
@@ -103,6 +106,9 @@ class Plan:
         fields["nodes"] = tuple(_node_from(node) for node in fields["nodes"])
         fields["panels"] = tuple(fields["panels"])
         fields["confined_to"] = tuple(fields["confined_to"])
+        rules = fields["agents"]
+        lists = {name: tuple(rules[name]) for name in ("publish", "call")}
+        fields["agents"] = AgentRules(**{**rules, **lists})
         if not isinstance(fields["discovery"], str):
             fields["discovery"] = tuple(fields["discovery"])
         return cls(**fields)
@@ -141,6 +147,7 @@ def plan_of(
         panels=tuple(profile.document.panels),
         foreground=foreground,
         confined_to=tuple(confined_to),
+        agents=AgentRules(**profile.document.agents.model_dump()),
     )
 
 

@@ -16,7 +16,7 @@ from launcher.domain.discovery import why_open
 from launcher.domain.ports import other_users
 from launcher.logs.files import LogFiles
 from launcher.logs.folder import make_log_folder, prune_runs
-from launcher.logs.session_log import DECK, SessionLog
+from launcher.logs.session_log import AGENT, DECK, SessionLog
 from launcher.private_files import open_file
 from launcher.processes.exit import Reaper
 from launcher.processes.members import Members
@@ -95,6 +95,7 @@ def _record(plan: Plan, run_id: str, client: int) -> RunRecord:
         foreground=plan.foreground,
         started_by=who_runs(client),
         since_s=time.time(),
+        agents=plan.agents,
     )
     nodes = tuple(node.name for node in plan.nodes)
     return RunRecord(Path(plan.run_dir, run_id), session, nodes, {}, plan.drives)
@@ -112,7 +113,7 @@ def _claim(run_folder: RunFolder, plan: Plan) -> bool:
                 return False
             run_folder.settle()
         folder = Path(run_folder.record.session.log_dir)
-        make_log_folder(folder, (DECK, LAST_WORDS, *run_folder.record.nodes))
+        make_log_folder(folder, (DECK, AGENT, LAST_WORDS, *run_folder.record.nodes))
         _keep_last_words(folder)
     except OSError as problem:
         _answer({"no_room": pack_text(_no_room(folder, problem))})
@@ -260,6 +261,10 @@ class Supervisor:
         """End these processes that an earlier run left behind."""
         await end_strays(strays)
         self._find_strays()
+
+    def tell_of_agents(self, severity: Severity, words: str) -> None:
+        """Add a line about an agent to the log."""
+        self._log.say(AGENT, severity, words)
 
     def shut_down(self, asked_by: int, *, now: bool) -> None:
         """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""

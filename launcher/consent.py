@@ -1,0 +1,108 @@
+"""Agents, what they ask for, and what a person answers: plain data, the same at both ends.
+
+An agent is a program that speaks to `deck mcp`. It moves the robot only with the consent of the
+person at the screen, which passes through the supervisor, see `launcher.control.consent`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+AUDIT_FILE = "agents.jsonl"
+"""In the log folder of a run: what agents have called, one JSON object a line."""
+ALLOWED_FOR_S = 300.0
+"""How long an allowance for a time lasts."""
+ASKED_FOR_S = 30.0
+"""How long a person is asked; no answer is a refusal."""
+
+
+@dataclass(frozen=True)
+class AgentRules:
+    """What a profile permits agents, whatever a person allows."""
+
+    max_speed_m_s: float = 0.2
+    max_distance_m: float = 1.0
+    """Of one proposal."""
+    max_total_m: float = 5.0
+    """Of all that is driven within `ALLOWED_FOR_S` without a question."""
+    publish: tuple[str, ...] = ()
+    """Topics that agents may publish on; never one that moves the robot."""
+    call: tuple[str, ...] = ()
+    """Services that agents may call."""
+
+
+DEFAULT_RULES = AgentRules()
+"""Where a profile says nothing about agents."""
+
+
+class Approval(str, Enum):
+    """Who decides whether an agent drives."""
+
+    NEVER = "never"
+    """Nobody: it does not."""
+    ASK = "ask"
+    """The person at the screen."""
+    ALWAYS = "always"
+    """Whoever has started `deck mcp`, for all that is to come."""
+
+
+class Answer(str, Enum):
+    """What a person answers."""
+
+    ONCE = "once"
+    FOR_A_TIME = "time"
+    """This, and what the same agent asks for within `ALLOWED_FOR_S`."""
+    REFUSE = "refuse"
+
+
+class Verdict(str, Enum):
+    """What comes of a question."""
+
+    ALLOWED = "allowed"
+    ALLOWED_BEFORE = "allowed before"
+    """By an allowance for a time, without a question."""
+    REFUSED = "refused"
+    NO_SCREEN = "no screen"
+    """There is nobody to ask."""
+    SCREEN_GONE = "screen gone"
+    LATE = "late"
+    """Nobody has answered in time."""
+    ENDED = "ended"
+    """An emergency stop, or the agent itself, has ended the question."""
+
+    @property
+    def allows(self) -> bool:
+        """Whether the agent may drive."""
+        return self in (Verdict.ALLOWED, Verdict.ALLOWED_BEFORE)
+
+
+@dataclass(frozen=True)
+class Question:
+    """What an agent asks a person for."""
+
+    number: int
+    agent: str
+    """Its name, as it gives it itself."""
+    lines: tuple[str, ...]
+    """What it would do, in sentences: the most important one first."""
+    until_s: float
+    """Unix time at which it counts as refused."""
+
+
+@dataclass(frozen=True)
+class Agent:
+    """An agent that is connected."""
+
+    name: str
+    approval: Approval
+    allowed_until_s: float = 0.0
+    """Unix time until which it may drive without a question; 0: it may not."""
+
+
+@dataclass(frozen=True)
+class Agents:
+    """All agents of a session, and what they ask for, oldest first."""
+
+    connected: tuple[Agent, ...] = ()
+    questions: tuple[Question, ...] = ()

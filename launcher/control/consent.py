@@ -1,0 +1,218 @@
+"""Asking the person at the screen whether an agent may drive, on behalf of `deck mcp`.
+
+Whoever asks and whoever answers are clients of the control socket. A question ends by the answer of
+a screen, after `ASKED_FOR_S`, with the last screen, with the connection that asks, or by an
+emergency stop; in every case but one the agent does not drive.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from launcher.consent import (
+    ALLOWED_FOR_S,
+    ASKED_FOR_S,
+    Agent,
+    Agents,
+    Answer,
+    Approval,
+    Question,
+    Verdict,
+)
+from launcher.status import Severity
+from text.sentences import Words, say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable
+
+MAX_AGENTS = 16
+MAX_QUESTIONS = 4
+"""Most questions at once; a person cannot oversee more."""
+
+
+class TooManyError(Exception):
+    """There are too many agents, or too many questions."""
+
+
+@dataclass
+class _Known:
+    """An agent, and for how long it needs not ask (monotonic clock)."""
+
+    agent: Agent
+    allowed_until_s: float = 0.0
+
+
+@dataclass
+class _Pending:
+    """A question and who waits for its answer."""
+
+    question: Question
+    client: Hashable
+    key: str
+    answered: asyncio.Future[Verdict] = field(
+        default_factory=lambda: asyncio.get_running_loop().create_future()
+    )
+
+
+class ConsentDesk:
+    """Knows agents, questions and allowances; `client` is the connection that speaks."""
+
+    def __init__(
+        self,
+        changed: Callable[[], None],
+        told: Callable[[Severity, Words], None],
+        asked_for_s: float = ASKED_FOR_S,
+        allowed_for_s: float = ALLOWED_FOR_S,
+    ) -> None:
+        """`changed` is called when `state` has changed; `told` gets what belongs in the log."""
+        self._asked_for_s, self._allowed_for_s = asked_for_s, allowed_for_s
+        self._changed = changed
+        self._told = told
+        self._screens: set[Hashable] = set()
+        self._known: dict[tuple[Hashable, str], _Known] = {}
+        self._pending: dict[int, _Pending] = {}
+        self._last = 0
+
+    @property
+    def state(self) -> Agents:
+        """What screens show."""
+        return Agents(
+            tuple(known.agent for known in self._known.values()),
+            tuple(pending.question for pending in self._pending.values()),
+        )
+
+    # Screens.
+
+    def attend(self, client: Hashable) -> None:
+        """Note that a person can answer at this screen."""
+        self._screens.add(client)
+
+    def attends(self, client: Hashable) -> bool:
+        """Whether a person can answer there."""
+        return client in self._screens
+
+    def knows(self, client: Hashable, key: str | None = None) -> bool:
+        """Whether an agent has joined from there: that of this key, or any."""
+        return any(who is client and key in (None, name) for who, name in self._known)
+
+    def answer(self, number: int, answer: Answer) -> bool:
+        """Answer a question; return False if it is no longer asked."""
+        pending = self._pending.get(number)
+        if pending is None or pending.answered.done():
+            return False
+        if answer is Answer.REFUSE:
+            pending.answered.set_result(Verdict.REFUSED)
+            return True
+        if answer is Answer.FOR_A_TIME:
+            self._allow(pending)
+        pending.answered.set_result(Verdict.ALLOWED)
+        return True
+
+    def end_all(self) -> None:
+        """End every question and every allowance: an emergency stop, or a person's wish."""
+        allowed = [known for known in self._known.values() if known.allowed_until_s]
+        for known in allowed:
+            self._disallow(known)
+        self._end_questions(lambda _pending: True, Verdict.ENDED)
+        if allowed:
+            self._told(Severity.INFO, say("no agent drives without a question any more"))
+            self._changed()
+
+    # Agents.
+
+    def join(self, client: Hashable, key: str, name: str, approval: Approval) -> None:
+        """Note that an agent is connected; `key` distinguishes those of one connection.
+
+        Raises:
+            TooManyError: if there are too many.
+        """
+        if (client, key) in self._known:
+            return
+        if len(self._known) >= MAX_AGENTS:
+            raise TooManyError
+        self._known[client, key] = _Known(Agent(name, approval))
+        self._told(Severity.INFO, say("agent {name} is connected", name=name))
+        if approval is Approval.ALWAYS:
+            words = say("agent {name} drives without asking: --approve always", name=name)
+            self._told(Severity.WARN, words)
+        self._changed()
+
+    async def ask(self, client: Hashable, key: str, lines: tuple[str, ...]) -> Verdict:
+        """Ask a person, unless they have allowed this agent more than once before.
+
+        Raises:
+            TooManyError: if too much is asked at once.
+        """
+        known = self._known[client, key]
+        if known.allowed_until_s > time.monotonic():
+            return Verdict.ALLOWED_BEFORE
+        if not self._screens:
+            return Verdict.NO_SCREEN
+        if len(self._pending) >= MAX_QUESTIONS:
+            raise TooManyError
+        self._last += 1
+        question = Question(self._last, known.agent.name, lines, time.time() + self._asked_for_s)
+        pending = self._pending[question.number] = _Pending(question, client, key)
+        self._changed()
+        try:
+            return await asyncio.wait_for(pending.answered, self._asked_for_s)
+        except asyncio.TimeoutError:
+            return Verdict.LATE
+        finally:
+            self._pending.pop(question.number, None)
+            self._changed()
+
+    def withdraw(self, client: Hashable, key: str | None = None) -> None:
+        """End the questions of a connection, or of one of its agents."""
+        self._end_questions(
+            lambda one: one.client is client and key in (None, one.key), Verdict.ENDED
+        )
+
+    def leave(self, client: Hashable) -> None:
+        """Forget a connection that has been closed."""
+        if client in self._screens:
+            self._screens.discard(client)
+            if not self._screens:
+                self._end_questions(lambda _pending: True, Verdict.SCREEN_GONE)
+                self.end_all()
+        self.withdraw(client)
+        mine = [key for key in self._known if key[0] is client]
+        for key in mine:
+            name = self._known.pop(key).agent.name
+            self._told(Severity.INFO, say("agent {name} has left", name=name))
+        if mine:
+            self._changed()
+
+    def _allow(self, pending: _Pending) -> None:
+        known = self._known.get((pending.client, pending.key))
+        if known is None:
+            return
+        until_s = time.monotonic() + self._allowed_for_s
+        known.allowed_until_s = until_s
+        known.agent = Agent(
+            known.agent.name, known.agent.approval, time.time() + self._allowed_for_s
+        )
+        words = say(
+            "agent {name} may drive without a question for {minutes:g} min",
+            name=known.agent.name,
+            minutes=self._allowed_for_s / 60,
+        )
+        self._told(Severity.WARN, words)
+        asyncio.get_running_loop().call_later(self._allowed_for_s, self._run_out, known, until_s)
+
+    def _run_out(self, known: _Known, until_s: float) -> None:
+        if known.allowed_until_s == until_s:
+            self._disallow(known)
+            self._changed()
+
+    def _disallow(self, known: _Known) -> None:
+        known.allowed_until_s = 0.0
+        known.agent = Agent(known.agent.name, known.agent.approval)
+
+    def _end_questions(self, which: Callable[[_Pending], bool], verdict: Verdict) -> None:
+        for pending in self._pending.values():
+            if which(pending) and not pending.answered.done():
+                pending.answered.set_result(verdict)

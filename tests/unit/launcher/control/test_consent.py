@@ -1,0 +1,174 @@
+"""Whether an agent may drive: only a person's answer allows it, and everything else ends it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+
+import pytest
+
+from launcher.consent import Agent, Agents, Answer, Approval, Question, Verdict
+from launcher.control.agent_requests import serve_agents
+from launcher.control.bad_request import BadRequestError
+from launcher.control.consent import MAX_QUESTIONS, ConsentDesk, TooManyError
+from launcher.control.protocol import encode, pack_agents, unpack_agents
+from tests.waiting import until
+from text.sentences import say
+
+SCREEN, AGENT = "screen", "agent"
+LINES = (say("drives {metres} m", metres="0.4"),)
+
+
+def desk(asked_for_s: float = 30.0, allowed_for_s: float = 300.0) -> ConsentDesk:
+    """Return a desk with an agent."""
+    made = ConsentDesk(lambda: None, lambda *_: None, asked_for_s, allowed_for_s)
+    made.join(AGENT, "k", "claude", Approval.ASK)
+    return made
+
+
+async def asked(made: ConsentDesk) -> tuple[asyncio.Task[Verdict], Question]:
+    """Ask, and return the question that is on the screen now."""
+    before = len(made.state.questions)
+    asking = asyncio.create_task(made.ask(AGENT, "k", LINES))
+    questions = await until(lambda: made.state.questions[before:], "a question")
+    return asking, questions[0]
+
+
+async def test_without_a_screen_nothing_is_allowed() -> None:
+    assert await desk().ask(AGENT, "k", LINES) is Verdict.NO_SCREEN
+
+
+@pytest.mark.parametrize(
+    ("answer", "verdict"),
+    [
+        (Answer.ONCE, Verdict.ALLOWED),
+        (Answer.FOR_A_TIME, Verdict.ALLOWED),
+        (Answer.REFUSE, Verdict.REFUSED),
+    ],
+)
+async def test_a_person_answers_once(answer: Answer, verdict: Verdict) -> None:
+    made = desk()
+    made.attend(SCREEN)
+    asking, question = await asked(made)
+    assert question.agent == "claude"
+    assert question.lines == LINES
+    assert made.answer(question.number, answer)
+    assert await asking is verdict
+    assert made.state.questions == ()
+    assert not made.answer(question.number, Answer.ONCE)
+
+
+async def test_an_allowance_for_a_time_asks_no_more_until_it_is_ended() -> None:
+    made = desk()
+    made.attend(SCREEN)
+    asking, question = await asked(made)
+    made.answer(question.number, Answer.FOR_A_TIME)
+    await asking
+    assert made.state.connected[0].allowed_until_s > 0
+    assert await made.ask(AGENT, "k", LINES) is Verdict.ALLOWED_BEFORE
+    made.end_all()
+    assert made.state.connected[0].allowed_until_s == 0
+    again, _question = await asked(made)
+    made.end_all()
+    assert await again is Verdict.ENDED
+
+
+async def test_an_allowance_runs_out() -> None:
+    made = desk(allowed_for_s=0.05)
+    made.attend(SCREEN)
+    asking, question = await asked(made)
+    made.answer(question.number, Answer.FOR_A_TIME)
+    await asking
+    await until(lambda: made.state.connected[0].allowed_until_s == 0, "the end of the allowance")
+    again, _question = await asked(made)
+    made.withdraw(AGENT)
+    assert await again is Verdict.ENDED
+
+
+async def test_an_allowance_is_for_one_agent() -> None:
+    made = desk()
+    made.join(AGENT, "other", "gpt", Approval.ASK)
+    made.attend(SCREEN)
+    asking, question = await asked(made)
+    made.answer(question.number, Answer.FOR_A_TIME)
+    await asking
+    other = asyncio.create_task(made.ask(AGENT, "other", LINES))
+    await until(lambda: made.state.questions, "a question")
+    made.leave(AGENT)
+    assert await other is Verdict.ENDED
+    assert made.state == Agents()
+
+
+async def test_no_answer_is_a_refusal() -> None:
+    made = desk(asked_for_s=0.05)
+    made.attend(SCREEN)
+    assert await made.ask(AGENT, "k", LINES) is Verdict.LATE
+    assert made.state.questions == ()
+
+
+async def test_the_last_screen_that_goes_takes_questions_and_allowances_with_it() -> None:
+    made = desk()
+    made.attend(SCREEN)
+    asking, question = await asked(made)
+    made.answer(question.number, Answer.FOR_A_TIME)
+    await asking
+    made.leave(SCREEN)
+    assert made.state.connected[0].allowed_until_s == 0
+    made.attend(SCREEN)
+    made.attend("another screen")
+    again, _question = await asked(made)
+    made.leave(SCREEN)
+    assert not again.done()
+    made.leave("another screen")
+    assert await again is Verdict.SCREEN_GONE
+
+
+async def test_a_person_is_not_flooded() -> None:
+    made = desk()
+    made.attend(SCREEN)
+    asking = [(await asked(made))[0] for _ in range(MAX_QUESTIONS)]
+    with pytest.raises(TooManyError):
+        await made.ask(AGENT, "k", LINES)
+    made.withdraw(AGENT, "k")
+    assert set(await asyncio.gather(*asking)) == {Verdict.ENDED}
+
+
+async def test_nobody_answers_for_themselves() -> None:
+    made = desk()
+    for request in (
+        {"op": "attend"},
+        {"op": "answer", "question": 1, "answer": "once"},
+    ):
+        with pytest.raises(BadRequestError):
+            await serve_agents(made, AGENT, request, lambda *_: None)
+    await serve_agents(made, SCREEN, {"op": "attend"}, lambda *_: None)
+    join = {"op": "join", "key": "k", "name": "x", "approval": "ask"}
+    with pytest.raises(BadRequestError):
+        await serve_agents(made, SCREEN, join, lambda *_: None)
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [
+        {"op": "join", "key": "k", "name": "x" * 100, "approval": "ask"},
+        {"op": "join", "key": 1, "name": "x", "approval": "ask"},
+        {"op": "join", "key": "k", "name": "x", "approval": "yes"},
+        {"op": "ask", "key": "unknown", "lines": ["a"]},
+        {"op": "ask", "key": "k", "lines": []},
+        {"op": "ask", "key": "k", "lines": ["x" * 5000]},
+        {"op": "ask", "key": "k", "lines": [3]},
+        {"op": "ask", "key": "k", "lines": [["a"]]},
+        {"op": "tell", "severity": "loud", "words": "a"},
+        {"op": "tell", "severity": "info", "words": None},
+    ],
+)
+async def test_nonsense_is_refused(request_: dict[str, object]) -> None:
+    with pytest.raises(BadRequestError):
+        await serve_agents(desk(), AGENT, request_, lambda *_: None)
+
+
+def test_agents_and_questions_arrive_as_they_were_sent() -> None:
+    agents = Agents(
+        (Agent("claude", Approval.ALWAYS, 12.5),), (Question(3, "claude", LINES, 20.0),)
+    )
+    assert unpack_agents(json.loads(encode(pack_agents(agents)))) == agents
