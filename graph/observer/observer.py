@@ -50,11 +50,14 @@ class Observer:
         discovery: str | tuple[str, ...] = "localhost",
         period_s: float = 0.1,
         graph_s: float = LOOK_AT_GRAPH_S,
+        role: str = "observer",
     ) -> None:
         """Prepare for a domain; `discovery` is localhost, subnet, or the addresses of peers.
 
         `graph_s`: seconds between two looks at who is there, which cost more than those at messages
+        `role`: part of the node's name, see `graph.ros.ONLY_LISTENING`
         """
+        self._role = role
         self._domain = domain
         self._discovery = discovery
         self._period_s = period_s
@@ -278,7 +281,7 @@ class Observer:
         end = ObserverError(say("the observer has been stopped"))
         try:
             # This imports rclpy; the screen need not wait for it.
-            node = ObserverNode(open_ros(self._domain, self._discovery), self._graph_s)
+            node = ObserverNode(open_ros(self._domain, self._discovery, self._role), self._graph_s)
             node.serve_urgent = lambda: self._serve_urgent(node)
         except Exception as error:  # noqa: BLE001 - reported to the screen
             words = say("ROS cannot be used: {error}", error=str(error))

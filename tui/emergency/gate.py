@@ -1,23 +1,16 @@
-"""What the gate reports about itself on /safety_state, and the same in the current language."""
+"""What the gate reports about itself on /safety_state, in the current language."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
 
+from robot.safety.gate_report import STOPPED, Gate
 from robot.topics import DRIVE_TELEOP
 from text.figures import figure
 from text.i18n import N_, _
 from text.plain import plain
 
-if TYPE_CHECKING:
-    from graph.data import Sample
-
-NODE = "safety_stop"
-STOPPED = "emergency_stop"
 HELD = {
     "blocked_forward": N_("forward is blocked"),
     "blocked_backward": N_("backward is blocked"),
@@ -55,71 +48,6 @@ BEYOND = re.compile(r"(?P<value>\S+) (?P<unit>\S+), limit (?P<limit>\S+) (?P=uni
 STAMP = re.compile(r"stamp (?P<age>\S+) s old")
 SOURCES = {DRIVE_TELEOP: N_("the keys")}
 """Sources with a better name than that of their topic."""
-
-
-@dataclass(frozen=True)
-class Gate:
-    """The gate's report, as received."""
-
-    verdict: str = ""
-    """`free`, or one of `HELD`."""
-    states: Mapping[str, str] = field(default_factory=dict)
-    """`front` and `rear` to `free`, `close`, `invalid` or `silent`; only for existing sensors."""
-    metres: Mapping[str, float] = field(default_factory=dict)
-    """`front` and `rear` to the newest distance, if there is one."""
-    source: str = ""
-    """The topic that it obeys now, empty if there is none."""
-    ignored: str = ""
-    """A topic that it ignores because its priority is lower."""
-    share: float = 1.0
-    """The share of the requested speed that it allows, 0 to 1."""
-    message: str = ""
-    refused: str = ""
-    """What was recently requested and refused: `0.8 m/s, limit 0.5 m/s`."""
-    critical_m: float | None = None
-    """The distance below which it stops; None if it does not say."""
-    slow_m: float | None = None
-    """The distance below which it slows down; it never does if that is at most `critical_m`."""
-
-    @property
-    def is_held(self) -> bool:
-        """Whether it keeps the robot from driving in one direction or the other."""
-        return self.verdict in HELD
-
-    @property
-    def is_slowed(self) -> bool:
-        """Whether it allows only a part of the speed."""
-        return 0.0 < self.share < 1.0
-
-
-def gate_in(sample: Sample) -> Gate | None:
-    """Read a diagnostic_msgs/DiagnosticArray; None if it is not from the gate."""
-    statuses: Any = sample.value.get("status", ())
-    for status in statuses if isinstance(statuses, (list, tuple)) else ():
-        if isinstance(status, Mapping) and status.get("name") == NODE:
-            return _read(status)
-    return None
-
-
-def _read(status: Mapping[str, Any]) -> Gate:
-    values: dict[str, str] = {}
-    for pair in status.get("values", ()):
-        if isinstance(pair, Mapping):
-            values[str(pair.get("key", ""))] = str(pair.get("value", ""))
-    metres = {place: _number(values.get(f"{place}_m", "")) for place in PLACES}
-    share = _number(values.get("allowed", ""))
-    return Gate(
-        values.get("verdict", ""),
-        {place: values[place] for place in PLACES if place in values},
-        {place: number for place, number in metres.items() if number is not None},
-        values.get("source", ""),
-        values.get("ignored", ""),
-        1.0 if share is None else share,
-        str(status.get("message", "")),
-        values.get("refused", ""),
-        _number(values.get("critical_m", "")),
-        _number(values.get("slow_m", "")),
-    )
 
 
 def held_words(gate: Gate) -> str:
@@ -174,11 +102,3 @@ def _sensor_words(gate: Gate, place: str, state: str) -> str:
         return _((NOTHING_NEAR if state == "free" else TOO_CLOSE)[place])
     words = PLACES[place].get(state, "{metres}")
     return _(words).format(metres="?" if metres is None else figure(metres))
-
-
-def _number(text: str) -> float | None:
-    try:
-        number = float(text)
-    except ValueError:
-        return None
-    return None if math.isnan(number) else number

@@ -12,10 +12,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from robot.safety.gate_report import STOPPED, Gate, gate_in
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from text.i18n import N_
 from text.plain import plain
-from tui.emergency.gate import STOPPED, Gate, gate_in, held_words, refused_words
+from tui.emergency.gate import held_words, refused_words
 from tui.emergency.nodes import NodeStop, present, reported_stops
 
 if TYPE_CHECKING:
@@ -127,7 +128,7 @@ class Emergency:
             state = state.heard(bool(sample.value.get("data")), sample.received_s, said_s)
         state = state.obeyed(reported_stops(state.nodes, update), update)
         for sample in update.samples.get(SAFETY_STATE, ()):
-            gate = gate_in(sample)
+            gate = gate_in(sample.value)
             settled = sample.received_s - state.heard_s > SETTLED_S
             if gate is not None and settled and not state.nodes:
                 state = state.told_by_gate(gate)

@@ -12,13 +12,14 @@ from textual.content import Content
 from textual.message import Message
 
 from graph.publishing.dead_man_switch import HeldCommand
+from robot.safety.gate_report import Gate, gate_in
 from robot.topics import DRIVE_SAFE, SAFETY_STATE, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
 from text.i18n import N_, _
 from text.plain import plain
 from tui import clock
 from tui.actions import REGISTRY, Acting, bindings
-from tui.emergency.gate import Gate, gate_in, gate_words
+from tui.emergency.gate import gate_words
 from tui.frame.actions.app import EmergencyRelease
 from tui.frame.host import Host, host_of
 from tui.panels.panel import newest, row_of
@@ -202,7 +203,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         """Show the newest values."""
         self._follow(route(update))
         for sample in update.samples.get(SAFETY_STATE, ()):
-            self._gate = gate_in(sample) or self._gate
+            self._gate = gate_in(sample.value) or self._gate
         self._allowed = _drive(newest(update, DRIVE_SAFE)) or self._allowed
         turned = newest(update, WHEEL_COMMANDS)
         self._wheels = (None if turned is None else wheels_in(turned.value)) or self._wheels

@@ -14,6 +14,7 @@ from textual.pilot import Pilot
 
 from graph.data import GraphUpdate
 from launcher.events import ClosedEvent
+from robot.safety.gate_report import gate_in
 from robot.topics import DRIVE, DRIVE_TELEOP, SAFETY_STATE
 from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
@@ -31,7 +32,7 @@ from tests.waiting import until
 from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
-from tui.emergency.gate import gate_in, gate_words
+from tui.emergency.gate import gate_words
 from tui.teleop.actions import OpenTeleop
 from tui.teleop.keys import FIRST_HOLD_S, Move
 from tui.teleop.route import DRIVE_TYPE
@@ -308,7 +309,7 @@ async def test_it_is_offered_only_where_there_is_a_robot() -> None:
     ],
 )
 def test_the_gate_is_told_in_the_screens_words(values: dict[str, str], words: str) -> None:
-    gate = gate_in(safety(**values))
+    gate = gate_in(safety(**values).value)
     assert gate is not None
     assert gate_words(gate) == words
 
@@ -318,7 +319,7 @@ def test_the_gate_is_told_in_the_screens_words(values: dict[str, str], words: st
     [{}, {"status": None}, {"status": [None]}, {"status": [{"name": "other"}]}],
 )
 def test_what_is_no_word_of_the_gate_is_passed_over(value: dict[str, Any]) -> None:
-    assert gate_in(sample(SAFETY_STATE, SAFETY_TYPE, value)) is None
+    assert gate_in(value) is None
 
 
 SLOWED = safety(front_m="0.700", allowed="0.40", source="/drive_teleop")

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 
 import pytest
 
+from robot.safety.gate_report import Gate
 from text.i18n import set_language
-from tui.emergency.gate import Gate, gate_words
+from tui.emergency.gate import gate_words
 
 
 @pytest.fixture(autouse=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from robot.safety.gate_report import Gate, gate_in
 from robot.topics import SAFETY_STATE
-from tui.emergency.gate import Gate, gate_in
 from tui.panels.panel import newest, row_of
 from tui.panels.sonar.words import COURSE, FREE_FROM_M, Bounds
 
@@ -23,7 +23,7 @@ def bounds_of(update: GraphUpdate, before: Bounds) -> Bounds:
     if row is None or not row.publishers:
         return COURSE
     sample = newest(update, SAFETY_STATE)
-    gate = None if sample is None else gate_in(sample)
+    gate = None if sample is None else gate_in(sample.value)
     return before if gate is None else _told(gate)
 
 
