@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 from typing import IO, TYPE_CHECKING, NoReturn
 
-from cli.values import at_once, bandwidth, count, domain, folder, rate, seconds, whole
+from cli.values import at_once, bandwidth, count, domain, folder, port, rate, seconds, whole
 from course.grade.defaults import FORMATS, WITHIN_S
 from text.i18n import LANGUAGES, N_, _, ngettext
 from text.output import harmless
@@ -29,6 +29,7 @@ COMMANDS = {
     "attach": N_("open the screen of a profile running in the background"),
     "down": N_("stop a profile running in the background"),
     "watch": N_("open the screen on nodes that others have started in a ROS domain"),
+    "mcp": N_("let agents look at the robot, propose, and drive only with consent (MCP)"),
     "record": N_("record topics of running nodes into a folder that `ros2 bag` can read"),
     "replay": N_("open the screen on a recording, without a robot"),
     "new": N_("make a folder of one's own for a lesson, to write its nodes in"),
@@ -39,6 +40,8 @@ COMMANDS = {
         "check what is installed, which ROS, which ports, and say how to fix what is missing"
     ),
 }
+MCP_PORT = 8765
+"""Where agents find `deck mcp --http`."""
 HELP = "help"
 """`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
 WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--bandwidth", "--lang")
@@ -232,6 +235,48 @@ def _add_watch(parser: Parser) -> None:
     )
     _add_bandwidth(parser)
     parser.epilog = _("Deck starts and stops nothing here.")
+
+
+def _add_mcp(parser: Parser) -> None:
+    _add_running(parser)
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("ROS domain; by default that of the running robot"),
+    )
+    parser.add_argument(
+        "--approve",
+        choices=("never", "ask", "always"),
+        default="ask",
+        help=_(
+            "whether agents drive: never, after the person at the screen is asked (the default), "
+            "or always"
+        ),
+    )
+    parser.add_argument(
+        "--http",
+        action="store_true",
+        help=_("serve agents on this machine by HTTP, not the one that has started it"),
+    )
+    parser.add_argument(
+        "--port",
+        metavar="N",
+        type=port,
+        default=MCP_PORT,
+        help=_("with --http: the port, {port} by default; 0 takes a free one").format(
+            port=MCP_PORT
+        ),
+    )
+    parser.add_argument(
+        "--show-token",
+        action="store_true",
+        help=_("show the token that agents need for --http, and end"),
+    )
+    parser.epilog = _(
+        "Limits of speed and distance are in the profile, and no approval lifts them. The agent "
+        "finds the robot whenever it runs. Exit code: 0, or 2 if it could not start."
+    )
 
 
 def _add_record(parser: Parser) -> None:
@@ -436,6 +481,7 @@ _ADD = {
     "attach": _add_attach,
     "down": _add_running,
     "watch": _add_watch,
+    "mcp": _add_mcp,
     "record": _add_record,
     "replay": _add_replay,
     "new": _add_new,

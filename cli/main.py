@@ -25,6 +25,7 @@ HANDLERS = {
     "open": ("cli.screen", "open_command"),
     "attach": ("cli.screen", "attach_command"),
     "watch": ("cli.watch", "watch_command"),
+    "mcp": ("cli.mcp", "mcp_command"),
     "run": ("cli.run", "run_command"),
     "list": ("cli.listing", "list_command"),
     "check": ("cli.listing", "check_command"),

@@ -10,6 +10,7 @@ from launcher.errors import DomainError
 from text.i18n import _, localized
 
 MOST_AT_ONCE = 64
+LAST_PORT = 65535
 
 
 def domain(text: str) -> int:
@@ -79,6 +80,15 @@ def whole(text: str) -> int:
     if not (text.isascii() and text.isdigit()):
         raise argparse.ArgumentTypeError(_("{text!r} is not a whole number").format(text=text))
     return int(text)
+
+
+def port(text: str) -> int:
+    """Return a TCP port, 0 for any that is free."""
+    number = whole(text)
+    if number > LAST_PORT:
+        words = _("expected a number from {least} to {most}, got {n}")
+        raise argparse.ArgumentTypeError(words.format(least=0, most=LAST_PORT, n=number))
+    return number
 
 
 def at_once(text: str) -> int:

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent
 LOCALE = ROOT / "text" / "locale"
 DOMAIN = "deck"
-ROOMS = ("brain", "cli", "course", "graph", "launcher", "nodes", "robot", "text", "tui")
+ROOMS = ("agents", "brain", "cli", "course", "graph", "launcher", "nodes", "robot", "text", "tui")
 KEYWORDS = (
-    *("_", "N_", "ngettext:1,2", "say"),
+    *("_", "N_", "ngettext:1,2", "refused", "say"),
     # The descriptions of node parameters.
     *("Choice:3", "Number:3", "Switch:3", "Text:3", "Whole:3"),
 )

@@ -317,9 +317,13 @@ class SupervisorClient:
         """Say that an agent is connected; `key` distinguishes those of this client."""
         await self._ask("join", key=key, name=name, approval=approval.value)
 
-    async def ask_consent(self, key: str, lines: Iterable[str]) -> Verdict:
-        """Ask the person at the screen whether an agent may do this; takes a while."""
-        return Verdict(await self._ask("ask", key=key, lines=[pack_text(line) for line in lines]))
+    async def ask_consent(self, key: str, lines: Iterable[str], *, anew: bool = False) -> Verdict:
+        """Ask the person at the screen whether an agent may do this; takes a while.
+
+        `anew`: also if they have allowed it for a time.
+        """
+        packed = [pack_text(line) for line in lines]
+        return Verdict(await self._ask("ask", key=key, lines=packed, anew=anew))
 
     async def withdraw(self, key: str | None = None) -> None:
         """Withdraw the questions of one agent, or of all agents of this client."""

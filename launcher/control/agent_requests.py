@@ -54,9 +54,10 @@ async def serve_agents(
             raise BadRequestError(say("an agent cannot answer its own questions"))
         consent.join(client, _key(request), _agent_name(request), _approval(request))
     elif op == "ask":
+        anew = request.get("anew") is True
         if not consent.knows(client, _key(request)):
             raise BadRequestError(say("an agent has to join before it asks"))
-        return (await consent.ask(client, _key(request), _lines(request))).value
+        return (await consent.ask(client, _key(request), _lines(request), anew=anew)).value
     elif op == "withdraw":
         consent.withdraw(client, None if request.get("key") is None else _key(request))
     else:

@@ -140,14 +140,16 @@ class ConsentDesk:
             self._told(Severity.WARN, words)
         self._changed()
 
-    async def ask(self, client: Hashable, key: str, lines: tuple[str, ...]) -> Verdict:
-        """Ask a person, unless they have allowed this agent more than once before.
+    async def ask(
+        self, client: Hashable, key: str, lines: tuple[str, ...], *, anew: bool = False
+    ) -> Verdict:
+        """Ask a person, unless they have allowed it for a time; `anew`: even then.
 
         Raises:
             TooManyError: if too much is asked at once.
         """
         known = self._known[client, key]
-        if known.allowed_until_s > time.monotonic():
+        if known.allowed_until_s > time.monotonic() and not anew:
             return Verdict.ALLOWED_BEFORE
         if not self._screens:
             return Verdict.NO_SCREEN

@@ -1,0 +1,103 @@
+"""The tools that act without moving the robot, and the stop, which needs nobody's consent."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from typing import TYPE_CHECKING
+
+from agents.raw_access import check_call, check_publish
+from agents.refusal import refused
+from agents.session import BOOL
+from graph.messages.yaml_text import to_yaml
+from robot.topics import EMERGENCY_STOP, SPEAKER
+from robot.words import parse_word
+from text.plain import plain, plain_lines
+
+if TYPE_CHECKING:
+    from agents.arguments import CallArguments, PublishArguments
+    from agents.session import RobotSession
+
+SOUND = "std_msgs/msg/ByteMultiArray"
+SENT_WITHIN_S = 3.0
+OBEYED_WITHIN_S = 2.0
+CALLED_WITHIN_S = 10.0
+MOST_CHARS = 8000
+WORD = re.compile(r"[^\W\d_]+")
+
+
+async def stop(session: RobotSession) -> dict[str, object]:
+    """Engage the emergency stop; where no node obeys it, stop the nodes."""
+    sending = session.observer.publish(EMERGENCY_STOP, BOOL, {"data": True}, latched=True)
+    view, emergency = session.view, session.emergency
+    row = view.topic(EMERGENCY_STOP)
+    if row is None or not row.subscribers:
+        # The graph may not be known yet, right after the start.
+        await view.until(lambda: bool(getattr(view.topic(EMERGENCY_STOP), "subscribers", 0)), 1.0)
+        row = view.topic(EMERGENCY_STOP)
+    heard = row is not None and row.subscribers > 0
+    ended: list[str] = []
+    if not heard:
+        ended = [node.name for node in session.link.nodes.values() if node.state.alive]
+        await session.link.stop()
+    await session.link.withdraw()
+    await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S)
+    await view.until(lambda: bool(emergency.holding), OBEYED_WITHIN_S if heard else 0.0)
+    return {
+        "stopped": True,
+        "held_by": emergency.holding,
+        "nodes_ended": ended,
+        "released_by": "a person at the screen, never an agent",
+    }
+
+
+async def say_aloud(session: RobotSession, text: str) -> dict[str, object]:
+    """Have the robot say something that is no command: its own microphone hears it."""
+    commands = [word for word in WORD.findall(text) if parse_word(word) is not None]
+    if commands or parse_word(text) is not None:
+        raise refused(
+            "{word!r} is a word that drives the robot: its microphone would hear it",
+            word=commands[0] if commands else text,
+        )
+    row = session.view.topic(SPEAKER)
+    if row is None or not row.subscribers:
+        raise refused("nobody hears {topic}: the robot has no voice", topic=SPEAKER)
+    sending = session.observer.publish(SPEAKER, SOUND, {"data": text.encode()})
+    await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S)
+    return {"said": text}
+
+
+async def publish(session: RobotSession, asked: PublishArguments) -> dict[str, object]:
+    """Publish one message on a topic that the profile lists."""
+    listed = session.info.agents.publish
+    row = session.view.topic(asked.topic)
+    types = () if row is None else row.type_names
+    for type_name in types or ("",):
+        check_publish(asked.topic, type_name, listed)
+    if len(types) != 1:
+        raise refused("the type of {topic} is not known: nobody uses it", topic=asked.topic)
+    sending = session.observer.publish(asked.topic, types[0], asked.message)
+    try:
+        count = await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S + 2)
+    except asyncio.TimeoutError:
+        raise refused("it could not be sent in time") from None
+    except Exception as error:  # of the message, by the agent
+        raise refused("it cannot be published: {why}", why=plain(str(error), 300)) from error
+    return {"topic": asked.topic, "type": types[0], "subscribers": count}
+
+
+async def call(session: RobotSession, asked: CallArguments) -> dict[str, object]:
+    """Call a service that the profile lists."""
+    listed = session.info.agents.call
+    row = next((one for one in session.view.services if one.name == asked.service), None)
+    types = () if row is None else row.type_names
+    for type_name in types or ("",):
+        check_call(asked.service, type_name, listed)
+    if len(types) != 1:
+        raise refused("nobody serves {service}", service=asked.service)
+    calling = session.observer.call(asked.service, types[0], asked.request, CALLED_WITHIN_S)
+    result = await asyncio.wrap_future(calling)
+    if not result.ok or result.response is None:
+        raise refused("the call has failed: {why}", why=plain(result.error, 300))
+    answer = plain_lines(to_yaml(result.response, 64))[:MOST_CHARS]
+    return {"service": asked.service, "answer": answer}

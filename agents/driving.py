@@ -1,0 +1,305 @@
+"""Proposing motion, asking for consent, and carrying it out: at most once, within the limits."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from agents.looking import FRESH_S, gate_fields
+from agents.motion import check_rules, motion_words, read_motion
+from agents.preview import Preview, preview_of
+from agents.proposals import EXECUTED_WITHIN_S, ProposalBook
+from agents.refusal import RefusedError, refused
+from agents.road import road_of
+from agents.unasked_way import UnaskedWay
+from launcher.consent import Approval, Verdict
+from launcher.errors import LauncherError
+from launcher.status import Severity
+from robot.topics import LLM_RAW_JSON, LLM_RESULT, ODOMETRY
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from agents.motion import Motion
+    from agents.proposals import Proposal
+    from agents.road import Road
+    from agents.session import RobotSession
+    from graph.data import Sample
+    from text.sentences import Words
+
+STRING = "std_msgs/msg/String"
+SENT_WITHIN_S = 3.0
+HEARD_WITHIN_S = 3.0
+HEAD_WITHIN_S = 8.0
+WATCHED_FOR_S = 20.0
+"""A longer drive goes on after the answer."""
+SETTLES_S = 0.5
+REFUSALS = {
+    Verdict.REFUSED: say("the person at the screen has refused"),
+    Verdict.NO_SCREEN: say(
+        "nobody can be asked: no screen of Deck is attached to this session; open one with "
+        "`deck attach`"
+    ),
+    Verdict.SCREEN_GONE: say("the screen was closed before anybody answered"),
+    Verdict.LATE: say("nobody at the screen has answered in time"),
+    Verdict.ENDED: say("an emergency stop, or the end of the session, has ended the question"),
+}
+
+
+@dataclass(frozen=True)
+class Caller:
+    """The agent that calls."""
+
+    key: str
+    """Distinguishes it from others."""
+    name: str
+    """As it calls itself."""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A motion that the rules permit, and what it would come to now."""
+
+    motion: Motion
+    road: Road
+    preview: Preview | None
+
+    @property
+    def distance_m(self) -> float:
+        """The longest way it could go."""
+        return self.motion.distance_m(self.road.repeat_for_s)
+
+    def lines(self, reason: str) -> list[Words]:
+        """Say what would happen, to the person who is asked."""
+        said = motion_words(self.motion, self.road.repeat_for_s)
+        if self.preview is not None:
+            said.append(self.preview.words)
+        if reason:
+            said.append(say("it says: {reason}", reason=reason))
+        return said
+
+
+class Driving:
+    """Everything that moves the robot on behalf of agents."""
+
+    def __init__(self, approval: Approval) -> None:
+        self.approval = approval
+        self._book = ProposalBook()
+        self._unasked = UnaskedWay()
+        self._under_way = asyncio.Lock()
+
+    def stopped(self) -> None:
+        """Forget all proposals: an emergency stop is in force, or the session has ended."""
+        self._book.clear()
+
+    async def propose(
+        self, session: RobotSession, caller: Caller, commands: Sequence[object], reason: str
+    ) -> dict[str, object]:
+        """Check commands and say what they would do; nothing moves and nobody is asked."""
+        motion = read_motion(commands)
+        checked = await self._checked(session, motion)
+        proposal = self._book.add(caller.key, session.info.run_id, motion, reason)
+        preview = checked.preview
+        return {
+            "proposal": proposal.id,
+            "expires_in_s": EXECUTED_WITHIN_S,
+            "would": [str(line) for line in checked.lines("")],
+            "distance_m": round(checked.distance_m, 3),
+            "reach_m": None if preview is None else round(preview.reach_m, 3),
+            "gate_lets": None if preview is None else preview.lets,
+            "gate": gate_fields(checked.road.gate),
+            "approval": self.approval.value,
+        }
+
+    async def execute(self, session: RobotSession, caller: Caller, name: str) -> dict[str, object]:
+        """Carry out a proposal, if it is allowed."""
+        proposal = self._book.take(name, caller.key, session.info.run_id)
+        return await self._execute(session, caller, proposal)
+
+    async def turn_head(
+        self, session: RobotSession, caller: Caller, pan: int, tilt: int, reason: str
+    ) -> dict[str, object]:
+        """Turn the head, which takes the same consent as driving."""
+        motion = read_motion([{"action": "turn_head", "pan": pan, "tilt": tilt}])
+        proposal = self._book.add(caller.key, session.info.run_id, motion, reason)
+        self._book.take(proposal.id, caller.key, session.info.run_id)
+        return await self._execute(session, caller, proposal)
+
+    async def _checked(self, session: RobotSession, motion: Motion) -> Checked:
+        road = await road_of(session, wheels=motion.moves_wheels)
+        check_rules(motion, session.info.agents, road.repeat_for_s)
+        metres = motion.distance_m(road.repeat_for_s)
+        preview = None
+        if road.gate is not None:
+            preview = preview_of(road.gate, motion.speed_m_s, metres)
+        return Checked(motion, road, preview)
+
+    async def _execute(
+        self, session: RobotSession, caller: Caller, proposal: Proposal
+    ) -> dict[str, object]:
+        if self.approval is Approval.NEVER:
+            raise refused("agents do not move this robot: `deck mcp` runs with --approve never")
+        if self._under_way.locked():
+            raise refused("another proposal is being carried out; wait for its end")
+        async with self._under_way:
+            checked = await self._allowed(session, caller, proposal)
+            words = " · ".join(str(line) for line in checked.lines("")[:1])
+            told = say("{agent} does {id}: {words}", agent=caller.name, id=proposal.id, words=words)
+            # Written before anything moves: if that fails, nothing does.
+            arguments = {"proposal": proposal.id, "commands": json.loads(_thought(proposal, ""))}
+            session.audit.write(caller.name, "execute", arguments, "begins", 0.0)
+            await session.link.tell(Severity.WARN, told)
+            return await self._carry_out(session, proposal, checked)
+
+    async def _allowed(self, session: RobotSession, caller: Caller, proposal: Proposal) -> Checked:
+        """Return what is allowed, checked again after the answer."""
+        _check_free(session)
+        checked = await self._checked(session, proposal.motion)
+        rules = session.info.agents
+        fits = self._unasked.has_room(checked.distance_m, rules.max_total_m)
+        unasked = self.approval is Approval.ALWAYS
+        if unasked and not fits:
+            raise refused(
+                "agents may drive {limit:g} m within five minutes without a question, and have "
+                "done so",
+                limit=rules.max_total_m,
+            )
+        if not unasked:
+            verdict = await _ask(session, caller, checked.lines(proposal.reason), anew=not fits)
+            if not verdict.allows:
+                raise RefusedError(REFUSALS[verdict])
+            unasked = verdict is Verdict.ALLOWED_BEFORE
+        # A person takes their time: meanwhile the robot, or the gate, may have changed.
+        checked = await self._checked(session, proposal.motion)
+        _check_free(session)
+        if unasked:
+            self._unasked.add(checked.distance_m)
+        return checked
+
+    async def _carry_out(
+        self, session: RobotSession, proposal: Proposal, checked: Checked
+    ) -> dict[str, object]:
+        thought = f"{proposal.id}: {proposal.reason}".strip(": ")
+        answers = _Answers(thought)
+        before = _place(session)
+        sent = False
+        try:
+            with session.view.hearing(LLM_RESULT, answers.hear):
+                sending = session.observer.publish(
+                    LLM_RAW_JSON, STRING, {"data": _thought(proposal, thought)}
+                )
+                sent = True
+                await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S)
+                await session.view.until(lambda: answers.heard, HEARD_WITHIN_S)
+                if not answers.heard:
+                    raise refused("{node} has not answered", node=checked.road.parser)
+                if answers.refused:
+                    raise refused(
+                        "{node} has refused it: {why}",
+                        node=checked.road.parser,
+                        why=answers.refused,
+                    )
+                heads = len(proposal.motion.heads)
+                await session.view.until(lambda: len(answers.heads) >= heads, HEAD_WITHIN_S)
+                await self._drives(session, checked)
+        except (asyncio.CancelledError, asyncio.TimeoutError, RefusedError):
+            if sent:
+                _end_drive(session)
+            raise
+        return {
+            "outcome": "carried out",
+            "head": answers.heads,
+            "stopped_by_emergency_stop": session.emergency.engaged,
+            "moved_m": _moved(before, _place(session)),
+        }
+
+    async def _drives(self, session: RobotSession, checked: Checked) -> None:
+        """Wait for the end of the drive, as long as an agent waits for an answer."""
+        if checked.motion.moves_wheels:
+            wait_s = min(checked.road.repeat_for_s + SETTLES_S, WATCHED_FOR_S)
+            await session.view.until(lambda: session.emergency.engaged, wait_s)
+
+
+class _Answers:
+    """What /llm_result says of one response, which its thought identifies."""
+
+    def __init__(self, thought: str) -> None:
+        self._thought = thought
+        self.accepted = False
+        self.refused = ""
+        self.heads: list[dict[str, object]] = []
+
+    @property
+    def heard(self) -> bool:
+        """Whether it was accepted or refused."""
+        return self.accepted or bool(self.refused)
+
+    def hear(self, sample: Sample) -> None:
+        """Take in a message."""
+        try:
+            report = json.loads(str(sample.value.get("data", "")))
+        except (ValueError, RecursionError):
+            return
+        if not isinstance(report, dict):
+            return
+        event = report.get("event")
+        if event == "accepted" and report.get("thought") == self._thought:
+            self.accepted = True
+        elif event == "refused" and not self.accepted:
+            problems = report.get("problems")
+            self.refused = str(problems)[:300] or "?"
+        elif event == "head" and self.accepted and len(self.heads) < 16:
+            self.heads.append({name: report.get(name) for name in ("pan", "tilt", "sum", "error")})
+
+
+async def _ask(
+    session: RobotSession, caller: Caller, lines: Sequence[Words], *, anew: bool
+) -> Verdict:
+    try:
+        return await session.link.ask_consent(caller.key, lines, anew=anew)
+    except asyncio.CancelledError:
+        # The agent waits no longer: nor does the question.
+        with contextlib.suppress(LauncherError):
+            await asyncio.shield(session.link.withdraw(caller.key))
+        raise
+    except LauncherError as error:
+        raise refused("nobody could be asked: {why}", why=str(error)) from error
+
+
+def _check_free(session: RobotSession) -> None:
+    if session.emergency.engaged:
+        raise refused("the emergency stop is in force; only a person releases it")
+
+
+def _thought(proposal: Proposal, thought: str) -> str:
+    return proposal.motion.response(thought)
+
+
+def _end_drive(session: RobotSession) -> None:
+    """Have the robot stand: whoever has moved it does not look any more."""
+    stop = {"thought": "", "commands": [{"action": "drive", "speed": 0.0, "steering": 0.0}]}
+    done = session.observer.publish(LLM_RAW_JSON, STRING, {"data": json.dumps(stop)})
+    done.add_done_callback(lambda future: future.cancelled() or future.exception())
+
+
+def _place(session: RobotSession) -> tuple[float, float] | None:
+    sample = session.view.newest(ODOMETRY, FRESH_S)
+    if sample is None:
+        return None
+    try:
+        pose: Any = sample.value["pose"]
+        place = pose["pose"]["position"]
+        return float(place["x"]), float(place["y"])
+    except (KeyError, TypeError, ValueError):
+        return None
+
+
+def _moved(before: tuple[float, float] | None, after: tuple[float, float] | None) -> float | None:
+    if before is None or after is None:
+        return None
+    return round(math.dist(before, after), 3)

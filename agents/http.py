@@ -1,0 +1,127 @@
+"""MCP over HTTP on this machine: for agents that are running already. Each one needs the token.
+
+Only 127.0.0.1 is listened on. A web page that a browser has open cannot speak to it either: the SDK
+checks Host and Origin, and the token is nowhere in a browser.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import hmac
+import socket
+from typing import TYPE_CHECKING
+
+import uvicorn
+from mcp.server.transport_security import TransportSecuritySettings
+from starlette.responses import PlainTextResponse
+
+from launcher.errors import UsageError
+from text.os_words import os_reason
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from starlette.types import ASGIApp, Receive, Scope, Send
+
+    from agents.server import AgentServer
+
+HOST = "127.0.0.1"
+PATH = "/mcp"
+MAX_BODY_BYTES = 1 << 20
+MAX_SESSIONS = 16
+IDLE_S = 1800.0
+END_WITHIN_S = 2
+
+
+def listen(port: int) -> socket.socket:
+    """Return a socket on this machine only; port 0 takes a free one.
+
+    Raises:
+        UsageError: if the port cannot be had.
+    """
+    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind((HOST, port))
+        listening.listen(16)
+    except OSError as error:
+        listening.close()
+        words = say(
+            "port {port} cannot be listened on: {reason}; choose another with --port",
+            port=port,
+            reason=os_reason(error),
+        )
+        raise UsageError(words) from error
+    return listening
+
+
+def address_of(listening: socket.socket) -> str:
+    """Return the address that an agent is given."""
+    return f"http://{HOST}:{listening.getsockname()[1]}{PATH}"
+
+
+async def serve_http(server: AgentServer, listening: socket.socket, token: str) -> None:
+    """Serve agents until this is cancelled."""
+    port = listening.getsockname()[1]
+    names = [f"{host}:{port}" for host in (HOST, "localhost")]
+    app = server.mcp.streamable_http_app(
+        streamable_http_path=PATH,
+        max_request_body_size=MAX_BODY_BYTES,
+        max_sessions=MAX_SESSIONS,
+        session_idle_timeout=IDLE_S,
+        transport_security=TransportSecuritySettings(
+            allowed_hosts=names, allowed_origins=[f"http://{name}" for name in names]
+        ),
+        host=HOST,
+    )
+    config = uvicorn.Config(
+        TokenNeeded(app, token),
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=END_WITHIN_S,
+    )
+    web = _Web(config)
+    async with server.looking():
+        serving = asyncio.create_task(web.serve(sockets=[listening]))
+        try:
+            await asyncio.shield(serving)
+        finally:
+            web.should_exit = True
+            with contextlib.suppress(asyncio.CancelledError):
+                await serving
+
+
+class _Web(uvicorn.Server):
+    """Leaves the signals to the command."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Capture nothing."""
+        yield
+
+
+class TokenNeeded:
+    """Lets only those in who know the token."""
+
+    def __init__(self, app: ASGIApp, token: str) -> None:
+        self._app = app
+        self._wanted = f"Bearer {token}".encode()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve a request."""
+        if scope["type"] == "http":
+            given = [value for name, value in scope["headers"] if name == b"authorization"]
+            if len(given) != 1 or not hmac.compare_digest(given[0], self._wanted):
+                refusal = PlainTextResponse(
+                    "a bearer token is needed: deck mcp --show-token\n",
+                    status_code=401,
+                    headers={"WWW-Authenticate": "Bearer"},
+                )
+                await refusal(scope, receive, send)
+                return
+        elif scope["type"] != "lifespan":
+            return
+        await self._app(scope, receive, send)

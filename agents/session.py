@@ -1,0 +1,157 @@
+"""The session that agents look at: found, joined, and found again when it has ended."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from typing import TYPE_CHECKING
+
+from agents.audit import Audit
+from agents.emergency import EmergencyWatch
+from agents.refusal import refused
+from agents.view import GraphView
+from graph.observer.observer import Observer
+from launcher.client import client
+from launcher.errors import LauncherError, SessionError, SeveralRunningError, UsageError
+from launcher.events import ClosedEvent
+from robot.topics import EMERGENCY_STOP
+from text.sentences import reason_of, say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from graph.data import GraphUpdate
+    from launcher.client.client import SupervisorClient
+    from launcher.status import SessionInfo
+    from text.sentences import Words
+
+LOOK_EVERY_S = 0.5
+PERIOD_S = 0.1
+BOOL = "std_msgs/msg/Bool"
+
+
+class RobotSession:
+    """A running session: its supervisor, its graph, and the record of what agents do."""
+
+    def __init__(self, link: SupervisorClient, stopped: Callable[[], None]) -> None:
+        """Begin to look; `stopped` is called while an emergency stop is in force."""
+        self.link = link
+        self.audit = Audit(link.session.log_dir)
+        self.emergency = EmergencyWatch()
+        self.observer = Observer(
+            link.session.domain, link.session.discovery, PERIOD_S, role="agents"
+        )
+        self.view = GraphView(self.observer)
+        self.joined: set[str] = set()
+        """Keys of the agents that the supervisor knows of."""
+        self._stopped = stopped
+        self._was_stopped = False
+        self._ending: asyncio.Future[None] | None = None
+        self._loop = asyncio.get_running_loop()
+        self.observer.start(self._hand_over)
+        # So that the first stop goes out at once.
+        prepared = self.observer.prepare_publisher(EMERGENCY_STOP, BOOL, latched=True)
+        prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
+
+    @property
+    def info(self) -> SessionInfo:
+        """What runs."""
+        return self.link.session
+
+    async def until_end(self) -> None:
+        """Return when the session has ended."""
+        async for event in self.link.events():
+            if isinstance(event, ClosedEvent):
+                return
+
+    async def close(self) -> None:
+        """Leave the session and its graph."""
+        await asyncio.to_thread(self.observer.stop)
+        await self.link.aclose()
+
+    def _hand_over(self, update: GraphUpdate) -> None:
+        # The loop may have been closed in the meantime.
+        with contextlib.suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(self._take, update)
+
+    def _take(self, update: GraphUpdate) -> None:
+        stopped = self.emergency.see(update)
+        if stopped:
+            self._stopped()
+        if stopped and not self._was_stopped:
+            # Also where no screen is: what a person has allowed before does not outlive a stop.
+            self._ending = asyncio.ensure_future(self._end_consent())
+        self._was_stopped = stopped
+        self.view.take(update)
+
+    async def _end_consent(self) -> None:
+        with contextlib.suppress(LauncherError):
+            await self.link.end_consent()
+
+
+class SessionFinder:
+    """Keeps to the session of a name or a domain, whenever it runs."""
+
+    def __init__(self, name: str | None, domain: int | None, stopped: Callable[[], None]) -> None:
+        self._name, self._domain, self._stopped = name, domain, stopped
+        self._now: RobotSession | None = None
+        self._why: Words | str = say("no session has been looked for yet")
+        self._looked = asyncio.Event()
+
+    async def keep(self) -> None:
+        """Look for the session, stay with it to its end, and look again; until cancelled."""
+        while True:
+            try:
+                found = await self._find()
+            except LauncherError as error:
+                self._why = reason_of(error)
+            except OSError as error:
+                self._why = str(error)
+            else:
+                await self._stay(found)
+                continue
+            finally:
+                self._looked.set()
+            await asyncio.sleep(LOOK_EVERY_S)
+
+    async def session(self) -> RobotSession:
+        """Return the session.
+
+        Raises:
+            RefusedError: if there is none.
+        """
+        await self._looked.wait()
+        if self._now is None:
+            raise refused("no robot to speak to: {why}", why=self._why)
+        return self._now
+
+    @property
+    def now(self) -> RobotSession | None:
+        """The session, None if there is none."""
+        return self._now
+
+    async def _find(self) -> SupervisorClient:
+        if self._domain is None:
+            return await client.attach(self._name)
+        sessions = await asyncio.to_thread(client.running)
+        here = [one for one in sessions if one.domain == self._domain]
+        if self._name is not None:
+            here = [one for one in here if self._name in (one.name, one.run_id, one.lesson)]
+        if len(here) > 1:
+            raise SeveralRunningError([one.name for one in here])
+        if not here:
+            raise UsageError(say("nothing is running in domain {domain}", domain=self._domain))
+        return await client.attach(here[0].run_id)
+
+    async def _stay(self, link: SupervisorClient) -> None:
+        session = RobotSession(link, self._stopped)
+        self._now = session
+        self._looked.set()
+        try:
+            await session.until_end()
+        finally:
+            self._now = None
+            self._why = say("the session {name} has ended", name=link.session.name)
+            self._stopped()
+            with contextlib.suppress(SessionError):
+                await session.close()

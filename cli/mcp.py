@@ -1,0 +1,97 @@
+"""`deck mcp`: the robot for agents that speak the Model Context Protocol, and its safeguards."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import os
+import signal
+import sys
+from typing import TYPE_CHECKING
+
+from text.i18n import _
+from text.output import say_error, write
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from collections.abc import Callable, Coroutine
+
+    from agents.server import AgentServer
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class _PlainHandler(logging.Handler):
+    """Writes to standard error what is safe to write there."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write a line."""
+        say_error(f"deck mcp: {plain(record.getMessage(), 500)}")
+
+
+def mcp_command(options: Namespace) -> int:
+    """Serve agents until the agent, or a signal, ends it."""
+    if options.show_token:
+        from agents.token import own_token
+
+        write(own_token())
+        return 0
+    if not options.http and sys.stdin.isatty():
+        say_error(
+            _(
+                "deck mcp is started by an agent, which speaks to it on standard input; "
+                "`--http` serves agents that run already"
+            )
+        )
+        return 2
+    return _http(options) if options.http else _stdio(options)
+
+
+def _stdio(options: Namespace) -> int:
+    # Before anything is imported that might write.
+    from agents.stdio import serve_stdio, take_standard_streams
+
+    source, sink = take_standard_streams()
+    _run(lambda server: serve_stdio(server, source, sink), options)
+    return 0
+
+
+def _http(options: Namespace) -> int:
+    from agents.http import address_of, listen, serve_http
+    from agents.token import own_token
+
+    token = own_token()
+    listening = listen(options.port)
+    said = _("{address} serves agents that have the token, see `deck mcp --show-token`")
+    say_error(said.format(address=address_of(listening)))
+    with contextlib.suppress(OSError):
+        # What libraries write must not be taken for an answer.
+        os.dup2(2, 1)
+    with listening:
+        _run(lambda server: serve_http(server, listening, token), options)
+    return 0
+
+
+def _server(options: Namespace) -> AgentServer:
+    from agents.server import AgentServer
+    from launcher.consent import Approval
+
+    # Requests are written into warnings, and may be anything.
+    logging.basicConfig(handlers=[_PlainHandler()], level=logging.WARNING)
+    return AgentServer(Approval(options.approve), options.name, options.domain)
+
+
+def _run(
+    serving: Callable[[AgentServer], Coroutine[object, object, None]], options: Namespace
+) -> None:
+    async def until_signal() -> None:
+        task, loop = asyncio.current_task(), asyncio.get_running_loop()
+        assert task is not None
+        for number in SIGNALS:
+            loop.add_signal_handler(number, task.cancel)
+        with contextlib.suppress(asyncio.CancelledError):
+            await serving(_server(options))
+
+    asyncio.run(until_signal())
