@@ -32,8 +32,7 @@ async def stop(session: RobotSession) -> dict[str, object]:
     view, emergency = session.view, session.emergency
     row = view.topic(EMERGENCY_STOP)
     if row is None or not row.subscribers:
-        # The graph may not be known yet, right after the start.
-        await view.until(lambda: bool(getattr(view.topic(EMERGENCY_STOP), "subscribers", 0)), 1.0)
+        await session.settled()
         row = view.topic(EMERGENCY_STOP)
     heard = row is not None and row.subscribers > 0
     ended: list[str] = []

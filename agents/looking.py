@@ -53,8 +53,6 @@ def fresh_gate(session: RobotSession) -> Gate | None:
 async def look(session: RobotSession) -> dict[str, object]:
     """Return the state of the robot: nodes, emergency stop, gate, sonars, pose, head, battery."""
     view = session.view
-    await view.until(lambda: bool(view.nodes) or bool(view.error), FRESH_S)
-    await view.until(lambda: view.newest(ODOMETRY, FRESH_S) is not None, 0.5)
     nodes = [
         {"name": node.name, "state": node.state.value, "detail": plain(str(node.detail), 300)}
         for node in list(session.link.nodes.values())[:MOST_ROWS]
@@ -97,7 +95,6 @@ def gate_fields(gate: Gate | None) -> dict[str, object] | None:
 async def see(session: RobotSession, asked: SeeArguments) -> tuple[str, dict[str, object]]:
     """Return the newest camera picture as JPEG in base64, and its size and age."""
     topic = asked.topic or CAMERA
-    await session.view.until(lambda: session.view.topic(topic) is not None, 1.0)
     row = session.view.topic(topic)
     kinds = () if row is None else row.type_names
     if not {IMAGE, COMPRESSED} & set(kinds):
@@ -166,7 +163,6 @@ def graph(session: RobotSession, asked: FindArguments) -> dict[str, object]:
 async def echo(session: RobotSession, asked: EchoArguments) -> dict[str, object]:
     """Return the next messages of a topic as YAML, until there are enough or time is over."""
     view = session.view
-    await view.until(lambda: view.topic(asked.topic) is not None, 1.0)
     row = view.topic(asked.topic)
     if row is None or not (row.publishers or row.own_publishers):
         raise refused("nobody publishes {topic}", topic=asked.topic)

@@ -65,7 +65,9 @@ def read_motion(commands: Sequence[object]) -> Motion:
         text = json.dumps({"thought": "", "commands": list(commands)})
         found = parse_llm(text)
     except CommandError as error:
-        problems = "; ".join(f"{one.field}: {one}" for one in error.problems[:5])
+        problems = "; ".join(
+            f"{one.field}: {one.in_language('en')}".lstrip(": ") for one in error.problems[:5]
+        )
         raise refused("the commands are not valid: {problems}", problems=problems) from None
     except (TypeError, ValueError, RecursionError):
         raise refused("the commands are not valid: {problems}", problems="JSON") from None

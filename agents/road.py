@@ -24,6 +24,8 @@ ANSWER_WITHIN_S = 3.0
 KNOWN_WITHIN_S = 3.0
 REPEAT_FOR_S = "repeat_for_s"
 LONGEST_S = 60.0
+UNKNOWN = "_UNKNOWN_"
+"""In the names of a node whose endpoint is known but whose name is not yet (rmw)."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +47,11 @@ async def road_of(session: RobotSession, *, wheels: bool) -> Road:
         RefusedError: if something is missing, or in the way of safety.
     """
     view = session.view
-    await view.until(lambda: bool(_ends(session, LLM_RAW_JSON)[1]), KNOWN_WITHIN_S)
     if view.error:
         raise refused("the robot cannot be seen: {why}", why=view.error)
+    await view.until(lambda: _known(session), KNOWN_WITHIN_S)
+    if not _known(session):
+        raise refused("not all nodes between the agent and the wheels are known by name")
     parsers = _nodes(_ends(session, LLM_RAW_JSON)[1])
     if not parsers:
         raise refused("nothing carries out commands: no node hears {topic}", topic=LLM_RAW_JSON)
@@ -106,4 +110,13 @@ def _ends(
 
 def _nodes(ends: tuple[EndpointInfo, ...]) -> set[str]:
     """Return the nodes, without tools that only listen: their names begin with an underscore."""
-    return {end.node for end in ends if not end.node.rpartition("/")[2].startswith("_")}
+    names = {end.node for end in ends}
+    return {name for name in names if not name.rpartition("/")[2].startswith("_")}
+
+
+def _known(session: RobotSession) -> bool:
+    """Whether all nodes on the road have told their names: until then, any may be anything."""
+    ends = [
+        end for topic in (LLM_RAW_JSON, DRIVE, DRIVE_SAFE) for end in sum(_ends(session, topic), ())
+    ]
+    return not any(UNKNOWN in end.node for end in ends)

@@ -131,6 +131,8 @@ class AgentServer:
             await session.link.join(caller.key, caller.name, self.driving.approval)
             session.joined.add(caller.key)
         arguments = _arguments(tool, record.given)
+        if tool.waits:
+            await session.settled()
         return await tool.do(Call(session, self.driving, caller, arguments))
 
 

@@ -58,6 +58,11 @@ class RobotSession:
         """What runs."""
         return self.link.session
 
+    async def settled(self) -> None:
+        """Wait until the graph of the session is known, which takes seconds after the start."""
+        serving = [node.name for node in self.link.nodes.values() if node.serves]
+        await self.view.settled(f"/{name}" for name in serving)
+
     async def until_end(self) -> None:
         """Return when the session has ended."""
         async for event in self.link.events():

@@ -61,6 +61,8 @@ class Tool:
     do: Do
     acts: bool = False
     """Whether it does more than look."""
+    waits: bool = True
+    """Whether it waits until the graph is known, right after the start."""
 
 
 async def _look(call: Call) -> Answer:
@@ -156,6 +158,7 @@ TOOLS = (
         NoArguments,
         _stop,
         acts=True,
+        waits=False,
     ),
     Tool("say", "Have the robot say something aloud.", SayArguments, _say, acts=True),
     Tool(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import time
 from collections import Counter
 from contextlib import contextmanager
@@ -22,7 +23,7 @@ from robot.topics import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from graph.data import GraphUpdate, NodeRow, Sample, ServiceRow, TopicRow
     from graph.observer.observer import Observer
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
 WATCHED = frozenset(
     {BATTERY, HEAD_STATE, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR}
 )
+SETTLED_S = 1.0
+JOINED_WITHIN_S = 8.0
+LOOK_S = 0.1
 FOLLOWED = frozenset({EMERGENCY_STOP, EMERGENCY_STATE, LLM_RESULT, SAFETY_STATE})
 
 
@@ -44,6 +48,10 @@ class GraphView:
         self._followed: Counter[str] = Counter(FOLLOWED)
         self._listeners: list[Callable[[Sample], None]] = []
         self._news = asyncio.Event()
+        self._changed_s = math.inf
+        """When the ends of topics were last seen to change, on the monotonic clock."""
+        self._ends = -1
+        self._is_settled = False
         self._ask()
 
     @property
@@ -83,6 +91,9 @@ class GraphView:
             self._news.set()
             return
         self._update = update
+        ends = sum(len(row.published_by) + len(row.subscribed_by) for row in update.topics)
+        if ends != self._ends:
+            self._ends, self._changed_s = ends, time.monotonic()
         for topic, samples in update.samples.items():
             self._newest[topic] = samples[-1]
             for listener in tuple(self._listeners):
@@ -120,6 +131,19 @@ class GraphView:
             self._listeners.remove(listen)
             self._followed[topic] -= 1
             self._ask()
+
+    async def settled(self, expected: Iterable[str]) -> None:
+        """Wait, right after the start, until these nodes are found, and what they have on topics.
+
+        Discovery says nothing of its end: it is over when nothing has come for a while.
+        """
+        names = frozenset(expected)
+        deadline_s = time.monotonic() + JOINED_WITHIN_S
+        while not self._is_settled and time.monotonic() < deadline_s:
+            found = names <= {node.name for node in self.nodes}
+            self._is_settled = found and time.monotonic() - self._changed_s > SETTLED_S
+            await self.until(lambda: False, LOOK_S)
+        self._is_settled = True
 
     async def until(self, condition: Callable[[], bool], within_s: float) -> bool:
         """Wait until the condition holds after an update; return whether it does in time."""
