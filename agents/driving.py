@@ -153,7 +153,7 @@ class Driving:
             # Written before anything moves: if that fails, nothing does.
             arguments = {"proposal": proposal.id, "commands": json.loads(_thought(proposal, ""))}
             session.audit.write(caller.name, "execute", arguments, "begins", 0.0)
-            await session.link.tell(Severity.WARN, told)
+            await session.link.tell(Severity.INFO, told)
             return await self._carry_out(session, proposal, checked)
 
     async def _allowed(self, session: RobotSession, caller: Caller, proposal: Proposal) -> Checked:

@@ -125,7 +125,7 @@ class AgentServer:
             raise refused("too many calls at once")
         session = record.session = await self.finder.session()
         tool = _tool(record.tool, session)
-        if tool.acts:
+        if tool.acts and not tool.tells:
             record.ends(say("done"), Severity.INFO)
         if caller.key not in session.joined:
             await session.link.join(caller.key, caller.name, self.driving.approval)

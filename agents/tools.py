@@ -61,6 +61,8 @@ class Tool:
     do: Do
     acts: bool = False
     """Whether it does more than look."""
+    tells: bool = False
+    """Whether it tells the log itself, before it acts."""
     waits: bool = True
     """Whether it waits until the graph is known, right after the start."""
 
@@ -151,6 +153,7 @@ TOOLS = (
         ExecuteArguments,
         _execute,
         acts=True,
+        tells=True,
     ),
     Tool(
         "stop",
@@ -167,6 +170,7 @@ TOOLS = (
         HeadArguments,
         _head,
         acts=True,
+        tells=True,
     ),
 )
 PUBLISH = Tool(

@@ -12,11 +12,13 @@ from textual.events import Key, Paste
 from text.i18n import LANGUAGES, _, language, set_language
 from text.plain import plain, plain_lines
 from tui.actions import Acting, Action, Keys, bindings
+from tui.agents.control import AgentControl
 from tui.dialogs.opening import OpeningScreen
 from tui.emergency.control import EmergencyControl
 from tui.emergency.messages import EmergencyChanged
 from tui.emergency.state import FOLLOWED
 from tui.faults import Faults
+from tui.frame.actions.agents import AGENT_ACTIONS
 from tui.frame.actions.app import APP_ACTIONS, EmergencyStop
 from tui.frame.actions.recording import RECORDING_ACTIONS, RecordToggle
 from tui.frame.actions.replay import REPLAY_ACTIONS
@@ -78,7 +80,7 @@ class DeckApp(App[int], Acting):
 
     TITLE = "Deck"
     BINDINGS: ClassVar[list[BindingType]] = bindings(
-        *APP_ACTIONS, CopyAsRos2, *REPLAY_ACTIONS, *RECORDING_ACTIONS
+        *APP_ACTIONS, CopyAsRos2, *REPLAY_ACTIONS, *RECORDING_ACTIONS, *AGENT_ACTIONS
     )
     COMMANDS: ClassVar = {_commands}
     ENABLE_COMMAND_PALETTE = False
@@ -113,6 +115,7 @@ class DeckApp(App[int], Acting):
         """Whether the first frame has been drawn."""
         self.feed = Feed(self, FOLLOWED, self.faults)
         self.emergency = EmergencyControl(self, self.feed, self._emergency_changed)
+        self.agents = AgentControl(self, self.feed)
         self.bypass = BypassDetector()
         self.recording = Recording(self, self.feed, lambda: self.keys_of(RecordToggle)[0])
         self._screens = Screens(self)
@@ -279,6 +282,8 @@ class DeckApp(App[int], Acting):
 
     def _emergency_changed(self) -> None:
         """Update every screen and the keys: release is possible only while the stop is engaged."""
+        if self.emergency.state.engaged:
+            self.agents.stopped()
         self.feed.tell(lambda: EmergencyChanged(self.emergency.state))
         self.refresh_bindings()
 
@@ -360,6 +365,11 @@ class DeckApp(App[int], Acting):
     def watch_theme(self, theme: str) -> None:
         """Remember the theme."""
         self._remember(theme=theme)
+
+    def on_agents_changed(self) -> None:
+        """Offer the keys that answer agents, and say who needs no answer."""
+        self.agents.see()
+        self.refresh_bindings()
 
     def on_lesson_opened(self, message: LessonOpened) -> None:
         """Remember the lesson, where the list begins the next time."""

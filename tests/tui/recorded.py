@@ -12,7 +12,8 @@ from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from launcher.events import ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
+from launcher.consent import Agents, Answer
+from launcher.events import AgentsEvent, ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Stray
 from tests.tui.recorded_graph import PARAMETERS, RecordedGraph
 from tests.tui.recorded_lesson import (
@@ -74,6 +75,7 @@ class RecordedSession:
         """Set it: another screen's session in the foreground."""
         self.nodes: dict[str, NodeStatus] = dict(nodes)
         self.strays: tuple[Stray, ...] = ()
+        self.agents = Agents()
         self.asked: list[tuple[str, ...]] = []
         """What was asked: ("stop", "camera"), ("shutdown", "now"), ("aclose",)."""
         self.hold_shutdown = False
@@ -89,6 +91,8 @@ class RecordedSession:
             self.nodes.update({node.name: node for node in event.nodes})
         if isinstance(event, StraysEvent):
             self.strays = event.strays
+        if isinstance(event, AgentsEvent):
+            self.agents = event.agents
         self._queue.put_nowait(event)
 
     def set_state(self, name: str, state: NodeState, **more: Any) -> None:
@@ -118,6 +122,16 @@ class RecordedSession:
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         self.asked.append(("stop_strays", *(stray.node for stray in strays)))
+
+    async def attend(self) -> None:
+        pass
+
+    async def answer(self, question: int, answer: Answer) -> bool:
+        self.asked.append(("answer", str(question), answer.value))
+        return True
+
+    async def end_consent(self) -> None:
+        self.asked.append(("end_consent",))
 
     async def shutdown(self, now: bool = False) -> None:
         self.asked.append(("shutdown", "now") if now else ("shutdown",))

@@ -39,6 +39,8 @@ class Lane(str, Enum):
     """The lanes: who takes part."""
 
     MIC = "mic"
+    AGENT = "agent"
+    """What agents that speak to `deck mcp` do."""
     BRAIN = "brain"
     COMMAND = "command"
     HEAD = "head"
@@ -124,6 +126,8 @@ class Chain:
 
     def _takes_beginning(self, step: FlowStep, age_s: float) -> bool:
         heard_s = self._heard_s.get(step.source)
+        if step.lane is Lane.AGENT:
+            return False
         if step.lane is Lane.MIC:
             return heard_s is not None and step.time_s - heard_s <= UTTERANCE_S
         if heard_s is not None:
@@ -150,4 +154,4 @@ class Chain:
             insort(self.steps, step)
 
 
-_ORDER = {Lane.MIC: 0, Lane.BRAIN: 1, Lane.COMMAND: 2}
+_ORDER = {Lane.MIC: 0, Lane.AGENT: 0, Lane.BRAIN: 1, Lane.COMMAND: 2}

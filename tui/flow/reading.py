@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from launcher.status import Severity
 from robot.joints import HEAD_PAN, HEAD_TILT, REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL
 from robot.topics import (
     AI_COMMAND,
@@ -16,6 +17,7 @@ from robot.topics import (
     SPEAKER,
     WHEEL_COMMANDS,
 )
+from text.i18n import localized
 from text.plain import plain
 from tui.flow.chains import FlowStep, Lane, StepKind
 from tui.outcome import words as outcome_words
@@ -47,6 +49,8 @@ SAME_CLOCK_S = 1.0
 """A message with a longer transit time than this was stamped by another clock."""
 STILL_RAD = math.radians(0.2)
 LONGEST = 300
+AGENT = "agent"
+"""The `source` of lines about agents."""
 
 LANES = {
     "nodes.ai_brain": Lane.BRAIN,
@@ -142,7 +146,9 @@ def _is_still(now_rad: float, before_rad: float) -> bool:
 def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[FlowStep]:
     """Read log lines of nodes; `programs` maps the nodes of the session to their programs."""
     return [
-        FlowStep(
+        _agent_step(line)
+        if line.source == AGENT
+        else FlowStep(
             line.time_s,
             LANES.get(programs.get(line.node, ""), LANES.get(line.node, Lane.LOG)),
             plain(line.node, LONGEST),
@@ -152,6 +158,13 @@ def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[Flo
         for line in lines
         if line.source != "deck"
     ]
+
+
+def _agent_step(line: LogLine) -> FlowStep:
+    """Read what an agent has called; what acts begins a chain, what only looks does not."""
+    text = plain(localized(line.text), LONGEST)
+    begins = line.severity.rank >= Severity.INFO.rank
+    return FlowStep(line.time_s, Lane.AGENT, AGENT, AGENT, text=text, begins=begins)
 
 
 def _sent_s(sample: Sample) -> float:

@@ -63,6 +63,8 @@ class FlowScreen(DeckScreen):
         self.paused = False
         self._book, self._reader = FlowBook(), FlowReader()
         self._hidden = {Lane.LOG}
+        self._has_agents = False
+        """Whether an agent has called anything: only then is there a lane for it."""
         self._folded: set[float] = set()
         self._logarithmic = True
         self._held: tuple[Chain, ...] = ()
@@ -126,7 +128,9 @@ class FlowScreen(DeckScreen):
     def on_log_arrived(self, message: LogArrived) -> None:
         """Add log lines."""
         programs = {name: node.command for name, node in self.feed.nodes.items()}
-        self._take(log_steps(message.lines, programs))
+        steps = log_steps(message.lines, programs)
+        self._has_agents = self._has_agents or any(step.lane is Lane.AGENT for step in steps)
+        self._take(steps)
 
     def on_graph_changed(self, message: GraphChanged) -> None:
         """Add messages."""
@@ -172,6 +176,8 @@ class FlowScreen(DeckScreen):
         """Return what prints the topic of the chosen step, or the log of its node."""
         step = self.chosen_step
         if step is None:
+            return ""
+        if step.lane is Lane.AGENT:
             return ""
         if step.source.startswith("/") and step.lane is not Lane.LOG:
             return ros2_words.echo(step.source)
@@ -289,6 +295,8 @@ class FlowScreen(DeckScreen):
         """Return marks and names, closer together where no mark would stay beside its name."""
         labels = []
         for lane, name in words.LANES.items():
+            if lane is Lane.AGENT and not self._has_agents:
+                continue
             mark = "○" if lane in self._hidden else "●"
             click = Style.from_meta({"@click": f"screen.lane({lane.value!r})"})
             labels.append(Content.styled(f"{mark} {_(name)}", click))

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 LANES: dict[Lane, str] = {
     Lane.MIC: N_("mic"),
+    Lane.AGENT: N_("agent"),
     Lane.BRAIN: N_("brain"),
     Lane.COMMAND: N_("command"),
     Lane.HEAD: N_("head"),
@@ -54,7 +55,7 @@ def said_by(step: FlowStep, chain: Chain) -> str:
     """Return the node that published it; a command that nothing led to comes from a person."""
     # Found by its identity: a step that seems to have come slightly earlier stands before it.
     is_first = (step.source, step.time_s) == (chain.first.source, chain.start_s)
-    if is_first and step.lane is not Lane.MIC:
+    if is_first and step.lane not in (Lane.MIC, Lane.AGENT):
         return _("a person")
     return step.said_by.lstrip("/")
 

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from textual.notifications import SeverityLevel
 
     from tui.actions import Action, Keys
+    from tui.agents.control import AgentControl
     from tui.emergency.control import EmergencyControl
     from tui.recording.recording import Recording
     from tui.session.bypass import BypassDetector
@@ -89,6 +90,10 @@ class Host(KeyNames, Protocol):
     @property
     def emergency(self) -> EmergencyControl:
         """The emergency stop: engaged and released here; its `state` is shown."""
+
+    @property
+    def agents(self) -> AgentControl:
+        """The questions of agents, and how they are answered."""
 
     @property
     def recording(self) -> Recording:

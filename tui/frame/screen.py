@@ -1,4 +1,4 @@
-"""What every session screen has: title, emergency banner, keys, and the data it asks for."""
+"""What every session screen has: title, banner of agents, keys, and the data it asks for."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ from textual.screen import Screen
 from tui.actions import Acting
 from tui.emergency.messages import EmergencyChanged
 from tui.frame import title
+from tui.frame.agent_banner import AgentBanner
 from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.replay_bar import ReplayBar
 from tui.frame.title_bar import TitleBar
-from tui.session.messages import LanguageChanged, SessionChanged, StatusChanged
+from tui.session.messages import AgentsChanged, LanguageChanged, SessionChanged, StatusChanged
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ class DeckScreen(Screen[None], Acting, Working):
     def compose(self) -> ComposeResult:
         """Surround the body with the frame."""
         yield TitleBar()
+        yield AgentBanner()
         yield from self.compose_body()
         yield ReplayBar()
         yield KeyBar()
@@ -145,6 +147,11 @@ class DeckScreen(Screen[None], Acting, Working):
         del message
         self.show_frame()
 
+    def on_agents_changed(self, message: AgentsChanged) -> None:
+        """Update the banner."""
+        del message
+        self.show_frame()
+
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Redraw every widget; the screen itself must update widgets that store their texts."""
         del message
@@ -156,6 +163,8 @@ class DeckScreen(Screen[None], Acting, Working):
         """Show title, session and emergency stop in their current state."""
         for bar in self.query(TitleBar):
             title.show(bar, self.deck, self.tab)
+        for banner in self.query(AgentBanner):
+            banner.show(self.deck)
         for place in self.query(ReplayBar):
             place.show(self.feed.replay)
 

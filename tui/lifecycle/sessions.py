@@ -155,6 +155,8 @@ class Sessions:
         self._feed.connect(link, self.opener.observe(link.session), self.opener.replay)
         if self._feed.replay is not None:
             await self._show_recording(link.session)
+        with contextlib.suppress(LauncherError):  # It may just have ended.
+            await link.attend()
         self._emergency.prepare()
         app.refresh_bindings()
         await self._feed.listen(self)

@@ -22,6 +22,9 @@ SLACK = 1.25
 """Dropping goes through all lines, so it is done only occasionally, for many at once."""
 _OBJECT_BYTES = 160
 
+SAID_BY_DECK = frozenset({"deck", "agent"})
+"""The `source` of lines that can be translated."""
+
 
 @dataclass(slots=True)
 class LogEntry:
@@ -69,7 +72,7 @@ class LineRing:
             self._last_seq[node] = seq
             rank = line.severity.rank
             self.counts.setdefault(node, [0] * len(Severity))[rank] += 1
-            text = line.text if line.source != "deck" else localized(line.text)
+            text = localized(line.text) if line.source in SAID_BY_DECK else line.text
             self._add(node, line.time_s, rank, text)
         for node, count in skipped.items():
             missing = count - seen[node]

@@ -12,10 +12,17 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from textual.message import Message
 
+from launcher.consent import Agents
 from text.i18n import _
 from tui.session.history import KEPT_LINES, LogHistory
 from tui.session.inbox import GraphInbox
-from tui.session.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged
+from tui.session.messages import (
+    AgentsChanged,
+    GraphChanged,
+    LogArrived,
+    SessionChanged,
+    StatusChanged,
+)
 from tui.session.outside import Outside
 from tui.session.rosout import TOPIC as ROSOUT
 from tui.session.rosout import RosoutReader
@@ -102,6 +109,11 @@ class Feed:
         """Why the previous session has ended."""
         self._ended_nodes: Mapping[str, NodeStatus] = {}
         """The nodes of that session."""
+
+    @property
+    def agents(self) -> Agents:
+        """The agents, and what they ask for."""
+        return Agents() if self.link is None else self.link.agents
 
     @property
     def blind(self) -> str:
@@ -209,7 +221,7 @@ class Feed:
 
     async def _on_event(self, event: Event, owner: SessionOwner) -> None:
         # Not needed for the first frame.
-        from launcher.events import ClosedEvent, LogEvent, StatusEvent, StraysEvent
+        from launcher.events import AgentsEvent, ClosedEvent, LogEvent, StatusEvent, StraysEvent
 
         if isinstance(event, StatusEvent):
             self._tell_status(frozenset(node.name for node in event.nodes))
@@ -218,6 +230,9 @@ class Feed:
             self.tell(lambda: LogArrived(event.lines, event.skipped))
         elif isinstance(event, StraysEvent):
             owner.ask_about(event.strays)
+        elif isinstance(event, AgentsEvent):
+            self._app.post_message(AgentsChanged())
+            self.tell(AgentsChanged)
         elif isinstance(event, ClosedEvent):
             await owner.ended(event.reason)
 

@@ -57,6 +57,10 @@ class SessionChanged(Message, bubble=False):
         self.ended = ended
 
 
+class AgentsChanged(Message, bubble=False):
+    """Agents have come or gone, or what they ask for has changed; the feed's `agents` says it."""
+
+
 class LessonOpened(Message, bubble=False):
     """A profile was started; for the app, which remembers it."""
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
     from graph.publishing.dead_man_switch import HeldCommand
     from graph.replay.replay import Replay
+    from launcher.consent import Agents, Answer
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
     from tui.session.requests import Lesson, OpenRequest
@@ -45,6 +46,10 @@ class SessionLink(Protocol):
     def strays(self) -> tuple[Stray, ...]:
         """Processes that an earlier run left behind."""
 
+    @property
+    def agents(self) -> Agents:
+        """The agents, and what they ask for, kept up to date."""
+
     def events(self, *, past: int = 0) -> AsyncIterator[Event]:
         """Yield the newest `past` lines so far, then events until the session ends."""
 
@@ -62,6 +67,15 @@ class SessionLink(Protocol):
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """Stop processes that an earlier run left behind."""
+
+    async def attend(self) -> None:
+        """Say that a person at this screen can answer the questions of agents."""
+
+    async def answer(self, question: int, answer: Answer) -> bool:
+        """Answer a question; return False if it is no longer asked."""
+
+    async def end_consent(self) -> None:
+        """End every question, and every allowance for a time."""
 
     async def shutdown(self, now: bool = False) -> None:
         """Stop all nodes, dependants first, and the supervisor; with `now` without waiting."""

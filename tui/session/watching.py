@@ -7,11 +7,13 @@ from collections.abc import AsyncIterator, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from graph.housekeeping import is_housekeeping
+from launcher.consent import Agents
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from graph.data import GraphUpdate
+    from launcher.consent import Answer
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
 
@@ -27,6 +29,7 @@ class NodelessLink:
         self.own = False
         self.nodes: Mapping[str, NodeStatus] = {}
         self.strays: tuple[Stray, ...] = ()
+        self.agents = Agents()
         self._closed = asyncio.Event()
 
     async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
@@ -51,6 +54,17 @@ class NodelessLink:
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """Nothing was left behind."""
+
+    async def attend(self) -> None:
+        """Nobody asks."""
+
+    async def answer(self, question: int, answer: Answer) -> bool:
+        """Nothing was asked."""
+        del question, answer
+        return False
+
+    async def end_consent(self) -> None:
+        """Nothing was allowed."""
 
     async def shutdown(self, now: bool = False) -> None:
         """Disconnect."""

@@ -1,0 +1,171 @@
+"""Agents ask on every screen, and only a person who has read the question lets them drive."""
+
+from __future__ import annotations
+
+from textual.widgets import TextArea
+
+from launcher.consent import Agent, Agents, Approval, Question
+from launcher.events import AgentsEvent
+from tests.hostile_text import EVIL
+from tests.tui.app_runs import opened
+from tests.tui.recorded import NOW_S, RecordedOpener, RecordedSession
+from tests.tui.snapshots import Look, SnapCompare, both_languages
+from tests.waiting import until
+from text.sentences import say
+from tui.app import DeckApp
+from tui.frame.agent_banner import AgentBanner
+from tui.frame.key_bar import KeyBar
+
+LINES = (
+    say(
+        "drives at {speed:g} m/s, steering {steering:g} rad, for {seconds:g} s: "
+        "{metres:.2f} m at most",
+        speed=0.2,
+        steering=-0.1,
+        seconds=2,
+        metres=0.4,
+    ),
+    say("the gate would let it: free for {metres:.2f} m", metres=1.75),
+    say("it says: {reason}", reason="to see what is behind the box"),
+)
+CLAUDE = Agent("claude", Approval.ASK)
+
+
+def asks(number: int = 1, lines: tuple[str, ...] = LINES) -> AgentsEvent:
+    """An agent asks."""
+    return AgentsEvent(Agents((CLAUDE,), (Question(number, "claude", lines, NOW_S + 30),)))
+
+
+def banner(app: DeckApp) -> str:
+    """Return what the banner in front says, empty if it is not there."""
+    found = app.screen.query_one(AgentBanner)
+    return found.text if found.display else ""
+
+
+async def read(app: DeckApp) -> None:
+    """Wait until the question may be answered."""
+    await until(lambda: app.agents.was_read, "a question that was read")
+
+
+@both_languages
+def test_a_question(look: Look, dump_compare: SnapCompare) -> None:
+    """Who asks, how far it would go, what the gate would do, why, and three keys."""
+    opener = RecordedOpener()
+    opener.link.say(asks())
+    assert dump_compare(look.app(opener=opener), terminal_size=look.size, run_before=look.settle)
+
+
+@both_languages
+def test_an_agent_that_asks_nobody(look: Look, dump_compare: SnapCompare) -> None:
+    """It stands below the title as long as the agent is there, and once as a notification."""
+    opener = RecordedOpener()
+    opener.link.say(AgentsEvent(Agents((Agent("claude", Approval.ALWAYS),))))
+    assert dump_compare(look.app(opener=opener), terminal_size=look.size, run_before=look.settle)
+
+
+async def test_the_banner_is_on_every_screen_and_goes_with_the_question() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        assert banner(app) == ""
+        opener.link.say(asks())
+        for key in ("1", "2", "3", "4", "5", "6", "7"):
+            await pilot.press(key)
+            await pilot.pause()
+            assert "claude" in banner(app), key
+            if app.focused is not None and isinstance(app.focused, TextArea):
+                await pilot.press("escape")
+        opener.link.say(AgentsEvent(Agents((CLAUDE,))))
+        await until(lambda: banner(app) == "", "the end of the banner")
+
+
+async def test_keys_answer_once_the_question_was_read() -> None:
+    for key, answer in (("shift+f4", "once"), ("shift+f5", "time")):
+        opener = RecordedOpener()
+        async with opened(opener) as (app, pilot):
+            opener.link.say(asks(7))
+            await until(lambda app=app: banner(app), "the banner")  # type: ignore[misc]
+            await pilot.press(key)
+            await pilot.pause()
+            assert opener.link.asked == [], "too early: nobody can have read it"
+            await read(app)
+            await pilot.press(key)
+            await until(lambda o=opener: o.link.asked, "an answer")  # type: ignore[misc]
+            assert opener.link.asked == [("answer", "7", answer)]
+
+
+async def test_a_refusal_needs_no_care() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.say(asks())
+        await until(lambda: banner(app), "the banner")
+        await pilot.press("shift+f9")
+        await until(lambda: opener.link.asked, "a refusal")
+        assert opener.link.asked == [("end_consent",)]
+
+
+async def test_the_emergency_stop_refuses() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.say(asks())
+        await until(lambda: banner(app), "the banner")
+        await pilot.press("space")
+        await until(lambda: ("end_consent",) in opener.link.asked, "a refusal")
+
+
+async def test_nobody_who_types_into_an_editor_allows_anything() -> None:
+    opener = RecordedOpener()
+    async with opened(opener, "composer") as (app, pilot):
+        app.screen.query_one(TextArea).focus()
+        opener.link.say(asks())
+        await read(app)
+        await pilot.press(*"yes ok y", "enter", "tab", "shift+tab", "ctrl+y", "f4", "f5")
+        await pilot.pause()
+        assert all(asked[0] != "answer" for asked in opener.link.asked)
+
+
+async def test_a_question_that_is_covered_is_not_answered() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.say(asks())
+        await read(app)
+        await pilot.press("f1")
+        await pilot.pause()
+        assert not app.agents.was_read
+        await pilot.press("shift+f4")
+        await pilot.pause()
+        assert opener.link.asked == []
+
+
+async def test_the_next_question_has_to_be_read_anew() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.say(asks(1))
+        await read(app)
+        opener.link.say(asks(2))
+        await until(lambda: not app.agents.was_read, "another question")
+        await pilot.press("shift+f4")
+        await pilot.pause()
+        assert opener.link.asked == []
+
+
+async def test_an_allowance_is_shown_and_ended_by_a_key() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.say(AgentsEvent(Agents((Agent("claude", Approval.ASK, NOW_S + 300),))))
+        shown = await until(lambda: banner(app), "the banner")
+        assert "may drive until" in shown
+        await pilot.press("shift+f9")
+        await until(lambda: opener.link.asked == [("end_consent",)], "its end")
+
+
+async def test_hostile_names_and_reasons_stay_in_their_line() -> None:
+    opener = RecordedOpener(RecordedSession())
+    lines = (say("it says: {reason}", reason=EVIL), "x" * 4000)
+    question = Question(1, EVIL, lines, NOW_S)
+    async with opened(opener, size=(80, 24)) as (app, _pilot):
+        opener.link.say(AgentsEvent(Agents((CLAUDE,), (question,))))
+        shown = await until(lambda: banner(app), "the banner")
+        assert all(line.isprintable() for line in shown.splitlines())
+        assert len(shown.splitlines()) == 4
+        assert app.screen.query_one(AgentBanner).size.height == 4
+        assert "STOP" in str(app.screen.query_one(KeyBar).render())
