@@ -134,7 +134,7 @@ class ConsentDesk:
         if len(self._known) >= MAX_AGENTS:
             raise TooManyError
         self._known[client, key] = _Known(Agent(name, approval))
-        self._told(Severity.INFO, say("agent {name} is connected", name=name))
+        self._told(Severity.DEBUG, say("agent {name} is connected", name=name))
         if approval is Approval.ALWAYS:
             words = say("agent {name} drives without asking: --approve always", name=name)
             self._told(Severity.WARN, words)
@@ -184,7 +184,7 @@ class ConsentDesk:
         mine = [key for key in self._known if key[0] is client]
         for key in mine:
             name = self._known.pop(key).agent.name
-            self._told(Severity.INFO, say("agent {name} has left", name=name))
+            self._told(Severity.DEBUG, say("agent {name} has left", name=name))
         if mine:
             self._changed()
 

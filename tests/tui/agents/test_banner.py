@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from textual.widgets import TextArea
 
 from launcher.consent import Agent, Agents, Approval, Question
@@ -78,19 +79,19 @@ async def test_the_banner_is_on_every_screen_and_goes_with_the_question() -> Non
         await until(lambda: banner(app) == "", "the end of the banner")
 
 
-async def test_keys_answer_once_the_question_was_read() -> None:
-    for key, answer in (("shift+f4", "once"), ("shift+f5", "time")):
-        opener = RecordedOpener()
-        async with opened(opener) as (app, pilot):
-            opener.link.say(asks(7))
-            await until(lambda app=app: banner(app), "the banner")  # type: ignore[misc]
-            await pilot.press(key)
-            await pilot.pause()
-            assert opener.link.asked == [], "too early: nobody can have read it"
-            await read(app)
-            await pilot.press(key)
-            await until(lambda o=opener: o.link.asked, "an answer")  # type: ignore[misc]
-            assert opener.link.asked == [("answer", "7", answer)]
+@pytest.mark.parametrize(("key", "answer"), [("shift+f4", "once"), ("shift+f5", "time")])
+async def test_keys_answer_once_the_question_was_read(key: str, answer: str) -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.say(asks(7))
+        await until(lambda: banner(app), "the banner")
+        await pilot.press(key)
+        await pilot.pause()
+        assert opener.link.asked == [], "too early: nobody can have read it"
+        await read(app)
+        await pilot.press(key)
+        await until(lambda: opener.link.asked, "an answer")
+        assert opener.link.asked == [("answer", "7", answer)]
 
 
 async def test_a_refusal_needs_no_care() -> None:
