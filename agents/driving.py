@@ -16,7 +16,7 @@ from agents.proposals import EXECUTED_WITHIN_S, ProposalBook
 from agents.refusal import RefusedError, refused
 from agents.road import road_of
 from agents.unasked_way import UnaskedWay
-from launcher.consent import Approval, Verdict
+from launcher.consent import Approval, ConsentVerdict
 from launcher.errors import LauncherError
 from launcher.status import Severity
 from robot.topics import LLM_RAW_JSON, LLM_RESULT, ODOMETRY
@@ -40,14 +40,16 @@ WATCHED_FOR_S = 20.0
 """A longer drive goes on after the answer."""
 SETTLES_S = 0.5
 REFUSALS = {
-    Verdict.REFUSED: say("the person at the screen has refused"),
-    Verdict.NO_SCREEN: say(
+    ConsentVerdict.REFUSED: say("the person at the screen has refused"),
+    ConsentVerdict.NO_SCREEN: say(
         "nobody can be asked: no screen of Deck is attached to this session; open one with "
         "`deck attach`"
     ),
-    Verdict.SCREEN_GONE: say("the screen was closed before anybody answered"),
-    Verdict.LATE: say("nobody at the screen has answered in time"),
-    Verdict.ENDED: say("an emergency stop, or the end of the session, has ended the question"),
+    ConsentVerdict.SCREEN_GONE: say("the screen was closed before anybody answered"),
+    ConsentVerdict.LATE: say("nobody at the screen has answered in time"),
+    ConsentVerdict.ENDED: say(
+        "an emergency stop, or the end of the session, has ended the question"
+    ),
 }
 
 
@@ -62,7 +64,7 @@ class Caller:
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckedMotion:
     """A motion that the rules permit, and what it would come to now."""
 
     motion: Motion
@@ -84,7 +86,7 @@ class Checked:
         return said
 
 
-class Driving:
+class AgentDriving:
     """Everything that moves the robot on behalf of agents."""
 
     def __init__(self, approval: Approval) -> None:
@@ -130,14 +132,14 @@ class Driving:
         self._book.take(proposal.id, caller.key, session.info.run_id)
         return await self._execute(session, caller, proposal)
 
-    async def _checked(self, session: RobotSession, motion: Motion) -> Checked:
+    async def _checked(self, session: RobotSession, motion: Motion) -> CheckedMotion:
         road = await road_of(session, wheels=motion.moves_wheels)
         check_rules(motion, session.info.agents, road.repeat_for_s)
         metres = motion.distance_m(road.repeat_for_s)
         preview = None
         if road.gate is not None:
             preview = preview_of(road.gate, motion.speed_m_s, metres)
-        return Checked(motion, road, preview)
+        return CheckedMotion(motion, road, preview)
 
     async def _execute(
         self, session: RobotSession, caller: Caller, proposal: Proposal
@@ -156,7 +158,9 @@ class Driving:
             await session.link.tell(Severity.INFO, told)
             return await self._carry_out(session, proposal, checked)
 
-    async def _allowed(self, session: RobotSession, caller: Caller, proposal: Proposal) -> Checked:
+    async def _allowed(
+        self, session: RobotSession, caller: Caller, proposal: Proposal
+    ) -> CheckedMotion:
         """Return what is allowed, checked again after the answer."""
         _check_free(session)
         checked = await self._checked(session, proposal.motion)
@@ -173,7 +177,7 @@ class Driving:
             verdict = await _ask(session, caller, checked.lines(proposal.reason), anew=not fits)
             if not verdict.allows:
                 raise RefusedError(REFUSALS[verdict])
-            unasked = verdict is Verdict.ALLOWED_BEFORE
+            unasked = verdict is ConsentVerdict.ALLOWED_BEFORE
         # A person takes their time: meanwhile the robot, or the gate, may have changed.
         checked = await self._checked(session, proposal.motion)
         _check_free(session)
@@ -182,7 +186,7 @@ class Driving:
         return checked
 
     async def _carry_out(
-        self, session: RobotSession, proposal: Proposal, checked: Checked
+        self, session: RobotSession, proposal: Proposal, checked: CheckedMotion
     ) -> dict[str, object]:
         thought = f"{proposal.id}: {proposal.reason}".strip(": ")
         answers = _Answers(thought)
@@ -218,7 +222,7 @@ class Driving:
             "moved_m": _moved(before, _place(session)),
         }
 
-    async def _drives(self, session: RobotSession, checked: Checked) -> None:
+    async def _drives(self, session: RobotSession, checked: CheckedMotion) -> None:
         """Wait for the end of the drive, as long as an agent waits for an answer."""
         if checked.motion.moves_wheels:
             wait_s = min(checked.road.repeat_for_s + SETTLES_S, WATCHED_FOR_S)
@@ -259,7 +263,7 @@ class _Answers:
 
 async def _ask(
     session: RobotSession, caller: Caller, lines: Sequence[Words], *, anew: bool
-) -> Verdict:
+) -> ConsentVerdict:
     try:
         return await session.link.ask_consent(caller.key, lines, anew=anew)
     except asyncio.CancelledError:

@@ -13,10 +13,10 @@ import mcp_types as types
 from mcp.server.lowlevel.server import Server
 from pydantic import ValidationError
 
-from agents.driving import Caller, Driving
+from agents.driving import AgentDriving, Caller
 from agents.refusal import RefusedError, refused
 from agents.session import SessionFinder
-from agents.tools import Answer, Call, Tool, tools_for
+from agents.tools import Call, Tool, ToolAnswer, tools_for
 from launcher.errors import LauncherError
 from launcher.status import Severity
 from text.output import json_text, say_error
@@ -52,7 +52,7 @@ class AgentServer:
         self, approval: Approval, name: str | None = None, domain: int | None = None
     ) -> None:
         """Keep to the session of this name or domain; by default the only one that runs."""
-        self.driving = Driving(approval)
+        self.driving = AgentDriving(approval)
         self.finder = SessionFinder(name, domain, self.driving.stopped)
         self._calls = 0
         self.mcp: Server[dict[str, Any]] = Server(
@@ -120,7 +120,7 @@ class AgentServer:
             await record.keep(time.monotonic() - began_s)
         return _result(answer)
 
-    async def _answer(self, caller: Caller, record: _Record) -> Answer:
+    async def _answer(self, caller: Caller, record: _Record) -> ToolAnswer:
         if self._calls > MAX_AT_ONCE:
             raise refused("too many calls at once")
         session = record.session = await self.finder.session()
@@ -200,7 +200,7 @@ def _arguments(tool: Tool, given: Mapping[str, Any]) -> Any:  # noqa: ANN401 - t
         raise refused("the arguments are not valid: {problems}", problems=problems) from None
 
 
-def _result(answer: Answer) -> types.CallToolResult:
+def _result(answer: ToolAnswer) -> types.CallToolResult:
     text = types.TextContent(type="text", text=json.dumps(answer.facts, ensure_ascii=False))
     content: list[types.ContentBlock] = [text]
     if answer.jpeg:

@@ -22,13 +22,13 @@ from agents.arguments import (
 )
 
 if TYPE_CHECKING:
-    from agents.driving import Caller, Driving
+    from agents.driving import AgentDriving, Caller
     from agents.session import RobotSession
     from launcher.consent import AgentRules
 
 
 @dataclass(frozen=True)
-class Answer:
+class ToolAnswer:
     """What a tool answers: facts, and perhaps a picture."""
 
     facts: dict[str, object]
@@ -41,13 +41,13 @@ class Call:
     """One call of a tool."""
 
     session: RobotSession
-    driving: Driving
+    driving: AgentDriving
     caller: Caller
     arguments: Any
     """Of the tool's own class."""
 
 
-Do = Callable[[Call], Awaitable[Answer]]
+Do = Callable[[Call], Awaitable[ToolAnswer]]
 
 
 @dataclass(frozen=True)
@@ -67,63 +67,65 @@ class Tool:
     """Whether it waits until the graph is known, right after the start."""
 
 
-async def _look(call: Call) -> Answer:
+async def _look(call: Call) -> ToolAnswer:
     rules = call.session.info.agents
     facts = await looking.look(call.session)
     limits = {"max_speed_m_s": rules.max_speed_m_s, "max_distance_m": rules.max_distance_m}
-    return Answer({**facts, "approval": call.driving.approval.value, "limits": limits})
+    return ToolAnswer({**facts, "approval": call.driving.approval.value, "limits": limits})
 
 
-async def _see(call: Call) -> Answer:
+async def _see(call: Call) -> ToolAnswer:
     jpeg, facts = await looking.see(call.session, call.arguments)
-    return Answer(facts, jpeg)
+    return ToolAnswer(facts, jpeg)
 
 
-async def _topics(call: Call) -> Answer:
-    return Answer(looking.topics(call.session, call.arguments))
+async def _topics(call: Call) -> ToolAnswer:
+    return ToolAnswer(looking.topics(call.session, call.arguments))
 
 
-async def _graph(call: Call) -> Answer:
-    return Answer(looking.graph(call.session, call.arguments))
+async def _graph(call: Call) -> ToolAnswer:
+    return ToolAnswer(looking.graph(call.session, call.arguments))
 
 
-async def _echo(call: Call) -> Answer:
-    return Answer(await looking.echo(call.session, call.arguments))
+async def _echo(call: Call) -> ToolAnswer:
+    return ToolAnswer(await looking.echo(call.session, call.arguments))
 
 
-async def _propose(call: Call) -> Answer:
+async def _propose(call: Call) -> ToolAnswer:
     asked: ProposeArguments = call.arguments
-    return Answer(
+    return ToolAnswer(
         await call.driving.propose(call.session, call.caller, asked.commands, asked.reason)
     )
 
 
-async def _execute(call: Call) -> Answer:
-    return Answer(await call.driving.execute(call.session, call.caller, call.arguments.proposal))
+async def _execute(call: Call) -> ToolAnswer:
+    return ToolAnswer(
+        await call.driving.execute(call.session, call.caller, call.arguments.proposal)
+    )
 
 
-async def _head(call: Call) -> Answer:
+async def _head(call: Call) -> ToolAnswer:
     asked: HeadArguments = call.arguments
-    return Answer(
+    return ToolAnswer(
         await call.driving.turn_head(call.session, call.caller, asked.pan, asked.tilt, asked.reason)
     )
 
 
-async def _stop(call: Call) -> Answer:
+async def _stop(call: Call) -> ToolAnswer:
     call.driving.stopped()
-    return Answer(await acting.stop(call.session))
+    return ToolAnswer(await acting.stop(call.session))
 
 
-async def _say(call: Call) -> Answer:
-    return Answer(await acting.say_aloud(call.session, call.arguments.text))
+async def _say(call: Call) -> ToolAnswer:
+    return ToolAnswer(await acting.say_aloud(call.session, call.arguments.text))
 
 
-async def _publish(call: Call) -> Answer:
-    return Answer(await acting.publish(call.session, call.arguments))
+async def _publish(call: Call) -> ToolAnswer:
+    return ToolAnswer(await acting.publish(call.session, call.arguments))
 
 
-async def _call(call: Call) -> Answer:
-    return Answer(await acting.call(call.session, call.arguments))
+async def _call(call: Call) -> ToolAnswer:
+    return ToolAnswer(await acting.call(call.session, call.arguments))
 
 
 TOOLS = (

@@ -56,7 +56,7 @@ class Answer(str, Enum):
     REFUSE = "refuse"
 
 
-class Verdict(str, Enum):
+class ConsentVerdict(str, Enum):
     """What comes of a question."""
 
     ALLOWED = "allowed"
@@ -74,7 +74,7 @@ class Verdict(str, Enum):
     @property
     def allows(self) -> bool:
         """Whether the agent may drive."""
-        return self in (Verdict.ALLOWED, Verdict.ALLOWED_BEFORE)
+        return self in (ConsentVerdict.ALLOWED, ConsentVerdict.ALLOWED_BEFORE)
 
 
 @dataclass(frozen=True)

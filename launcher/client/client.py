@@ -14,7 +14,7 @@ from launcher.client.inbox import Inbox
 from launcher.client.log_history import newer
 from launcher.client.running import find_running, running_records
 from launcher.client.start import StartingSupervisor
-from launcher.consent import Agents, Verdict
+from launcher.consent import Agents, ConsentVerdict
 from launcher.control.protocol import (
     MAX_MESSAGE_BYTES,
     VERSION,
@@ -317,13 +317,15 @@ class SupervisorClient:
         """Say that an agent is connected; `key` distinguishes those of this client."""
         await self._ask("join", key=key, name=name, approval=approval.value)
 
-    async def ask_consent(self, key: str, lines: Iterable[str], *, anew: bool = False) -> Verdict:
+    async def ask_consent(
+        self, key: str, lines: Iterable[str], *, anew: bool = False
+    ) -> ConsentVerdict:
         """Ask the person at the screen whether an agent may do this; takes a while.
 
         `anew`: also if they have allowed it for a time.
         """
         packed = [pack_text(line) for line in lines]
-        return Verdict(await self._ask("ask", key=key, lines=packed, anew=anew))
+        return ConsentVerdict(await self._ask("ask", key=key, lines=packed, anew=anew))
 
     async def withdraw(self, key: str | None = None) -> None:
         """Withdraw the questions of one agent, or of all agents of this client."""

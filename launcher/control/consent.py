@@ -19,8 +19,8 @@ from launcher.consent import (
     Agents,
     Answer,
     Approval,
+    ConsentVerdict,
     Question,
-    Verdict,
 )
 from launcher.status import Severity
 from text.sentences import Words, say
@@ -52,7 +52,7 @@ class _Pending:
     question: Question
     client: Hashable
     key: str
-    answered: asyncio.Future[Verdict] = field(
+    answered: asyncio.Future[ConsentVerdict] = field(
         default_factory=lambda: asyncio.get_running_loop().create_future()
     )
 
@@ -104,11 +104,11 @@ class ConsentDesk:
         if pending is None or pending.answered.done():
             return False
         if answer is Answer.REFUSE:
-            pending.answered.set_result(Verdict.REFUSED)
+            pending.answered.set_result(ConsentVerdict.REFUSED)
             return True
         if answer is Answer.FOR_A_TIME:
             self._allow(pending)
-        pending.answered.set_result(Verdict.ALLOWED)
+        pending.answered.set_result(ConsentVerdict.ALLOWED)
         return True
 
     def end_all(self) -> None:
@@ -116,7 +116,7 @@ class ConsentDesk:
         allowed = [known for known in self._known.values() if known.allowed_until_s]
         for known in allowed:
             self._disallow(known)
-        self._end_questions(lambda _pending: True, Verdict.ENDED)
+        self._end_questions(lambda _pending: True, ConsentVerdict.ENDED)
         if allowed:
             self._told(Severity.INFO, say("no agent drives without a question any more"))
             self._changed()
@@ -142,7 +142,7 @@ class ConsentDesk:
 
     async def ask(
         self, client: Hashable, key: str, lines: tuple[str, ...], *, anew: bool = False
-    ) -> Verdict:
+    ) -> ConsentVerdict:
         """Ask a person, unless they have allowed it for a time; `anew`: even then.
 
         Raises:
@@ -150,9 +150,9 @@ class ConsentDesk:
         """
         known = self._known[client, key]
         if known.allowed_until_s > time.monotonic() and not anew:
-            return Verdict.ALLOWED_BEFORE
+            return ConsentVerdict.ALLOWED_BEFORE
         if not self._screens:
-            return Verdict.NO_SCREEN
+            return ConsentVerdict.NO_SCREEN
         if len(self._pending) >= MAX_QUESTIONS:
             raise TooManyError
         self._last += 1
@@ -162,7 +162,7 @@ class ConsentDesk:
         try:
             return await asyncio.wait_for(pending.answered, self._asked_for_s)
         except asyncio.TimeoutError:
-            return Verdict.LATE
+            return ConsentVerdict.LATE
         finally:
             self._pending.pop(question.number, None)
             self._changed()
@@ -170,7 +170,7 @@ class ConsentDesk:
     def withdraw(self, client: Hashable, key: str | None = None) -> None:
         """End the questions of a connection, or of one of its agents."""
         self._end_questions(
-            lambda one: one.client is client and key in (None, one.key), Verdict.ENDED
+            lambda one: one.client is client and key in (None, one.key), ConsentVerdict.ENDED
         )
 
     def leave(self, client: Hashable) -> None:
@@ -178,7 +178,7 @@ class ConsentDesk:
         if client in self._screens:
             self._screens.discard(client)
             if not self._screens:
-                self._end_questions(lambda _pending: True, Verdict.SCREEN_GONE)
+                self._end_questions(lambda _pending: True, ConsentVerdict.SCREEN_GONE)
                 self.end_all()
         self.withdraw(client)
         mine = [key for key in self._known if key[0] is client]
@@ -214,7 +214,7 @@ class ConsentDesk:
         known.allowed_until_s = 0.0
         known.agent = Agent(known.agent.name, known.agent.approval)
 
-    def _end_questions(self, which: Callable[[_Pending], bool], verdict: Verdict) -> None:
+    def _end_questions(self, which: Callable[[_Pending], bool], verdict: ConsentVerdict) -> None:
         for pending in self._pending.values():
             if which(pending) and not pending.answered.done():
                 pending.answered.set_result(verdict)

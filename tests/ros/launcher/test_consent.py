@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from launcher.client.client import attach
-from launcher.consent import Answer, Approval, Verdict
+from launcher.consent import Answer, Approval, ConsentVerdict
 from launcher.events import AgentsEvent
 from launcher.status import Severity
 from tests.ros.supervised import SLEEPER, Launch
@@ -26,7 +26,7 @@ async def test_a_question_reaches_the_screen_and_its_answer_the_agent(start: Lau
     assert question.agent == "claude␊␛[31m"
     assert question.lines == LINES
     assert await screen.answer(question.number, Answer.ONCE)
-    assert await asking is Verdict.ALLOWED
+    assert await asking is ConsentVerdict.ALLOWED
     await until(lambda: not screen.agents.questions, "its end")
     assert not await screen.answer(question.number, Answer.ONCE)
     await agent.aclose()
@@ -36,13 +36,13 @@ async def test_a_question_reaches_the_screen_and_its_answer_the_agent(start: Lau
 async def test_a_screen_that_goes_away_refuses(start: Launch) -> None:
     agent = await start(NODE)
     await agent.join("k", "claude", Approval.ASK)
-    assert await agent.ask_consent("k", LINES) is Verdict.NO_SCREEN
+    assert await agent.ask_consent("k", LINES) is ConsentVerdict.NO_SCREEN
     screen = await attach()
     await screen.attend()
     asking = asyncio.create_task(agent.ask_consent("k", LINES))
     await until(lambda: screen.agents.questions, "the question")
     await screen.aclose()
-    assert await asking is Verdict.SCREEN_GONE
+    assert await asking is ConsentVerdict.SCREEN_GONE
 
 
 async def test_what_is_said_of_agents_is_in_the_log_and_screens_hear_of_them(

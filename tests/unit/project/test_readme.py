@@ -65,13 +65,19 @@ def test_every_command_shown_exists(readme: str) -> None:
         "record",
         "replay",
         "watch",
+        "mcp",
         "doctor",
     }
     assert shown | {"ps", "logs", "attach", "down"} <= set(COMMANDS)
 
 
 @pytest.mark.parametrize(
-    "page", [*READMES, "SECURITY.md", "docs/profiles.md", "docs/profiles.ru.md"]
+    "page",
+    [
+        *READMES,
+        "SECURITY.md",
+        *(f"docs/{name}.md" for name in ("agents", "agents.ru", "profiles", "profiles.ru")),
+    ],
 )
 def test_every_file_linked_is_there(page: str) -> None:
     links = re.findall(r"\]\(((?!https?:)[^)#]+)", (ROOT / page).read_text())

@@ -7,7 +7,7 @@ import json
 
 import pytest
 
-from launcher.consent import Agent, Agents, Answer, Approval, Question, Verdict
+from launcher.consent import Agent, Agents, Answer, Approval, ConsentVerdict, Question
 from launcher.control.agent_requests import serve_agents
 from launcher.control.bad_request import BadRequestError
 from launcher.control.consent import MAX_QUESTIONS, ConsentDesk, TooManyError
@@ -26,7 +26,7 @@ def desk(asked_for_s: float = 30.0, allowed_for_s: float = 300.0) -> ConsentDesk
     return made
 
 
-async def asked(made: ConsentDesk) -> tuple[asyncio.Task[Verdict], Question]:
+async def asked(made: ConsentDesk) -> tuple[asyncio.Task[ConsentVerdict], Question]:
     """Ask, and return the question that is on the screen now."""
     before = len(made.state.questions)
     asking = asyncio.create_task(made.ask(AGENT, "k", LINES))
@@ -35,18 +35,18 @@ async def asked(made: ConsentDesk) -> tuple[asyncio.Task[Verdict], Question]:
 
 
 async def test_without_a_screen_nothing_is_allowed() -> None:
-    assert await desk().ask(AGENT, "k", LINES) is Verdict.NO_SCREEN
+    assert await desk().ask(AGENT, "k", LINES) is ConsentVerdict.NO_SCREEN
 
 
 @pytest.mark.parametrize(
     ("answer", "verdict"),
     [
-        (Answer.ONCE, Verdict.ALLOWED),
-        (Answer.FOR_A_TIME, Verdict.ALLOWED),
-        (Answer.REFUSE, Verdict.REFUSED),
+        (Answer.ONCE, ConsentVerdict.ALLOWED),
+        (Answer.FOR_A_TIME, ConsentVerdict.ALLOWED),
+        (Answer.REFUSE, ConsentVerdict.REFUSED),
     ],
 )
-async def test_a_person_answers_once(answer: Answer, verdict: Verdict) -> None:
+async def test_a_person_answers_once(answer: Answer, verdict: ConsentVerdict) -> None:
     made = desk()
     made.attend(SCREEN)
     asking, question = await asked(made)
@@ -65,12 +65,12 @@ async def test_an_allowance_for_a_time_asks_no_more_until_it_is_ended() -> None:
     made.answer(question.number, Answer.FOR_A_TIME)
     await asking
     assert made.state.connected[0].allowed_until_s > 0
-    assert await made.ask(AGENT, "k", LINES) is Verdict.ALLOWED_BEFORE
+    assert await made.ask(AGENT, "k", LINES) is ConsentVerdict.ALLOWED_BEFORE
     made.end_all()
     assert made.state.connected[0].allowed_until_s == 0
     again, _question = await asked(made)
     made.end_all()
-    assert await again is Verdict.ENDED
+    assert await again is ConsentVerdict.ENDED
 
 
 async def test_an_allowance_runs_out() -> None:
@@ -82,7 +82,7 @@ async def test_an_allowance_runs_out() -> None:
     await until(lambda: made.state.connected[0].allowed_until_s == 0, "the end of the allowance")
     again, _question = await asked(made)
     made.withdraw(AGENT)
-    assert await again is Verdict.ENDED
+    assert await again is ConsentVerdict.ENDED
 
 
 async def test_an_allowance_is_for_one_agent() -> None:
@@ -95,14 +95,14 @@ async def test_an_allowance_is_for_one_agent() -> None:
     other = asyncio.create_task(made.ask(AGENT, "other", LINES))
     await until(lambda: made.state.questions, "a question")
     made.leave(AGENT)
-    assert await other is Verdict.ENDED
+    assert await other is ConsentVerdict.ENDED
     assert made.state == Agents()
 
 
 async def test_no_answer_is_a_refusal() -> None:
     made = desk(asked_for_s=0.05)
     made.attend(SCREEN)
-    assert await made.ask(AGENT, "k", LINES) is Verdict.LATE
+    assert await made.ask(AGENT, "k", LINES) is ConsentVerdict.LATE
     assert made.state.questions == ()
 
 
@@ -120,7 +120,7 @@ async def test_the_last_screen_that_goes_takes_questions_and_allowances_with_it(
     made.leave(SCREEN)
     assert not again.done()
     made.leave("another screen")
-    assert await again is Verdict.SCREEN_GONE
+    assert await again is ConsentVerdict.SCREEN_GONE
 
 
 async def test_a_person_is_not_flooded() -> None:
@@ -130,7 +130,7 @@ async def test_a_person_is_not_flooded() -> None:
     with pytest.raises(TooManyError):
         await made.ask(AGENT, "k", LINES)
     made.withdraw(AGENT, "k")
-    assert set(await asyncio.gather(*asking)) == {Verdict.ENDED}
+    assert set(await asyncio.gather(*asking)) == {ConsentVerdict.ENDED}
 
 
 async def test_nobody_answers_for_themselves() -> None:
