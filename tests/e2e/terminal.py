@@ -43,6 +43,9 @@ KEYS = {
     "f4": "\x1bOS",
     "f5": "\x1b[15~",
     "f8": "\x1b[19~",
+    "shift+f4": "\x1b[1;2S",
+    "shift+f5": "\x1b[15;2~",
+    "shift+f9": "\x1b[20;2~",
 }
 """What a terminal sends for the keys that have names; `ctrl+x` is understood besides."""
 

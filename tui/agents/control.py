@@ -71,18 +71,19 @@ class AgentControl:
     def answer(self, answer: Answer) -> None:
         """Answer it; an answer that allows only once it was read."""
         question = self.question
-        if question is None or (answer is not Answer.REFUSE and not self.was_read):
-            return
-        self._app.run_worker(self._answer(question.number, answer), group="agents")
+        if question is not None and (answer is Answer.REFUSE or self.was_read):
+            self._app.run_worker(self._answer(question.number, answer), group="agents")
 
-    def end(self) -> None:
-        """Refuse everything that is asked, and end what was allowed for a time."""
-        self._app.run_worker(self._end(), group="agents")
+    def refuse(self) -> None:
+        """Refuse what is asked, and end what was allowed for a time."""
+        self.answer(Answer.REFUSE)
+        if self.allowed:
+            self._app.run_worker(self._end(), group="agents")
 
     def stopped(self) -> None:
         """End everything: the emergency stop is engaged."""
         if self.state.questions or self.allowed:
-            self.end()
+            self._app.run_worker(self._end(), group="agents")
 
     def see(self) -> None:
         """Say once, loudly, that an agent drives without asking."""

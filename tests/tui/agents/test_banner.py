@@ -101,7 +101,7 @@ async def test_a_refusal_needs_no_care() -> None:
         await until(lambda: banner(app), "the banner")
         await pilot.press("shift+f9")
         await until(lambda: opener.link.asked, "a refusal")
-        assert opener.link.asked == [("end_consent",)]
+        assert opener.link.asked == [("answer", "1", "refuse")]
 
 
 async def test_the_emergency_stop_refuses() -> None:

@@ -72,7 +72,7 @@ class RefuseAgent(AgentAction):
     @classmethod
     async def run(cls, target: Host) -> None:
         """Refuse, and end."""
-        target.agents.end()
+        target.agents.refuse()
 
 
 AGENT_ACTIONS = (AllowAgent, AllowAgentForATime, RefuseAgent)
