@@ -29,6 +29,7 @@ WORD = re.compile(r"[^\W\d_]+")
 async def stop(session: RobotSession) -> dict[str, object]:
     """Engage the emergency stop; where no node obeys it, stop the nodes."""
     sending = session.observer.publish(EMERGENCY_STOP, BOOL, {"data": True}, latched=True)
+    session.has_stopped = True
     view, emergency = session.view, session.emergency
     row = view.topic(EMERGENCY_STOP)
     if row is None or not row.subscribers:

@@ -141,6 +141,18 @@ class AgentDriving:
             preview = preview_of(road.gate, motion.speed_m_s, metres)
         return CheckedMotion(motion, road, preview)
 
+    async def _free_to_go(self, session: RobotSession, motion: Motion) -> CheckedMotion:
+        """Return what is checked now; refuse what the emergency stop or the gate would hold.
+
+        A command that the gate holds would set the robot going when the way becomes free.
+        """
+        checked = await self._checked(session, motion)
+        if session.emergency.engaged:
+            raise refused("the emergency stop is in force; only a person releases it")
+        if checked.preview is not None and not checked.preview.lets:
+            raise RefusedError(checked.preview.words)
+        return checked
+
     async def _execute(
         self, session: RobotSession, caller: Caller, proposal: Proposal
     ) -> dict[str, object]:
@@ -162,8 +174,10 @@ class AgentDriving:
         self, session: RobotSession, caller: Caller, proposal: Proposal
     ) -> CheckedMotion:
         """Return what is allowed, checked again after the answer."""
-        _check_free(session)
-        checked = await self._checked(session, proposal.motion)
+        checked = await self._free_to_go(session, proposal.motion)
+        # Matched with the parser by the time of the answer, after which nothing is to wait.
+        prepared = session.observer.prepare_publisher(LLM_RAW_JSON, STRING)
+        prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
         rules = session.info.agents
         fits = self._unasked.has_room(checked.distance_m, rules.max_total_m)
         unasked = self.approval is Approval.ALWAYS
@@ -179,8 +193,7 @@ class AgentDriving:
                 raise RefusedError(REFUSALS[verdict])
             unasked = verdict is ConsentVerdict.ALLOWED_BEFORE
         # A person takes their time: meanwhile the robot, or the gate, may have changed.
-        checked = await self._checked(session, proposal.motion)
-        _check_free(session)
+        checked = await self._free_to_go(session, proposal.motion)
         if unasked:
             self._unasked.add(checked.distance_m)
         return checked
@@ -273,11 +286,6 @@ async def _ask(
         raise
     except LauncherError as error:
         raise refused("nobody could be asked: {why}", why=str(error)) from error
-
-
-def _check_free(session: RobotSession) -> None:
-    if session.emergency.engaged:
-        raise refused("the emergency stop is in force; only a person releases it")
 
 
 def _thought(proposal: Proposal, thought: str) -> str:

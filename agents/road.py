@@ -49,7 +49,9 @@ async def road_of(session: RobotSession, *, wheels: bool) -> Road:
     view = session.view
     if view.error:
         raise refused("the robot cannot be seen: {why}", why=view.error)
-    await view.until(lambda: _known(session), KNOWN_WITHIN_S)
+    await view.until(
+        lambda: _known(session) and bool(_ends(session, LLM_RAW_JSON)[1]), KNOWN_WITHIN_S
+    )
     if not _known(session):
         raise refused("not all nodes between the agent and the wheels are known by name")
     parsers = _nodes(_ends(session, LLM_RAW_JSON)[1])

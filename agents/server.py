@@ -127,9 +127,9 @@ class AgentServer:
         tool = _tool(record.tool, session)
         if tool.acts and not tool.tells:
             record.ends(say("done"), Severity.INFO)
-        if caller.key not in session.joined:
+        if tool.waits:
+            # With each call: the supervisor forgets quiet agents, if there are many.
             await session.link.join(caller.key, caller.name, self.driving.approval)
-            session.joined.add(caller.key)
         arguments = _arguments(tool, record.given)
         if tool.waits:
             await session.settled()

@@ -42,8 +42,8 @@ class RobotSession:
             link.session.domain, link.session.discovery, PERIOD_S, role="agents"
         )
         self.view = GraphView(self.observer)
-        self.joined: set[str] = set()
-        """Keys of the agents that the supervisor knows of."""
+        self.has_stopped = False
+        """Whether an agent has given a stop that nobody has released yet."""
         self._stopped = stopped
         self._was_stopped = False
         self._ending: asyncio.Future[None] | None = None
@@ -86,6 +86,10 @@ class RobotSession:
         if stopped and not self._was_stopped:
             # Also where no screen is: what a person has allowed before does not outlive a stop.
             self._ending = asyncio.ensure_future(self._end_consent())
+        if self.has_stopped and self._was_stopped and not stopped:
+            # Somebody has released it: a node that starts later must not hear of it from here.
+            self.has_stopped = False
+            self.observer.take_back(EMERGENCY_STOP, BOOL)
         self._was_stopped = stopped
         self.view.take(update)
 

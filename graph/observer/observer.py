@@ -143,6 +143,14 @@ class Observer:
             self._requests.put(request)
         return request.future
 
+    def take_back(self, topic: str, type_name: str) -> None:
+        """Let a latched message, once published, reach no later subscriber."""
+
+        def renew(node: ObserverNode) -> None:
+            node.outbox.renew_latched(topic, type_name, node.ends(topic))
+
+        self._requests.put(Perform(renew))
+
     def call(
         self,
         service: str,

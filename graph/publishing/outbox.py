@@ -141,6 +141,18 @@ class Outbox:
             line.waiting.append((message, future))
         line.advance()
 
+    def renew_latched(self, topic: str, type_name: str, ends: TopicEnds | None) -> None:
+        """Have a new latched publisher: what the old one has said reaches nobody any more.
+
+        Raises PublishError or UnknownTypeError.
+        """
+        line = self._lines.pop((topic, type_name, True), None)
+        if line is not None:
+            self._node.destroy_publisher(line.publisher)
+            for _message, future in line.waiting:
+                future.set_exception(PublishError(say("{topic}: it was taken back", topic=topic)))
+        self._line(topic, type_name, ends, latched=True)
+
     def step(self) -> bool:
         """Send what can be sent now; return whether anything still waits."""
         for line in self._lines.values():

@@ -131,7 +131,7 @@ class ConsentDesk:
         """
         if (client, key) in self._known:
             return
-        if len(self._known) >= MAX_AGENTS:
+        if len(self._known) >= MAX_AGENTS and not self._forget_one(client):
             raise TooManyError
         self._known[client, key] = _Known(Agent(name, approval))
         self._told(Severity.DEBUG, say("agent {name} is connected", name=name))
@@ -139,6 +139,15 @@ class ConsentDesk:
             words = say("agent {name} drives without asking: --approve always", name=name)
             self._told(Severity.WARN, words)
         self._changed()
+
+    def _forget_one(self, client: Hashable) -> bool:
+        """Forget the agent of a connection that joined first, if it asks and may do nothing now."""
+        asking = {(pending.client, pending.key) for pending in self._pending.values()}
+        for key, known in self._known.items():
+            if key[0] is client and key not in asking and not known.allowed_until_s:
+                del self._known[key]
+                return True
+        return False
 
     async def ask(
         self, client: Hashable, key: str, lines: tuple[str, ...], *, anew: bool = False

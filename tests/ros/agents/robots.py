@@ -24,7 +24,11 @@ GATED: dict[str, Any] = {
         "run": "nodes.mock_sonar",
         "params": {"pattern": "constant", "value": 3.0, "rate": 10.0},
     },
-    "safety_stop": {"run": "nodes.safety_stop", "params": {"gate": True, "rate": 20.0}},
+    # It holds the first command that it ever hears for `settle_s`.
+    "safety_stop": {
+        "run": "nodes.safety_stop",
+        "params": {"gate": True, "rate": 20.0, "settle_s": 0.1},
+    },
     "electronic_differential": {
         "run": "nodes.electronic_differential",
         "params": {"drive_topic": "/drive_safe", "rate": 20.0, "max_age_s": 0.5},

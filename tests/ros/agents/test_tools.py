@@ -18,10 +18,11 @@ from std_srvs.srv import Trigger
 
 from launcher.client.client import SupervisorClient
 from launcher.consent import AUDIT_FILE, Answer
-from launcher.status import Severity
+from launcher.status import NodeState, Severity
 from robot.topics import DRIVE_SAFE, LLM_RESULT
 from tests.ros.agents.robots import GATED, Agent, agent, drive, running, screen
 from tests.ros.peer import Peer
+from tests.ros.supervised import until_state
 from tests.waiting import until
 
 PARSER: dict[str, Any] = GATED["llm_parser"]
@@ -40,6 +41,16 @@ def moved(told: list[AckermannDriveStamped]) -> bool:
 def accepted(results: list[String]) -> int:
     """Return how many responses were carried out."""
     return sum(json.loads(one.data)["event"] == "accepted" for one in results)
+
+
+async def lets(claude: Agent) -> None:
+    """Wait until the gate, which has just started, lets the robot drive."""
+
+    async def free() -> bool:
+        result = await claude.client.call_tool("propose", {"commands": [drive(0.1)]})
+        return not result.is_error and bool(result.structured_content["gate_lets"])
+
+    await until(free, "a gate that lets it", every_s=0.2)
 
 
 async def asked(link: SupervisorClient) -> int:
@@ -66,6 +77,7 @@ async def test_it_looks_and_drives_only_as_far_as_the_person_lets_it(
         assert state["gate"]["verdict"] == "free"
         assert state["approval"] == "ask"
 
+        await lets(claude)
         # Without a screen nobody can be asked.
         proposal = await claude.proposed(drive(0.2), reason="why not")
         assert "no screen" in await claude.refused("execute", proposal=proposal)
@@ -111,16 +123,20 @@ async def test_it_looks_and_drives_only_as_far_as_the_person_lets_it(
         assert ("execute", "begins") in audited(link)
         assert audited(link)[-1][0] == "execute"
         lines = [line for line in await link.history(None, 200) if line.source == "agent"]
-        assert [line.text for line in lines if line.severity is Severity.INFO] == [
-            "claude does p2: drives at 0.2 m/s, steering 0.1 rad, for 1 s: 0.20 m at most"
-        ]
+        (does,) = [line.text for line in lines if line.severity is Severity.INFO]
+        assert does == (
+            f"claude does {answer['proposal']}: drives at 0.2 m/s, steering 0.1 rad, for 1 s: "
+            "0.20 m at most"
+        )
 
 
 async def test_an_emergency_stop_ends_questions_proposals_and_allowances(
     tmp_path: Path, ros_domain: int, peer: Peer
 ) -> None:
     told = speeds(peer)
-    async with running(tmp_path, ros_domain, GATED), screen() as person, agent() as claude:
+    robot = running(tmp_path, ros_domain, GATED)
+    async with robot as link, screen() as person, agent() as claude:
+        await lets(claude)
         early = await claude.proposed(drive(0.1))
         executing = asyncio.create_task(claude.call("execute", proposal=early))
         await person.answer(await asked(person), Answer.FOR_A_TIME)
@@ -146,6 +162,18 @@ async def test_an_emergency_stop_ends_questions_proposals_and_allowances(
             return not (await claude.call("look"))["emergency_stop"]["engaged"]
 
         await until(free, "the release", every_s=0.2)
+        # A node that starts now hears of no stop any more.
+        await link.restart("llm_parser")
+        await until_state(link, "llm_parser", NodeState.STARTING, NodeState.WAITING)
+        await until_state(link, "llm_parser", NodeState.READY)
+        await lets(claude)
+        executing = asyncio.create_task(
+            claude.call("execute", proposal=await claude.proposed(drive(0.1)))
+        )
+        await person.answer(await asked(person), Answer.ONCE)
+        assert not (await executing)["stopped_by_emergency_stop"]
+        assert moved(told)
+        told.clear()
         asking = await claude.proposed(drive(0.1))
         refusing = asyncio.create_task(claude.refused("execute", proposal=asking))
         await asked(person)
@@ -164,6 +192,7 @@ async def test_limits_that_no_approval_lifts(tmp_path: Path, ros_domain: int, pe
         async with agent("--approve", "always") as claude:
             why = await claude.refused("propose", commands=[drive(0.11)])
             assert "too fast" in why
+            await lets(claude)
             await claude.call("execute", proposal=await claude.proposed(drive(0.1)))
             assert moved(told)
             over = await claude.proposed(drive(-0.1))

@@ -10,7 +10,7 @@ import pytest
 from launcher.consent import Agent, Agents, Answer, Approval, ConsentVerdict, Question
 from launcher.control.agent_requests import serve_agents
 from launcher.control.bad_request import BadRequestError
-from launcher.control.consent import MAX_QUESTIONS, ConsentDesk, TooManyError
+from launcher.control.consent import MAX_AGENTS, MAX_QUESTIONS, ConsentDesk, TooManyError
 from launcher.control.protocol import encode, pack_agents, unpack_agents
 from tests.waiting import until
 from text.sentences import say
@@ -131,6 +131,21 @@ async def test_a_person_is_not_flooded() -> None:
         await made.ask(AGENT, "k", LINES)
     made.withdraw(AGENT, "k")
     assert set(await asyncio.gather(*asking)) == {ConsentVerdict.ENDED}
+
+
+async def test_agents_that_are_quiet_make_way_for_new_ones() -> None:
+    made = desk()
+    made.attend(SCREEN)
+    asking, question = await asked(made)
+    for number in range(2 * MAX_AGENTS):
+        made.join(AGENT, f"k{number}", f"agent {number}", Approval.ASK)
+    names = [agent.name for agent in made.state.connected]
+    assert len(names) == MAX_AGENTS
+    assert {"claude", f"agent {2 * MAX_AGENTS - 1}"} <= set(names), "one that asks stays"
+    with pytest.raises(TooManyError):
+        made.join("another connection", "k", "late", Approval.ASK)
+    made.answer(question.number, Answer.REFUSE)
+    await asking
 
 
 async def test_nobody_answers_for_themselves() -> None:
