@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import re
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from agents.raw_access import check_call, check_publish
 from agents.refusal import refused
 from agents.session import BOOL
 from graph.messages.yaml_text import to_yaml
+from launcher.errors import LauncherError
 from robot.topics import EMERGENCY_STOP, SPEAKER
 from robot.words import parse_word
 from text.plain import plain, plain_lines
@@ -40,7 +42,8 @@ async def stop(session: RobotSession) -> dict[str, object]:
     if not heard:
         ended = [node.name for node in session.link.nodes.values() if node.state.alive]
         await session.link.stop()
-    await session.link.withdraw()
+    with contextlib.suppress(LauncherError):  # The session may be ending.
+        await session.link.withdraw()
     await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S)
     await view.until(lambda: bool(emergency.holding), OBEYED_WITHIN_S if heard else 0.0)
     return {

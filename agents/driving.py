@@ -20,6 +20,7 @@ from launcher.consent import Approval, ConsentVerdict
 from launcher.errors import LauncherError
 from launcher.status import Severity
 from robot.topics import LLM_RAW_JSON, LLM_RESULT, ODOMETRY
+from text.plain import plain
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ HEAD_WITHIN_S = 8.0
 WATCHED_FOR_S = 20.0
 """A longer drive goes on after the answer."""
 SETTLES_S = 0.5
+HEAD_FIELDS = ("pan", "tilt", "sum", "error")
 REFUSALS = {
     ConsentVerdict.REFUSED: say("the person at the screen has refused"),
     ConsentVerdict.NO_SCREEN: say(
@@ -193,10 +195,12 @@ class AgentDriving:
                 raise RefusedError(REFUSALS[verdict])
             unasked = verdict is ConsentVerdict.ALLOWED_BEFORE
         # A person takes their time: meanwhile the robot, or the gate, may have changed.
-        checked = await self._free_to_go(session, proposal.motion)
+        again = await self._free_to_go(session, proposal.motion)
+        if again.road.way != checked.road.way:
+            raise refused("the robot has changed since the person was asked; make a new proposal")
         if unasked:
-            self._unasked.add(checked.distance_m)
-        return checked
+            self._unasked.add(again.distance_m)
+        return again
 
     async def _carry_out(
         self, session: RobotSession, proposal: Proposal, checked: CheckedMotion
@@ -207,6 +211,8 @@ class AgentDriving:
         sent = False
         try:
             with session.view.hearing(LLM_RESULT, answers.hear):
+                if session.emergency.engaged:
+                    raise refused("the emergency stop is in force; only a person releases it")
                 sending = session.observer.publish(
                     LLM_RAW_JSON, STRING, {"data": _thought(proposal, thought)}
                 )
@@ -271,7 +277,7 @@ class _Answers:
             problems = report.get("problems")
             self.refused = str(problems)[:300] or "?"
         elif event == "head" and self.accepted and len(self.heads) < 16:
-            self.heads.append({name: report.get(name) for name in ("pan", "tilt", "sum", "error")})
+            self.heads.append({name: _short(report.get(name)) for name in HEAD_FIELDS})
 
 
 async def _ask(
@@ -288,6 +294,11 @@ async def _ask(
         raise refused("nobody could be asked: {why}", why=str(error)) from error
 
 
+def _short(value: object) -> object:
+    """Return a number as it is, anything else as a short text: it may come from anybody."""
+    return value if value is None or isinstance(value, (int, float)) else plain(str(value), 200)
+
+
 def _thought(proposal: Proposal, thought: str) -> str:
     return proposal.motion.response(thought)
 
@@ -295,8 +306,7 @@ def _thought(proposal: Proposal, thought: str) -> str:
 def _end_drive(session: RobotSession) -> None:
     """Have the robot stand: whoever has moved it does not look any more."""
     stop = {"thought": "", "commands": [{"action": "drive", "speed": 0.0, "steering": 0.0}]}
-    done = session.observer.publish(LLM_RAW_JSON, STRING, {"data": json.dumps(stop)})
-    done.add_done_callback(lambda future: future.cancelled() or future.exception())
+    session.last_words = session.observer.publish(LLM_RAW_JSON, STRING, {"data": json.dumps(stop)})
 
 
 def _place(session: RobotSession) -> tuple[float, float] | None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robot.safety.gate_report import STOPPED, gate_in
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
+from text.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
@@ -31,7 +32,7 @@ class EmergencyWatch:
     @property
     def holding(self) -> list[str]:
         """The nodes that report that they hold."""
-        return sorted(name for name, holds in self._nodes.items() if holds)
+        return sorted(plain(name, 200) for name, holds in self._nodes.items() if holds)
 
     def see(self, update: GraphUpdate) -> bool:
         """Take in an update; return whether it holds a stop, even one that was released since."""

@@ -39,6 +39,11 @@ class Road:
     gate: Gate | None = None
     """What the gate reports now."""
 
+    @property
+    def way(self) -> tuple[str, float]:
+        """What a person was asked about: who drives, and for how long."""
+        return self.parser, self.repeat_for_s
+
 
 async def road_of(session: RobotSession, *, wheels: bool) -> Road:
     """Return the road; `wheels`: whether the robot is to drive, which needs more.

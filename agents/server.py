@@ -121,10 +121,10 @@ class AgentServer:
         return _result(answer)
 
     async def _answer(self, caller: Caller, record: _Record) -> ToolAnswer:
-        if self._calls > MAX_AT_ONCE:
-            raise refused("too many calls at once")
         session = record.session = await self.finder.session()
         tool = _tool(record.tool, session)
+        if self._calls > MAX_AT_ONCE and tool.waits:
+            raise refused("too many calls at once")
         if tool.acts and not tool.tells:
             record.ends(say("done"), Severity.INFO)
         if tool.waits:

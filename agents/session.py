@@ -19,6 +19,7 @@ from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from concurrent.futures import Future
 
     from graph.data import GraphUpdate
     from launcher.client.client import SupervisorClient
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 LOOK_EVERY_S = 0.5
 PERIOD_S = 0.1
+SAID_WITHIN_S = 1.0
 BOOL = "std_msgs/msg/Bool"
 
 
@@ -42,6 +44,8 @@ class RobotSession:
             link.session.domain, link.session.discovery, PERIOD_S, role="agents"
         )
         self.view = GraphView(self.observer)
+        self.last_words: Future[int] | None = None
+        """A stop of the wheels that has to be sent before the observer ends."""
         self.has_stopped = False
         """Whether an agent has given a stop that nobody has released yet."""
         self._stopped = stopped
@@ -71,6 +75,8 @@ class RobotSession:
 
     async def close(self) -> None:
         """Leave the session and its graph."""
+        if self.last_words is not None:
+            await asyncio.wait([asyncio.wrap_future(self.last_words)], timeout=SAID_WITHIN_S)
         await asyncio.to_thread(self.observer.stop)
         await self.link.aclose()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import contextlib
 import json
 from pathlib import Path
 from typing import Any
@@ -325,3 +326,40 @@ async def test_agents_come_before_the_session_and_outlive_it(
         await until(lambda: sees(claude, "no robot to speak to"), "its end", every_s=0.2)
         async with running(tmp_path, ros_domain, nodes):
             await until(lambda: sees(claude, '"session": "robot"'), "the next one", every_s=0.2)
+
+
+async def test_an_agent_that_goes_away_leaves_a_robot_that_stands(
+    tmp_path: Path, ros_domain: int, peer: Peer
+) -> None:
+    told = speeds(peer)
+    long = {"run": "nodes.llm_parser", "params": {"repeat_for_s": 50.0}}
+    nodes = {**GATED, "llm_parser": long}
+    async with running(tmp_path, ros_domain, nodes, {"max_distance_m": 10.0}) as link:
+        async with agent("--approve", "always") as claude:
+            await lets(claude)
+            proposal = await claude.proposed(drive(0.1))
+            executing = asyncio.create_task(
+                claude.client.call_tool("execute", {"proposal": proposal})
+            )
+            await until(lambda: moved(told), "wheels that turn")
+        with contextlib.suppress(Exception):
+            await executing
+        # By itself it would end after 50 s.
+        await until(lambda: told[-1].drive.speed == 0.0, "wheels that stand", within_s=20.0)
+        await until(lambda: not link.agents.connected, "its end")
+        assert ("execute", "cancelled by the agent") in audited(link)
+
+
+async def test_a_question_goes_with_the_agent_that_asks(tmp_path: Path, ros_domain: int) -> None:
+    async with running(tmp_path, ros_domain, GATED), screen() as person:
+        async with agent() as claude:
+            await lets(claude)
+            proposal = await claude.proposed(drive(0.1))
+            executing = asyncio.create_task(
+                claude.client.call_tool("execute", {"proposal": proposal})
+            )
+            number = await asked(person)
+        with contextlib.suppress(Exception):
+            await executing
+        await until(lambda: not person.agents.questions, "the end of the question")
+        assert not await person.answer(number, Answer.ONCE)
