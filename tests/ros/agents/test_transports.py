@@ -12,7 +12,7 @@ import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import httpx2
 import mcp_types as types
@@ -177,11 +177,12 @@ async def test_agents_by_http_look_at_the_robot(tmp_path: Path, ros_domain: int)
         with http() as (_process, address, token):
             headers = {"Authorization": f"Bearer {token}"}
             async with httpx2.AsyncClient(headers=headers, timeout=30) as web:
-                names = ("first", "second")
-                for name in names:
+                modes: tuple[tuple[str, Literal["auto", "legacy"]], ...]
+                modes = (("first", "auto"), ("second", "legacy"))
+                for name, mode in modes:
                     info = types.Implementation(name=name, version="1")
                     transport = streamable_http_client(address, http_client=web)
-                    async with Client(transport, client_info=info) as client:
+                    async with Client(transport, client_info=info, mode=mode) as client:
                         assert (await Agent(client).call("look"))["session"] == "robot"
 
 
