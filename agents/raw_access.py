@@ -9,6 +9,7 @@ from __future__ import annotations
 from agents.refusal import refused
 from robot.safety.moving_topics import moves
 from robot.topics import (
+    BRAIN_STATE,
     COMMAND_SOURCES,
     DRIVE_SAFE,
     EMERGENCY_STATE,
@@ -22,11 +23,14 @@ from robot.topics import (
     SONAR_REAR,
     TF,
     TF_STATIC,
+    VLM_DESCRIPTION,
+    VLM_DETECTIONS,
 )
 
 KEPT = frozenset(
     {
         *COMMAND_SOURCES,
+        BRAIN_STATE,
         DRIVE_SAFE,
         EMERGENCY_STATE,
         EMERGENCY_STOP,
@@ -38,6 +42,8 @@ KEPT = frozenset(
         SONAR_REAR,
         TF,
         TF_STATIC,
+        VLM_DESCRIPTION,
+        VLM_DETECTIONS,
     }
 )
 """Topics that no profile opens to agents: motion, and what a decision about it rests on."""

@@ -135,14 +135,17 @@ def unpack_session(fields: dict[str, Any]) -> SessionInfo:
             "panels": tuple(fields["panels"]),
             "discovery": discovery if isinstance(discovery, str) else tuple(discovery),
             "started_by": Who(**fields["started_by"]),
-            "agents": unpack_rules(fields["agents"]),
+            # A session that an older Deck has started has none.
+            "agents": unpack_rules(fields.get("agents", {})),
         }
     )
 
 
 def unpack_rules(fields: dict[str, Any]) -> AgentRules:
-    """Return the rules that `dataclasses.asdict` was given."""
-    lists = {name: tuple(fields[name]) for name in ("publish", "call")}
+    """Return the rules that `dataclasses.asdict` was given; what is missing is as by default."""
+    lists: dict[str, Any] = {
+        name: tuple(fields[name]) for name in ("publish", "call") if name in fields
+    }
     return AgentRules(**{**fields, **lists})
 
 

@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from launcher.consent import DEFAULT_RULES, AgentRules
+from launcher.control.protocol import unpack_rules
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
 from launcher.faults.meanings import CHECK_FIELDS
@@ -106,9 +107,7 @@ class Plan:
         fields["nodes"] = tuple(_node_from(node) for node in fields["nodes"])
         fields["panels"] = tuple(fields["panels"])
         fields["confined_to"] = tuple(fields["confined_to"])
-        rules = fields["agents"]
-        lists = {name: tuple(rules[name]) for name in ("publish", "call")}
-        fields["agents"] = AgentRules(**{**rules, **lists})
+        fields["agents"] = unpack_rules(fields["agents"])
         if not isinstance(fields["discovery"], str):
             fields["discovery"] = tuple(fields["discovery"])
         return cls(**fields)
