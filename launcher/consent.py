@@ -47,7 +47,7 @@ class Approval(str, Enum):
     """Whoever has started `deck mcp`, for all that is to come."""
 
 
-class Answer(str, Enum):
+class ConsentAnswer(str, Enum):
     """What a person answers."""
 
     ONCE = "once"

@@ -46,7 +46,7 @@ from text.sentences import say
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterable
 
-    from launcher.consent import Answer, Approval
+    from launcher.consent import Approval, ConsentAnswer
     from launcher.events import Event
     from launcher.profile.load import Profile
     from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
@@ -304,7 +304,7 @@ class SupervisorClient:
         """Say that a person at this screen can answer the questions of agents."""
         await self._ask("attend")
 
-    async def answer(self, question: int, answer: Answer) -> bool:
+    async def answer(self, question: int, answer: ConsentAnswer) -> bool:
         """Answer a question; return False if it is no longer asked."""
         answered: bool = await self._ask("answer", question=question, answer=answer.value)
         return answered

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from launcher.consent import Answer, Approval
+from launcher.consent import Approval, ConsentAnswer
 from launcher.control.bad_request import BadRequestError
 from launcher.control.protocol import encode, unpack_text
 from launcher.status import Severity
@@ -70,11 +70,11 @@ def _check_attends(consent: ConsentDesk, client: Hashable) -> None:
         raise BadRequestError(say("only a screen that attends to agents may answer them"))
 
 
-def _given_answer(request: dict[str, Any]) -> tuple[int, Answer]:
+def _given_answer(request: dict[str, Any]) -> tuple[int, ConsentAnswer]:
     number = request.get("question")
     if not isinstance(number, int):
         raise BadRequestError(say("question: expected a number, found {x!r}", x=number))
-    return number, _one_of(Answer, request, "answer")
+    return number, _one_of(ConsentAnswer, request, "answer")
 
 
 def _approval(request: dict[str, Any]) -> Approval:

@@ -17,8 +17,8 @@ from launcher.consent import (
     ASKED_FOR_S,
     Agent,
     Agents,
-    Answer,
     Approval,
+    ConsentAnswer,
     ConsentVerdict,
     Question,
 )
@@ -98,15 +98,15 @@ class ConsentDesk:
         """Whether an agent has joined from there: that of this key, or any."""
         return any(who is client and key in (None, name) for who, name in self._known)
 
-    def answer(self, number: int, answer: Answer) -> bool:
+    def answer(self, number: int, answer: ConsentAnswer) -> bool:
         """Answer a question; return False if it is no longer asked."""
         pending = self._pending.get(number)
         if pending is None or pending.answered.done():
             return False
-        if answer is Answer.REFUSE:
+        if answer is ConsentAnswer.REFUSE:
             pending.answered.set_result(ConsentVerdict.REFUSED)
             return True
-        if answer is Answer.FOR_A_TIME:
+        if answer is ConsentAnswer.FOR_A_TIME:
             self._allow(pending)
         pending.answered.set_result(ConsentVerdict.ALLOWED)
         return True

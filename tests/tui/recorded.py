@@ -12,7 +12,7 @@ from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from launcher.consent import Agents, Answer
+from launcher.consent import Agents, ConsentAnswer
 from launcher.events import AgentsEvent, ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Stray
 from tests.tui.recorded_graph import PARAMETERS, RecordedGraph
@@ -126,7 +126,7 @@ class RecordedSession:
     async def attend(self) -> None:
         pass
 
-    async def answer(self, question: int, answer: Answer) -> bool:
+    async def answer(self, question: int, answer: ConsentAnswer) -> bool:
         self.asked.append(("answer", str(question), answer.value))
         return True
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
-from launcher.consent import Answer, Approval
+from launcher.consent import Approval, ConsentAnswer
 from launcher.errors import LauncherError
 from text.i18n import _
 from text.plain import plain
@@ -68,15 +68,15 @@ class AgentControl:
         # Not while a dialog or the help covers it.
         return any(banner.display for banner in self._app.screen.query(BANNER))
 
-    def answer(self, answer: Answer) -> None:
+    def answer(self, answer: ConsentAnswer) -> None:
         """Answer it; an answer that allows only once it was read."""
         question = self.question
-        if question is not None and (answer is Answer.REFUSE or self.was_read):
+        if question is not None and (answer is ConsentAnswer.REFUSE or self.was_read):
             self._app.run_worker(self._answer(question.number, answer), group="agents")
 
     def refuse(self) -> None:
         """Refuse what is asked, and end what was allowed for a time."""
-        self.answer(Answer.REFUSE)
+        self.answer(ConsentAnswer.REFUSE)
         if self.allowed:
             self._app.run_worker(self._end(), group="agents")
 
@@ -96,7 +96,7 @@ class AgentControl:
                 told = words.format(name=plain(agent.name))
                 self._app.notify(told, severity="warning", timeout=TOLD_S, markup=False)
 
-    async def _answer(self, number: int, answer: Answer) -> None:
+    async def _answer(self, number: int, answer: ConsentAnswer) -> None:
         link = self._feed.link
         try:
             if link is not None and not await link.answer(number, answer):

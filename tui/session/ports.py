@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
     from graph.publishing.dead_man_switch import HeldCommand
     from graph.replay.replay import Replay
-    from launcher.consent import Agents, Answer
+    from launcher.consent import Agents, ConsentAnswer
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
     from tui.session.requests import Lesson, OpenRequest
@@ -71,7 +71,7 @@ class SessionLink(Protocol):
     async def attend(self) -> None:
         """Say that a person at this screen can answer the questions of agents."""
 
-    async def answer(self, question: int, answer: Answer) -> bool:
+    async def answer(self, question: int, answer: ConsentAnswer) -> bool:
         """Answer a question; return False if it is no longer asked."""
 
     async def end_consent(self) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from graph.data import GraphUpdate
-    from launcher.consent import Answer
+    from launcher.consent import ConsentAnswer
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
 
@@ -58,7 +58,7 @@ class NodelessLink:
     async def attend(self) -> None:
         """Nobody asks."""
 
-    async def answer(self, question: int, answer: Answer) -> bool:
+    async def answer(self, question: int, answer: ConsentAnswer) -> bool:
         """Nothing was asked."""
         del question, answer
         return False

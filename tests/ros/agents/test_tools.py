@@ -18,7 +18,7 @@ from std_msgs.msg import Bool, ByteMultiArray, String
 from std_srvs.srv import Trigger
 
 from launcher.client.client import SupervisorClient
-from launcher.consent import AUDIT_FILE, Answer
+from launcher.consent import AUDIT_FILE, ConsentAnswer
 from launcher.status import NodeState, Severity
 from robot.topics import DRIVE_SAFE, LLM_RESULT
 from tests.ros.agents.robots import GATED, Agent, agent, drive, running, screen
@@ -98,7 +98,7 @@ async def test_it_looks_and_drives_only_as_far_as_the_person_lets_it(
             ]
             assert not moved(told)
             assert not results
-            await person.answer(number, Answer.ONCE)
+            await person.answer(number, ConsentAnswer.ONCE)
             assert (await executing)["outcome"] == "carried out"
             assert moved(told)
             assert max(one.drive.speed for one in told) == pytest.approx(0.2)
@@ -110,7 +110,7 @@ async def test_it_looks_and_drives_only_as_far_as_the_person_lets_it(
             told.clear()
             proposal = await claude.proposed(drive(0.2))
             refusing = asyncio.create_task(claude.refused("execute", proposal=proposal))
-            await person.answer(await asked(person), Answer.REFUSE)
+            await person.answer(await asked(person), ConsentAnswer.REFUSE)
             assert "has refused" in await refusing
 
         # The screen goes away while it is asked.
@@ -140,7 +140,7 @@ async def test_an_emergency_stop_ends_questions_proposals_and_allowances(
         await lets(claude)
         early = await claude.proposed(drive(0.1))
         executing = asyncio.create_task(claude.call("execute", proposal=early))
-        await person.answer(await asked(person), Answer.FOR_A_TIME)
+        await person.answer(await asked(person), ConsentAnswer.FOR_A_TIME)
         await executing
         # Allowed for a time: without a question.
         await claude.call("execute", proposal=await claude.proposed(drive(0.1)))
@@ -171,7 +171,7 @@ async def test_an_emergency_stop_ends_questions_proposals_and_allowances(
         executing = asyncio.create_task(
             claude.call("execute", proposal=await claude.proposed(drive(0.1)))
         )
-        await person.answer(await asked(person), Answer.ONCE)
+        await person.answer(await asked(person), ConsentAnswer.ONCE)
         assert not (await executing)["stopped_by_emergency_stop"]
         assert moved(told)
         told.clear()
@@ -362,4 +362,4 @@ async def test_a_question_goes_with_the_agent_that_asks(tmp_path: Path, ros_doma
         with contextlib.suppress(Exception):
             await executing
         await until(lambda: not person.agents.questions, "the end of the question")
-        assert not await person.answer(number, Answer.ONCE)
+        assert not await person.answer(number, ConsentAnswer.ONCE)

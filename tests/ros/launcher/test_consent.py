@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from launcher.client.client import attach
-from launcher.consent import Answer, Approval, ConsentVerdict
+from launcher.consent import Approval, ConsentAnswer, ConsentVerdict
 from launcher.events import AgentsEvent
 from launcher.status import Severity
 from tests.ros.supervised import SLEEPER, Launch
@@ -25,10 +25,10 @@ async def test_a_question_reaches_the_screen_and_its_answer_the_agent(start: Lau
     (question,) = await until(lambda: screen.agents.questions, "the question")
     assert question.agent == "claude␊␛[31m"
     assert question.lines == LINES
-    assert await screen.answer(question.number, Answer.ONCE)
+    assert await screen.answer(question.number, ConsentAnswer.ONCE)
     assert await asking is ConsentVerdict.ALLOWED
     await until(lambda: not screen.agents.questions, "its end")
-    assert not await screen.answer(question.number, Answer.ONCE)
+    assert not await screen.answer(question.number, ConsentAnswer.ONCE)
     await agent.aclose()
     await until(lambda: not screen.agents.connected, "the end of the agent")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from launcher.consent import Answer
+from launcher.consent import ConsentAnswer
 from text.i18n import N_
 from tui.actions.action import Action
 
@@ -38,7 +38,7 @@ class AllowAgent(AgentAction):
     @classmethod
     async def run(cls, target: Host) -> None:
         """Allow it."""
-        target.agents.answer(Answer.ONCE)
+        target.agents.answer(ConsentAnswer.ONCE)
 
 
 class AllowAgentForATime(AgentAction):
@@ -52,7 +52,7 @@ class AllowAgentForATime(AgentAction):
     @classmethod
     async def run(cls, target: Host) -> None:
         """Allow it."""
-        target.agents.answer(Answer.FOR_A_TIME)
+        target.agents.answer(ConsentAnswer.FOR_A_TIME)
 
 
 class RefuseAgent(AgentAction):

@@ -7,7 +7,7 @@ import json
 
 import pytest
 
-from launcher.consent import Agent, Agents, Answer, Approval, ConsentVerdict, Question
+from launcher.consent import Agent, Agents, Approval, ConsentAnswer, ConsentVerdict, Question
 from launcher.control.agent_requests import serve_agents
 from launcher.control.bad_request import BadRequestError
 from launcher.control.consent import MAX_AGENTS, MAX_QUESTIONS, ConsentDesk, TooManyError
@@ -41,12 +41,12 @@ async def test_without_a_screen_nothing_is_allowed() -> None:
 @pytest.mark.parametrize(
     ("answer", "verdict"),
     [
-        (Answer.ONCE, ConsentVerdict.ALLOWED),
-        (Answer.FOR_A_TIME, ConsentVerdict.ALLOWED),
-        (Answer.REFUSE, ConsentVerdict.REFUSED),
+        (ConsentAnswer.ONCE, ConsentVerdict.ALLOWED),
+        (ConsentAnswer.FOR_A_TIME, ConsentVerdict.ALLOWED),
+        (ConsentAnswer.REFUSE, ConsentVerdict.REFUSED),
     ],
 )
-async def test_a_person_answers_once(answer: Answer, verdict: ConsentVerdict) -> None:
+async def test_a_person_answers_once(answer: ConsentAnswer, verdict: ConsentVerdict) -> None:
     made = desk()
     made.attend(SCREEN)
     asking, question = await asked(made)
@@ -55,14 +55,14 @@ async def test_a_person_answers_once(answer: Answer, verdict: ConsentVerdict) ->
     assert made.answer(question.number, answer)
     assert await asking is verdict
     assert made.state.questions == ()
-    assert not made.answer(question.number, Answer.ONCE)
+    assert not made.answer(question.number, ConsentAnswer.ONCE)
 
 
 async def test_an_allowance_for_a_time_asks_no_more_until_it_is_ended() -> None:
     made = desk()
     made.attend(SCREEN)
     asking, question = await asked(made)
-    made.answer(question.number, Answer.FOR_A_TIME)
+    made.answer(question.number, ConsentAnswer.FOR_A_TIME)
     await asking
     assert made.state.connected[0].allowed_until_s > 0
     assert await made.ask(AGENT, "k", LINES) is ConsentVerdict.ALLOWED_BEFORE
@@ -77,7 +77,7 @@ async def test_an_allowance_runs_out() -> None:
     made = desk(allowed_for_s=0.05)
     made.attend(SCREEN)
     asking, question = await asked(made)
-    made.answer(question.number, Answer.FOR_A_TIME)
+    made.answer(question.number, ConsentAnswer.FOR_A_TIME)
     await asking
     await until(lambda: made.state.connected[0].allowed_until_s == 0, "the end of the allowance")
     again, _question = await asked(made)
@@ -90,7 +90,7 @@ async def test_an_allowance_is_for_one_agent() -> None:
     made.join(AGENT, "other", "gpt", Approval.ASK)
     made.attend(SCREEN)
     asking, question = await asked(made)
-    made.answer(question.number, Answer.FOR_A_TIME)
+    made.answer(question.number, ConsentAnswer.FOR_A_TIME)
     await asking
     other = asyncio.create_task(made.ask(AGENT, "other", LINES))
     await until(lambda: made.state.questions, "a question")
@@ -110,7 +110,7 @@ async def test_the_last_screen_that_goes_takes_questions_and_allowances_with_it(
     made = desk()
     made.attend(SCREEN)
     asking, question = await asked(made)
-    made.answer(question.number, Answer.FOR_A_TIME)
+    made.answer(question.number, ConsentAnswer.FOR_A_TIME)
     await asking
     made.leave(SCREEN)
     assert made.state.connected[0].allowed_until_s == 0
@@ -144,7 +144,7 @@ async def test_agents_that_are_quiet_make_way_for_new_ones() -> None:
     assert {"claude", f"agent {2 * MAX_AGENTS - 1}"} <= set(names), "one that asks stays"
     with pytest.raises(TooManyError):
         made.join("another connection", "k", "late", Approval.ASK)
-    made.answer(question.number, Answer.REFUSE)
+    made.answer(question.number, ConsentAnswer.REFUSE)
     await asking
 
 
