@@ -22,6 +22,7 @@ import websockets.exceptions
 from brain.budget import TokenUsage
 from brain.client_faults import fault_of, of_status, words_of
 from brain.faults import FaultKind, ModelError
+from robot.commands.brain import asks_to_stop
 from robot.commands.problems import CommandError
 from robot.commands.schema import LlmResponse, parse_llm
 from text.sentences import say
@@ -92,8 +93,21 @@ class RealtimeTalk:
             self._sound.get_nowait()
         self._sound.put_nowait(pcm)
 
+    async def tell(self, words: str) -> None:
+        """Say something in writing, as if it had been spoken."""
+        self._stopped = False
+        if self._connection is None:
+            return
+        content = [{"type": "input_text", "text": words}]
+        item = {"type": "message", "role": "user", "content": content}
+        await self._send({"type": "conversation.item.create", "item": item})
+        await self._send({"type": "response.create"})
+
     async def stop(self) -> None:
-        """Break the model's answer off; until somebody speaks, it can do nothing."""
+        """Break the model's answer off; until somebody speaks, it can do nothing.
+
+        The words for stop do so, as soon as the server has understood them.
+        """
         self._stopped = True
         self._handlers.interrupted()
         if self._connection is not None:
@@ -192,6 +206,8 @@ class RealtimeTalk:
             self._handlers.interrupted()
         elif kind == "conversation.item.input_audio_transcription.completed":
             self._handlers.heard(str(event.transcript))
+            if asks_to_stop(str(event.transcript)):
+                await self.stop()
         elif kind == "response.output_audio_transcript.done":
             self._handlers.said(str(event.transcript))
         elif kind == "response.function_call_arguments.done":

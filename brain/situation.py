@@ -42,13 +42,15 @@ class Situation:
 
     def message(self) -> Message:
         """Return it as a message of the user."""
-        text = "\n".join(self._lines())
+        said = f'Somebody says: "{self.heard[:LONGEST_HEARD]}"'
+        text = f"{self.senses()}\n{said}"
         if not self.picture:
             return {"role": "user", "content": text}
         parts: list[dict[str, Any]] = [{"type": "text", "text": text}, picture_part(self.picture)]
         return {"role": "user", "content": parts}
 
-    def _lines(self) -> list[str]:
+    def senses(self) -> str:
+        """Return what the senses say, a line each."""
         lines = [
             f"Distance ahead: {_metres(self.front_m)}",
             f"Distance behind: {_metres(self.rear_m)}",
@@ -64,8 +66,7 @@ class Situation:
         ):
             if words:
                 lines.append(f"{name}: {words[:_LONGEST_REASON]}")
-        lines.append(f'Somebody says: "{self.heard[:LONGEST_HEARD]}"')
-        return lines
+        return "\n".join(lines)
 
 
 class Memory:

@@ -70,9 +70,13 @@ class Background:
         self._results.append(call)
         self._wake.trigger()
 
-    def warm(self, call: Callable[[], object]) -> None:
-        """Call something on the thread, before the first question."""
+    def call(self, call: Callable[[], object]) -> None:
+        """Call something on the thread, between the steps of a question."""
         self._loop.call_soon_threadsafe(call)
+
+    def begin(self, work: Coroutine[Any, Any, None]) -> None:
+        """Do something on the thread beside the question under way; its end is not waited for."""
+        asyncio.run_coroutine_threadsafe(work, self._loop)
 
     def close(self, last: Coroutine[Any, Any, None] | None = None) -> None:
         """Hang up, run what closes the connections, and end the thread."""

@@ -37,18 +37,19 @@ class AskedModel:
         if settings is None:
             raise not_set_up()
         self.settings, self.name = settings, name(settings)
-        self._key, self._who = key_of(settings), str(node.get_name())
+        self.key, self.who = key_of(settings), str(node.get_name())
         self.ledger = Ledger(run_folder(os.environ))
-        self._background = Background(node)
+        self.background = Background(node)
+        """Its thread."""
         self._ladder: Ladder | None = None
         self._client: ModelClient | None = None
         # The client takes a second to import, on a Pi: not of the first answer.
-        self._background.warm(self._import)
+        self.background.call(self._import)
 
     @property
     def busy(self) -> bool:
         """Whether a question is under way."""
-        return self._background.busy
+        return self.background.busy
 
     def ask(
         self,
@@ -61,29 +62,39 @@ class AskedModel:
         async def asking() -> T:
             return await question(self._made())
 
+        self.run(asking(), answered, failed)
+
+    def run(
+        self,
+        work: Coroutine[Any, Any, T],
+        answered: Callable[[T], None],
+        failed: Callable[[ModelError], None],
+    ) -> None:
+        """Do something else with the server, in place of the question under way."""
+
         def broken(error: Exception) -> None:
             if not isinstance(error, ModelError):
                 raise error
             failed(error)
 
-        self._background.ask(asking(), answered, broken)
+        self.background.ask(work, answered, broken)
 
     def later(self, call: Callable[[], None]) -> None:
         """Have something called on the node's thread, from that of a question."""
-        self._background.post(call)
+        self.background.post(call)
 
     def cancel(self) -> None:
         """Hang up on the question under way."""
-        self._background.cancel()
+        self.background.cancel()
 
     def close(self) -> None:
         """Hang up, and close the connections."""
-        self._background.close(self._client.close() if self._client is not None else None)
+        self.background.close(self._client.close() if self._client is not None else None)
 
     def _made(self) -> Ladder:
         if self._ladder is None:
             client_type, ladder_type = self._import()
-            self._client = client_type(self.settings, self._key, self.ledger, self._who)
+            self._client = client_type(self.settings, self.key, self.ledger, self.who)
             self._ladder = ladder_type(self._client, self.name)
         return self._ladder
 
