@@ -13,7 +13,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 from brain.faults import FaultKind, ModelError
 from text.os_words import os_reason
@@ -106,8 +106,12 @@ class Ledger:
 
     def end(self, who: str, usage: TokenUsage) -> None:
         """Note what a call took."""
-        with self._locked() as lines:
-            lines.append({"ended_s": time.time(), "who": who, **asdict(usage)})
+        line = {"ended_s": time.time(), "who": who, **asdict(usage)}
+        if self._path is None:
+            self._lines.append(line)
+            return
+        with self._opened(self._path) as file:
+            file.write(json.dumps(line) + "\n")
 
     def totals(self) -> Totals:
         """Return what was taken so far."""
@@ -120,18 +124,25 @@ class Ledger:
         if self._path is None:
             yield self._lines
             return
-        try:
-            descriptor = os.open(self._path, _FLAGS, 0o600)
-        except OSError as error:
-            path, reason = str(self._path), os_reason(error)
-            words = say("{path}: cannot be written: {reason}", path=path, reason=reason)
-            raise ModelError(FaultKind.BUDGET, words) from None
-        with os.fdopen(descriptor, "r+", encoding="utf-8") as file:
-            fcntl.flock(file, fcntl.LOCK_EX)
+        with self._opened(self._path) as file:
             lines = [line for text in file if (line := _parsed(text)) is not None]
             before = len(lines)
             yield lines
             file.writelines(json.dumps(line) + "\n" for line in lines[before:])
+
+    @staticmethod
+    @contextmanager
+    def _opened(path: Path) -> Iterator[TextIO]:
+        """Open the file for this process alone; what is written goes to its end."""
+        try:
+            descriptor = os.open(path, _FLAGS, 0o600)
+        except OSError as error:
+            reason = os_reason(error)
+            words = say("{path}: cannot be written: {reason}", path=str(path), reason=reason)
+            raise ModelError(FaultKind.BUDGET, words) from None
+        with os.fdopen(descriptor, "r+", encoding="utf-8") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            yield file
             file.flush()
 
 

@@ -208,9 +208,9 @@ class AiBrain(LessonNode):
     # ---------------------------------------------------------------- what the model answers
 
     def _say_and_do(self, response: SpokenResponse) -> None:
+        self._to_parser(response.silent())
         thought, count = response.thought, len(response.commands)
         self.say.info(_MODEL_THINKS, thought=thought, count=count)
-        self._to_parser(response.silent())
         if response.say.strip():
             self._speak(response.say)
 

@@ -98,10 +98,10 @@ class ModelMind:
         self._say.warn(_REPAIRED, model=self.model.name, problem=problem)
 
     def _take(self, thought: Thought[SpokenResponse], situation: Situation) -> None:
+        self._answered(thought.value)
         self._memory.add(situation.heard, thought.text)
         self._tell(thought.usages[-1])
         self.state.answered(thought.usages[-1])
-        self._answered(thought.value)
 
     def _tell(self, usage: TokenUsage) -> None:
         self._say.info(

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 RATE = Number("rate", 1.0, "Readings a second", low=0.1, high=200.0, unit="Hz")
 MODULES = (
     "hello", "mock_sonar", "safety_stop", "head_controller", "ai_driver", "electronic_differential",
-    "camera_tf", "mock_camera", "vlm_agent_stub", "vlm_agent", "mock_audio", "audio",
-    "ai_brain", "realtime_brain", "llm_parser", "drive_to_point", "mock_robot", "tof_sonar", "chassis",
+    "camera_tf", "mock_camera", "vlm_agent_stub", "vlm_agent", "mock_audio", "audio", "ai_brain",
+    "realtime_brain", "llm_parser", "drive_to_point", "mock_robot", "tof_sonar", "chassis",
 )  # fmt: skip
 
 
