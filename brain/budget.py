@@ -10,7 +10,7 @@ import fcntl
 import json
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, TextIO
@@ -64,6 +64,21 @@ class Totals:
     tokens: int = 0
     oldest_age_s: float = 0.0
     """Age of the oldest call of the last minute."""
+
+
+def summed(usages: Sequence[TokenUsage]) -> TokenUsage:
+    """Return what several answers of one model took together; the first token is that of the first.
+
+    There is at least one.
+    """
+    return TokenUsage(
+        usages[0].model,
+        sum(usage.input_tokens for usage in usages),
+        sum(usage.output_tokens for usage in usages),
+        usages[0].first_token_s,
+        sum(usage.total_s for usage in usages),
+        all(usage.counted for usage in usages),
+    )
 
 
 def estimated_tokens(text: str) -> int:

@@ -97,6 +97,8 @@ class ModelClient:
         """`who` stands in the ledger: the node, or the part of Deck, that asks."""
         self.settings = settings
         self._key, self._ledger, self._who = key, ledger, who
+        self.went_out: ModelRequest | None = None
+        """The last request that was sent, as it was sent; None before the first."""
         self._made: openai.AsyncOpenAI | None = None
         self._not_before_s = 0.0
 
@@ -122,6 +124,7 @@ class ModelClient:
         """
         self._leave_alone()
         self._ledger.begin(self._who, self.settings.budget)
+        self.went_out = request
         begun_s, received = time.monotonic(), _Received()
         try:
             with self._faults(received):

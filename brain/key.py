@@ -48,6 +48,14 @@ class ServerKey:
         """Whether there is one."""
         return bool(self._text)
 
+    def __eq__(self, other: object) -> bool:
+        """Whether it is the same key."""
+        return isinstance(other, ServerKey) and other._text == self._text
+
+    def __hash__(self) -> int:
+        """Return that of its text."""
+        return hash(self._text)
+
     def __repr__(self) -> str:
         return _HIDDEN if self._text else "-"
 

@@ -7,6 +7,7 @@ What was heard comes last, and is marked as what it is: somebody's words.
 from __future__ import annotations
 
 import base64
+import json
 import math
 from collections import deque
 from dataclasses import dataclass
@@ -104,6 +105,25 @@ class Memory:
 def conversation(prompt: str, memory: Memory, situation: Situation) -> list[Message]:
     """Return all messages of a question: the prompt, the talk so far, the situation."""
     return [{"role": "system", "content": prompt}, *memory.messages(), situation.message()]
+
+
+def refusal(report: str, before: str = "") -> str:
+    """Return what became of the last commands if they were refused, by a message on /llm_result.
+
+    `before` is what is known from the messages before it.
+    """
+    try:
+        found = json.loads(report)
+        event = found["event"]
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return before
+    if event == "accepted":
+        return ""
+    if event == "refused":
+        return f"refused: {found.get('problems')}"
+    if event == "head" and found.get("sum") != 1:
+        return f"the head did not turn to pan {found.get('pan')}"
+    return before
 
 
 def picture_part(jpeg: bytes) -> dict[str, Any]:

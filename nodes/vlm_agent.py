@@ -18,6 +18,7 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import String
 
 from brain.faults import ModelError
+from brain.prompt import prompt_file, read_prompt
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Text, Whole
 from nodes.parts.pictures import BadPictureError, jpeg_of
@@ -25,7 +26,6 @@ from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
 from nodes.thinking.model import AskedModel
-from nodes.thinking.prompt import prompt_file, read_prompt
 from nodes.thinking.state import BrainState
 from robot.topics import CAMERA, VLM_DESCRIPTION, VLM_DETECTIONS
 from text.i18n import N_

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from brain.prompt import prompt_file, read_prompt
 from brain.situation import Memory, Situation, conversation
 from nodes.thinking.model import AskedModel
-from nodes.thinking.prompt import prompt_file, read_prompt
 from nodes.thinking.state import BrainState
 from robot.commands.schema import SpokenResponse, parse_llm
 from text.i18n import N_

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import time
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float32, String
 
-from brain.situation import Situation
+from brain.situation import Situation, refusal
 from nodes.parts.odometry import OdometryListener
 from nodes.parts.qos import DEPTH
 from nodes.parts.sensor import SensorListener
@@ -76,14 +75,4 @@ class Senses:
             self._gate.put(message.status[0].message)
 
     def _hear_result(self, message: String) -> None:
-        try:
-            report = json.loads(message.data)
-            event = report["event"]
-        except (ValueError, KeyError, TypeError):
-            return
-        if event == "accepted":
-            self._refused = ""
-        elif event == "refused":
-            self._refused = f"refused: {report.get('problems')}"
-        elif event == "head" and report.get("sum") != 1:
-            self._refused = f"the head did not turn to pan {report.get('pan')}"
+        self._refused = refusal(message.data, self._refused)

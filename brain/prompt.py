@@ -8,7 +8,7 @@ from brain.faults import FaultKind, ModelError
 from text.os_words import os_reason
 from text.sentences import say
 
-PROMPTS = Path(__file__).resolve().parents[2] / "profiles" / "prompts"
+PROMPTS = Path(__file__).resolve().parents[1] / "profiles" / "prompts"
 LONGEST = 32 * 1024
 """Bytes."""
 

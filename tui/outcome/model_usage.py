@@ -1,0 +1,178 @@
+"""What an answer of a language model took, in words: tokens, times, cost, and what the budget leaves.
+
+The figures come from the Composer's own questions, or from the nodes by /brain_state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from text.figures import figure, short, whole
+from text.i18n import _
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from brain.budget import TokenUsage, Totals
+    from brain.settings import BudgetSettings, PriceSettings
+    from graph.data import Sample
+
+LONGEST_NAME = 60
+LEAST_COST = 0.0001
+"""A lower cost is written with an exponent."""
+
+
+@dataclass(frozen=True)
+class UsageFigures:
+    """What one answer took."""
+
+    model: str
+    input_tokens: int
+    output_tokens: int
+    first_token_s: float
+    total_s: float
+    cost: float | None = None
+    """None without prices."""
+    currency: str = ""
+    counted: bool = True
+    """Whether the server counted the tokens."""
+
+
+@dataclass(frozen=True)
+class BudgetFigures:
+    """What was taken of the budget that all of a session's nodes and screens share."""
+
+    calls_last_minute: int
+    calls_per_minute: int
+    tokens: int
+    tokens_per_session: int
+
+
+@dataclass(frozen=True)
+class BrainReport:
+    """What a node that asks a model says of itself on /brain_state."""
+
+    node: str
+    level: int
+    """0 OK, 1 warning, 2 error."""
+    message: str
+    backend: str
+    """`rules` or `llm`."""
+    fault: str
+    """`brain.faults.FaultKind`; empty if there is none."""
+    model: str
+    budget: BudgetFigures | None
+    usage: UsageFigures | None
+
+
+def usage_of(usage: TokenUsage, prices: PriceSettings | None) -> UsageFigures:
+    """Return the figures of an answer."""
+    return UsageFigures(
+        usage.model,
+        usage.input_tokens,
+        usage.output_tokens,
+        usage.first_token_s,
+        usage.total_s,
+        usage.cost(prices),
+        "" if prices is None else prices.currency,
+        usage.counted,
+    )
+
+
+def budget_of(totals: Totals, budget: BudgetSettings) -> BudgetFigures:
+    """Return how far the budget is used up."""
+    return BudgetFigures(
+        totals.calls_last_minute, budget.calls_per_minute, totals.tokens, budget.tokens_per_session
+    )
+
+
+def usage_words(usage: UsageFigures, *, named: bool = True) -> str:
+    """`m-1: 120 + 40 tokens · first 0.31 s · all 1.20 s · 0.0021 USD`."""
+    about = "" if usage.counted else "≈"
+    parts = [
+        _("{tokens_in} + {tokens_out} tokens").format(
+            tokens_in=f"{about}{whole(usage.input_tokens)}", tokens_out=whole(usage.output_tokens)
+        ),
+        _("first {seconds} s").format(seconds=figure(usage.first_token_s)),
+        _("all {seconds} s").format(seconds=figure(usage.total_s)),
+    ]
+    if cost := cost_words(usage):
+        parts.append(cost)
+    words = " · ".join(parts)
+    return f"{plain(usage.model, LONGEST_NAME)}: {words}" if named and usage.model else words
+
+
+def cost_words(usage: UsageFigures) -> str:
+    """`0.0021 USD`; empty without prices."""
+    if usage.cost is None:
+        return ""
+    amount = figure(usage.cost, 4) if usage.cost >= LEAST_COST else short(usage.cost)
+    return f"{amount} {plain(usage.currency, 8)}".rstrip()
+
+
+def budget_words(budget: BudgetFigures) -> str:
+    """`3 of 20 calls a minute · 460 of 200000 tokens`."""
+    calls = _("{count} of {limit} calls a minute").format(
+        count=budget.calls_last_minute, limit=whole(budget.calls_per_minute)
+    )
+    tokens = _("{count} of {limit} tokens").format(
+        count=whole(budget.tokens), limit=whole(budget.tokens_per_session)
+    )
+    return f"{calls} · {tokens}"
+
+
+def brain_reports(sample: Sample) -> list[BrainReport]:
+    """Read a diagnostic_msgs/DiagnosticArray; accepts any message."""
+    statuses: Any = sample.value.get("status", ())
+    listed = statuses if isinstance(statuses, (list, tuple)) else ()
+    return [_report(status) for status in listed if isinstance(status, Mapping)]
+
+
+def _report(status: Mapping[str, Any]) -> BrainReport:
+    pairs: Any = status.get("values", ())
+    values: dict[str, str] = {}
+    for pair in pairs if isinstance(pairs, (list, tuple)) else ():
+        if isinstance(pair, Mapping):
+            values[str(pair.get("key", ""))] = str(pair.get("value", ""))
+    level = status.get("level", 0)
+    if isinstance(level, (bytes, bytearray)):
+        level = level[0] if level else 0
+    return BrainReport(
+        plain(str(status.get("name", "")), LONGEST_NAME),
+        level if isinstance(level, int) else 0,
+        plain(str(status.get("message", "")), 300),
+        values.get("backend", ""),
+        values.get("fault", ""),
+        plain(values.get("model", ""), LONGEST_NAME),
+        _budget(values),
+        _usage(values),
+    )
+
+
+def _budget(values: Mapping[str, str]) -> BudgetFigures | None:
+    try:
+        return BudgetFigures(
+            int(values["calls_last_minute"]),
+            int(values["calls_per_minute"]),
+            int(values["tokens"]),
+            int(values["tokens_per_session"]),
+        )
+    except (KeyError, ValueError):
+        return None
+
+
+def _usage(values: Mapping[str, str]) -> UsageFigures | None:
+    try:
+        cost = values.get("cost", "")
+        return UsageFigures(
+            values.get("model", ""),
+            int(values["input_tokens"]),
+            int(values["output_tokens"]),
+            float(values["first_token_s"]),
+            float(values["total_s"]),
+            float(cost) if cost else None,
+            values.get("currency", ""),
+        )
+    except (KeyError, ValueError):
+        return None
