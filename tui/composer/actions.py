@@ -24,8 +24,31 @@ class ComposerTarget(Protocol):
     def problems(self) -> Sequence[object]:
         """The problems in the JSON."""
 
-    def send(self, *, anyway: bool = False) -> None:
+    @property
+    def is_asking(self) -> bool:
+        """Whether an answer of a model is under way."""
+
+    @property
+    def is_auto(self) -> bool:
+        """Whether a valid answer is sent by itself."""
+
+    def send(self, *, anyway: bool = False) -> bool:
         """Send the JSON; with `anyway` even if it is invalid."""
+
+    def go_to_line(self) -> None:
+        """Go to the line in which a model is asked."""
+
+    def toggle_auto(self) -> None:
+        """Send valid answers by themselves from now on, or no longer."""
+
+    def compare(self) -> None:
+        """Ask two models the same."""
+
+    def show_prompt(self) -> None:
+        """Show what was sent to the model."""
+
+    def stop_asking(self) -> None:
+        """Hang up on the model."""
 
     def choose_template(self) -> None:
         """Ask for an example to start from."""
@@ -50,6 +73,11 @@ class _SendAction(ComposerAction):
     def shown(cls, target: ComposerTarget) -> bool:
         """Not in a replay."""
         return target.feed.replay is None
+
+    @classmethod
+    def possible(cls, target: ComposerTarget) -> bool | None:
+        """Not while an answer is under way."""
+        return None if target.is_asking else True
 
 
 class Send(_SendAction):
@@ -88,7 +116,118 @@ class SendAnyway(_SendAction):
         target.send(anyway=True)
 
 
-class Templates(ComposerAction):
+class _WritingAction(ComposerAction):
+    """An action that changes the text."""
+
+    @classmethod
+    def possible(cls, target: ComposerTarget) -> bool | None:
+        """Not while an answer is under way."""
+        return None if target.is_asking else True
+
+
+class Ask(ComposerAction):
+    """Say in words what the robot should do."""
+
+    id = "composer.ask"
+    key = "alt+q,alt+й"
+    title = N_("Ask")
+    tooltip = N_("Go to the line in which you say in words what the robot should do.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: ComposerTarget) -> bool | None:
+        """Not while an answer is under way."""
+        return None if target.is_asking else True
+
+    @classmethod
+    async def run(cls, target: ComposerTarget) -> None:
+        """Go there."""
+        target.go_to_line()
+
+
+class StopAsking(ComposerAction):
+    """Hang up on the model."""
+
+    id = "composer.stop_asking"
+    key = "escape"
+    title = N_("Take back")
+    tooltip = N_("Take the question back: hang up on the model, and bring the text back.")
+    footer = True
+    palette = False
+
+    @classmethod
+    def possible(cls, target: ComposerTarget) -> bool | None:
+        """Only while an answer is under way."""
+        return target.is_asking
+
+    @classmethod
+    async def run(cls, target: ComposerTarget) -> None:
+        """Hang up."""
+        target.stop_asking()
+
+
+class Auto(_SendAction):
+    """Send valid answers by themselves."""
+
+    id = "composer.auto"
+    key = "alt+a,alt+ф"
+    title = N_("Auto")
+    tooltip = N_("Send valid answers of the model by themselves, until the emergency stop.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: ComposerTarget) -> bool | None:
+        """Always: where it cannot be, the line says why."""
+        del target
+        return True
+
+    @classmethod
+    def label(cls, target: ComposerTarget) -> str:
+        """Named after what it would do now."""
+        return N_("Auto off") if target.is_auto else cls.title
+
+    @classmethod
+    async def run(cls, target: ComposerTarget) -> None:
+        """Switch it on, or off."""
+        target.toggle_auto()
+
+
+class Compare(ComposerAction):
+    """Ask two models the same."""
+
+    id = "composer.compare"
+    key = "alt+c,alt+с"
+    title = N_("Compare")
+    tooltip = N_("Ask two models the same words, and see both answers side by side.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: ComposerTarget) -> bool | None:
+        """Not while an answer is under way."""
+        return None if target.is_asking else True
+
+    @classmethod
+    async def run(cls, target: ComposerTarget) -> None:
+        """Ask both."""
+        target.compare()
+
+
+class ShowPrompt(ComposerAction):
+    """Look at what was sent to the model."""
+
+    id = "composer.prompt"
+    key = "alt+p,alt+з"
+    title = N_("Prompt")
+    tooltip = N_("Show the prompt that went out to the model, word for word.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: ComposerTarget) -> None:
+        """Show it."""
+        target.show_prompt()
+
+
+class Templates(_WritingAction):
     """Start from an example."""
 
     id = "composer.templates"
@@ -105,7 +244,7 @@ class Templates(ComposerAction):
         target.choose_template()
 
 
-class OlderSent(ComposerAction):
+class OlderSent(_WritingAction):
     """Recall the text sent before this one."""
 
     id = "composer.older"
@@ -120,7 +259,7 @@ class OlderSent(ComposerAction):
         target.recall(older=True)
 
 
-class NewerSent(ComposerAction):
+class NewerSent(_WritingAction):
     """Go back towards the text being written."""
 
     id = "composer.newer"
@@ -154,4 +293,16 @@ class NextProblem(ComposerAction):
         target.go_to_next_problem()
 
 
-COMPOSER_ACTIONS = (Send, SendAnyway, Templates, OlderSent, NewerSent, NextProblem)
+COMPOSER_ACTIONS = (
+    Send,
+    SendAnyway,
+    Ask,
+    StopAsking,
+    Auto,
+    Compare,
+    ShowPrompt,
+    Templates,
+    OlderSent,
+    NewerSent,
+    NextProblem,
+)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.containers import Horizontal, Vertical
+from textual.events import Unmount
 from textual.widgets import Static, TextArea
 
 from robot.commands.schema import MAX_BYTES, CommandError, parse_llm
@@ -17,7 +18,11 @@ from text.plain import plain
 from tui import clock
 from tui.actions import bindings
 from tui.composer.actions import COMPOSER_ACTIONS, Send, SendAnyway
+from tui.composer.ask_line import AskLine
+from tui.composer.asking import ComposerAsking
 from tui.composer.json_editor import JsonEditor
+from tui.composer.prompt_dialog import PromptDialog
+from tui.composer.senses import WATCHED, RobotSenses
 from tui.composer.sent import Sent, sent_path
 from tui.composer.templates import TEMPLATES, TemplatesDialog
 from tui.composer.verdict import JsonVerdict
@@ -36,11 +41,15 @@ if TYPE_CHECKING:
 
     from graph.data import Sample, TopicRow
     from robot.commands.schema import LlmResponse, Problem
+    from tui.emergency.messages import EmergencyChanged
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
 TYPE = "std_msgs/msg/String"
 CHECKED_AFTER_S = 0.15
 SENT_WITHIN_S = 3.0
+PROGRESS_S = 0.1
+"""How often an answer that comes is drawn."""
+BUDGET_S = 1.0
 
 
 class ComposerScreen(DeckScreen):
@@ -51,7 +60,10 @@ class ComposerScreen(DeckScreen):
         "The JSON that a language model would send to the robot. It is checked as you write; what "
         "is wrong is underlined and listed below with line, column and field. Sending puts it on "
         "/llm_raw_json, and the right side shows the result: accepted or refused, what went "
-        "to the wheels and to the head, and after how many milliseconds."
+        "to the wheels and to the head, and after how many milliseconds. In the line below the "
+        "editor you say in words what the robot should do: a language model answers with the JSON, "
+        "which waits there until you send it. AUTO sends valid answers by itself; the emergency "
+        "stop ends that."
     )
     period_s = 0.1
     BINDINGS: ClassVar = bindings(*COMPOSER_ACTIONS)
@@ -83,6 +95,8 @@ class ComposerScreen(DeckScreen):
         self._newest: dict[str, Sample] = {}
         self._listener: TopicRow | None = None
         self._checking: Timer | None = None
+        self.senses = RobotSenses()
+        self.asking = ComposerAsking(self)
 
     def compose_body(self) -> ComposeResult:
         """Editor, verdict, outcome."""
@@ -91,6 +105,7 @@ class ComposerScreen(DeckScreen):
                 yield Static(id="composer-to", classes="composer-title", markup=False)
                 yield JsonEditor(TEMPLATES[0].text())
                 yield JsonVerdict()
+                yield AskLine()
             with Vertical(id="composer-right"):
                 yield Static(id="composer-came", classes="composer-title", markup=False)
                 yield Outcome()
@@ -111,6 +126,26 @@ class ComposerScreen(DeckScreen):
         return self.query_one(Outcome)
 
     @property
+    def line(self) -> AskLine:
+        """The line in which a model is asked."""
+        return self.query_one(AskLine)
+
+    @property
+    def send_key(self) -> str:
+        """The key that sends, as it is written."""
+        return self.deck.keys_of(Send)[0]
+
+    @property
+    def is_asking(self) -> bool:
+        """Whether an answer of a model is under way."""
+        return self.asking.under_way
+
+    @property
+    def is_auto(self) -> bool:
+        """Whether a valid answer is sent by itself."""
+        return self.asking.auto
+
+    @property
     def problems(self) -> tuple[Problem, ...]:
         """The problems in the current JSON."""
         return self.verdict.problems if self.is_mounted else ()
@@ -120,14 +155,27 @@ class ComposerScreen(DeckScreen):
         tracing = self._trail is not None and not self._trail.over(clock.now())
         return set(FOLLOWED) if tracing or self.is_current else set()
 
+    def watch_topics(self) -> set[str]:
+        """What a model is told of the robot."""
+        return set(WATCHED)
+
     def on_mount(self) -> None:
         """Focus the editor."""
         self.editor.focus()
         self.check()
+        self.line.show_mark(auto=False)
+        self.set_interval(PROGRESS_S, self.asking.show_progress)
+        self.set_interval(BUDGET_S, self._show_budget)
         self._say()
+
+    @on(Unmount)
+    async def _hang_up(self) -> None:
+        self.asking.end()
+        await self.asking.models.close()
 
     def on_screen_resume(self) -> None:
         """Prepare the publisher, so that the first message goes out at once."""
+        self.asking.read_settings()
         if self.feed.graph is not None:
             self.feed.graph.prepare_publisher(LLM_RAW_JSON, TYPE)
 
@@ -136,6 +184,8 @@ class ComposerScreen(DeckScreen):
         del message
         self._trail, self._listener = None, None
         self._newest.clear()
+        self.senses = RobotSenses()
+        self.asking.session_changed()
         if self.is_current and self.feed.graph is not None:
             self.feed.graph.prepare_publisher(LLM_RAW_JSON, TYPE)
         self._say()
@@ -146,6 +196,7 @@ class ComposerScreen(DeckScreen):
         self._listener = next((row for row in update.topics if row.name == LLM_RAW_JSON), None)
         if self._trail is not None and not self._trail.over(clock.now()):
             self._trail.see(update.samples)
+        self.senses.see(update.samples)
         for topic in FOLLOWED & update.samples.keys():
             self._newest[topic] = update.samples[topic][-1]
         self._say()
@@ -154,7 +205,27 @@ class ComposerScreen(DeckScreen):
         """Redraw all texts."""
         del message
         self.verdict.relabel()
+        self.asking.read_settings()
+        self.asking_changed()
         self._say()
+
+    def on_emergency_changed(self, message: EmergencyChanged) -> None:
+        """Send nothing by itself any more."""
+        if message.emergency.engaged:
+            self.asking.stopped()
+
+    @on(AskLine.Asked)
+    def _asked(self, message: AskLine.Asked) -> None:
+        self.asking.ask(message.words)
+
+    def asking_changed(self) -> None:
+        """Show whether a model is asked, and whether its answers are sent by themselves."""
+        self.line.show_mark(auto=self.is_auto)
+        self.refresh_bindings()
+
+    def _show_budget(self) -> None:
+        if self.is_current:
+            self.asking.show_status()
 
     @on(TextArea.Changed)
     def _text_changed(self) -> None:
@@ -172,7 +243,10 @@ class ComposerScreen(DeckScreen):
         self.editor.go_to(message.place)
 
     def check(self) -> None:
-        """Check the JSON, and show the problems."""
+        """Check the JSON, and show the problems; not of an answer that still comes."""
+        if self.is_asking:
+            self._response = None
+            return
         problems: tuple[Problem, ...] = ()
         try:
             self._response = parse_llm(self.editor.text)
@@ -184,8 +258,10 @@ class ComposerScreen(DeckScreen):
         if bool(had) != bool(problems):
             self.refresh_bindings()
 
-    def send(self, *, anyway: bool = False) -> None:
-        """Send the JSON; send invalid JSON only with `anyway`."""
+    def send(self, *, anyway: bool = False) -> bool:
+        """Send the JSON, invalid JSON only with `anyway`; return whether it went out."""
+        if self.is_asking:
+            return False
         self.check()
         if self.problems and not anyway:
             self.go_to_next_problem()
@@ -193,12 +269,12 @@ class ComposerScreen(DeckScreen):
                 key=self.deck.keys_of(SendAnyway)[0]
             )
             self.notify(words, severity="warning", markup=False)
-            return
+            return False
         graph = self.feed.graph
         if graph is None:
             words = _("Not sent: no lesson is running.")
             self.notify(words, severity="warning", markup=False)
-            return
+            return False
         text = self.editor.text
         self._sent.add(text)
         self._trail = OutcomeTrail(clock.now(), self._listeners(), self._response, self._newest)
@@ -206,7 +282,9 @@ class ComposerScreen(DeckScreen):
         future = graph.publish(LLM_RAW_JSON, TYPE, {"data": text})
         # Not awaited here: further keys wait until the action of a key has finished.
         self.run_worker(self._confirm(self._trail, future), group="send")
+        self.asking.note_sent(text)
         self._say()
+        return True
 
     async def _confirm(self, trail: OutcomeTrail, future: Future[int]) -> None:
         try:
@@ -215,9 +293,10 @@ class ComposerScreen(DeckScreen):
             trail.failure = _("ROS did not accept it within {n} s").format(
                 n=decimal(f"{SENT_WITHIN_S:g}")
             )
-            self._say()
         except Exception as error:  # noqa: BLE001 - any failure is reported
             trail.failure = reason_words(error)
+        if trail.failure:
+            self.asking.end_auto()
             self._say()
 
     async def ros2_command(self) -> str:
@@ -233,6 +312,35 @@ class ComposerScreen(DeckScreen):
             self.editor.focus()
 
         self.app.push_screen(TemplatesDialog(), take)
+
+    def go_to_line(self) -> None:
+        """Go to the line in which a model is asked."""
+        self.line.field.focus()
+
+    def toggle_auto(self) -> None:
+        """Send valid answers by themselves from now on, or no longer."""
+        self.asking.toggle_auto()
+
+    def stop_asking(self) -> None:
+        """Hang up on the model."""
+        self.asking.cancel()
+
+    def compare(self) -> None:
+        """Ask two models the same words, and take what a person chooses."""
+        dialog = self.asking.comparison()
+
+        def take(text: str | None) -> None:
+            if text is not None:
+                self.editor.replace_all(text)
+                self.editor.focus()
+            self.asking.show_status()
+
+        if dialog is not None:
+            self.app.push_screen(dialog, take)
+
+    def show_prompt(self) -> None:
+        """Show what was sent to the model."""
+        self.app.push_screen(PromptDialog(self.asking.models))
 
     def recall(self, *, older: bool) -> None:
         """Replace the text with the one sent before it, or after it."""

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from robot.topics import LLM_RESULT, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from tui import clock
 from tui.emergency.gate import gate_in
-from tui.panels.map.reading import pose_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -65,7 +64,13 @@ class RobotSenses:
 
     def _pose(self) -> Pose | None:
         sample = self._fresh(ODOMETRY)
-        return None if sample is None else pose_in(sample.value)
+        if sample is None:
+            return None
+        # It imports numpy, which the Composer needs for nothing else.
+        from tui.panels.map.reading import pose_in
+
+        found = pose_in(sample.value)
+        return None if found is None else found[0]
 
     def _gate(self) -> str:
         sample = self._fresh(SAFETY_STATE)

@@ -39,6 +39,7 @@ class JsonVerdict(Vertical):
         }
         &.-wrong > Static { color: $text-error; text-style: bold; }
         &.-wrong > OptionList { display: block; }
+        &.-coming > Static { color: $text-accent; text-style: none; }
     }
     """
 
@@ -46,6 +47,7 @@ class JsonVerdict(Vertical):
         super().__init__()
         self._problems: tuple[Problem, ...] = ()
         self._commands: int | None = None
+        self._coming = ""
 
     def compose(self) -> ComposeResult:
         """The verdict above the list of problems."""
@@ -54,8 +56,15 @@ class JsonVerdict(Vertical):
 
     def show(self, problems: tuple[Problem, ...], commands: int) -> None:
         """Show the problems or, if there are none, the number of commands."""
-        if (problems, commands) != (self._problems, self._commands):
-            self._problems, self._commands = problems, commands
+        self._show(problems, commands, "")
+
+    def show_under_way(self, words: str, problems: tuple[Problem, ...]) -> None:
+        """Show how far an answer has come, and what is wrong with it already."""
+        self._show(problems, 0, words)
+
+    def _show(self, problems: tuple[Problem, ...], commands: int, coming: str) -> None:
+        if (problems, commands, coming) != (self._problems, self._commands, self._coming):
+            self._problems, self._commands, self._coming = problems, commands, coming
             self._say()
 
     def relabel(self) -> None:
@@ -65,13 +74,16 @@ class JsonVerdict(Vertical):
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """The current problems."""
-        return self._problems
+        """The current problems; none of an answer that still comes."""
+        return () if self._coming else self._problems
 
     def _say(self) -> None:
         self.set_class(bool(self._problems), "-wrong")
+        self.set_class(bool(self._coming) and not self._problems, "-coming")
         count = len(self._problems)
-        if count:
+        if self._coming:
+            words = f"{'✗' if count else '…'} {self._coming}"
+        elif count:
             words = "✗ " + ngettext("{n} problem", "{n} problems", count).format(n=count)
         else:
             commands = self._commands or 0

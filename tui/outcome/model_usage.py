@@ -1,4 +1,4 @@
-"""What an answer of a language model took, in words: tokens, times, cost, and what the budget leaves.
+"""What an answer of a language model took, in words: tokens, times, cost, and the budget.
 
 The figures come from the Composer's own questions, or from the nodes by /brain_state.
 """
