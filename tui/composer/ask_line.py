@@ -37,7 +37,7 @@ class AskLine(Vertical):
         #ask-mark { width: auto; padding: 0 1; color: $text-accent; text-style: bold; }
         #ask-mark.-auto { background: $warning; color: $background; }
         Input { width: 1fr; }
-        #ask-status { height: auto; max-height: 2; padding: 0 1; color: $text-muted; }
+        #ask-status { height: auto; max-height: 3; padding: 0 1; color: $text-muted; }
     }
     DeckScreen.-flat AskLine #ask-status { display: none; }
     DeckScreen.-flat AskLine #ask-note { max-height: 2; }

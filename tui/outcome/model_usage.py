@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from text.figures import figure, short, whole
-from text.i18n import _
+from text.figures import figure, whole
+from text.i18n import _, decimal
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from graph.data import Sample
 
 LONGEST_NAME = 60
-LEAST_COST = 0.0001
-"""A lower cost is written with an exponent."""
+ONE_CENT = 0.01
+"""A lower cost is written with its first two digits, wherever they are."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def cost_words(usage: UsageFigures) -> str:
     """`0.0021 USD`; empty without prices."""
     if usage.cost is None:
         return ""
-    amount = figure(usage.cost, 4) if usage.cost >= LEAST_COST else short(usage.cost)
+    amount = figure(usage.cost, 2) if usage.cost >= ONE_CENT else decimal(f"{usage.cost:.2g}")
     return f"{amount} {plain(usage.currency, 8)}".rstrip()
 
 
