@@ -77,7 +77,7 @@ class _SendAction(ComposerAction):
     @classmethod
     def possible(cls, target: ComposerTarget) -> bool | None:
         """Not while an answer is under way."""
-        return None if target.is_asking else True
+        return not target.is_asking
 
 
 class Send(_SendAction):
@@ -107,7 +107,7 @@ class SendAnyway(_SendAction):
 
     @classmethod
     def possible(cls, target: ComposerTarget) -> bool | None:
-        """Only if the JSON is invalid."""
+        """Only if the JSON is invalid; that of an answer under way is not known to be."""
         return bool(target.problems)
 
     @classmethod
@@ -122,7 +122,7 @@ class _WritingAction(ComposerAction):
     @classmethod
     def possible(cls, target: ComposerTarget) -> bool | None:
         """Not while an answer is under way."""
-        return None if target.is_asking else True
+        return not target.is_asking
 
 
 class Ask(ComposerAction):
@@ -137,7 +137,7 @@ class Ask(ComposerAction):
     @classmethod
     def possible(cls, target: ComposerTarget) -> bool | None:
         """Not while an answer is under way."""
-        return None if target.is_asking else True
+        return not target.is_asking
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
@@ -204,7 +204,7 @@ class Compare(ComposerAction):
     @classmethod
     def possible(cls, target: ComposerTarget) -> bool | None:
         """Not while an answer is under way."""
-        return None if target.is_asking else True
+        return not target.is_asking
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:

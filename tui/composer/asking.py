@@ -138,7 +138,7 @@ class ComposerAsking:
     def _answered(self, question: ModelQuestion, thought: Thought[LlmResponse]) -> None:
         screen = self._screen
         self._question = None
-        self.answer = ModelAnswer(thought.text, thought.value, summed(thought.usages))
+        self.answer = ModelAnswer(thought.text, summed(thought.usages))
         self._finish(thought.text)
         if screen.deck.emergency.state.engaged:
             self.end_auto(_(_BY_STOP))
@@ -176,7 +176,7 @@ class ComposerAsking:
         words = f"✗ {fault_words(fault)}"
         if self.auto:
             self.end_auto()
-            words += " " + _(_BY_FAULT)
+            words += " · " + _(_BY_FAULT)
         self._screen.line.show_note(words, "error")
         self.show_status()
 
@@ -216,7 +216,7 @@ class ComposerAsking:
     def note_sent(self, text: str) -> None:
         """Note in the log what an answer took that was sent as it came: Flow shows it, too."""
         answer, settings = self.answer, self._settings
-        if answer is None or settings is None or answer.text != text:
+        if answer is None or answer.usage is None or settings is None or answer.text != text:
             return
         self._notes += 1
         words = _noted(usage_of(answer.usage, settings.prices))
@@ -269,6 +269,7 @@ class ComposerAsking:
             folder = run_folder({**os.environ, RUN_ID: run}) if run else None
             old, self.models = self.models, AskedModels(COMPOSER, folder)
             self._screen.run_worker(old.close(), group="close")
+            self.show_status()
 
     # ---------------------------------------------------------------- what is shown
 
@@ -313,7 +314,7 @@ class ComposerAsking:
         self._screen.line.show_status("\n".join(parts))
 
     def _usage_words(self, settings: ModelSettings) -> str:
-        if self.answer is None:
+        if self.answer is None or self.answer.usage is None:
             return ""
         return usage_words(usage_of(self.answer.usage, settings.prices))
 

@@ -18,7 +18,7 @@ from text.i18n import N_, _, localized, ngettext
 from text.plain import plain
 from tui.actions import Action, bindings
 from tui.composer.json_editor import JsonEditor
-from tui.composer.question import ModelQuestion
+from tui.composer.question import ModelAnswer, ModelQuestion
 from tui.dialogs.dialog import Dialog
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import BREAKPOINTS, HEIGHTS
@@ -55,12 +55,12 @@ class TakeAnswer(Action["CompareDialog"]):
     @classmethod
     def possible(cls, target: CompareDialog) -> bool | None:
         """Only if it is whole."""
-        return True if target.chosen_text else None
+        return True if target.chosen_answer else None
 
     @classmethod
     async def run(cls, target: CompareDialog) -> None:
         """Close with it."""
-        target.dismiss(target.chosen_text)
+        target.dismiss(target.chosen_answer)
 
 
 class LeaveCompare(Action["CompareDialog"]):
@@ -108,7 +108,7 @@ class ComparedAnswer(Vertical):
     ComparedAnswer {
         width: 1fr; height: 1fr;
         .compared-title { height: 1; background: $panel; color: $text-muted; padding: 0 1; }
-        .compared-below { height: auto; max-height: 5; padding: 0 1; color: $text-success; }
+        .compared-below { height: auto; max-height: 6; padding: 0 1; color: $text-success; }
         .compared-below.-wrong { color: $text-error; }
         .compared-below.-coming { color: $text-accent; }
         &:focus-within .compared-title { background: $accent; color: $background; }
@@ -183,8 +183,8 @@ class ComparedAnswer(Vertical):
         return ["! " + words.format(problem=problem_words(question.refused[0]))]
 
 
-class CompareDialog(Dialog[str | None]):
-    """Asks one model after the other, so that neither slows the other down; returns a text."""
+class CompareDialog(Dialog[ModelAnswer | None]):
+    """Asks one model after the other, so that neither slows the other down; returns one answer."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(TakeAnswer, LeaveCompare)
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
@@ -195,6 +195,7 @@ class CompareDialog(Dialog[str | None]):
         #dialog-text { padding: 0 1; height: auto; max-height: 2; color: $text-muted; }
         #compared { height: 1fr; layout: horizontal; }
         &.-compact #compared, &.-tiny #compared { layout: vertical; }
+        &.-low .compared-below, &.-flat .compared-below { max-height: 3; }
     }
     """
 
@@ -244,10 +245,12 @@ class CompareDialog(Dialog[str | None]):
         return next((one for one in self._answers if one.has_focus_within), self._answers[0])
 
     @property
-    def chosen_text(self) -> str:
-        """Its text, if nothing more will come."""
+    def chosen_answer(self) -> ModelAnswer | None:
+        """It, if nothing more will come and there is a text."""
         state = self.chosen.state
-        return state.text if state.whole else ""
+        if not state.whole or not state.text:
+            return None
+        return ModelAnswer(state.text, state.thought and summed(state.thought.usages))
 
     @on(DescendantFocus)
     def _chosen_changed(self) -> None:
@@ -263,6 +266,7 @@ class CompareDialog(Dialog[str | None]):
             except ModelError as fault:
                 one.state.fault = fault
             self._progress()
+            one.query_one(JsonEditor).move_cursor((0, 0))
             self.refresh_bindings()
 
     def _progress(self) -> None:

@@ -12,7 +12,7 @@ from robot.commands.so_far import so_far
 
 if TYPE_CHECKING:
     from brain.budget import TokenUsage
-    from robot.commands.schema import LlmResponse, Problem
+    from robot.commands.schema import Problem
 
 _THOUGHTS = "<think>"
 
@@ -69,9 +69,8 @@ class ModelQuestion:
 
 @dataclass(frozen=True)
 class ModelAnswer:
-    """An answer that was valid."""
+    """A whole answer."""
 
     text: str
-    response: LlmResponse
-    usage: TokenUsage
-    """Of all that was needed for it."""
+    usage: TokenUsage | None = None
+    """Of all that was needed for it; None for one that is not valid."""

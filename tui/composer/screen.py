@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
     from graph.data import Sample, TopicRow
     from robot.commands.schema import LlmResponse, Problem
+    from tui.composer.question import ModelAnswer
     from tui.emergency.messages import EmergencyChanged
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
@@ -329,9 +330,11 @@ class ComposerScreen(DeckScreen):
         """Ask two models the same words, and take what a person chooses."""
         dialog = self.asking.comparison()
 
-        def take(text: str | None) -> None:
-            if text is not None:
-                self.editor.replace_all(text)
+        def take(answer: ModelAnswer | None) -> None:
+            if answer is not None:
+                self.asking.answer = answer
+                self.editor.replace_all(answer.text)
+                self.check()
                 self.editor.focus()
             self.asking.show_status()
 

@@ -1,0 +1,571 @@
+"""The Composer asks a model, of a real server: what comes, what is sent, and what never is."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from textual.widgets import OptionList, Static
+
+from brain.settings import settings_path
+from robot.topics import LLM_RAW_JSON, LLM_RESULT
+from tests.model_server import KEY, Exchange, ModelServer, obeys
+from tests.tui.composer.test_composer import PARSER, Stage
+from tests.tui.composer.test_outcome import result
+from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
+from tests.tui.recorded_lesson import SESSION
+from tests.tui.snapshots import Look, settle
+from tests.waiting import until
+from text.i18n import localized
+from text.run_path import MODEL_USAGE
+from tui import clock
+from tui.composer.compare import CompareDialog, ComparedAnswer
+from tui.composer.json_editor import JsonEditor
+from tui.composer.prompt_dialog import PromptDialog
+
+if TYPE_CHECKING:
+    from tests.model_server import Script
+
+DRIVE = {"action": "drive", "speed": 0.2, "steering": 0.0}
+GOOD = json.dumps({"thought": "I roll closer.", "commands": [DRIVE]})
+FAST = json.dumps({"thought": "I hurry.", "commands": [{**DRIVE, "speed": 5}]})
+WORDS = "roll closer"
+
+
+class Answers:
+    """A server that obeys, and answers questions one after the other; the last one again."""
+
+    def __init__(self, *answers: str | Script) -> None:
+        self.left = list(answers)
+
+    def __call__(self, exchange: Exchange) -> None:
+        if "deck-" in json.dumps(exchange.request):
+            obeys("")(exchange)
+            return
+        answer = self.left.pop(0) if len(self.left) > 1 else self.left[0]
+        if isinstance(answer, str):
+            exchange.says(answer, usage=(412, 86))
+        else:
+            answer(exchange)
+
+
+class InPieces:
+    """An answer of which each piece waits for the test."""
+
+    def __init__(self, *pieces: str) -> None:
+        self._pieces = pieces
+        self._gates = [threading.Event() for _ in pieces]
+        self._given = 0
+        self.hung_up = threading.Event()
+
+    def give(self) -> None:
+        """Let the next piece go."""
+        self._gates[self._given].set()
+        self._given += 1
+
+    def __call__(self, exchange: Exchange) -> None:
+        exchange.begins()
+        for gate, piece in zip(self._gates, self._pieces, strict=True):
+            while not gate.wait(0.02):
+                try:
+                    # A comment, which says nothing: it fails once the other end has hung up.
+                    exchange._send(b": \n\n")
+                except OSError:
+                    self.hung_up.set()
+                    raise
+            exchange.piece({"content": piece})
+        exchange.ends(usage=(412, 86))
+
+
+@pytest.fixture(autouse=True)
+def _own_folders(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("THE_KEY", KEY)
+    (tmp_path / "run" / SESSION.run_id).mkdir(parents=True)
+
+
+@pytest.fixture
+def server() -> Iterator[ModelServer]:
+    with ModelServer(Answers(GOOD)) as server:
+        yield server
+
+
+def set_up(url: str, **more: str) -> None:
+    """Write settings that name this server."""
+    fields = {"base_url": url, "model": "m-1", "key_env": "THE_KEY", **more}
+    settings_path().parent.mkdir(parents=True, exist_ok=True)
+    text = "".join(f"{name}: {value}\n" for name, value in fields.items())
+    settings_path().write_text(text, encoding="utf-8")
+
+
+@asynccontextmanager
+async def composer(size: tuple[int, int] = (120, 40)) -> AsyncIterator[Stage]:
+    """Open the Composer over a recorded lesson 9."""
+    topics = (*lesson_update().topics, PARSER)
+    graph = RecordedGraph(update=lesson_update(topics=topics))
+    look = Look(size, "en")
+    app = look.app("composer", RecordedOpener(graph=graph))
+    async with app.run_test(size=size) as pilot:
+        await settle(pilot)
+        yield Stage(app, pilot, graph)
+
+
+async def ask(stage: Stage, words: str = WORDS) -> None:
+    """Say it in the line, and press Enter."""
+    await stage.pilot.press("alt+q")
+    stage.screen.line.field.value = words
+    await stage.pilot.press("enter")
+    await stage.pilot.pause()
+
+
+async def answered(stage: Stage) -> None:
+    """Wait until nothing is under way any more."""
+    await until(lambda: not stage.screen.is_asking, "the end of the question")
+    await stage.pilot.pause()
+
+
+def shown(stage: Stage) -> str:
+    """Everything on the screen in front."""
+    return "\n".join(strip.text for strip in stage.app.screen._compositor.render_strips())
+
+
+def verdict(stage: Stage) -> str:
+    """The line that says how the JSON stands."""
+    return str(stage.screen.verdict.query_one(Static).content)
+
+
+def status(stage: Stage) -> str:
+    """What the answer took, and the budget."""
+    return str(stage.screen.query_one("#ask-status", Static).content)
+
+
+def sent(stage: Stage) -> list[object]:
+    """What went to the robot."""
+    return [value["data"] for topic, _, value, _ in stage.graph.published if topic == LLM_RAW_JSON]
+
+
+async def test_an_answer_waits_in_the_editor_to_be_sent(server: ModelServer) -> None:
+    set_up(server.url)
+    async with composer() as stage:
+        before = stage.screen.editor.text
+        await ask(stage)
+        await answered(stage)
+        assert stage.screen.editor.text == GOOD
+        assert verdict(stage) == "✓ valid: 1 command"
+        assert stage.screen.editor.has_focus
+        assert sent(stage) == []
+        await stage.pilot.press("ctrl+s")
+        await stage.pilot.pause()
+        assert sent(stage) == [GOOD]
+        await stage.pilot.press("ctrl+z")
+        assert stage.screen.editor.text == before
+
+
+async def test_the_answer_grows_and_is_checked_while_it_comes(server: ModelServer) -> None:
+    """Nobody can edit it meanwhile, and what is wrong is listed before it is whole."""
+    cut = FAST.index("]")
+    answer = InPieces(FAST[:19], FAST[19:cut], FAST[cut:])
+    server.script = Answers(answer, GOOD)
+    set_up(server.url)
+    async with composer() as stage:
+        await ask(stage)
+        await until(lambda: "asking m-1" in verdict(stage), "that it is asked")
+        answer.give()
+        await until(lambda: stage.screen.editor.text == FAST[:19], "the first piece")
+        assert verdict(stage) == "… m-1 answers: 0 commands so far"
+        stage.screen.editor.focus()
+        await stage.pilot.press("x", "ctrl+s")
+        assert stage.screen.editor.text == FAST[:19]
+        answer.give()
+        await until(lambda: verdict(stage) == "✗ m-1 answers: 1 problem so far", "what is wrong")
+        listed = stage.screen.verdict.query_one(OptionList)
+        assert "must be from -0.5 to 0.5 m/s" in str(listed.get_option_at_index(0).prompt)
+        answer.give()
+        await answered(stage)
+        assert stage.screen.editor.text == GOOD
+        assert sent(stage) == []
+
+
+async def test_a_refused_answer_is_repaired_in_sight(server: ModelServer) -> None:
+    second = InPieces(GOOD[:19], GOOD[19:])
+    server.script = Answers(FAST, second)
+    set_up(server.url)
+    async with composer() as stage:
+        await ask(stage)
+        await until(lambda: "is asked once more" in stage.screen.line.note, "the second question")
+        assert "commands[0].speed: must be from -0.5 to 0.5 m/s, not 5" in stage.screen.line.note
+        second.give()
+        second.give()
+        await answered(stage)
+        assert stage.screen.editor.text == GOOD
+        assert "the second is" in stage.screen.line.note
+        assert status(stage).startswith("m-1: 824 + 172 tokens")
+
+
+async def test_two_invalid_answers_are_shown_and_not_sent(server: ModelServer) -> None:
+    """The second one stands there with its problems; AUTO is over."""
+    server.script = Answers(FAST)
+    set_up(server.url)
+    async with composer() as stage:
+        await stage.pilot.press("alt+a")
+        await ask(stage)
+        await answered(stage)
+        assert stage.screen.editor.text == FAST
+        assert verdict(stage) == "✗ 1 problem"
+        assert "nor is the second" in stage.screen.line.note
+        assert not stage.screen.is_auto
+        assert sent(stage) == []
+
+
+def _closes(exchange: Exchange) -> None:
+    exchange.begins()
+    exchange.piece({"content": GOOD[:30]})
+    raise OSError
+
+
+FAULTS: dict[str, tuple[Script, str, str]] = {
+    "key": (lambda one: one.fails(401), "does not take the key (401)", "key_env or key_file"),
+    "model": (lambda one: one.fails(404), "does not know the model m-1", "base_url and model"),
+    "busy": (lambda one: one.fails(429), "too many requests", ""),
+    "server": (lambda one: one.fails(503), "the server failed (503)", ""),
+    "cut": (_closes, "connection was lost in the middle", ""),
+    "empty": (lambda one: one.says(""), "the answer is empty", ""),
+    "html": (lambda one: one.fails(200, "<p>", "text/html"), "not the address of a model", "/v1"),
+}
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+async def test_each_failure_has_its_own_words_that_stay(kind: str, server: ModelServer) -> None:
+    """The editor has its text again, AUTO is over, and nothing was sent."""
+    script, words, mend = FAULTS[kind]
+    set_up(server.url)
+    async with composer() as stage:
+        before = stage.screen.editor.text
+        await ask(stage)
+        await answered(stage)
+        await stage.write(before)
+        server.script = Answers(script)
+        await stage.pilot.press("alt+a")
+        assert stage.screen.is_auto
+        await ask(stage)
+        await answered(stage)
+        assert words in stage.screen.line.note
+        assert mend in stage.screen.line.note
+        assert stage.screen.editor.text == before
+        assert not stage.screen.editor.read_only
+        assert not stage.screen.is_auto
+        assert sent(stage) == []
+        await stage.show()
+        assert words in stage.screen.line.note
+
+
+async def test_nobody_at_the_address(server: ModelServer) -> None:
+    set_up("http://127.0.0.1:9/v1")
+    async with composer() as stage:
+        await ask(stage)
+        await answered(stage)
+        assert "nobody answers at http://127.0.0.1:9/v1 — start the server" in stage.screen.line.note
+
+
+async def test_the_budget_is_shared_with_the_nodes_and_kept(
+    server: ModelServer, tmp_path: Path
+) -> None:
+    """What a node has noted in the run's folder counts here, and the other way round."""
+    set_up(server.url, budget="{tokens_per_session: 1000}")
+    ledger = tmp_path / "run" / SESSION.run_id / MODEL_USAGE
+    spent = {"ended_s": 1.0, "who": "ai_brain", "input_tokens": 300, "output_tokens": 60}
+    ledger.write_text(json.dumps(spent) + "\n", encoding="utf-8")
+    async with composer() as stage:
+        assert status(stage).endswith("360 of 1000 tokens")
+        await ask(stage)
+        await answered(stage)
+        assert '"who": "composer"' in ledger.read_text(encoding="utf-8")
+        await ask(stage)
+        await answered(stage)
+        assert "the budget of 1000 tokens a session is used up" in stage.screen.line.note
+
+
+async def test_escape_hangs_up_and_brings_the_text_back(server: ModelServer) -> None:
+    answer = InPieces(GOOD[:19], GOOD[19:])
+    server.script = Answers(answer)
+    set_up(server.url)
+    async with composer() as stage:
+        before = stage.screen.editor.text
+        await ask(stage)
+        await until(lambda: len(server.exchanges) == 2, "the question")
+        answer.give()
+        await until(lambda: stage.screen.editor.text == GOOD[:19], "the first piece")
+        await stage.pilot.press("escape")
+        await stage.pilot.pause()
+        assert not stage.screen.is_asking
+        assert stage.screen.editor.text == before
+        await until(answer.hung_up.is_set, "the end of the connection")
+
+
+async def test_auto_sends_a_valid_answer_by_itself(server: ModelServer) -> None:
+    set_up(server.url)
+    async with composer() as stage:
+        assert "AUTO" not in shown(stage)
+        await stage.pilot.press("alt+a")
+        await stage.pilot.pause()
+        assert " AUTO " in shown(stage)
+        await ask(stage)
+        await answered(stage)
+        assert sent(stage) == [GOOD]
+        assert stage.screen.is_auto
+        await stage.pilot.press("alt+a")
+        await ask(stage)
+        await answered(stage)
+        assert sent(stage) == [GOOD]
+
+
+async def test_the_emergency_stop_ends_auto_while_the_answer_comes(server: ModelServer) -> None:
+    """The answer is there to be looked at, and goes nowhere, not even after a release."""
+    answer = InPieces(GOOD[:19], GOOD[19:])
+    server.script = Answers(answer, GOOD)
+    set_up(server.url)
+    async with composer() as stage:
+        await stage.pilot.press("alt+a")
+        await ask(stage)
+        answer.give()
+        await until(lambda: stage.screen.editor.text == GOOD[:19], "the first piece")
+        await stage.pilot.press("ctrl+x")
+        await stage.pilot.pause()
+        assert not stage.screen.is_auto
+        assert "the emergency stop has ended it" in stage.screen.line.note
+        await stage.pilot.press("alt+a")
+        assert not stage.screen.is_auto
+        await stage.pilot.press("ctrl+r")
+        answer.give()
+        await answered(stage)
+        assert stage.screen.editor.text == GOOD
+        assert sent(stage) == []
+        assert not stage.screen.is_auto
+
+
+async def test_auto_ends_with_the_session_and_is_not_remembered(server: ModelServer) -> None:
+    set_up(server.url)
+    async with composer() as stage:
+        await stage.pilot.press("alt+a")
+        await stage.app.feed.disconnect("it has ended")
+        await stage.pilot.pause()
+        assert not stage.screen.is_auto
+        await stage.pilot.press("alt+a")
+        assert not stage.screen.is_auto
+        assert "no lesson is running" in stage.screen.line.note
+    async with composer() as stage:
+        assert not stage.screen.is_auto
+
+
+async def test_the_end_of_the_session_hangs_up(server: ModelServer) -> None:
+    answer = InPieces(GOOD[:19], GOOD[19:])
+    server.script = Answers(answer)
+    set_up(server.url)
+    async with composer() as stage:
+        await ask(stage)
+        await until(lambda: len(server.exchanges) == 2, "the question")
+        await stage.app.feed.disconnect("it has ended")
+        await until(answer.hung_up.is_set, "the end of the connection")
+        assert not stage.screen.is_asking
+
+
+async def test_the_model_is_told_what_the_screen_sees(server: ModelServer) -> None:
+    set_up(server.url)
+    async with composer() as stage:
+        report = result(event="refused", problems=["too fast"])
+        await stage.show(report, after_s=0.0)
+        near = replace(
+            report, topic="/sensor/sonar_front", value={"data": 1.25}, received_s=clock.now()
+        )
+        old = replace(near, topic="/sensor/sonar_rear", received_s=clock.now() - 60)
+        stage.graph.show(lesson_update(samples={one.topic: (one,) for one in (near, old)}))
+        await stage.pilot.pause()
+        await ask(stage)
+        await answered(stage)
+    system, user = server.exchanges[-1].request["messages"]
+    assert system["content"].startswith("You turn what a person says into commands")
+    assert user["content"].splitlines() == [
+        "Distance ahead: 1.25 m",
+        "Distance behind: unknown",
+        "Your last commands: refused: ['too fast']",
+        f'Somebody says: "{WORDS}"',
+    ]
+    assert LLM_RESULT in stage.graph.followed
+
+
+async def test_the_prompt_that_went_out_can_be_looked_at(server: ModelServer) -> None:
+    """Every message with the repair, and the form; the key is nowhere, here or on any screen."""
+    server.script = Answers(FAST, GOOD)
+    set_up(server.url)
+    async with composer() as stage:
+        await stage.pilot.press("alt+p")
+        await stage.pilot.pause()
+        assert "Nothing has been asked" in shown(stage)
+        await stage.pilot.press("escape")
+        await ask(stage, f"roll closer {KEY}")
+        await answered(stage)
+        await stage.pilot.press("alt+p")
+        await stage.pilot.pause()
+        dialog = stage.app.screen
+        assert isinstance(dialog, PromptDialog)
+        text = dialog.words().plain
+        for words in ("You turn what a person says", 'Somebody says: "roll closer', FAST, "strict"):
+            assert words in text
+        assert "That answer is not valid" in text
+        assert KEY not in text
+        await stage.pilot.press("escape")
+        await stage.pilot.pause()
+        assert stage.app.screen is stage.screen
+    assert server.exchanges[-1].headers["authorization"] == f"Bearer {KEY}"
+
+
+async def test_a_key_that_the_server_repeats_is_not_shown(server: ModelServer) -> None:
+    complaint = json.dumps({"error": {"message": f"wrong: {KEY}"}})
+    set_up(server.url)
+    server.script = Answers(lambda one: one.fails(500, complaint))
+    async with composer() as stage:
+        await ask(stage)
+        await answered(stage)
+        assert "wrong: ***" in stage.screen.line.note
+        assert KEY not in shown(stage)
+
+
+async def test_no_model_is_set_up() -> None:
+    """The line says so and where to read on; the rest of the Composer works."""
+    async with composer() as stage:
+        assert "docs/models.md" in stage.screen.line.field.placeholder
+        await ask(stage)
+        assert "no language model is set up — docs/models.md" in stage.screen.line.note
+        assert not stage.screen.is_asking
+        await stage.write(GOOD)
+        await stage.pilot.press("ctrl+s")
+        await stage.pilot.pause()
+        assert sent(stage) == [GOOD]
+
+
+async def test_settings_that_cannot_be_used_are_named_by_their_place() -> None:
+    set_up("http://127.0.0.1:9/v1", modell="x")
+    async with composer() as stage:
+        assert f"{settings_path()}:4:1: modell" in status(stage)
+        await ask(stage)
+        assert ":4:1: modell" in stage.screen.line.note
+
+
+async def test_settings_are_read_again_for_each_question(server: ModelServer) -> None:
+    async with composer() as stage:
+        await ask(stage)
+        assert not stage.screen.is_asking
+        set_up(server.url)
+        await ask(stage)
+        await answered(stage)
+        assert stage.screen.editor.text == GOOD
+
+
+async def test_what_an_answer_took_is_shown_and_noted_when_it_is_sent(server: ModelServer) -> None:
+    set_up(server.url, prices="{input_per_million: 1, output_per_million: 10, currency: EUR}")
+    async with composer() as stage:
+        await ask(stage)
+        await answered(stage)
+        took, budget = status(stage).splitlines()
+        assert took.startswith("m-1: 412 + 86 tokens · first ")
+        assert took.endswith("0.0013 EUR")
+        # Two calls: the first question to a model finds out how it takes a form.
+        assert budget.startswith("2 of 20 calls a minute")
+        await stage.pilot.press("ctrl+s")
+        await stage.pilot.pause()
+        line = stage.app.feed.history.all()[-1]
+        assert line.node == "composer"
+        assert localized(line.text).startswith("m-1: 412 + 86 tokens, the first after ")
+        assert "EUR" in line.text
+
+
+async def opened_comparison(stage: Stage) -> CompareDialog:
+    """Ask both, and wait for both."""
+    await stage.pilot.press("alt+q")
+    stage.screen.line.field.value = WORDS
+    await stage.pilot.press("alt+c")
+    await stage.pilot.pause()
+    dialog = stage.app.screen
+    assert isinstance(dialog, CompareDialog)
+    both = dialog.query(ComparedAnswer)
+    await until(lambda: all(one.state.whole for one in both), "both answers")
+    await stage.pilot.pause()
+    return dialog
+
+
+def below(dialog: CompareDialog) -> list[str]:
+    """What stands below each of the two answers."""
+    return [str(one.content) for one in dialog.query(".compared-below").results(Static)]
+
+
+async def test_two_models_are_compared_and_one_answer_is_taken(server: ModelServer) -> None:
+    def by_model(exchange: Exchange) -> None:
+        other = GOOD.replace("closer", "nearer")
+        exchange.says(other if exchange.request["model"] == "m-2" else GOOD, usage=(412, 86))
+
+    server.script = Answers(by_model)
+    set_up(server.url, compare_with="m-2")
+    async with composer() as stage:
+        dialog = await opened_comparison(stage)
+        assert [one.text for one in dialog.query(JsonEditor)] == [
+            GOOD,
+            GOOD.replace("closer", "nearer"),
+        ]
+        for words in below(dialog):
+            assert words.startswith("✓ valid: 1 command\n412 + 86 tokens · first ")
+        asked = [one.request["messages"] for one in server.exchanges if len(server.exchanges) > 3]
+        assert asked[1] == asked[3]
+        await stage.pilot.press("tab", "enter")
+        await stage.pilot.pause()
+        assert stage.screen.editor.text == GOOD.replace("closer", "nearer")
+        assert sent(stage) == []
+
+
+async def test_a_model_that_fails_does_not_spoil_the_comparison(server: ModelServer) -> None:
+    server.script = Answers(lambda one: one.fails(404), GOOD)
+    set_up(server.url, compare_with="m-2")
+    async with composer((80, 24)) as stage:
+        before = stage.screen.editor.text
+        dialog = await opened_comparison(stage)
+        first, second = below(dialog)
+        assert first.startswith("✗ ")
+        assert second.startswith("✓ valid")
+        await stage.pilot.press("enter")
+        assert stage.app.screen is dialog
+        await stage.pilot.press("escape")
+        await stage.pilot.pause()
+        assert stage.screen.editor.text == before
+
+
+async def test_comparing_needs_a_second_model(server: ModelServer) -> None:
+    set_up(server.url)
+    async with composer() as stage:
+        await stage.pilot.press("alt+c")
+        await stage.pilot.pause()
+        assert f"compare_with: MODEL in {settings_path()}" in stage.screen.line.note
+        assert server.exchanges == []
+
+
+async def test_the_emergency_stop_works_in_both_dialogs(server: ModelServer) -> None:
+    set_up(server.url, compare_with="m-2")
+    async with composer() as stage:
+        await opened_comparison(stage)
+        await stage.pilot.press("space")
+        await stage.pilot.pause()
+        assert stage.app.emergency.state.engaged
+
+
+@pytest.mark.parametrize("words", ["", "   "])
+async def test_nothing_said_asks_nothing(words: str, server: ModelServer) -> None:
+    set_up(server.url)
+    async with composer() as stage:
+        await ask(stage, words)
+        assert not stage.screen.is_asking
+    assert server.exchanges == []
