@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 from std_msgs.msg import Bool, ByteMultiArray, Float32, String
 
 from brain.faults import FaultKind, ModelError
+from brain.prompt import prompt_file, read_prompt
 from nodes.parts.node import LessonNode, NodeUsageError
 from nodes.parts.parameters import Number, Text, Whole
 from nodes.parts.qos import DEPTH
@@ -28,7 +29,6 @@ from nodes.parts.sensor import SensorListener
 from nodes.parts.sound import from_message
 from nodes.thinking.model import AskedModel
 from nodes.thinking.playing import PacedSpeaker
-from nodes.thinking.prompt import prompt_file, read_prompt
 from nodes.thinking.senses import Senses
 from nodes.thinking.state import BrainState
 from robot.commands.brain import asks_to_stop, spoken

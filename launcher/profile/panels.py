@@ -7,4 +7,4 @@ from __future__ import annotations
 
 from typing import Literal
 
-Panel = Literal["sonar", "wheels", "map", "camera", "head", "voice", "composer"]
+Panel = Literal["sonar", "wheels", "map", "camera", "head", "voice", "brain", "composer"]

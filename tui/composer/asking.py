@@ -18,11 +18,10 @@ from launcher.status import LogLine, Severity
 from text.i18n import N_, _, language, localized, ngettext
 from text.plain import plain
 from text.run_path import RUN_ID, run_folder
-from text.sentences import say
 from tui import clock
 from tui.composer.compare import CompareDialog
 from tui.composer.question import ModelAnswer, ModelQuestion
-from tui.outcome.model_usage import budget_of, budget_words, usage_of, usage_words
+from tui.outcome.model_usage import COMPOSER, budget_of, budget_words, noted, usage_of, usage_words
 from tui.outcome.problem_words import problem_words
 
 if TYPE_CHECKING:
@@ -32,13 +31,9 @@ if TYPE_CHECKING:
     from brain.settings import ModelSettings
     from brain.thinking import Thought
     from robot.commands.schema import LlmResponse
-    from text.sentences import Words
     from tui.composer.screen import ComposerScreen
-    from tui.outcome.model_usage import UsageFigures
 
 PROMPT = "composer"
-COMPOSER = "composer"
-"""In the log, and in the ledger."""
 _BY_STOP = N_("AUTO is off: the emergency stop has ended it.")
 _BY_FAULT = N_("AUTO is off.")
 
@@ -219,7 +214,7 @@ class ComposerAsking:
         if answer is None or answer.usage is None or settings is None or answer.text != text:
             return
         self._notes += 1
-        words = _noted(usage_of(answer.usage, settings.prices))
+        words = noted(usage_of(answer.usage, settings.prices))
         line = LogLine(COMPOSER, self._notes, clock.now(), Severity.INFO, words, source="deck")
         self._screen.feed.note([line])
 
@@ -329,30 +324,6 @@ def _progress(question: ModelQuestion, commands: int, problems: int) -> str:
         return _("{model} answers: {state}").format(model=model, state=wrong)
     state = ngettext("{n} command so far", "{n} commands so far", commands).format(n=commands)
     return _("{model} answers: {state}").format(model=model, state=state)
-
-
-def _noted(usage: UsageFigures) -> Words:
-    """Return what stands in the log, to be translated when it is shown."""
-    values = {
-        "model": usage.model,
-        "tokens_in": usage.input_tokens,
-        "tokens_out": usage.output_tokens,
-        "first": usage.first_token_s,
-        "total": usage.total_s,
-    }
-    if usage.cost is None:
-        return say(
-            "{model}: {tokens_in} + {tokens_out} tokens, the first after {first:.2f} s, "
-            "all {total:.2f} s",
-            **values,
-        )
-    return say(
-        "{model}: {tokens_in} + {tokens_out} tokens, the first after {first:.2f} s, "
-        "all {total:.2f} s, {cost:.5f} {currency}",
-        **values,
-        cost=usage.cost,
-        currency=usage.currency,
-    )
 
 
 def _placeholder(settings: ModelSettings | None) -> str:

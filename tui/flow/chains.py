@@ -16,6 +16,10 @@ from __future__ import annotations
 from bisect import insort
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tui.outcome.model_usage import UsageFigures
 
 MOST_STEPS = 80
 """Steps of one chain; later ones are only counted."""
@@ -82,6 +86,8 @@ class FlowStep:
     """How many times in a row the same content came."""
     begins: bool = field(compare=False, default=False)
     """Whether it may start a chain."""
+    usage: UsageFigures | None = field(compare=False, default=None)
+    """What a model's answer took, if the step tells of one."""
 
     def repeats(self, other: FlowStep) -> bool:
         """Whether the content is the same."""
@@ -89,7 +95,7 @@ class FlowStep:
 
     def _content(self) -> tuple[object, ...]:
         # Compared as text, because nan is not equal to nan.
-        return self.source, self.kind, self.text, repr(self.figures)
+        return self.source, self.kind, self.text, repr(self.figures), self.usage
 
 
 class Chain:
@@ -108,6 +114,11 @@ class Chain:
     def start_s(self) -> float:
         """Unix time of the beginning."""
         return self.first.time_s
+
+    @property
+    def usage(self) -> UsageFigures | None:
+        """What the last answer of a model took, None if none has taken part."""
+        return next((step.usage for step in reversed(self.steps) if step.usage), None)
 
     def delay_s(self, step: FlowStep) -> float:
         """Seconds since the beginning; 0 for what appears to have come slightly before it."""

@@ -68,6 +68,8 @@ def lines(
     room = columns(width)
     last_s = max((chain.delay_s(step) for step in shown), default=0.0)
     axis = TimeAxis(max(last_s, SHORTEST_S), room.bar, logarithmic)
+    if took := words.model_took(chain):
+        found.append(FlowLine((chain.start_s, -2), ((fit(f"  {took}", width), Lane.BRAIN.value),)))
     found.append(_ruler(chain, axis, room))
     before_s = 0.0
     for number, step in enumerate(shown):

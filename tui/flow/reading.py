@@ -9,6 +9,7 @@ from launcher.status import Severity
 from robot.joints import HEAD_PAN, HEAD_TILT, REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL
 from robot.topics import (
     AI_COMMAND,
+    BRAIN_STATE,
     DRIVE,
     DRIVE_SAFE,
     HEAD_STATE,
@@ -21,6 +22,7 @@ from text.i18n import localized
 from text.plain import plain
 from tui.flow.chains import FlowStep, Lane, StepKind
 from tui.outcome import words as outcome_words
+from tui.outcome.model_usage import COMPOSER, brain_reports, usage_noted
 from tui.panels.voice.reading import LEVELS, heard
 
 if TYPE_CHECKING:
@@ -28,9 +30,11 @@ if TYPE_CHECKING:
 
     from graph.data import Sample, Value
     from launcher.status import LogLine
+    from tui.outcome.model_usage import UsageFigures
 
 TOPICS = (
     MICROPHONE,
+    BRAIN_STATE,
     LLM_RAW_JSON,
     AI_COMMAND,
     DRIVE,
@@ -59,6 +63,7 @@ LANES = {
     "ai_brain": Lane.BRAIN,
     "llm_parser": Lane.BRAIN,
     "head_controller": Lane.HEAD,
+    COMPOSER: Lane.BRAIN,
 }
 """The lane of a node's log, by its program, or by its name if the program is unknown."""
 
@@ -72,6 +77,7 @@ class FlowReader:
         self._told_s: dict[str, float] = {}
         self._head_moves = False
         self._head_s = 0.0
+        self._usages: dict[str, UsageFigures | None] = {}
 
     def messages(
         self, samples: Mapping[str, Iterable[Sample]], said_by: Mapping[str, str]
@@ -92,10 +98,23 @@ class FlowReader:
             lane = Lane.COMMAND if topic == AI_COMMAND else Lane.BRAIN
             text = plain(" ".join(str(value.get("data", ""))[:LONGEST].split()))
             yield FlowStep(time_s, lane, topic, said_by, text=text, begins=True)
+        elif topic == BRAIN_STATE:
+            yield from self._read_brain(sample, time_s)
         elif topic == HEAD_STATE:
             yield from self._read_head(value, time_s, said_by)
         else:
             yield from self._read_motion(topic, value, time_s, said_by)
+
+    def _read_brain(self, sample: Sample, time_s: float) -> Iterator[FlowStep]:
+        """A step for each answer: the same is reported again once a second."""
+        for report in brain_reports(sample):
+            # Whoever looks through the camera reports here, too, and leads to no commands.
+            if LANES.get(report.node) is not Lane.BRAIN:
+                continue
+            is_new = report.node in self._usages and report.usage != self._usages[report.node]
+            self._usages[report.node] = report.usage
+            if is_new and report.usage is not None:
+                yield FlowStep(time_s, Lane.BRAIN, BRAIN_STATE, report.node, usage=report.usage)
 
     def _read_motion(
         self, topic: str, value: Mapping[str, Value], time_s: float, said_by: str
@@ -153,10 +172,11 @@ def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[Flo
             LANES.get(programs.get(line.node, ""), LANES.get(line.node, Lane.LOG)),
             plain(line.node, LONGEST),
             plain(line.node, LONGEST),
-            text=plain(line.text, LONGEST),
+            text=plain(localized(line.text) if line.source == "deck" else line.text, LONGEST),
+            usage=usage_noted(line.text) if line.source == "deck" else None,
         )
         for line in lines
-        if line.source != "deck"
+        if line.source != "deck" or line.node == COMPOSER
     ]
 
 

@@ -10,6 +10,7 @@ from textual.content import Content
 from textual.style import Style
 from textual.widgets import Static
 
+from robot.topics import BRAIN_STATE
 from text import ros2_words
 from text.i18n import N_, _, ngettext
 from text.plain import plain
@@ -237,7 +238,8 @@ class FlowScreen(DeckScreen):
             f"{words.said_by(step, chain):<24}  {words.content(step)}"
             for step in shown
         ]
-        self.app.copy_to_clipboard("\n".join([words.headline(chain, shown), *rows]) + "\n")
+        head = filter(None, (words.headline(chain, shown), words.model_took(chain)))
+        self.app.copy_to_clipboard("\n".join([*head, *rows]) + "\n")
         count = len(rows)
         told = ngettext("Copied {n} step", "Copied {n} steps", count).format(n=count)
         self.notify(told, markup=False)
@@ -255,7 +257,12 @@ class FlowScreen(DeckScreen):
         return True
 
     def _shown(self, chain: Chain) -> list[FlowStep]:
-        return [step for step in chain.steps if step.lane not in self._hidden]
+        # What an answer took stands in the headline, not among what happened.
+        return [
+            step
+            for step in chain.steps
+            if step.lane not in self._hidden and step.source != BRAIN_STATE
+        ]
 
     def _lay(self, width: int) -> list[FlowLine]:
         found: list[FlowLine] = []

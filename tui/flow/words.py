@@ -10,6 +10,7 @@ from text.figures import figure
 from text.i18n import N_, _, ngettext
 from tui.flow.chains import Lane, StepKind
 from tui.outcome import words as outcome_words
+from tui.outcome.model_usage import usage_words
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -74,6 +75,11 @@ def headline(chain: Chain, shown: Sequence[FlowStep]) -> str:
     return _("“{words}” · {count} in {time}").format(
         words=_once(chain.first), count=count, time=took
     )
+
+
+def model_took(chain: Chain) -> str:
+    """Return which model answered and what that took; empty if none has taken part."""
+    return "" if chain.usage is None else usage_words(chain.usage)
 
 
 def nothing_yet(topics: Collection[str], command_key: str, *, recorded: bool) -> list[str]:

@@ -5,22 +5,27 @@ The figures come from the Composer's own questions, or from the nodes by /brain_
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from text.figures import figure, whole
-from text.i18n import _, decimal
+from text.i18n import _
 from text.plain import plain
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from brain.budget import TokenUsage, Totals
     from brain.settings import BudgetSettings, PriceSettings
     from graph.data import Sample
 
+COMPOSER = "composer"
+"""Who asks from the screen: in the log, and in the ledger of the budget."""
 LONGEST_NAME = 60
 ONE_CENT = 0.01
 """A lower cost is written with its first two digits, wherever they are."""
+MOST_DECIMALS = 9
 
 
 @dataclass(frozen=True)
@@ -103,12 +108,58 @@ def usage_words(usage: UsageFigures, *, named: bool = True) -> str:
     return f"{plain(usage.model, LONGEST_NAME)}: {words}" if named and usage.model else words
 
 
+def noted(usage: UsageFigures) -> Words:
+    """Return the same as a line of the log, which is translated when it is shown."""
+    values: dict[str, object] = {
+        "model": usage.model,
+        "tokens_in": usage.input_tokens,
+        "tokens_out": usage.output_tokens,
+        "first": usage.first_token_s,
+        "total": usage.total_s,
+    }
+    if usage.cost is None:
+        return say(
+            "{model}: {tokens_in} + {tokens_out} tokens, the first after {first:.2f} s, "
+            "all {total:.2f} s",
+            **values,
+        )
+    return say(
+        "{model}: {tokens_in} + {tokens_out} tokens, the first after {first:.2f} s, "
+        "all {total:.2f} s, {cost:.5f} {currency}",
+        **values,
+        cost=usage.cost,
+        currency=usage.currency,
+    )
+
+
+def usage_noted(line: str) -> UsageFigures | None:
+    """Return what a line of the log says that `noted` has made, None for another one."""
+    if not isinstance(line, Words) or "tokens_in" not in line.values:
+        return None
+    values: Mapping[str, Any] = line.values
+    return UsageFigures(
+        values["model"],
+        values["tokens_in"],
+        values["tokens_out"],
+        values["first"],
+        values["total"],
+        values.get("cost"),
+        values.get("currency", ""),
+    )
+
+
 def cost_words(usage: UsageFigures) -> str:
     """`0.0021 USD`; empty without prices."""
     if usage.cost is None:
         return ""
-    amount = figure(usage.cost, 2) if usage.cost >= ONE_CENT else decimal(f"{usage.cost:.2g}")
-    return f"{amount} {plain(usage.currency, 8)}".rstrip()
+    return f"{_amount(usage.cost)} {plain(usage.currency, 8)}".rstrip()
+
+
+def _amount(cost: float) -> str:
+    """`1.25`, and `0.000042` with its first two digits."""
+    if not 0 < cost < ONE_CENT:
+        return figure(cost, 2)
+    return figure(cost, min(MOST_DECIMALS, 1 - math.floor(math.log10(cost))))
 
 
 def budget_words(budget: BudgetFigures) -> str:

@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 from robot.topics import (
+    BRAIN_STATE,
     CAMERA,
     HEAD_STATE,
     JOINT_STATES,
@@ -48,6 +49,7 @@ PANELS: dict[PanelName, PanelEntry] = {
     "camera": PanelEntry(N_("camera"), "tui.panels.camera", "CameraPanel", (CAMERA,)),
     "head": PanelEntry(N_("head"), "tui.panels.head.panel", "HeadPanel", (HEAD_STATE,)),
     "voice": PanelEntry(N_("voice"), "tui.panels.voice.panel", "VoicePanel", (MICROPHONE, SPEAKER)),
+    "brain": PanelEntry(N_("brain"), "tui.panels.brain", "BrainPanel", (BRAIN_STATE,)),
     "composer": PanelEntry(N_("composer"), "tui.panels.llm", "LlmPanel"),
 }
 """The panels that a profile may name in `panels`, in the order in which they are shown."""

@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 from textual.widgets import OptionList, Static
@@ -25,7 +25,7 @@ from tests.waiting import until
 from text.i18n import localized
 from text.run_path import MODEL_USAGE
 from tui import clock
-from tui.composer.compare import CompareDialog, ComparedAnswer
+from tui.composer.compare import ComparedAnswer, CompareDialog
 from tui.composer.json_editor import JsonEditor
 from tui.composer.prompt_dialog import PromptDialog
 
@@ -72,15 +72,18 @@ class InPieces:
     def __call__(self, exchange: Exchange) -> None:
         exchange.begins()
         for gate, piece in zip(self._gates, self._pieces, strict=True):
-            while not gate.wait(0.02):
-                try:
-                    # A comment, which says nothing: it fails once the other end has hung up.
-                    exchange._send(b": \n\n")
-                except OSError:
-                    self.hung_up.set()
-                    raise
+            self._wait(gate, exchange)
             exchange.piece({"content": piece})
         exchange.ends(usage=(412, 86))
+
+    def _wait(self, gate: threading.Event, exchange: Exchange) -> None:
+        try:
+            while not gate.wait(0.02):
+                # A comment, which says nothing: it fails once the other end has hung up.
+                exchange._send(b": \n\n")
+        except OSError:
+            self.hung_up.set()
+            raise
 
 
 @pytest.fixture(autouse=True)
@@ -266,12 +269,14 @@ async def test_each_failure_has_its_own_words_that_stay(kind: str, server: Model
         assert words in stage.screen.line.note
 
 
-async def test_nobody_at_the_address(server: ModelServer) -> None:
+async def test_nobody_at_the_address() -> None:
     set_up("http://127.0.0.1:9/v1")
     async with composer() as stage:
         await ask(stage)
         await answered(stage)
-        assert "nobody answers at http://127.0.0.1:9/v1 — start the server" in stage.screen.line.note
+        assert (
+            "nobody answers at http://127.0.0.1:9/v1 — start the server" in stage.screen.line.note
+        )
 
 
 async def test_the_budget_is_shared_with_the_nodes_and_kept(

@@ -11,8 +11,11 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from launcher.events import LogEvent
-from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession, line
+from launcher.status import LogLine, Severity
+from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession, line
+from tests.tui.recorded_brain import brain_state, no_answer_yet
 from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines, word
+from tests.tui.recorded_flow import at as told
 from tests.tui.snapshots import Look, settle
 from tui import clock
 from tui.app import DeckApp
@@ -20,6 +23,7 @@ from tui.flow.chains import Lane
 from tui.flow.reading import TOPICS
 from tui.flow.screen import FlowScreen
 from tui.flow.view import FlowView
+from tui.outcome.model_usage import COMPOSER, UsageFigures, noted
 
 
 class Stage:
@@ -181,3 +185,40 @@ async def test_it_says_from_when_on_it_has_collected() -> None:
         assert since != earlier
         again = str(at.screen.query_one("#flow-lanes", Static).render())
         assert earlier in again
+
+
+async def test_a_model_s_answer_is_named_with_what_it_took() -> None:
+    """Once for the chain, however often it is reported, and not by whoever looks at pictures."""
+    async with stage() as at:
+        await at.show(told(no_answer_yet(), -3.0))
+        await at.show(*voice(0.0), told(brain_state(), 0.3))
+        await at.show(told(brain_state(), 1.3), told(brain_state(node="vlm_agent", model="v"), 1.4))
+        took = "m-1: 412 + 86 tokens · first 0.31 s · all 1.20 s · 0.00011 USD"
+        assert at.rows()[1] == took
+        assert not any("/brain_state" in row for row in at.rows())
+        await at.press("y")
+        assert took in at.app.clipboard
+
+
+async def test_what_was_answered_before_belongs_to_no_later_chain() -> None:
+    async with stage() as at:
+        await at.show(told(brain_state(), -3.0))
+        await at.show(*voice(0.0), told(brain_state(), 0.3))
+        assert not any("412 + 86" in row for row in at.rows())
+
+
+async def test_what_the_composer_sent_is_named_with_what_it_took() -> None:
+    async with stage() as at:
+        await at.show(told(word("{}", 0.0, "/llm_raw_json"), 0.0))
+        usage = UsageFigures("m-2", 100, 20, 0.5, 1.0, 0.5, "EUR")
+        noted_at_s = NOW_S + 0.001
+        at.session.say(
+            LogEvent(
+                (LogLine(COMPOSER, 1, noted_at_s, Severity.INFO, noted(usage), source="deck"),)
+            )
+        )
+        for _round in range(3):
+            await at.pilot.pause()
+        rows = at.rows()
+        assert rows[1] == "m-2: 100 + 20 tokens · first 0.50 s · all 1.00 s · 0.50 EUR"
+        assert any(row.split()[2:3] == [COMPOSER] for row in rows)

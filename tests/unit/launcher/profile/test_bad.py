@@ -67,9 +67,8 @@ BAD = {
     "an unknown panel": (
         "panels: [sonr]\nnodes: {a: {exec: [x]}}",
         (
-            "1:10: panels[0]: expected one of sonar, wheels, map, camera, head, voice, composer,"
-            " found the"
-            " text 'sonr' (did you mean sonar?)"
+            "1:10: panels[0]: expected one of sonar, wheels, map, camera, head, voice, brain,"
+            " composer, found the text 'sonr' (did you mean sonar?)"
         ),
     ),
     "a number out of range": (

@@ -1,0 +1,77 @@
+"""The Brain panel: what the brain does, what its answers take, and what is left of the budget."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.tui.panel_stage import alone, rows
+from tests.tui.recorded import lesson_update, sample, topic
+from tests.tui.recorded_brain import BRAIN_STATE, TYPE, brain_state, no_answer_yet
+from text.i18n import set_language
+from tui.panels.brain import BrainPanel, BrainView
+
+if TYPE_CHECKING:
+    from graph.data import Sample
+
+
+async def shown(*came: Sample, width: int = 60, height: int = 6) -> list[str]:
+    """What the panel shows after these reports."""
+    panel = BrainPanel()
+    app = alone(panel, width, height)
+    async with app.run_test(size=(width + 4, height + 4)) as pilot:
+        for one in came:
+            topics = (topic(BRAIN_STATE, one.type_name, hz=1.0),)
+            panel.show(lesson_update(topics=topics, samples={BRAIN_STATE: (one,)}))
+        await pilot.pause()
+        return [row.strip() for row in rows(panel.query_one(BrainView)) if row.strip()]
+
+
+async def test_an_answer_is_shown_with_all_that_it_took() -> None:
+    assert await shown(no_answer_yet(), brain_state()) == [
+        "has answered; m-1",
+        "412 + 86 tokens · first 0.31 s · all 1.20 s · 0.00011 USD",
+        "3 of 20 calls a minute · 498 of 200000 tokens",
+    ]
+
+
+async def test_in_russian() -> None:
+    set_language("ru")
+    assert (await shown(brain_state("ответил; m-1")))[1:] == [
+        "токенов 412 + 86 · первый 0,31 с · всего 1,20 с · 0,00011",
+        "USD",
+        "запросов за минуту 3 из 20 · токенов 498 из 200000",
+    ]
+
+
+async def test_a_brain_without_a_model_follows_its_rules() -> None:
+    values = [{"key": "backend", "value": "rules"}, {"key": "fault", "value": ""}]
+    status = {"name": "ai_brain", "level": 1, "message": "follows its rules", "values": values}
+    assert await shown(sample(BRAIN_STATE, TYPE, {"status": [status]})) == ["follows its rules"]
+
+
+async def test_two_nodes_stand_below_each_other() -> None:
+    found = await shown(brain_state(), brain_state("no answer", 2, "vlm_agent", model="v-1"))
+    assert found[:2] == ["ai_brain: has answered; m-1", "vlm_agent: no answer"]
+    assert sum("tokens · first" in row for row in found) == 2
+    assert sum("calls a minute" in row for row in found) == 1
+
+
+async def test_another_type_is_named() -> None:
+    found = await shown(sample(BRAIN_STATE, "std_msgs/msg/String", {"data": "x"}))
+    assert "another type" in " ".join(found)
+
+
+@pytest.mark.parametrize(
+    "status",
+    [
+        None,
+        5,
+        [None, 3],
+        [{"level": "x", "values": {"a": 1}}],
+        [{"name": "ai_brain", "message": "\x1b[2J", "values": [{"key": "tokens", "value": "x"}]}],
+    ],
+)
+async def test_any_report_is_survived(status: Any) -> None:
+    assert "\x1b" not in "".join(await shown(sample(BRAIN_STATE, TYPE, {"status": status})))
