@@ -38,4 +38,4 @@ def brain_state(
 
 def no_answer_yet() -> Sample:
     """Return the report of a brain that waits for its first voice."""
-    return brain_state("waits for a voice; m-1", **dict.fromkeys(USAGE, "-"))
+    return brain_state("waits for a voice; m-1", 0, "ai_brain", **dict.fromkeys(USAGE, "-"))

@@ -328,6 +328,6 @@ def _progress(question: ModelQuestion, commands: int, problems: int) -> str:
 
 def _placeholder(settings: ModelSettings | None) -> str:
     if settings is None:
-        return _("No language model is set up: docs/models.md tells how to choose one")
+        return _("No language model is set up: see docs/models.md")
     words = _("Say what the robot should do: Enter asks {model}")
     return words.format(model=plain(settings.model, 60))

@@ -250,7 +250,8 @@ class CompareDialog(Dialog[ModelAnswer | None]):
         state = self.chosen.state
         if not state.whole or not state.text:
             return None
-        return ModelAnswer(state.text, state.thought and summed(state.thought.usages))
+        usage = None if state.thought is None else summed(state.thought.usages)
+        return ModelAnswer(state.text, usage)
 
     @on(DescendantFocus)
     def _chosen_changed(self) -> None:

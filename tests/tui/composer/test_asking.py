@@ -130,8 +130,18 @@ async def ask(stage: Stage, words: str = WORDS) -> None:
 
 async def answered(stage: Stage) -> None:
     """Wait until nothing is under way any more."""
-    await until(lambda: not stage.screen.is_asking, "the end of the question")
+    await until(lambda: not is_asking(stage), "the end of the question")
     await stage.pilot.pause()
+
+
+def is_asking(stage: Stage) -> bool:
+    """Whether an answer is under way."""
+    return stage.screen.is_asking
+
+
+def is_auto(stage: Stage) -> bool:
+    """Whether a valid answer is sent by itself."""
+    return stage.screen.is_auto
 
 
 def shown(stage: Stage) -> str:
@@ -223,7 +233,7 @@ async def test_two_invalid_answers_are_shown_and_not_sent(server: ModelServer) -
         assert stage.screen.editor.text == FAST
         assert verdict(stage) == "✗ 1 problem"
         assert "nor is the second" in stage.screen.line.note
-        assert not stage.screen.is_auto
+        assert not is_auto(stage)
         assert sent(stage) == []
 
 
@@ -256,14 +266,14 @@ async def test_each_failure_has_its_own_words_that_stay(kind: str, server: Model
         await stage.write(before)
         server.script = Answers(script)
         await stage.pilot.press("alt+a")
-        assert stage.screen.is_auto
+        assert is_auto(stage)
         await ask(stage)
         await answered(stage)
         assert words in stage.screen.line.note
         assert mend in stage.screen.line.note
         assert stage.screen.editor.text == before
         assert not stage.screen.editor.read_only
-        assert not stage.screen.is_auto
+        assert not is_auto(stage)
         assert sent(stage) == []
         await stage.show()
         assert words in stage.screen.line.note
@@ -309,7 +319,7 @@ async def test_escape_hangs_up_and_brings_the_text_back(server: ModelServer) -> 
         await until(lambda: stage.screen.editor.text == GOOD[:19], "the first piece")
         await stage.pilot.press("escape")
         await stage.pilot.pause()
-        assert not stage.screen.is_asking
+        assert not is_asking(stage)
         assert stage.screen.editor.text == before
         await until(answer.hung_up.is_set, "the end of the connection")
 
@@ -324,7 +334,7 @@ async def test_auto_sends_a_valid_answer_by_itself(server: ModelServer) -> None:
         await ask(stage)
         await answered(stage)
         assert sent(stage) == [GOOD]
-        assert stage.screen.is_auto
+        assert is_auto(stage)
         await stage.pilot.press("alt+a")
         await ask(stage)
         await answered(stage)
@@ -343,16 +353,16 @@ async def test_the_emergency_stop_ends_auto_while_the_answer_comes(server: Model
         await until(lambda: stage.screen.editor.text == GOOD[:19], "the first piece")
         await stage.pilot.press("ctrl+x")
         await stage.pilot.pause()
-        assert not stage.screen.is_auto
+        assert not is_auto(stage)
         assert "the emergency stop has ended it" in stage.screen.line.note
         await stage.pilot.press("alt+a")
-        assert not stage.screen.is_auto
+        assert not is_auto(stage)
         await stage.pilot.press("ctrl+r")
         answer.give()
         await answered(stage)
         assert stage.screen.editor.text == GOOD
         assert sent(stage) == []
-        assert not stage.screen.is_auto
+        assert not is_auto(stage)
 
 
 async def test_auto_ends_with_the_session_and_is_not_remembered(server: ModelServer) -> None:
@@ -361,12 +371,12 @@ async def test_auto_ends_with_the_session_and_is_not_remembered(server: ModelSer
         await stage.pilot.press("alt+a")
         await stage.app.feed.disconnect("it has ended")
         await stage.pilot.pause()
-        assert not stage.screen.is_auto
+        assert not is_auto(stage)
         await stage.pilot.press("alt+a")
-        assert not stage.screen.is_auto
+        assert not is_auto(stage)
         assert "no lesson is running" in stage.screen.line.note
     async with composer() as stage:
-        assert not stage.screen.is_auto
+        assert not is_auto(stage)
 
 
 async def test_the_end_of_the_session_hangs_up(server: ModelServer) -> None:
@@ -378,7 +388,7 @@ async def test_the_end_of_the_session_hangs_up(server: ModelServer) -> None:
         await until(lambda: len(server.exchanges) == 2, "the question")
         await stage.app.feed.disconnect("it has ended")
         await until(answer.hung_up.is_set, "the end of the connection")
-        assert not stage.screen.is_asking
+        assert not is_asking(stage)
 
 
 async def test_the_model_is_told_what_the_screen_sees(server: ModelServer) -> None:
@@ -448,7 +458,7 @@ async def test_no_model_is_set_up() -> None:
         assert "docs/models.md" in stage.screen.line.field.placeholder
         await ask(stage)
         assert "no language model is set up — docs/models.md" in stage.screen.line.note
-        assert not stage.screen.is_asking
+        assert not is_asking(stage)
         await stage.write(GOOD)
         await stage.pilot.press("ctrl+s")
         await stage.pilot.pause()
@@ -466,7 +476,7 @@ async def test_settings_that_cannot_be_used_are_named_by_their_place() -> None:
 async def test_settings_are_read_again_for_each_question(server: ModelServer) -> None:
     async with composer() as stage:
         await ask(stage)
-        assert not stage.screen.is_asking
+        assert not is_asking(stage)
         set_up(server.url)
         await ask(stage)
         await answered(stage)
@@ -572,5 +582,5 @@ async def test_nothing_said_asks_nothing(words: str, server: ModelServer) -> Non
     set_up(server.url)
     async with composer() as stage:
         await ask(stage, words)
-        assert not stage.screen.is_asking
+        assert not is_asking(stage)
     assert server.exchanges == []

@@ -10,12 +10,27 @@ from typing import Any
 import pytest
 from textual.pilot import Pilot
 
+from brain.budget import TokenUsage
+from brain.settings import settings_path
+from brain.thinking import Thought
+from robot.commands.schema import parse_llm
 from tests.tui.composer.test_composer import PARSER
 from tests.tui.composer.test_outcome import drive, head, result, safety, wheels
 from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
-from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
+from tests.tui.snapshots import (
+    Look,
+    SnapCompare,
+    both_languages,
+    every_look,
+    one_look,
+    settle,
+)
+from tests.waiting import until
 from tui import clock
 from tui.app import DeckApp
+from tui.composer.compare import ComparedAnswer, CompareDialog
+from tui.composer.json_editor import JsonEditor
+from tui.composer.question import ModelAnswer
 from tui.composer.screen import ComposerScreen
 
 BAD = """{
@@ -34,6 +49,7 @@ Before = Callable[[Pilot[Any]], Awaitable[None]]
 @pytest.fixture(autouse=True)
 def _own_history(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
 
 def with_parser() -> RecordedOpener:
@@ -137,3 +153,84 @@ def test_a_tiny_terminal(dump_compare: SnapCompare) -> None:
     """At 40x12 there is still an editor, a verdict and the beginning of what came."""
     app = Look((40, 12), "en").app("composer", with_parser())
     assert dump_compare(app, terminal_size=(40, 12), run_before=written(None, "ctrl+s"))
+
+
+ANSWER = """{
+  "thought": "Something moved on the right. I look there.",
+  "commands": [
+    {"action": "turn_head", "pan": -45, "tilt": 10}
+  ]
+}
+"""
+TOOK = TokenUsage("qwen3-1.7b", 412, 86, 0.31, 1.204)
+
+
+def settings() -> None:
+    """Write down two models and their prices."""
+    path = settings_path()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(
+        "base_url: http://127.0.0.1:9/v1\nmodel: qwen3-1.7b\ncompare_with: qwen3-4b\n"
+        "prices: {input_per_million: 0.15, output_per_million: 0.6}\n",
+        encoding="utf-8",
+    )
+
+
+@both_languages
+def test_a_model_has_answered(look: Look, dump_compare: SnapCompare) -> None:
+    """AUTO in the colour of a warning; below the line what the answer took, and the budget."""
+    settings()
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await written(ANSWER, "alt+q", "alt+a")(pilot)
+        screen = pilot.app.screen
+        assert isinstance(screen, ComposerScreen)
+        screen.asking.answer = ModelAnswer(ANSWER, TOOK)
+        screen.asking.show_status()
+        await pilot.pause()
+
+    app = look.app("composer", with_parser())
+    assert dump_compare(app, terminal_size=look.size, run_before=before)
+
+
+@both_languages
+def test_nobody_answers(look: Look, dump_compare: SnapCompare) -> None:
+    """Why, and what to do about it, below the verdict on the text that stands there again."""
+    settings()
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await written(ANSWER, "alt+q", *"left", "enter")(pilot)
+        screen = pilot.app.screen
+        assert isinstance(screen, ComposerScreen)
+        await until(lambda: not screen.is_asking, "the failure")
+        # How many calls there were in the last minute is told by the clock.
+        screen.line.show_status("")
+        await pilot.pause()
+
+    app = look.app("composer", with_parser())
+    assert dump_compare(app, terminal_size=look.size, run_before=before)
+
+
+@both_languages
+def test_two_models_compared(look: Look, dump_compare: SnapCompare) -> None:
+    """Side by side, or one above the other; the answer that Enter takes has a coloured title."""
+    settings()
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await written(None)(pilot)
+        screen = pilot.app.screen
+        assert isinstance(screen, ComposerScreen)
+        screen.line.field.value = "look right"
+        await pilot.press("alt+c")
+        dialog = pilot.app.screen
+        assert isinstance(dialog, CompareDialog)
+        first, second = dialog.query(ComparedAnswer)
+        await until(lambda: second.state.whole, "both failures")
+        first.state.fault = None
+        first.state.thought = Thought(parse_llm(ANSWER), ANSWER, (TOOK,))
+        dialog.redraw()
+        first.query_one(JsonEditor).move_cursor((0, 0))
+        await pilot.pause()
+
+    app = look.app("composer", with_parser())
+    assert dump_compare(app, terminal_size=look.size, run_before=before)
