@@ -167,6 +167,8 @@ def sent(stage: Stage) -> list[object]:
 async def test_an_answer_waits_in_the_editor_to_be_sent(server: ModelServer) -> None:
     set_up(server.url)
     async with composer() as stage:
+        example = stage.screen.editor.text
+        await stage.pilot.press("x")
         before = stage.screen.editor.text
         await ask(stage)
         await answered(stage)
@@ -179,6 +181,8 @@ async def test_an_answer_waits_in_the_editor_to_be_sent(server: ModelServer) -> 
         assert sent(stage) == [GOOD]
         await stage.pilot.press("ctrl+z")
         assert stage.screen.editor.text == before
+        await stage.pilot.press("ctrl+z")
+        assert stage.screen.editor.text == example
 
 
 async def test_the_answer_grows_and_is_checked_while_it_comes(server: ModelServer) -> None:
