@@ -211,7 +211,11 @@ class ComposerAsking:
     def note_sent(self, text: str) -> None:
         """Note in the log what an answer took that was sent as it came: Flow shows it, too."""
         answer, settings = self.answer, self._settings
-        if answer is None or answer.usage is None or settings is None or answer.text != text:
+        if answer is None or self._screen.editor.shown(answer.text) != text:
+            return
+        # It may still say how to send it.
+        self._screen.line.show_note("")
+        if answer.usage is None or settings is None:
             return
         self._notes += 1
         words = noted(usage_of(answer.usage, settings.prices))

@@ -6,7 +6,6 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from brain.ladder import bare
 from robot.commands.schema import CommandError, parse_llm
 from robot.commands.so_far import so_far
 
@@ -54,8 +53,10 @@ class ModelQuestion:
     @property
     def text(self) -> str:
         """The JSON so far, without what models like to put around it."""
-        whole = "".join(self._pieces)
-        text = bare(whole)
+        # It imports anyio; nothing of it is needed before somebody asks.
+        from brain.ladder import bare
+
+        text = bare("".join(self._pieces))
         if text.startswith(_THOUGHTS):
             return ""
         if text.startswith("```"):

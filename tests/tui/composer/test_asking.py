@@ -179,6 +179,7 @@ async def test_an_answer_waits_in_the_editor_to_be_sent(server: ModelServer) -> 
         await stage.pilot.press("ctrl+s")
         await stage.pilot.pause()
         assert sent(stage) == [GOOD]
+        assert stage.screen.line.note == ""
         await stage.pilot.press("ctrl+z")
         assert stage.screen.editor.text == before
         await stage.pilot.press("ctrl+z")
@@ -579,6 +580,23 @@ async def test_the_emergency_stop_works_in_both_dialogs(server: ModelServer) -> 
         await stage.pilot.press("space")
         await stage.pilot.pause()
         assert stage.app.emergency.state.engaged
+
+
+async def test_a_hostile_answer_is_shown_and_noted_harmlessly(server: ModelServer) -> None:
+    """What would reach the terminal is written as an escape, which means the same in JSON."""
+    hostile = json.dumps({"thought": "\u202e [b]x", "commands": []}, ensure_ascii=False)
+    server.script = Answers(hostile)
+    set_up(server.url)
+    async with composer() as stage:
+        await ask(stage, "look \x1b[2J [/] there")
+        await answered(stage)
+        assert "\\u202e [b]x" in stage.screen.editor.text
+        assert verdict(stage) == "✓ valid: 0 commands"
+        await stage.pilot.press("ctrl+s", "alt+p")
+        await stage.pilot.pause()
+        assert json.loads(str(sent(stage)[0])) == json.loads(hostile)
+        assert stage.app.feed.history.all()[-1].node == "composer"
+        assert not {"\x1b", "\u202e"} & set(shown(stage))
 
 
 @pytest.mark.parametrize("words", ["", "   "])
