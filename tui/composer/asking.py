@@ -7,7 +7,7 @@ with anything that goes wrong.
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 from brain.asking import AskedModels
 from brain.budget import summed
@@ -25,13 +25,20 @@ from tui.outcome.model_usage import COMPOSER, budget_of, budget_words, noted, us
 from tui.outcome.problem_words import problem_words
 
 if TYPE_CHECKING:
+    from collections.abc import Coroutine
+
     from textual.worker import Worker
 
     from brain.client import Message
     from brain.settings import ModelSettings
     from brain.thinking import Thought
     from robot.commands.schema import LlmResponse
-    from tui.composer.screen import ComposerScreen
+    from tui.composer.ask_line import AskLine
+    from tui.composer.json_editor import JsonEditor
+    from tui.composer.senses import RobotSenses
+    from tui.composer.verdict import JsonVerdict
+    from tui.frame.host import Host
+    from tui.session.feed import Feed
 
 PROMPT = "composer"
 _BY_STOP = N_("AUTO is off: the emergency stop has ended it.")
@@ -44,10 +51,53 @@ def fault_words(fault: ModelError) -> str:
     return localized(fault.words) + (f" — {fix}" if fix else "")
 
 
+class AskingScreen(Protocol):
+    """The part of the Composer that a question changes."""
+
+    senses: RobotSenses
+    """What is known of the robot."""
+
+    @property
+    def deck(self) -> Host:
+        """The app."""
+
+    @property
+    def feed(self) -> Feed:
+        """The session."""
+
+    @property
+    def editor(self) -> JsonEditor:
+        """The editor with the JSON."""
+
+    @property
+    def verdict(self) -> JsonVerdict:
+        """The problems in the JSON."""
+
+    @property
+    def line(self) -> AskLine:
+        """The line in which a model is asked."""
+
+    @property
+    def send_key(self) -> str:
+        """The key that sends, as it is written."""
+
+    def check(self) -> None:
+        """Check the JSON."""
+
+    def send(self) -> bool:
+        """Send the JSON if it is valid; return whether it went out."""
+
+    def asking_changed(self) -> None:
+        """Show whether a model is asked, and whether its answers are sent by themselves."""
+
+    def run_worker(self, work: Coroutine[Any, Any, None], *, group: str) -> Worker[None]:
+        """Run something beside the screen, for as long as it is there."""
+
+
 class ComposerAsking:
     """One question at a time; `screen` shows it, and sends what comes of it."""
 
-    def __init__(self, screen: ComposerScreen) -> None:
+    def __init__(self, screen: AskingScreen) -> None:
         self._screen = screen
         self.models = AskedModels(COMPOSER)
         self.auto = False
