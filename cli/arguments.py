@@ -9,7 +9,18 @@ from __future__ import annotations
 import argparse
 from typing import IO, TYPE_CHECKING, NoReturn
 
-from cli.values import at_once, bandwidth, count, domain, folder, port, rate, seconds, whole
+from cli.values import (
+    at_once,
+    bandwidth,
+    between,
+    count,
+    domain,
+    folder,
+    port,
+    rate,
+    seconds,
+    whole,
+)
 from course.grade.defaults import FORMATS, WITHIN_S
 from text.i18n import LANGUAGES, N_, _, ngettext
 from text.output import harmless
@@ -35,6 +46,7 @@ COMMANDS = {
     "new": N_("make a folder of one's own for a lesson, to write its nodes in"),
     "lesson": N_("prove a lesson of one's own, or begin one"),
     "grade": N_("grade the files of folders by the steps of a lesson, whatever they do"),
+    "model": N_("a language model on this machine, for Deck to ask"),
     "shell": N_("open a shell in the lesson's domain, with ros2, colcon and Deck's Python"),
     "doctor": N_(
         "check what is installed, which ROS, which ports, and say how to fix what is missing"
@@ -447,6 +459,57 @@ def _add_grade(parser: Parser) -> None:
     )
 
 
+def _add_model(parser: Parser) -> None:
+    actions = parser.add_subparsers(dest="action", metavar=_("ACTION"))
+    about = _("serve a model from a file on this machine, by the protocol of OpenAI")
+    serve = actions.add_parser("serve", help=about, description=about, allow_abbrev=False)
+    _add_serve(serve)
+    _add_language(serve)
+
+
+def _add_serve(parser: Parser) -> None:
+    parser.add_argument("file", metavar=_("FILE"), help=_("the model, a GGUF file"))
+    parser.add_argument(
+        "--mmproj",
+        dest="eyes",
+        metavar=_("FILE"),
+        help=_("for a model that sees: the file beside it that turns pictures into tokens"),
+    )
+    parser.add_argument(
+        "--port",
+        metavar="N",
+        type=port,
+        default=8080,
+        help=_("8080 by default; 0: any that is free"),
+    )
+    parser.add_argument(
+        "--host",
+        metavar=_("ADDRESS"),
+        default="127.0.0.1",
+        help=_("for whom: by default this machine only; 0.0.0.0: everybody on the network"),
+    )
+    parser.add_argument(
+        "--context",
+        metavar="N",
+        type=between(256, 1 << 24),
+        help=_(
+            "tokens at once, question and answer together: 8192 by default, or what the model was"
+            " trained for if that is less"
+        ),
+    )
+    parser.add_argument(
+        "--threads",
+        metavar="N",
+        type=between(1, 512),
+        help=_("by default one less than there are cores"),
+    )
+    parser.add_argument("--verbose", action="store_true", help=_("show the log of llama.cpp"))
+    parser.epilog = _(
+        "Runs until Ctrl-C, with llama.cpp inside. Exit code: 0 when it was ended, 1 if llama.cpp"
+        " broke off, 2 if it could not start."
+    )
+
+
 def _add_shell(parser: Parser) -> None:
     parser.add_argument(
         "profile", nargs="?", metavar=_("PROFILE"), help=_("by default the lesson that is running")
@@ -487,6 +550,7 @@ _ADD = {
     "new": _add_new,
     "lesson": _add_lesson,
     "grade": _add_grade,
+    "model": _add_model,
     "shell": _add_shell,
     "doctor": _add_doctor,
 }

@@ -38,6 +38,7 @@ HANDLERS = {
     "new": ("cli.new", "new_command"),
     "lesson": ("cli.lesson", "lesson_command"),
     "grade": ("cli.grade", "grade_command"),
+    "model": ("cli.model", "model_command"),
     "shell": ("cli.shell", "shell_command"),
     "doctor": ("cli.doctor.command", "doctor_command"),
 }

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import argparse
 import math
+from typing import TYPE_CHECKING
 
 from launcher.domain.domain import parse_domain
 from launcher.errors import DomainError
 from text.i18n import _, localized
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 MOST_AT_ONCE = 64
 LAST_PORT = 65535
@@ -82,19 +86,20 @@ def whole(text: str) -> int:
     return int(text)
 
 
-def port(text: str) -> int:
-    """Return a TCP port, 0 for any that is free."""
-    number = whole(text)
-    if number > LAST_PORT:
-        words = _("expected a number from {least} to {most}, got {n}")
-        raise argparse.ArgumentTypeError(words.format(least=0, most=LAST_PORT, n=number))
-    return number
+def between(least: int, most: int) -> Callable[[str], int]:
+    """Return what parses a whole number from `least` to `most`."""
+
+    def parse(text: str) -> int:
+        number = whole(text)
+        if not least <= number <= most:
+            words = _("expected a number from {least} to {most}, got {n}")
+            raise argparse.ArgumentTypeError(words.format(least=least, most=most, n=number))
+        return number
+
+    return parse
 
 
-def at_once(text: str) -> int:
-    """Return how many runs there may be at once."""
-    number = whole(text)
-    if not 1 <= number <= MOST_AT_ONCE:
-        words = _("expected a number from 1 to {most}, got {n}")
-        raise argparse.ArgumentTypeError(words.format(most=MOST_AT_ONCE, n=number))
-    return number
+port = between(0, LAST_PORT)
+"""Parses a TCP port, 0 for any that is free."""
+at_once = between(1, MOST_AT_ONCE)
+"""Parses how many runs there may be at once."""

@@ -78,7 +78,10 @@ class DeckProcess:
 def deck(*arguments: str, cwd: Path | None = None) -> DeckProcess:
     """Run a command to its end."""
     process = DeckProcess(*arguments, cwd=cwd)
-    process.finish()
+    try:
+        process.finish()
+    finally:
+        process.close()
     return process
 
 

@@ -16,6 +16,7 @@ __all__ = ["Finding", "Level", "examine"]
 THINGS = (
     *("python", "ros", "network", "terminal"),
     *("serial_ports", "media", "groups", "power", "shared_memory", "login", "runs", "model"),
+    "llama",
 )
 
 

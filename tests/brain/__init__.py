@@ -1,0 +1,1 @@
+"""Tests of what thinks: real servers, real processes, models of random weights."""
