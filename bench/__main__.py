@@ -37,7 +37,7 @@ MEASUREMENTS = {
     "node_ends": "From a signal to the end of a node",
     "stop_latency": "From a sonar's frame under the threshold to the stop at the Pico",
     "space_bar": "From the space bar to the emergency stop at the Pico",
-    "brain_latency": "From the last byte of a model's answer to the command on /drive",
+    "brain.latency": "From the last byte of a model's answer to the command on /drive",
     "cable": "A cable pulled and put back",
     "serial_cpu": "What the serial drivers cost",
     "hour": "An hour of simulated driving among boxes",

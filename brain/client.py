@@ -83,7 +83,8 @@ class _Received:
             piece = delta.content or ""
             self.text.append(piece)
             for call in delta.tool_calls or ():
-                if call.function is not None:
+                # Of several calls only the first counts: one form was asked for, once.
+                if call.function is not None and call.index == 0:
                     self.arguments.append(call.function.arguments or "")
                     piece += call.function.arguments or ""
             self.length += len(piece)

@@ -72,7 +72,14 @@ def _unreachable(settings: ModelSettings, inner: BaseException | None) -> ModelE
 
 def _of_status(error: openai.APIStatusError, settings: ModelSettings, key: ServerKey) -> ModelError:
     retry_after = error.response.headers.get("retry-after", "")
-    return of_status(error.status_code, words_of(error.message, key), retry_after, settings)
+    return of_status(error.status_code, words_of(_message(error), key), retry_after, settings)
+
+
+def _message(error: openai.APIStatusError) -> str:
+    """Return the server's own message; the client's is the whole body with a status before it."""
+    body = error.body
+    inner = body.get("message") if isinstance(body, dict) else None
+    return inner if isinstance(inner, str) else error.message
 
 
 def of_status(status: int, said: str, retry_after: str, settings: ModelSettings) -> ModelError:

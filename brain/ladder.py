@@ -63,7 +63,8 @@ def request_for(
         tool = {"name": NAME, "description": "Gives the answer.", "parameters": schema}
         form = {
             "tools": [{"type": "function", "function": tool}],
-            "tool_choice": {"type": "function", "function": {"name": NAME}},
+            # llama.cpp takes the name of a function for `auto`; there is only one anyway.
+            "tool_choice": "required",
         }
     return ModelRequest(asked, model, form)
 

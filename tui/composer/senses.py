@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robot.safety.gate_report import gate_in
 from robot.topics import LLM_RESULT, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from tui import clock
-from tui.emergency.gate import gate_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

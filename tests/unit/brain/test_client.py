@@ -73,14 +73,30 @@ async def test_a_tool_that_is_called_gives_its_arguments() -> None:
             assert (await client.ask(ASKED)).text == '{"a": 1}'
 
 
+async def test_of_several_calls_the_first_counts() -> None:
+    """Models like to call twice where one call was asked for."""
+
+    def twice(exchange: Exchange) -> None:
+        exchange.begins()
+        for index in range(2):
+            function = {"name": "answer", "arguments": f'{{"a": {index}}}'}
+            call = {"index": index, "id": f"call-{index}", "type": "function"}
+            exchange.piece({"tool_calls": [{**call, "function": function}]})
+        exchange.ends("tool_calls")
+
+    with ModelServer(twice) as server:
+        async with client_of(server) as client:
+            assert (await client.ask(ASKED)).text == '{"a": 0}'
+
+
 @pytest.mark.parametrize(
     ("status", "kind", "words"),
     [
         (401, FaultKind.KEY, "does not take the key (401)"),
         (403, FaultKind.KEY, "does not take the key (403)"),
         (404, FaultKind.MODEL, "does not know the model m-1"),
-        (400, FaultKind.REQUEST, "refuses the request (400)"),
-        (500, FaultKind.SERVER, "failed (500)"),
+        (400, FaultKind.REQUEST, "refuses the request (400): Incorrect key *** provided"),
+        (500, FaultKind.SERVER, "failed (500): Incorrect key *** provided"),
         (503, FaultKind.SERVER, "failed (503)"),
     ],
 )

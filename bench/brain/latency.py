@@ -1,6 +1,6 @@
 """What Deck adds to a model: from the last byte of its answer to the command on /drive.
 
-`python -m bench.brain_latency` prints a table. The model is a server of the tests that answers at
+`python -m bench.brain.latency` prints a table. The model is a server of the tests that answers at
 once; between it and /drive are `ai_brain` and `llm_parser`, as lesson 9 starts them.
 """
 
