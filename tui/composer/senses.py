@@ -74,5 +74,5 @@ class RobotSenses:
 
     def _gate(self) -> str:
         sample = self._fresh(SAFETY_STATE)
-        gate = None if sample is None else gate_in(sample)
+        gate = None if sample is None else gate_in(sample.value)
         return "" if gate is None else gate.message
