@@ -1,4 +1,4 @@
-"""A real microphone and a real loudspeaker, through PortAudio.
+"""A real microphone and a real loudspeaker, through miniaudio.
 
 Publishes the microphone's sound on /audio/mic_raw and plays the sound from /audio/speaker_raw:
 bytes of 16-bit little-endian samples, one channel, `sample_rate` of them per second. The level of
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from std_msgs.msg import ByteMultiArray, Float32
 
-from nodes.drivers.portaudio import IN, OUT
+from nodes.drivers.sound_device import IN, OUT
 from nodes.drivers.sound_port import SoundPort
 from nodes.drivers.sound_status import PortStatus
 from nodes.drivers.sound_words import EMPTY, LATE, ODD, UNPLAYED, WORDS

@@ -1,10 +1,12 @@
-"""Cameras and sound cards, which only the real robot needs."""
+"""Cameras, sound cards and speech, which only the real robot needs."""
 
 from __future__ import annotations
 
 import os
 import re
 from dataclasses import dataclass
+from importlib.util import find_spec
+from itertools import filterfalse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +16,8 @@ from text.i18n import _
 if TYPE_CHECKING:
     from cli.doctor.finding import Finding
 
+SPEECH = ("pocketsphinx", "espeakng_loader")
+"""What the nodes `hearing` and `speaking` import."""
 CARD = re.compile(r"^\s*\d+\s+\[[^]]*\]:\s*(.+)$", re.MULTILINE)
 
 
@@ -26,6 +30,8 @@ class MediaFacts:
     cards: tuple[str, ...] = ()
     """Sound cards by name."""
     sound_allowed: bool = True
+    no_speech: tuple[str, ...] = ()
+    """Packages that hearing and speaking offline lack."""
 
 
 def collect() -> MediaFacts:
@@ -40,7 +46,7 @@ def collect() -> MediaFacts:
         cards = ()
     devices = list(Path("/dev/snd").glob("pcm*")) if cards else []
     allowed = all(os.access(path, os.R_OK | os.W_OK) for path in devices)
-    return MediaFacts(cameras, cards, allowed)
+    return MediaFacts(cameras, cards, allowed, tuple(filterfalse(find_spec, SPEECH)))
 
 
 def diagnose(facts: MediaFacts) -> list[Finding]:
@@ -55,6 +61,12 @@ def diagnose(facts: MediaFacts) -> list[Finding]:
     else:
         text = _("sound: {cards}: no permission").format(cards=", ".join(facts.cards))
         found.append(warn("sound", text, "sudo usermod -aG audio $USER"))
+    if facts.no_speech:
+        text = _("speech offline: without {packages}; to hear and speak: {fix}")
+        fix = "pip install 'deck-robot[voice]'"
+        found.append(ok("speech", text.format(packages=", ".join(facts.no_speech), fix=fix)))
+    else:
+        found.append(ok("speech", _("speech offline: in English; it speaks Russian too")))
     return found
 
 

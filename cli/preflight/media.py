@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -34,12 +35,8 @@ well, picture = cv2.VideoCapture(name, how).read()
 if well:
     print("%dx%d" % (picture.shape[1], picture.shape[0]))
 """
-SOUND = """
-import json, sys
-import sounddevice
-devices = [dict(device) for device in sounddevice.query_devices()]
-print(json.dumps([[d["name"], d["max_input_channels"], d["max_output_channels"]] for d in devices]))
-"""
+SOUND = Path(__file__).resolve().parents[2] / "nodes" / "drivers" / "sound_device.py"
+"""Lists the devices as the node of the sound knows them; run, never imported."""
 
 
 def ask_camera(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAnswer]:
@@ -60,7 +57,7 @@ def ask_camera(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAns
 
 
 def _picture(name: str) -> DeviceAnswer:
-    size = _run(PICTURE, name).strip()
+    size = _run(python(PICTURE, name)).strip()
     if size:
         return DeviceAnswer(Level.OK, _("a picture of {size}").format(size=size))
     others = holders(name)
@@ -79,26 +76,28 @@ def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAnsw
     wanted = [(setting, name) for setting, name in wanted if name != OFF]
     if not wanted:
         return "", DeviceAnswer(Level.OK, _("switched off"))
-    try:
-        there = json.loads(_run(SOUND) or "[]")
-    except ValueError:
-        there = []
+    microphones, speakers = _sound_devices()
     found: list[str] = []
     missing: list[tuple[str, str]] = []
     for setting, name in wanted:
-        at = 1 if setting == "microphone" else 2
-        fitting = [
-            str(each[0])
-            for index, each in enumerate(there)
-            if each[at] and _is(name, index, str(each[0]))
-        ]
+        there = microphones if setting == "microphone" else speakers
+        fitting = [each for at, each in enumerate(there) if _is(name, at, each)]
         if fitting:
             found.append(fitting[0])
         else:
             missing.append((setting, name))
     if not missing:
         return "", DeviceAnswer(Level.OK, ", ".join(dict.fromkeys(found)))
-    return "", _no_sound(device, missing, [str(each[0]) for each in there])
+    return "", _no_sound(device, missing, list(dict.fromkeys([*microphones, *speakers])))
+
+
+def _sound_devices() -> tuple[Sequence[str], Sequence[str]]:
+    """Return the names of the microphones and of the loudspeakers."""
+    try:
+        microphones, speakers = json.loads(_run([sys.executable, str(SOUND), "list"]))
+    except ValueError:
+        return (), ()
+    return microphones, speakers
 
 
 def _no_sound(
@@ -120,11 +119,11 @@ def _is(wanted: str, index: int, name: str) -> bool:
     return wanted.casefold() in name.casefold()
 
 
-def _run(program: str, *arguments: str) -> str:
-    """Return what a small program prints, nothing if it fails or takes too long."""
+def _run(command: Sequence[str]) -> str:
+    """Return what a program prints, nothing if it fails or takes too long."""
     try:
         done = subprocess.run(
-            python(program, *arguments),
+            command,
             capture_output=True,
             text=True,
             errors="replace",

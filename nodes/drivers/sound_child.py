@@ -1,4 +1,4 @@
-"""The process that runs PortAudio, as seen by the node."""
+"""The process that runs miniaudio, as seen by the node."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ import sys
 import threading
 from pathlib import Path
 
-from nodes.drivers.portaudio import IN, OUT
+from nodes.drivers.sound_device import IN, OUT
 
-PROGRAM = Path(__file__).with_name("portaudio.py")
+PROGRAM = Path(__file__).with_name("sound_device.py")
 _CHUNK = 65_536
 _LONGEST_LINE = 4096
 _LAST_WAIT_S = 0.2

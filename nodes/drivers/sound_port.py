@@ -1,7 +1,7 @@
 """A microphone or a loudspeaker that comes and goes: its own thread keeps it open.
 
-PortAudio runs in a separate process (`portaudio`), restarted for each attempt. The callback `heard`
-runs on the thread.
+miniaudio runs in a separate process (`sound_device`), restarted for each attempt. The callback
+`heard` runs on the thread.
 """
 
 from __future__ import annotations
@@ -11,14 +11,13 @@ import selectors
 import threading
 import time
 from datetime import datetime
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nodes.drivers.portaudio import IN, OUT
 from nodes.drivers.sound_child import SoundChild
+from nodes.drivers.sound_device import CARDS, IN, OUT
 from nodes.drivers.sound_queue import SoundQueue
 from nodes.drivers.sound_words import CANNOT, LOST, OPENED, OPENING, explain
-from robot.sound import SAMPLE, Resampler
+from robot.sound import SAMPLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,12 +26,10 @@ if TYPE_CHECKING:
 
 NOWHERE = "none"
 """The device name that means no device."""
-CARDS = Path("/proc/asound/cards")
-"""Changes when a sound card comes or goes."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.25, 15.0
 _LOOK_S = 0.25
 _OPEN_S = 15.0
-"""Time limit: PortAudio probes every device at its start."""
+"""Time limit: a sound server may have to start first."""
 _ANSWER_S = 5.0
 """It reports once a second; after this long without a report, it hangs."""
 _PATIENCE_S = 3.0
@@ -62,10 +59,9 @@ class SoundPort:
         self._queue = SoundQueue(round(rate_hz * queue_s) * SAMPLE)
         self.octets = self.faults = self.connections = 0
         """Bytes moved, blocks missed and connections, since the start."""
-        self.device, self.device_hz, self.problem = "", 0, say.text(OPENING)
+        self.device, self.problem = "", say.text(OPENING)
         self.connected, self.since_s, self.since = False, time.monotonic(), ""
         """Start of the current state; while connected also as ISO 8601."""
-        self._resampler: Resampler | None = None
         self._missed = 0
         self._part = b""
         """Half a sample left over from a read block, or from sound to write."""
@@ -84,7 +80,7 @@ class SoundPort:
             self._thread.start()
 
     def close(self) -> None:
-        """End the thread and PortAudio."""
+        """End the thread and the process."""
         self._ending.set()
         os.eventfd_write(self._stirred, 1)
         if self._thread.is_alive():
@@ -172,7 +168,7 @@ class SoundPort:
         return "", ""
 
     def _hear_words(self, child: SoundChild) -> tuple[str, str] | None:
-        """Take the messages of PortAudio's process; return (problem, detail) if it has ended."""
+        """Take the messages of the process; return (problem, detail) if it has ended."""
         told = child.messages()
         if told is None:
             child.await_end()
@@ -181,20 +177,18 @@ class SoundPort:
             if "problem" in message:
                 return str(message["problem"]), str(message.get("detail", ""))
             if "opened" in message:
-                self._open(str(message["opened"]), int(str(message["rate"])))
+                self._open(str(message["opened"]))
             self._missed, before = int(str(message.get("faults", 0))), self._missed
             self.faults += max(0, self._missed - before)
         return None
 
-    def _open(self, device: str, rate_hz: int) -> None:
-        self.device, self.device_hz = device, rate_hz
-        here, there = (rate_hz, self.rate_hz) if self.way == IN else (self.rate_hz, rate_hz)
-        self._resampler = Resampler(here, there) if here != there else None
+    def _open(self, device: str) -> None:
+        self.device = device
         self._missed = 0
         self.connections += 1
         self.since = datetime.now().astimezone().isoformat(timespec="seconds")
         self.connected, self.since_s = True, time.monotonic()
-        self._say.info(OPENED[self.way], device=device, rate=rate_hz)
+        self._say.info(OPENED[self.way], device=device, rate=self.rate_hz)
 
     def _has_sound(self) -> bool:
         return self.connected and bool(self._part or len(self._queue))
@@ -202,21 +196,18 @@ class SoundPort:
     def _carry(self, child: SoundChild) -> None:
         """Move the sound that can be moved now."""
         if self.way == OUT:
-            self._part = self._part or self._resampled(self._queue.take(self._block))
+            self._part = self._part or self._queue.take(self._block)
             left = child.play(self._part)
             self.octets += len(self._part) - len(left)
             self._part = left
             return
         data = child.hear()
         self.octets += len(data)
-        self._part += self._resampled(data)
+        self._part += data
         while len(self._part) >= self._block:
             block, self._part = self._part[: self._block], self._part[self._block :]
             if self._heard is not None:
                 self._heard(block)
-
-    def _resampled(self, sound: bytes) -> bytes:
-        return sound if self._resampler is None else self._resampler.feed(sound)
 
 
 def _watch(selector: selectors.BaseSelector, descriptor: int, events: int) -> None:

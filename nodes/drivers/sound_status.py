@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from nodes.drivers.portaudio import IN
+from nodes.drivers.sound_device import IN
 from nodes.drivers.sound_words import CANNOT, FAULTY, OFF, SINCE
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class PortStatus:
             "bytes_out_per_s": f"{0 if port.way == IN else octets:.0f}",
             "errors_per_s": f"{faults:.1f}",
             "errors": str(port.faults),
-            "sample_rate": str(port.device_hz if port.connected else port.rate_hz),
+            "sample_rate": str(port.rate_hz),
         }
         return DiagnosticStatus(
             level=level,
@@ -60,7 +60,7 @@ class PortStatus:
         if not port.connected:
             return DiagnosticStatus.ERROR, say.text(CANNOT[port.way], problem=port.problem)
         seconds = time.monotonic() - port.since_s
-        words = say.text(SINCE[port.way], device=port.device, rate=port.device_hz, seconds=seconds)
+        words = say.text(SINCE[port.way], device=port.device, rate=port.rate_hz, seconds=seconds)
         if faults:
             return DiagnosticStatus.WARN, say.text(FAULTY, words=words, faults=faults)
         return DiagnosticStatus.OK, words

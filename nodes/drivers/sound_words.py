@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nodes.drivers.portaudio import IN, OUT
+from nodes.drivers.sound_device import IN, OUT
 from text.i18n import N_
 
 if TYPE_CHECKING:
@@ -38,19 +38,18 @@ LATE = N_("The speaker is late: the oldest {seconds:.1f} s of sound are dropped"
 UNPLAYED = N_("There is no speaker now: {seconds:.1f} s of sound are not played")
 
 _PROBLEMS = {
-    "package": N_("sounddevice is not installed; pip install sounddevice"),
-    "library": N_("PortAudio is not installed; sudo apt install libportaudio2"),
+    "package": N_("miniaudio is not installed; pip install miniaudio"),
+    "library": N_("neither PulseAudio nor ALSA is installed; sudo apt install libasound2"),
     "missing": N_('no device "{device}"; set the parameter to one of these: {detail}'),
     "none": N_(
         "no such sound device; plug it in (arecord -l and aplay -l list them), "
         "or sudo usermod -aG audio $USER and log in again"
     ),
-    "busy": N_("another program is using it; close that one (fuser -v /dev/snd/*)"),
-    "rate": N_("it cannot do {detail} Hz"),
+    "busy": N_("it cannot be opened; close the program that uses it (fuser -v /dev/snd/*)"),
     "gone": N_("it is gone; is it unplugged?"),
     "silent": N_("no sound moves any more"),
-    "hung": N_("PortAudio does not answer"),
-    "died": N_("PortAudio has died: {detail}"),
+    "hung": N_("the library of sound does not answer"),
+    "died": N_("the library of sound has died: {detail}"),
     "other": N_("{detail}"),
 }
 

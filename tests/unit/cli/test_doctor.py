@@ -298,6 +298,16 @@ def test_cameras_and_sound() -> None:
     assert "/dev/video0 Orbbec" in text(findings, "camera")
 
 
+def test_speech_that_is_not_installed_is_told_with_the_command() -> None:
+    (missing,) = [
+        one for one in diagnose_media(MediaFacts(no_speech=("a", "b"))) if one.key == "speech"
+    ]
+    assert (
+        missing.text
+        == "speech offline: without a, b; to hear and speak: pip install 'deck-robot[voice]'"
+    )
+
+
 def test_names_of_sound_cards() -> None:
     listing = " 0 [PCH ]: HDA-Intel - HDA Intel PCH\n            HDA at 0x1 irq 1\n"
     assert cards_in(listing) == ["HDA-Intel - HDA Intel PCH"]

@@ -33,18 +33,18 @@ def test_cameras_that_are_missing_or_none(tmp_path: Path) -> None:
     assert "it delivers no picture" in other.text
 
 
-CARDS = '[["USB Microphone: Audio (hw:1,0)", 1, 0], ["MAX98357A (hw:2,0)", 0, 2]]'
+CARDS = '[["USB Microphone, Audio"], ["HDMI", "MAX98357A"]]'
 
 
 @pytest.mark.parametrize(
     ("cards", "settings", "level", "words"),
     [
-        (CARDS, {}, Level.OK, "USB Microphone: Audio (hw:1,0), MAX98357A (hw:2,0)"),
+        (CARDS, {}, Level.OK, "USB Microphone, Audio, HDMI"),
         (CARDS, {"microphone": "usb", "speaker": "1"}, Level.OK, "MAX98357A"),
         (CARDS, {"microphone": "none", "speaker": "none"}, Level.OK, "switched off"),
         (CARDS, {"microphone": "MAX"}, Level.FAIL, "not found: microphone MAX; sound devices: USB"),
-        (CARDS, {"speaker": "0"}, Level.FAIL, "not found: loudspeaker 0;"),
-        ("[]", {}, Level.FAIL, "not found: microphone, loudspeaker; sound devices: none"),
+        (CARDS, {"speaker": "2"}, Level.FAIL, "not found: loudspeaker 2;"),
+        ("[[], []]", {}, Level.FAIL, "not found: microphone, loudspeaker; sound devices: none"),
         ("", {}, Level.FAIL, "sound devices: none"),
         ("no JSON", {}, Level.FAIL, "sound devices: none"),
     ],

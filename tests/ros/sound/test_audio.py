@@ -1,4 +1,4 @@
-"""The driver of microphone and loudspeaker, on PortAudio over pipes in place of a card."""
+"""The driver of microphone and loudspeaker, on ALSA over pipes in place of a card."""
 
 from __future__ import annotations
 
@@ -18,7 +18,13 @@ from std_msgs.msg import ByteMultiArray, Float32
 from nodes.parts.sound import from_message, to_message
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
-from tests.ros.sound_card import RATE_HZ, SoundCard, build_stand_in, libraries, without_silence
+from tests.ros.sound.sound_card import (
+    RATE_HZ,
+    SoundCard,
+    build_stand_in,
+    libraries,
+    without_silence,
+)
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
@@ -35,8 +41,7 @@ def ramp(seconds: float, step: int) -> bytes:
 
 @pytest.fixture(scope="module")
 def stand_in() -> Iterator[Path]:
-    # `ctypes.util.find_library` cuts the path of what it finds at a blank.
-    with tempfile.TemporaryDirectory(prefix="deck-test-portaudio-", dir="/tmp") as folder:
+    with tempfile.TemporaryDirectory(prefix="deck-test-alsa-", dir="/tmp") as folder:
         yield build_stand_in(Path(folder))
 
 
@@ -66,7 +71,7 @@ def audio(domain: int, **params: object) -> NodeProcess:
 
 
 def children(node: NodeProcess) -> list[int]:
-    """The processes with PortAudio in them."""
+    """The processes with miniaudio in them."""
     done = subprocess.run(
         ["ps", "-o", "pid=", "--ppid", str(node.process.pid)],
         capture_output=True,
@@ -80,6 +85,20 @@ def levels(told: list[DiagnosticArray], device: str) -> list[bytes]:
     """How one of the two has been, message by message."""
     states = [message.status[0] for message in told]
     return [state.level for state in states if state.name == f"audio_system: {device}"]
+
+
+def bytes_out(told: list[DiagnosticArray]) -> int:
+    """The most that went to the loudspeaker in a second."""
+    states = [message.status[0] for message in told]
+    return max(
+        (
+            int(item.value)
+            for state in states
+            for item in state.values
+            if item.key == "bytes_out_per_s"
+        ),
+        default=0,
+    )
 
 
 def is_there(pid: int) -> bool:
@@ -183,18 +202,32 @@ def test_a_late_speaker_drops_the_oldest_and_says_so(
         wait_until(lambda: without_silence(card.played).endswith(newest), "the newest")
         (running,) = children(node)
         node.send(signal.SIGKILL)
-        wait_until(lambda: not is_there(running), "the end of PortAudio with its node")
+        wait_until(lambda: not is_there(running), "the end of miniaudio with its node")
+
+
+def test_the_null_device_keeps_the_pace_without_a_card(peer: Peer, module_domain: int) -> None:
+    heard = peer.hear(MICROPHONE, ByteMultiArray)
+    told = peer.hear("/diagnostics", DiagnosticArray)
+    with audio(module_domain, input_device="null", output_device="null") as node:
+        node.wait_for_words("Microphone: null, 16000 Hz", "Speaker: null, 16000 Hz")
+        wait_until(lambda: len(heard) >= 5, "silence")
+        assert {from_message(message) for message in heard} == {bytes(2 * RATE_HZ // 10)}
+        with peer.saying(SPEAKER, to_message(ramp(0.1, 7))):
+            wait_until(lambda: bytes_out(told) > 0, "sound that goes to nobody")
+        node.send(signal.SIGTERM)
+        assert node.wait() == 0
 
 
 def test_a_missing_library_is_told_with_the_mend(
     module_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "sounddevice.py").write_text("raise OSError('PortAudio library not found')")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    for name in ("libasound.so.2", "libpulse.so.0"):
+        (tmp_path / name).write_text("not a library")
+    monkeypatch.setenv("LD_LIBRARY_PATH", str(tmp_path))
     with audio(module_domain) as node:
         node.wait_for_words(
-            "No microphone: PortAudio is not installed; sudo apt install libportaudio2",
-            "No speaker: PortAudio is not installed",
+            "No microphone: neither PulseAudio nor ALSA is installed; sudo apt install libasound2",
+            "No speaker: neither PulseAudio nor ALSA is installed",
         )
         node.send(signal.SIGTERM)
         assert node.wait() == 0

@@ -1,7 +1,7 @@
 """A sound card that is not there: ALSA reads a microphone from a pipe and plays into another.
 
-Everything between the pipes and the topics is real where PortAudio is installed: alsa-lib, it, and
-sounddevice. Everywhere `portaudio.c` takes the place of the first two besides.
+Everything between the pipes and the topics is real where ALSA is installed: alsa-lib and miniaudio.
+Everywhere `alsa.c` takes the place of the first of them besides.
 """
 
 from __future__ import annotations
@@ -26,30 +26,30 @@ pcm.{microphone} {{
     file /dev/null
     infile {folder}/said
     format raw
+    hint {{ show on description "{microphone}" }}
 }}
 pcm.deckspeaker {{
     type file
     slave.pcm {{ type null }}
     file {folder}/played
     format raw
+    hint {{ show on description "deckspeaker" }}
 }}
 """
 
 
 def libraries() -> list[str]:
-    """The PortAudio of this machine if it has one, and that of `portaudio.c` in any case."""
-    return ["stand-in", *(["installed"] if ctypes.util.find_library("portaudio") else [])]
+    """The ALSA of this machine if it has one, and that of `alsa.c` in any case."""
+    return ["stand-in", *(["installed"] if ctypes.util.find_library("asound") else [])]
 
 
 def build_stand_in(folder: Path) -> Path:
-    """Compile `portaudio.c`; return the folder for LD_LIBRARY_PATH."""
-    library = folder / "libportaudio.so.2"
+    """Compile `alsa.c`; return the folder for LD_LIBRARY_PATH."""
+    library = folder / "libasound.so.2"
     soname = f"-Wl,-soname,{library.name}"
-    source = Path(__file__).with_name("portaudio.c")
-    flags = ("-shared", "-fPIC", "-O1", "-Wall", "-Wextra", "-Werror", "-pthread", soname)
+    source = Path(__file__).with_name("alsa.c")
+    flags = ("-shared", "-fPIC", "-O1", "-Wall", "-Wextra", "-Werror", soname)
     subprocess.run(["cc", *flags, "-o", library, source], check=True)
-    # Under this name the linker looks for it, and Python asks the linker.
-    (folder / "libportaudio.so").symlink_to(library.name)
     return folder
 
 

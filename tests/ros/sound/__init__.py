@@ -1,0 +1,1 @@
+"""Tests of `nodes` with real ROS and real processes."""
