@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.limits import SPEED, STEERING
-from robot.words import STOP, WORDS, DriveSetpoint, parse_word
+from robot.words import STOP, WORDS, DriveSetpoint, parse_spoken, parse_word
 
 
 @pytest.mark.parametrize(
@@ -44,3 +44,29 @@ def test_every_listed_word_is_known_and_in_one_order() -> None:
 def test_no_text_leads_out_of_range(text: str) -> None:
     setpoint = parse_word(text)
     assert setpoint is None or (setpoint.speed_m_s in SPEED and setpoint.steering_rad in STEERING)
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("robot forward", "forward"),
+        ("Robot, turn left!", "left"),
+        ("Робот, поезжай вперёд.", "вперед"),
+        ("робот осмотрись", "осмотрись"),
+        ("robot have a look round", "look around"),
+        ("stop", "stop"),
+        ("Стоп!", "стоп"),
+        ("стой", "стоп"),
+        ("forward", None),
+        ("turn left", None),
+        ("вперёд", None),
+        ("look around", None),
+        ("robot", None),
+        ("robot robot forward", None),
+        ("robot forward please", None),
+        ("the robot stop", None),
+        ("", None),
+    ],
+)
+def test_only_what_is_said_to_the_robot_means_something(text: str, meant: str | None) -> None:
+    assert parse_spoken(text) == meant

@@ -96,7 +96,7 @@ def test_the_robot_has_the_same_drivers_on_mock_and_on_real_hardware() -> None:
         assert mock[name].document.run == real[name].document.run
         assert {**mock[name].params, "port": ""} == {**real[name].params, "port": ""}
     assert not [name for name, node in real.items() if "mock" in str(node.document.run)]
-    assert set(real) - set(mock) == {"camera", "audio"}
+    assert set(real) - set(mock) == {"camera", "audio", "hearing", "speaking"}
     assert set(mock) - set(real) == {"mock_robot", "mock_camera", "mock_audio"}
 
 
