@@ -40,12 +40,14 @@ from robot.topics import (
     AI_COMMAND,
     CAMERA,
     EMERGENCY_STOP,
+    HEARD,
     LLM_RAW_JSON,
     MICROPHONE,
+    SAY,
     SONAR_FRONT,
     SPEAKER,
 )
-from robot.words import WORDS, parse_word
+from robot.words import WORDS, addressed, parse_spoken, parse_word
 from text.i18n import N_
 
 if TYPE_CHECKING:
@@ -58,8 +60,7 @@ FORWARD, STOP_WORD = WORDS["ru"][0], WORDS["ru"][4]
 
 _STARTED = N_("The brain is awake and waits for a voice")
 _HEARD = N_('Heard: "{words}"')
-_NO_WORDS = N_("Hearing sound and no words: nothing recognises speech yet")
-_SAY_EVERY_S = 10.0
+_NOT_FOR_ME = N_('Heard "{words}", which is not a command for me: say for example "robot, forward"')
 _THINKING = N_("Thinking with the voice, {picture} and {distance}")
 _PICTURE = N_("a picture")
 _NO_PICTURE = N_("no picture")
@@ -135,8 +136,10 @@ class AiBrain(LessonNode):
         self._head = HeadClient(self, lambda: self.number("head_timeout"))
         SensorListener(self, Image, CAMERA, self._see, depth=1, raw=True)
         SensorListener(self, Float32, SONAR_FRONT, self._measure)
+        self._voice = self.create_publisher(String, SAY, DEPTH)
         self._mind = self._model_mind() if self.text("backend") == "llm" else None
         self.create_subscription(ByteMultiArray, MICROPHONE, self._hear, DEPTH)
+        self.create_subscription(String, HEARD, self._understand, DEPTH)
         self.say.info(_STARTED)
 
     def before_end(self) -> None:
@@ -172,11 +175,20 @@ class AiBrain(LessonNode):
 
     def _hear(self, message: ByteMultiArray) -> None:
         sound = from_message(message)
-        if text_in(sound) is None:
-            # A real microphone hears something all the time: that is not a request to drive.
-            self.say.info(_NO_WORDS, every_s=_SAY_EVERY_S)
+        # What a real microphone hears is recognised elsewhere.
+        if text_in(sound) is not None:
+            self._answer(spoken(sound))
+
+    def _understand(self, message: String) -> None:
+        words = parse_spoken(message.data)
+        if words is None and self._mind is not None:
+            words = addressed(message.data) or None
+        if words is None:
+            self.say.info(_NOT_FOR_ME, words=message.data)
             return
-        words = spoken(sound)
+        self._answer(words)
+
+    def _answer(self, words: str) -> None:
         self.say.info(_HEARD, words=words)
         self._tell_what_is_known()
         if self._mind is None:
@@ -230,6 +242,7 @@ class AiBrain(LessonNode):
 
     def _speak(self, words: str) -> None:
         self._speaker.publish(to_message(words.encode()))
+        self._voice.publish(String(data=words))
 
     # ---------------------------------------------------------------- what the rules decide
 

@@ -2,7 +2,8 @@
 
 Every `period` seconds somebody says a phrase into the microphone, as text in bytes instead of
 sound; what comes for the loudspeaker is written to the log. The first phrase waits for
-a subscriber, but not longer than a period. The level of the simulated voice goes to /audio/level.
+a subscriber, but not longer than a period. With `sound_file` it is a microphone of sound: silence,
+and every `period` seconds what is in the file. The level of the voice goes to /audio/level.
 """
 
 from __future__ import annotations
@@ -13,22 +14,29 @@ import time
 
 from std_msgs.msg import ByteMultiArray, Float32
 
-from nodes.parts.node import LessonNode, change_period
+from brain.speech.faults import SpeechError
+from brain.speech.sound_file import read_sound
+from nodes.parts.node import LessonNode, NodeUsageError, change_period
 from nodes.parts.parameters import Number, Text
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sound import from_message, to_message
-from robot.sound import LEVEL_S, mock_level_dbfs
+from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, mock_level_dbfs, text_in
 from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
 from text.i18n import N_
 
 _STARTED = N_("Microphone and loudspeaker are on")
 _SAID = N_('Somebody said into the microphone: "{words}"')
 _PLAYED = N_('The loudspeaker plays: "{words}"')
+_PLAYED_FILE = N_("Somebody speaks into the microphone: {path}")
+_PLAYED_SOUND = N_("The loudspeaker plays sound")
+_CANNOT = "{problem}"
 _PHRASE = N_("VOICE_COMMAND: have a look round and tell me what is there")
 
 _LOOK_EVERY_S = 0.5
 """How long to wait for a first subscriber."""
+_BLOCK_S = 0.1
+_SAY_EVERY_S = 5.0
 
 
 class MockAudio(LessonNode):
@@ -41,6 +49,13 @@ class MockAudio(LessonNode):
             "first_after", 3.0, "Time before the first", low=0.1, high=3600.0, unit="s", fixed=True
         ),
         Text("phrase", "", "What is said; empty: a request to look round", may_be_empty=True),
+        Text(
+            "sound_file",
+            "",
+            N_("Sound in place of the phrase: WAV, FLAC or MP3"),
+            fixed=True,
+            may_be_empty=True,
+        ),
     )
 
     def __init__(self) -> None:
@@ -49,11 +64,17 @@ class MockAudio(LessonNode):
         self._started_s = time.monotonic()
         self._said_s = -math.inf
         self._words = ""
+        self._sound = self._read()
+        self._left = b""
+        """What is still to be said of the file."""
+        self._meter = LevelMeter(RATE_HZ)
         self._publisher = self.create_publisher(ByteMultiArray, MICROPHONE, DEPTH)
         self._levels = self.create_publisher(Float32, AUDIO_LEVEL, DEPTH)
         self.create_subscription(ByteMultiArray, SPEAKER, self._play, DEPTH)
         self._timer = self.every(self.number("first_after"), self._speak)
         self.every(LEVEL_S, self._tell_level)
+        if self._sound:
+            self.every(_BLOCK_S, self._publish_block)
         self.say.info(_STARTED)
 
     def parameters_changed(self) -> None:
@@ -68,12 +89,33 @@ class MockAudio(LessonNode):
                 return
             self._began = True
             change_period(self._timer, self.number("period"))
+        if self._sound:
+            self._left = self._sound
+            self.say.info(_PLAYED_FILE, path=self.text("sound_file"))
+            return
         words = self.text("phrase") or self.say.text(_PHRASE)
         self._publisher.publish(to_message(words.encode("utf-8", "replace")))
         self._said_s, self._words = time.monotonic(), words
         self.say.info(_SAID, words=words)
 
+    def _read(self) -> bytes:
+        if not self.text("sound_file"):
+            return b""
+        try:
+            return read_sound(self.text("sound_file"), RATE_HZ).pcm
+        except SpeechError as error:
+            raise NodeUsageError(_CANNOT, problem=error.sentence) from None
+
+    def _publish_block(self) -> None:
+        size = int(RATE_HZ * _BLOCK_S) * SAMPLE
+        block, self._left = self._left[:size].ljust(size, b"\0"), self._left[size:]
+        self._meter.feed(block)
+        self._publisher.publish(to_message(block))
+
     def _tell_level(self) -> None:
+        if self._sound:
+            self._levels.publish(Float32(data=self._meter.dbfs))
+            return
         since_s = time.monotonic() - self._said_s
         self._levels.publish(Float32(data=mock_level_dbfs(self._words, since_s)))
 
@@ -88,7 +130,11 @@ class MockAudio(LessonNode):
         return overdue or (listened and self._listened)
 
     def _play(self, message: ByteMultiArray) -> None:
-        self.say.info(_PLAYED, words=from_message(message).decode("utf-8", "replace"))
+        sound = from_message(message)
+        if text_in(sound) is None:
+            self.say.info(_PLAYED_SOUND, every_s=_SAY_EVERY_S)
+        else:
+            self.say.info(_PLAYED, words=sound.decode("utf-8", "replace"))
 
 
 def main(args: list[str] | None = None) -> int:

@@ -168,7 +168,21 @@ def test_sound_that_is_no_words_is_no_wish(brain: Brain) -> None:
         brain.peer.say("/audio/mic_raw", voice(sound))
     brain.peer.say("/audio/mic_raw", voice(b"left"))
     assert wait_for(brain.commands, "/ai_command").data == "налево"
-    assert "no words" in brain.process.output
+    assert len(brain.commands) == 1
+
+
+def test_recognised_words_count_if_they_are_said_to_the_robot(brain: Brain) -> None:
+    answers = brain.peer.hear("/say", String)
+    brain.see(3.0)
+    brain.commands.clear()
+    answers.clear()
+    for words in ("turn left", "look around", "the robot is on the table", ""):
+        brain.peer.say("/audio/heard", String(data=words))
+    brain.peer.say("/audio/heard", String(data="Robot, turn right!"))
+    wait_until(lambda: answers, "an answer")
+    assert [message.data for message in brain.commands] == ["направо"]
+    assert [message.data for message in answers] == ["As you say."]
+    assert 'Heard "turn left", which is not a command for me' in brain.process.output
     assert brain.process.process.poll() is None
 
 

@@ -36,6 +36,8 @@ NODES = {
     "tof_sonar": "tof_sonar_front",
     "chassis": "chassis",
     "camera": "camera",
+    "hearing": "hearing",
+    "speaking": "speaking",
 }
 """Module to the name in the graph that the course gave it."""
 SIGNALS = (signal.SIGINT, signal.SIGTERM)

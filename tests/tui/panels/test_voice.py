@@ -158,6 +158,17 @@ def fed(*rows: TopicRow, samples: tuple[Sample, ...] = ()) -> GraphUpdate:
     return replace(update, topics=rows, samples={one.topic: (one,) for one in samples})
 
 
+async def test_words_that_were_recognised_are_the_humans() -> None:
+    panel = VoicePanel()
+    words = sample("/audio/heard", "std_msgs/msg/String", {"data": "robot, stop"})
+    row = topic("/audio/heard", "std_msgs/msg/String", 0.1)
+    assert row.name in panel.followed()
+    async with alone(panel, 50, 8).run_test(size=(60, 20)):
+        panel.show(fed(row, samples=(words,)))
+        (line,) = [line for line in rows(panel.query_one(VoiceView)) if "robot, stop" in line]
+        assert "human" in line
+
+
 async def test_the_microphone_is_told_by_its_level_or_by_its_absence() -> None:
     panel = VoicePanel()
     told = sample(LEVEL, "std_msgs/msg/Float32", {"data": -30.0})

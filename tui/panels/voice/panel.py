@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
+from robot.topics import AUDIO_LEVEL, HEARD, MICROPHONE, SPEAKER
 from text.i18n import N_
 from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, newest, row_of, trouble_of
@@ -40,8 +40,8 @@ class VoicePanel(Panel):
         yield VoiceView()
 
     def followed(self) -> set[str]:
-        """All messages of microphone and loudspeaker."""
-        return set(TOPICS)
+        """All messages of microphone and loudspeaker, and the words that were recognised."""
+        return {*TOPICS, HEARD}
 
     def watched(self) -> set[str]:
         """The current level."""
@@ -50,11 +50,13 @@ class VoicePanel(Panel):
     def show(self, update: GraphUpdate) -> None:
         """Add what was said, in order of arrival."""
         talk = self.query_one(VoiceView)
-        said = [sample for topic in TOPICS for sample in update.samples.get(topic, ())]
+        said = [sample for topic in (*TOPICS, HEARD) for sample in update.samples.get(topic, ())]
         for sample in sorted(said, key=lambda one: one.received_s):
             data = sample.value.get("data", b"")
-            if isinstance(data, bytes):
-                talk.hear(TOPICS[sample.topic], data, sample.received_s)
+            if sample.topic == HEARD and isinstance(data, str):
+                talk.hear("human", data.encode("utf-8", "replace"), sample.received_s)
+            elif isinstance(data, bytes):
+                talk.hear(TOPICS.get(sample.topic, "human"), data, sample.received_s)
         self._show_level(talk, update)
         placeholder = self._of_another_type(update)
         talk.show_placeholder(placeholder)
