@@ -40,6 +40,8 @@ MEASUREMENTS = {
     "brain.latency": "From the last byte of a model's answer to the command on /drive",
     "cable": "A cable pulled and put back",
     "serial_cpu": "What the serial drivers cost",
+    "voice.words": "Spoken commands, heard offline",
+    "voice.latency": "From the end of a spoken command to /drive, offline",
     "hour": "An hour of simulated driving among boxes",
 }
 """Module to the title of its section."""
