@@ -131,6 +131,8 @@ class AiBrain(LessonNode):
         """Serialized: it is decoded only if a model asks for it."""
         self._front_m: float | None = None
         self._front_s = 0.0
+        self._by_ear = False
+        """Whether the newest words were recognised from sound, not sent as text."""
         self._command = self.create_publisher(String, AI_COMMAND, DEPTH)
         self._speaker = self.create_publisher(ByteMultiArray, SPEAKER, DEPTH)
         self._head = HeadClient(self, lambda: self.number("head_timeout"))
@@ -186,9 +188,10 @@ class AiBrain(LessonNode):
         if words is None:
             self.say.info(_NOT_FOR_ME, words=message.data)
             return
-        self._answer(words)
+        self._answer(words, by_ear=True)
 
-    def _answer(self, words: str) -> None:
+    def _answer(self, words: str, *, by_ear: bool = False) -> None:
+        self._by_ear = by_ear
         self.say.info(_HEARD, words=words)
         self._tell_what_is_known()
         if self._mind is None:
@@ -227,7 +230,9 @@ class AiBrain(LessonNode):
             self._speak(response.say)
 
     def _no_answer(self, error: ModelError, situation: Situation) -> None:
-        if error.kind in _BY_RULES:
+        # What a recogniser understood may be anything: only a command is obeyed without a model.
+        clear = not self._by_ear or parse_word(situation.heard) is not None
+        if error.kind in _BY_RULES and clear:
             self.say.warn(_NO_MODEL, problem=error.words)
             self._by_rules(situation.heard)
             return

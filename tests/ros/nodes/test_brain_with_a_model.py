@@ -298,6 +298,31 @@ def test_without_a_model_it_works_by_its_rules_and_says_so(
         brain.close()
 
 
+def test_what_was_recognised_from_sound_needs_a_model_to_mean_a_drive(
+    ros_domain: int, set_up: Path
+) -> None:
+    """Without a network "robot, forward" drives by the rules, and "what do you see?" does not."""
+    with ModelServer(lambda _: None) as closed:
+        settings(set_up, closed.url)
+    params: dict[str, object] = {"backend": "llm", "stale_after_s": 60.0}
+    brain = NodeProcess("nodes.ai_brain", ros_domain, params=params)
+    try:
+        with Peer(ros_domain) as peer:
+            commands = peer.hear("/ai_command", String)
+
+            def obeyed(words: str, command: str) -> bool:
+                commands.clear()
+                peer.say("/sensor/sonar_front", Float32(data=math.inf))
+                peer.say("/audio/heard", String(data=words))
+                return comes(lambda: any(each.data == command for each in commands), 1.0)
+
+            wait_until(lambda: obeyed("robot forward", "вперед"), "вперед")
+            wait_until(lambda: obeyed("robot what do you see", "стоп"), "стоп")
+            assert {each.data for each in commands} == {"стоп"}
+    finally:
+        brain.close()
+
+
 def _content(robot: Robot) -> Any:
     """What the newest question says of the situation."""
     return robot.server.exchanges[-1].request["messages"][-1]["content"]
