@@ -33,6 +33,8 @@ _PLAYED_SOUND = N_("The loudspeaker plays sound")
 _CANNOT = "{problem}"
 _PHRASE = N_("VOICE_COMMAND: have a look round and tell me what is there")
 
+_SHORT = 64
+"""Bytes: two milliseconds of sound, which nobody plays. Whatever is shorter is meant as text."""
 _LOOK_EVERY_S = 0.5
 """How long to wait for a first subscriber."""
 _BLOCK_S = 0.1
@@ -131,7 +133,7 @@ class MockAudio(LessonNode):
 
     def _play(self, message: ByteMultiArray) -> None:
         sound = from_message(message)
-        if text_in(sound) is None:
+        if len(sound) > _SHORT and text_in(sound) is None:
             self.say.info(_PLAYED_SOUND, every_s=_SAY_EVERY_S)
         else:
             self.say.info(_PLAYED, words=sound.decode("utf-8", "replace"))

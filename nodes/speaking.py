@@ -86,11 +86,11 @@ class Speaking(LessonNode):
         self._changed = threading.Condition()
         self._turn = 0
         """Goes up when what is being said is to be silenced."""
-        self.create_subscription(String, SAY, self._take, DEPTH)
+        self.create_subscription(String, SAY, self._say_next, DEPTH)
         threading.Thread(target=self._live, name="voice", daemon=True).start()
         self.say.info(_STARTED, topic=SAY, backend=backend)
 
-    def _take(self, message: String) -> None:
+    def _say_next(self, message: String) -> None:
         words = message.data.strip()
         with self._changed:
             if not words:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from robot.topics import (
     AI_COMMAND,
     GOAL_POSE,
+    HEARD,
     LLM_RAW_JSON,
     MICROPHONE,
     WHEEL_COMMANDS,
@@ -28,8 +29,9 @@ MOVING_NAMES = frozenset(
         WHEEL_COMMANDS,
         AI_COMMAND,
         LLM_RAW_JSON,
-        # The brain obeys a voice.
+        # The brain obeys a voice, and what was recognised of it.
         MICROPHONE,
+        HEARD,
         GOAL_POSE,
     }
 )

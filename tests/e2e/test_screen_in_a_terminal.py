@@ -24,16 +24,16 @@ def test_enter_starts_a_lesson_space_holds_it_and_q_leaves_nothing_running(deck:
     terminal = deck.open("--lang", "en")
     terminal.wait_for("Starts 1 node")
     terminal.press("end", "up", "up")
-    terminal.wait_for("Starts 8 nodes")
+    terminal.wait_for("Starts 9 nodes")
     terminal.press("enter")
-    terminal.wait_for("8/8")
-    assert len(marked.nodes(deck.mark)) == 8
+    terminal.wait_for("9/9")
+    assert len(marked.nodes(deck.mark)) == 9
     wait_for_the_gate(terminal)
     terminal.press("f2", "space")
     terminal.wait_for("EMERGENCY STOP: nothing moves")
     terminal.wait_until(lambda text: "EMERGENCY STOP" in title(text), "the stop in the title")
     terminal.press("ctrl+r")
-    terminal.wait_until(lambda text: "8/8" in title(text), "all at work again")
+    terminal.wait_until(lambda text: "9/9" in title(text), "all at work again")
     terminal.press("q")
     assert terminal.wait_exit() == 0
     wait_until(lambda: not marked.alive(deck.mark), "every process gone")

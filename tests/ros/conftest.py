@@ -16,6 +16,7 @@ from tests.unfinished_shared_memory import unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
 __all__ = ["start", "unfinished"]
 
@@ -48,3 +49,12 @@ def watcher(ros_domain: int) -> Iterator[Watcher]:
     watcher = Watcher(ros_domain)
     yield watcher
     watcher.close()
+
+
+@pytest.fixture
+def model_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The user's folder for `llm.yaml`, without one yet; and a cache of the test's own."""
+    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME"):
+        monkeypatch.setenv(name, str(tmp_path))
+    (tmp_path / "deck").mkdir()
+    return tmp_path / "deck"

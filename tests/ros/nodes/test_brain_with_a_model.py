@@ -12,6 +12,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import Bool, ByteMultiArray, Float32, String
 
 from tests.model_server import KEY, ModelServer, obeys
+from tests.model_settings import write_settings
 from tests.ros.node_process import NodeProcess
 from tests.ros.nodes.test_brain import text, voice
 from tests.ros.peer import Peer
@@ -88,33 +89,15 @@ class Robot:
 
 
 @pytest.fixture
-def set_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The user's own folders; returns that of the settings."""
-    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME"):
-        monkeypatch.setenv(name, str(tmp_path))
-    (tmp_path / "deck").mkdir()
-    return tmp_path / "deck"
-
-
-def settings(folder: Path, url: str, **fields: object) -> None:
-    (folder / "key").write_text(KEY)
-    (folder / "key").chmod(0o600)
-    given = {"base_url": url, "model": "m-1", "key_file": f"{folder}/key", **fields}
-    given.setdefault("budget", {"calls_per_minute": 1000})
-    # JSON is YAML.
-    (folder / "llm.yaml").write_text(json.dumps(given))
-
-
-@pytest.fixture
 def server() -> Iterator[ModelServer]:
     with ModelServer(obeys(GO)) as server:
         yield server
 
 
 @pytest.fixture
-def robot(ros_domain: int, set_up: Path, server: ModelServer) -> Iterator[Robot]:
+def robot(ros_domain: int, model_folder: Path, server: ModelServer) -> Iterator[Robot]:
     prices = {"input_per_million": 1.0, "output_per_million": 2.0}
-    settings(set_up, server.url, prices=prices, timeout_s=3.0, first_token_s=1.0)
+    write_settings(model_folder, server.url, prices=prices, timeout_s=3.0, first_token_s=1.0)
     robot = Robot(ros_domain, server)
     yield robot
     said = robot.brain.output + robot.parser.output
@@ -243,10 +226,12 @@ def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
 
 @pytest.mark.parametrize("wish", ["sent", "auto"])
 def test_a_picture_goes_along_if_a_model_sees(
-    ros_domain: int, set_up: Path, server: ModelServer, wish: str
+    ros_domain: int, model_folder: Path, server: ModelServer, wish: str
 ) -> None:
     """By default only to a `vision_model`, which then thinks as well."""
-    settings(set_up, server.url, **({"vision_model": "m-sees"} if wish == "auto" else {}))
+    write_settings(
+        model_folder, server.url, **({"vision_model": "m-sees"} if wish == "auto" else {})
+    )
     robot = Robot(ros_domain, server, picture=wish)
     camera = NodeProcess("nodes.mock_camera", ros_domain)
     try:
@@ -261,7 +246,7 @@ def test_a_picture_goes_along_if_a_model_sees(
 
 @pytest.mark.parametrize("setting", ["none", "unreachable", "no key", "broken"])
 def test_without_a_model_it_works_by_its_rules_and_says_so(
-    ros_domain: int, set_up: Path, setting: str
+    ros_domain: int, model_folder: Path, setting: str
 ) -> None:
     """No settings, no network, no key: lesson 9 runs as it did before there were models."""
     with ModelServer(lambda _: None) as closed:
@@ -273,11 +258,11 @@ def test_without_a_model_it_works_by_its_rules_and_says_so(
         "broken": "llm.yaml:1:1: model: is missing",
     }
     if setting == "unreachable":
-        settings(set_up, url)
+        write_settings(model_folder, url)
     elif setting == "no key":
-        (set_up / "llm.yaml").write_text(f"base_url: {url}\nmodel: m\nkey_env: NOT_SET\n")
+        (model_folder / "llm.yaml").write_text(f"base_url: {url}\nmodel: m\nkey_env: NOT_SET\n")
     elif setting == "broken":
-        (set_up / "llm.yaml").write_text(f"base_url: {url}\n")
+        (model_folder / "llm.yaml").write_text(f"base_url: {url}\n")
     params: dict[str, object] = {"backend": "llm", "stale_after_s": 60.0}
     brain = NodeProcess("nodes.ai_brain", ros_domain, params=params)
     try:
@@ -299,11 +284,11 @@ def test_without_a_model_it_works_by_its_rules_and_says_so(
 
 
 def test_what_was_recognised_from_sound_needs_a_model_to_mean_a_drive(
-    ros_domain: int, set_up: Path
+    ros_domain: int, model_folder: Path
 ) -> None:
     """Without a network "robot, forward" drives by the rules, and "what do you see?" does not."""
     with ModelServer(lambda _: None) as closed:
-        settings(set_up, closed.url)
+        write_settings(model_folder, closed.url)
     params: dict[str, object] = {"backend": "llm", "stale_after_s": 60.0}
     brain = NodeProcess("nodes.ai_brain", ros_domain, params=params)
     try:

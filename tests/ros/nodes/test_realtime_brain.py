@@ -15,10 +15,10 @@ from std_msgs.msg import Bool, ByteMultiArray, Float32, String
 from brain.realtime import ACT, SENSE
 from robot.sound import samples_of
 from tests.model_server import KEY
+from tests.model_settings import write_settings
 from tests.realtime_server import RealtimeServer, Talk
 from tests.ros.node_process import NodeProcess
 from tests.ros.nodes.test_brain import voice
-from tests.ros.nodes.test_brain_with_a_model import settings
 from tests.ros.peer import Peer
 from tests.waiting import comes, wait_until
 
@@ -75,17 +75,9 @@ class Robot:
 
 
 @pytest.fixture
-def set_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME"):
-        monkeypatch.setenv(name, str(tmp_path))
-    (tmp_path / "deck").mkdir()
-    return tmp_path / "deck"
-
-
-@pytest.fixture
-def robot(ros_domain: int, set_up: Path) -> Iterator[Robot]:
+def robot(ros_domain: int, model_folder: Path) -> Iterator[Robot]:
     with RealtimeServer(quiet) as server:
-        settings(set_up, server.url, realtime_model="rt-1")
+        write_settings(model_folder, server.url, realtime_model="rt-1")
         robot = Robot(ros_domain, server)
         try:
             yield robot
@@ -146,8 +138,8 @@ def test_a_lost_talk_is_told_and_made_anew(robot: Robot) -> None:
     wait_until(lambda: 0.3 in robot.speeds(), "/drive by the model")
 
 
-def test_without_settings_it_says_so_and_ends(ros_domain: int, set_up: Path) -> None:
-    del set_up
+def test_without_settings_it_says_so_and_ends(ros_domain: int, model_folder: Path) -> None:
+    del model_folder
     brain = NodeProcess("nodes.realtime_brain", ros_domain)
     try:
         assert brain.wait() == 2

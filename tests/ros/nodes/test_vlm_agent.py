@@ -10,8 +10,8 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
 from tests.model_server import KEY, ModelServer, obeys
+from tests.model_settings import write_settings
 from tests.ros.node_process import NodeProcess
-from tests.ros.nodes.test_brain_with_a_model import settings
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
@@ -23,14 +23,6 @@ if TYPE_CHECKING:
 
 BOX = {"left": 0.1, "top": 0.2, "right": 0.5, "bottom": 0.9}
 SEEN = json.dumps({"description": "A red cup.", "things": [{"label": "cup", "box": BOX}]})
-
-
-@pytest.fixture
-def set_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME"):
-        monkeypatch.setenv(name, str(tmp_path))
-    (tmp_path / "deck").mkdir()
-    return tmp_path / "deck"
 
 
 @pytest.fixture
@@ -47,9 +39,9 @@ def pictures(server: ModelServer) -> list[str]:
 
 
 @pytest.mark.usefixtures("camera")
-def test_a_picture_becomes_words_and_boxes(ros_domain: int, set_up: Path) -> None:
+def test_a_picture_becomes_words_and_boxes(ros_domain: int, model_folder: Path) -> None:
     with ModelServer(obeys(SEEN)) as server, Peer(ros_domain) as peer:
-        settings(set_up, server.url, vision_model="m-sees")
+        write_settings(model_folder, server.url, vision_model="m-sees")
         described = peer.hear("/vlm/description", String)
         detected = peer.hear("/vlm/detections", String)
         states = peer.hear("/brain_state", DiagnosticArray)
@@ -73,7 +65,9 @@ def test_a_picture_becomes_words_and_boxes(ros_domain: int, set_up: Path) -> Non
 
 
 @pytest.mark.usefixtures("camera")
-def test_while_one_is_under_way_none_is_sent_and_none_waits(ros_domain: int, set_up: Path) -> None:
+def test_while_one_is_under_way_none_is_sent_and_none_waits(
+    ros_domain: int, model_folder: Path
+) -> None:
     """A slow model gets the newest picture after its answer, not those of meanwhile."""
     answers = iter(range(100))
 
@@ -85,7 +79,7 @@ def test_while_one_is_under_way_none_is_sent_and_none_waits(ros_domain: int, set
 
     overlapping: list[int] = []
     with ModelServer(slow) as server, Peer(ros_domain) as peer:
-        settings(set_up, server.url)
+        write_settings(model_folder, server.url)
         described = peer.hear("/vlm/description", String)
         agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.1})
         try:
@@ -97,9 +91,11 @@ def test_while_one_is_under_way_none_is_sent_and_none_waits(ros_domain: int, set
 
 
 @pytest.mark.usefixtures("camera")
-def test_a_failure_is_told_and_the_next_picture_is_tried(ros_domain: int, set_up: Path) -> None:
+def test_a_failure_is_told_and_the_next_picture_is_tried(
+    ros_domain: int, model_folder: Path
+) -> None:
     with ModelServer(lambda exchange: exchange.fails(500)) as server, Peer(ros_domain) as peer:
-        settings(set_up, server.url)
+        write_settings(model_folder, server.url)
         described = peer.hear("/vlm/description", String)
         agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.2})
         try:
@@ -110,8 +106,8 @@ def test_a_failure_is_told_and_the_next_picture_is_tried(ros_domain: int, set_up
             agent.close()
 
 
-def test_without_a_model_nothing_is_sent(ros_domain: int, set_up: Path) -> None:
-    del set_up
+def test_without_a_model_nothing_is_sent(ros_domain: int, model_folder: Path) -> None:
+    del model_folder
     agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.2})
     try:
         agent.wait_for_words("No picture goes anywhere: no language model is set up")

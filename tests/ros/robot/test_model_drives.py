@@ -21,9 +21,9 @@ from robot.commands.schema import CommandError, SpokenResponse, parse_llm
 from robot.limits import SPEED, STEERING
 from tests.deck_process import deck
 from tests.model_server import KEY, ModelServer, obeys
+from tests.model_settings import write_settings
 from tests.ros.node_process import NodeProcess
 from tests.ros.nodes.test_brain import voice
-from tests.ros.nodes.test_brain_with_a_model import settings
 from tests.ros.peer import Peer
 from tests.waiting import comes, wait_until
 
@@ -39,14 +39,6 @@ HOSTILE: tuple[Any, ...] = (
     *(0.5, -0.5, 0.50001, 5, -1e308, 1e400, True, None, "0.5", [], {}, [0.5], ""),
     *("NaN", "вперёд", 0.1 + 0.2, 10**400),
 )
-
-
-@pytest.fixture
-def set_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME"):
-        monkeypatch.setenv(name, str(tmp_path))
-    (tmp_path / "deck").mkdir()
-    return tmp_path / "deck"
 
 
 def drive(speed: float) -> str:
@@ -93,7 +85,7 @@ def test_no_fuzzed_answer_is_out_of_range() -> None:
     assert 0.2 * FUZZED < accepted < 0.8 * FUZZED, "both kinds are tried"
 
 
-def test_what_a_model_says_is_done_once_or_not_at_all(ros_domain: int, set_up: Path) -> None:
+def test_what_a_model_says_is_done_once_or_not_at_all(ros_domain: int, model_folder: Path) -> None:
     """Through the real nodes: each accepted answer reaches the parser once, a bad one never."""
     chance, numbers = random.Random(41), count()
     good: list[str] = []
@@ -108,7 +100,7 @@ def test_what_a_model_says_is_done_once_or_not_at_all(ros_domain: int, set_up: P
         exchange.says(text)
 
     with ModelServer(script) as server, Peer(ros_domain) as peer:
-        settings(set_up, server.url, budget={"calls_per_minute": 10_000})
+        write_settings(model_folder, server.url, budget={"calls_per_minute": 10_000})
         sent = peer.hear("/llm_raw_json", String)
         drives = peer.hear("/drive", AckermannDriveStamped)
         brain = NodeProcess("nodes.ai_brain", ros_domain, params={"backend": "llm"})
@@ -141,10 +133,10 @@ def _heard(peer: Peer, server: ModelServer) -> bool:
 
 
 @pytest.fixture
-def robot(ros_domain: int, set_up: Path) -> Iterator[tuple[ModelServer, Peer]]:
+def robot(ros_domain: int, model_folder: Path) -> Iterator[tuple[ModelServer, Peer]]:
     """Bring the robot up with a model, and a microphone that is never silent."""
     with ModelServer(obeys(drive(0.5))) as server:
-        settings(set_up, server.url, budget={"calls_per_minute": 10_000})
+        write_settings(model_folder, server.url, budget={"calls_per_minute": 10_000})
         up = deck(
             "up", "robot", "--set", "mock_audio.first_after=0.1", "--set", "mock_audio.period=0.3"
         )

@@ -18,6 +18,7 @@ TEXT = "std_msgs/msg/String"
         ("/ai_command", TEXT),
         ("/llm_raw_json", TEXT),
         ("/audio/mic_raw", "std_msgs/msg/ByteMultiArray"),
+        ("/audio/heard", TEXT),
         ("/cmd_vel", "geometry_msgs/msg/Twist"),
     ],
 )
