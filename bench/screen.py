@@ -169,7 +169,7 @@ def main() -> None:
         folder = Path(name)
         frame, listed, imported = first_frame(folder)
         with deck(folder, "09-brain") as terminal:
-            terminal.wait_for("8/8")
+            terminal.wait_for("9/9")
             time.sleep(5)
             cpu, pss, sent = at_rest(terminal, screen_processes(terminal))
             keys = key_delays_ms(terminal)

@@ -56,7 +56,7 @@ def picture(language: str) -> None:
         sonar = ["--set", "sonar_front.pattern=sweep"]
         terminal = Terminal([sys.executable, "-m", "tui", *arguments, *sonar], 120, 40, env)
         try:
-            terminal.wait_for("8/8")
+            terminal.wait_for("9/9")
             terminal.wait_for("◂", within_s=60)
             while SPOKEN[language] not in terminal.text():
                 # A wall may be near just then, or the brain may give another command.
