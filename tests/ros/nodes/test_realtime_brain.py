@@ -68,6 +68,14 @@ class Robot:
     def step(self, step: Any) -> Any:
         return self.server.run(step)
 
+    def senses(self, front_m: float) -> str:
+        """Have the sonar say a distance; return what the model is told when it asks."""
+        self.peer.say("/sensor/sonar_front", Float32(data=front_m))
+        before = len(self.talk.those("conversation.item.create"))
+        self.step(self.talk.calls(SENSE, "{}", f"sense-{before}"))
+        answers = self.step(self.talk.got("conversation.item.create", before + 1))
+        return str(answers[-1]["item"]["output"])
+
     def _reached(self) -> bool:
         """Whether a stop said into the microphone comes out on /drive."""
         self.peer.say("/audio/mic_raw", voice(b"stop"))
@@ -90,15 +98,12 @@ def robot(ros_domain: int, model_folder: Path) -> Iterator[Robot]:
 
 def test_sound_goes_up_and_a_voice_comes_down(robot: Robot) -> None:
     """16 kHz on the robot, 24 kHz on the line; what the model does goes through the parser."""
-    robot.peer.say("/sensor/sonar_front", Float32(data=2.0))
     robot.peer.say("/audio/mic_raw", voice(bytes(range(1, 255)) * 12 + b"\x00\x80" * 76))
     (appended,) = robot.step(robot.talk.got("input_audio_buffer.append"))
     assert len(base64.b64decode(appended["audio"])) == pytest.approx(3200 * 1.5, abs=8)
     robot.step(robot.talk.hears("go on"))
-    robot.step(robot.talk.calls(SENSE, "{}", "call-1"))
-    sensed = robot.step(robot.talk.got("conversation.item.create"))[0]["item"]["output"]
-    assert "Distance ahead: 2.00 m" in sensed
-    robot.step(robot.talk.calls(ACT, GO, "call-2"))
+    wait_until(lambda: "Distance ahead: 2.00 m" in robot.senses(2.0), "the distance")
+    robot.step(robot.talk.calls(ACT, GO, "go"))
     wait_until(lambda: 0.3 in robot.speeds(), "/drive by the model")
     robot.step(robot.talk.says(TONE, TONE, words="I go."))
     wait_until(lambda: sum(len(m.data) for m in robot.sound) >= 6300, "the model's voice")
