@@ -10,9 +10,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from brain.budget import Ledger
-from brain.faults import not_set_up
 from brain.key import key_of
-from brain.settings import load
+from brain.settings import required
 from robot.commands.schema import LlmResponse, parse_llm
 
 if TYPE_CHECKING:
@@ -53,10 +52,7 @@ class AskedModels:
         Raises:
             ModelError: if there are none, or they cannot be used.
         """
-        settings = load()
-        if settings is None:
-            raise not_set_up()
-        return settings
+        return required()
 
     async def ask(
         self,

@@ -1,4 +1,4 @@
-"""A transport that ends an answer which is too long.
+"""The OpenAI client, held to the settings, with a transport that ends an answer which is too long.
 
 The OpenAI client reads whatever comes: ten megabytes of one line would all be kept.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import httpx2
+import openai
 
 from brain.faults import FaultKind, ModelError
 from text.sentences import say
@@ -15,8 +16,24 @@ from text.sentences import say
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
+    from brain.key import ServerKey
+    from brain.settings import ModelSettings
+
 LONGEST_ANSWER = 4 << 20
 """Bytes on the wire, of one answer: a token takes some 200 of them in a stream."""
+
+
+def bounded_client(settings: ModelSettings, key: ServerKey) -> openai.AsyncOpenAI:
+    """Return a client that asks once, reads no endless answer, and goes where the settings say."""
+    return openai.AsyncOpenAI(
+        base_url=settings.base_url,
+        # The client insists on one; a server on this machine takes any.
+        api_key=key.reveal() or "none",
+        max_retries=0,
+        timeout=settings.timeout_s,
+        # No redirects: the key, and what was seen or said, go where the settings say.
+        http_client=httpx2.AsyncClient(transport=BoundedTransport(), follow_redirects=False),
+    )
 
 
 class BoundedTransport(httpx2.AsyncBaseTransport):

@@ -179,22 +179,9 @@ class ModelClient:
 
     def _client(self) -> openai.AsyncOpenAI:
         if self._made is None:
-            import httpx2
-            import openai
+            from brain.bounds import bounded_client
 
-            from brain.bounds import BoundedTransport
-
-            self._made = openai.AsyncOpenAI(
-                base_url=self.settings.base_url,
-                # The client insists on one; a server on this machine takes any.
-                api_key=self._key.reveal() or "none",
-                max_retries=0,
-                timeout=self.settings.timeout_s,
-                # No redirects: the key and the pictures go where the settings say.
-                http_client=httpx2.AsyncClient(
-                    transport=BoundedTransport(), follow_redirects=False
-                ),
-            )
+            self._made = bounded_client(self.settings, self._key)
         return self._made
 
     @contextmanager

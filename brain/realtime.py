@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 import openai
 import websockets.exceptions
 
+from brain.bounds import bounded_client
 from brain.budget import TokenUsage
 from brain.client_faults import fault_of, of_status, words_of
 from brain.faults import FaultKind, ModelError
@@ -119,12 +120,7 @@ class RealtimeTalk:
         Raises:
             ModelError: it always ends with one, unless it is cancelled.
         """
-        client = openai.AsyncOpenAI(
-            base_url=self._settings.base_url,
-            api_key=self._key.reveal() or "none",
-            max_retries=0,
-            timeout=self._settings.timeout_s,
-        )
+        client = bounded_client(self._settings, self._key)
         try:
             await self._talk(client)
         except ModelError:

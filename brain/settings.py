@@ -22,7 +22,7 @@ from platformdirs import user_config_path
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
-from brain.faults import FaultKind, ModelError
+from brain.faults import FaultKind, ModelError, not_set_up
 from text.os_words import os_reason
 from text.sentences import say
 from text.suggestions import did_you_mean
@@ -135,6 +135,18 @@ def load(
         return ModelSettings.model_validate(given)
     except ValidationError as error:
         raise _fault(error, path, tree, variables) from None
+
+
+def required() -> ModelSettings:
+    """Return the user's settings.
+
+    Raises:
+        ModelError: if there are none, or they cannot be used.
+    """
+    settings = load()
+    if settings is None:
+        raise not_set_up()
+    return settings
 
 
 def _tree(path: Path) -> Branch | None:

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import anyio
 
 from brain.budget import Ledger, TokenUsage, estimated_tokens
-from brain.faults import FaultKind, ModelError, not_set_up
+from brain.faults import FaultKind, ModelError
 from brain.key import key_of
-from brain.settings import load
+from brain.settings import required
 from brain.speech.espeak import LONGEST_TEXT
 from brain.speech.faults import SpeechError
 from brain.speech.sound import Sound
@@ -45,9 +45,7 @@ class _Server:
 
     def __init__(self, who: str) -> None:
         try:
-            settings = load()
-            if settings is None:
-                raise not_set_up()
+            settings = required()
             self._key = key_of(settings)
         except ModelError as error:
             raise SpeechError(error.words, error.fix) from None
@@ -73,18 +71,10 @@ class _Server:
         import httpx2
         import openai
 
-        from brain.bounds import BoundedTransport
+        from brain.bounds import bounded_client
         from brain.client_faults import fault_of
 
-        client = openai.AsyncOpenAI(
-            base_url=self.settings.base_url,
-            # The client insists on one; a server on this machine takes any.
-            api_key=self._key.reveal() or "none",
-            max_retries=0,
-            timeout=self.settings.timeout_s,
-            # No redirects: the key and what was said go where the settings say.
-            http_client=httpx2.AsyncClient(transport=BoundedTransport(), follow_redirects=False),
-        )
+        client = bounded_client(self.settings, self._key)
         try:
             with anyio.fail_after(self.settings.timeout_s):
                 return await request(client)

@@ -6,10 +6,10 @@ import asyncio
 
 from brain.budget import Ledger
 from brain.client import ModelClient
-from brain.faults import ModelError, not_set_up
+from brain.faults import ModelError
 from brain.key import key_of
 from brain.ladder import Ladder
-from brain.settings import KEY_VARIABLE, ModelSettings, load
+from brain.settings import KEY_VARIABLE, ModelSettings, required
 from brain.situation import Memory, Situation, conversation
 from brain.thinking import think
 from cli.doctor.finding import Finding, fail, ok
@@ -25,9 +25,7 @@ def try_model() -> list[Finding]:
     Raises:
         ModelError: if none is, or the settings cannot be used.
     """
-    settings = load()
-    if settings is None:
-        raise not_set_up()
+    settings = required()
     key = key_of(settings)
     source = settings.key_env or settings.key_file or KEY_VARIABLE
     told = _("from {source}").format(source=source) if key else _("none needed, none sent")

@@ -6,9 +6,9 @@ import os
 from typing import TYPE_CHECKING
 
 from brain.budget import Ledger
-from brain.faults import ModelError, not_set_up
+from brain.faults import ModelError
 from brain.key import key_of
-from brain.settings import load
+from brain.settings import required
 from nodes.thinking.background import Background
 from text.run_path import run_folder
 
@@ -33,9 +33,7 @@ class AskedModel:
         Raises:
             ModelError: if there are no settings that can be used.
         """
-        settings = load()
-        if settings is None:
-            raise not_set_up()
+        settings = required()
         self.settings, self.name = settings, name(settings)
         self.key, self.who = key_of(settings), str(node.get_name())
         self.ledger = Ledger(run_folder(os.environ))

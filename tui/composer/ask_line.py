@@ -12,6 +12,7 @@ from textual.widgets import Input, Static
 from text.i18n import _
 from text.plain import plain
 from tui.widgets.field import Field
+from tui.widgets.recalled import Recalled
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -57,9 +58,7 @@ class AskLine(Vertical):
 
     def __init__(self) -> None:
         super().__init__()
-        self._said: list[str] = []
-        self._at = 0
-        self._draft = ""
+        self._said = Recalled(KEPT)
 
     def compose(self) -> ComposeResult:
         """The note above the line, the status below it."""
@@ -77,7 +76,7 @@ class AskLine(Vertical):
     @property
     def words(self) -> str:
         """What stands in the field, or what was asked last if it is empty."""
-        return self.field.value.strip() or (self._said[-1] if self._said else "")
+        return self.field.value.strip() or self._said.newest
 
     def show_mark(self, *, auto: bool) -> None:
         """Show whether a valid answer is sent by itself."""
@@ -109,21 +108,14 @@ class AskLine(Vertical):
 
     def action_recall(self, step: int) -> None:
         """Bring back an earlier (-1) or later (1) question."""
-        at = max(0, min(self._at + step, len(self._said)))
-        if at == self._at:
-            return
-        if self._at == len(self._said):
-            self._draft = self.field.value
-        self._at = at
-        text = self._said[at] if at < len(self._said) else self._draft
-        self.field.value = text
-        self.field.cursor_position = len(text)
+        text = self._said.step(step, self.field.value)
+        if text is not None:
+            self.field.value = text
+            self.field.cursor_position = len(text)
 
     def keep(self, words: str) -> None:
         """Remember a question that was asked, so that it can be recalled."""
-        if not self._said or self._said[-1] != words:
-            self._said = [*self._said, words][-KEPT:]
-        self._at, self._draft = len(self._said), ""
+        self._said.keep(words)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Ask."""

@@ -14,6 +14,7 @@ from robot.words import WORDS, parse_word
 from text.i18n import _, decimal, language
 from text.plain import plain
 from tui.widgets.field import Field
+from tui.widgets.recalled import Recalled
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -83,9 +84,7 @@ class CommandLine(Vertical):
         """Start empty, with no listener known."""
         super().__init__(id=id, classes=classes)
         self._listeners: int | None = None
-        self._said: list[str] = []
-        self._at = 0
-        self._draft = ""
+        self._said = Recalled(KEPT)
 
     def compose(self) -> ComposeResult:
         """The field and a remark below it."""
@@ -114,15 +113,10 @@ class CommandLine(Vertical):
 
     def action_recall(self, step: int) -> None:
         """Bring back an earlier (-1) or later (1) command."""
-        at = max(0, min(self._at + step, len(self._said)))
-        if at == self._at:
-            return
-        if self._at == len(self._said):
-            self._draft = self.field.value
-        self._at = at
-        text = self._said[at] if at < len(self._said) else self._draft
-        self.field.value = text
-        self.field.cursor_position = len(text)
+        text = self._said.step(step, self.field.value)
+        if text is not None:
+            self.field.value = text
+            self.field.cursor_position = len(text)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         """Show what the robot will make of the text."""
@@ -135,10 +129,7 @@ class CommandLine(Vertical):
         text = event.value.strip()
         if not text:
             return
-        if not self._said or self._said[-1] != text:
-            self._said = [*self._said, text][-KEPT:]
-        self._at = len(self._said)
-        self._draft = ""
+        self._said.keep(text)
         event.input.value = ""
         self.post_message(self.CommandSent(self, text))
 
