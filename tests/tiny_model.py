@@ -115,13 +115,18 @@ DRIVES = _driving(
 """Says `ok` and drives: forward and to the left, at 0.1 to 0.4 m/s; calls a tool if it has one."""
 SPEEDS = _driving({"0": {"9": 14}, ":": {"9": 14, '"': 12, "[": 12, "{": 12}, "9": _NEXT_FIELD})
 """Drives at 9 m/s, which the grammar lets through: llama.cpp keeps no range of a `number`."""
+GARBLES = replace(
+    SPEEDS,
+    after={**SPEEDS.after, '"': {**SPEEDS.after['"'], "\xc3": 15}},
+    always={'"': 3},
+    readable=False,
+)
+"""Likewise at 9 m/s, with bytes that are not UTF-8: llama.cpp breaks off some of such answers."""
 RAMBLES = Habits(
     after={"[": {"{": 7}, "}": {"]": 6}},
     always={'"': 6, "}": 6, "]": 6, ",": 4, END: 8, **dict.fromkeys("0123456789", 2.0)},
 )
 """Says anything that the schema allows, numbers out of range too, and comes to an end."""
-GARBLES = replace(RAMBLES, readable=False)
-"""Likewise, with bytes that are not UTF-8: llama.cpp breaks off some of such answers."""
 
 
 _EYES: dict[str, tuple[int, ...]] = {
