@@ -11,7 +11,8 @@ import sys
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from cli.arguments import OPEN, parser_of, speak, split, wanted_language
+from cli.arguments.commands import OPEN, parser_of, split, wanted_language
+from cli.arguments.parser import speak
 from launcher.errors import LauncherError
 from text.i18n import LANGUAGES, detect, localized, set_language
 from text.output import drop_output, make_streams_safe, say_error

@@ -38,7 +38,7 @@ CONTEXT = 8192
 def model_command(options: Namespace) -> int:
     """Serve a model until interrupted; without an action, show the help."""
     if options.action is None:
-        from cli.arguments import parser_of
+        from cli.arguments.commands import parser_of
 
         parser_of("model").print_help()
         return 0

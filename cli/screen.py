@@ -6,7 +6,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from cli.arguments import COMMANDS, HELP
+from cli.arguments.commands import COMMANDS, HELP
 from launcher.errors import ProfileNotFoundError, UsageError
 from launcher.profile.catalog import find_profile
 from text.i18n import _

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from cli import main
-from cli.arguments import COMMANDS, parser_of, split
+from cli.arguments.commands import COMMANDS, parser_of, split
 from text.i18n import set_language
 
 

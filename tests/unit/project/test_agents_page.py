@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from agents.tools import CALL, PUBLISH, TOOLS
-from cli.arguments import MCP_PORT
+from cli.arguments.thinking import MCP_PORT
 from launcher.consent import AUDIT_FILE, DEFAULT_RULES, Approval
 from launcher.profile.load import load_profile
 

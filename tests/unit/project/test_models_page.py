@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from brain.settings import ModelSettings, load
-from cli.arguments import parser_of
+from cli.arguments.commands import parser_of
 
 ROOT = Path(__file__).parents[3]
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.arguments import COMMANDS, parser_of, split
+from cli.arguments.commands import COMMANDS, parser_of, split
 from launcher.profile.device_variables import variable
 from launcher.profile.load import load_profile
 from text.run_path import OWN_RUN_DIR

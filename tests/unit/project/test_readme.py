@@ -10,7 +10,7 @@ import pytest
 import yaml
 from textual.app import App
 
-from cli.arguments import COMMANDS
+from cli.arguments.commands import COMMANDS
 from launcher.profile.catalog import list_profiles
 from launcher.profile.load import load_profile
 from launcher.profile.model import NodeDocument, ProfileDocument

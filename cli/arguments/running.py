@@ -1,0 +1,117 @@
+"""Options of the commands that start nodes and look at what runs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cli.arguments.options import (
+    add_bandwidth,
+    add_json,
+    add_profile,
+    add_profile_options,
+    add_running,
+)
+from cli.values import count, domain, seconds
+from text.i18n import _
+
+if TYPE_CHECKING:
+    from cli.arguments.parser import Parser
+
+
+def add_run(parser: Parser) -> None:
+    """Add the options of `deck run`."""
+    add_profile(parser)
+    parser.add_argument(
+        "--for",
+        dest="seconds",
+        metavar="S",
+        type=seconds,
+        help=_("stop S seconds after all nodes are ready"),
+    )
+    add_json(parser)
+    add_profile_options(parser)
+    parser.epilog = _(
+        "Ctrl-C stops the nodes, dependants first; a second Ctrl-C does not wait. Exit code: 0 if"
+        " every node stayed healthy, 1 if one failed, 2 if nothing could be started."
+    )
+
+
+def add_list(parser: Parser) -> None:
+    """Add the options of `deck list`."""
+    add_json(parser)
+
+
+def add_check(parser: Parser) -> None:
+    """Add the options of `deck check`."""
+    parser.add_argument(
+        "profile", nargs="?", metavar=_("PROFILE"), help=_("name or file; all of them by default")
+    )
+    parser.add_argument(
+        "--preflight",
+        action="store_true",
+        help=_("check the devices too, with --hardware real: found, permitted, free, answering"),
+    )
+    add_json(parser)
+    add_profile_options(parser)
+    parser.epilog = _("Exit code: 0 if everything is all right, else 2. Nothing is moved.")
+
+
+def add_up(parser: Parser) -> None:
+    """Add the options of `deck up`."""
+    add_profile(parser)
+    add_profile_options(parser)
+
+
+def add_ps(parser: Parser) -> None:
+    """Add the options of `deck ps`."""
+    add_json(parser)
+
+
+def add_logs(parser: Parser) -> None:
+    """Add the options of `deck logs`."""
+    parser.add_argument(
+        "node", nargs="?", metavar=_("NODE"), help=_("name of the node; all of them by default")
+    )
+    parser.add_argument("-f", "--follow", action="store_true", help=_("keep showing new lines"))
+    parser.add_argument(
+        "-n",
+        dest="lines",
+        metavar="N",
+        type=count,
+        default=100,
+        help=_("how many past lines, 100 by default"),
+    )
+    parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several are running"))
+
+
+def add_attach(parser: Parser) -> None:
+    """Add the options of `deck attach`."""
+    add_running(parser)
+    add_bandwidth(parser)
+
+
+def add_watch(parser: Parser) -> None:
+    """Add the options of `deck watch`."""
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("ROS domain; by default ROS_DOMAIN_ID, else one of your own"),
+    )
+    parser.add_argument(
+        "--discovery",
+        choices=("localhost", "subnet"),
+        default="localhost",
+        help=_("look on this machine only (the default) or on the network too"),
+    )
+    add_bandwidth(parser)
+    parser.epilog = _("Deck starts and stops nothing here.")
+
+
+def add_doctor(parser: Parser) -> None:
+    """Add the options of `deck doctor`."""
+    parser.add_argument(
+        "what", nargs="?", choices=("llm",), help=_("llm: ask the language model for a test")
+    )
+    add_json(parser)
+    parser.epilog = _("Exit code: 0, or 1 if something essential is missing.")
