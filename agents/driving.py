@@ -122,6 +122,8 @@ class AgentDriving:
 
     async def execute(self, session: RobotSession, caller: Caller, name: str) -> dict[str, object]:
         """Carry out a proposal, if it is allowed."""
+        # First: as long as it is in force, it ends what has been proposed since, too.
+        _unless_stopped(session)
         proposal = self._book.take(name, caller.key, session.info.run_id)
         return await self._execute(session, caller, proposal)
 
@@ -149,8 +151,7 @@ class AgentDriving:
         A command that the gate holds would set the robot going when the way becomes free.
         """
         checked = await self._checked(session, motion)
-        if session.emergency.engaged:
-            raise refused("the emergency stop is in force; only a person releases it")
+        _unless_stopped(session)
         if checked.preview is not None and not checked.preview.lets:
             raise RefusedError(checked.preview.words)
         return checked
@@ -211,8 +212,7 @@ class AgentDriving:
         sent = False
         try:
             with session.view.hearing(LLM_RESULT, answers.hear):
-                if session.emergency.engaged:
-                    raise refused("the emergency stop is in force; only a person releases it")
+                _unless_stopped(session)
                 sending = session.observer.publish(
                     LLM_RAW_JSON, STRING, {"data": _thought(proposal, thought)}
                 )
@@ -246,6 +246,11 @@ class AgentDriving:
         if checked.motion.moves_wheels:
             wait_s = min(checked.road.repeat_for_s + SETTLES_S, WATCHED_FOR_S)
             await session.view.until(lambda: session.emergency.engaged, wait_s)
+
+
+def _unless_stopped(session: RobotSession) -> None:
+    if session.emergency.engaged:
+        raise refused("the emergency stop is in force; only a person releases it")
 
 
 class _Answers:

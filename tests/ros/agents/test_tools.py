@@ -150,9 +150,12 @@ async def test_an_emergency_stop_ends_questions_proposals_and_allowances(
         stopped = await claude.call("stop")
         assert "/safety_stop" in stopped["held_by"]
         await until(lambda: not person.agents.connected[0].allowed_until_s, "no allowance")
-        assert "no proposal" in await claude.refused("execute", proposal=kept)
         late = await claude.proposed(drive(0.1))
-        assert "emergency stop is in force" in await claude.refused("execute", proposal=late)
+        # A stop that is in force is the reason, also once it has ended what was proposed since.
+        await claude.call("echo", topic="/safety_state", count=3)
+        for proposal in (kept, late):
+            why = await claude.refused("execute", proposal=proposal)
+            assert "emergency stop is in force" in why
         assert (await claude.call("look"))["emergency_stop"]["engaged"]
         assert "there is no tool" in await claude.refused("release")
 
@@ -163,6 +166,8 @@ async def test_an_emergency_stop_ends_questions_proposals_and_allowances(
             return not (await claude.call("look"))["emergency_stop"]["engaged"]
 
         await until(free, "the release", every_s=0.2)
+        for proposal in (kept, late):
+            assert "no proposal" in await claude.refused("execute", proposal=proposal)
         # A node that starts now hears of no stop any more.
         await link.restart("llm_parser")
         await until_state(link, "llm_parser", NodeState.STARTING, NodeState.WAITING)
