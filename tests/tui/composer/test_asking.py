@@ -3,165 +3,46 @@
 from __future__ import annotations
 
 import json
-import threading
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from textual.widgets import OptionList, Static
+from textual.widgets import OptionList
 
 from brain.settings import settings_path
-from robot.topics import LLM_RAW_JSON, LLM_RESULT
-from tests.model_server import KEY, Exchange, ModelServer, obeys
-from tests.tui.composer.test_composer import PARSER, Stage
+from robot.topics import LLM_RESULT
+from tests.model_server import KEY, Exchange, ModelServer
+from tests.tui.composer.asking import (
+    FAST,
+    GOOD,
+    WORDS,
+    Answers,
+    InPieces,
+    answered,
+    ask,
+    composer,
+    is_asking,
+    is_auto,
+    sent,
+    set_up,
+    shown,
+    status,
+    verdict,
+)
 from tests.tui.composer.test_outcome import result
-from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
+from tests.tui.recorded import lesson_update
 from tests.tui.recorded_lesson import SESSION
-from tests.tui.snapshots import Look, settle
 from tests.waiting import until
 from text.i18n import localized
 from text.run_path import MODEL_USAGE
 from tui import clock
-from tui.composer.compare import ComparedAnswer, CompareDialog
-from tui.composer.json_editor import JsonEditor
 from tui.composer.prompt_dialog import PromptDialog
 
 if TYPE_CHECKING:
     from tests.model_server import Script
 
-DRIVE = {"action": "drive", "speed": 0.2, "steering": 0.0}
-GOOD = json.dumps({"thought": "I roll closer.", "commands": [DRIVE]})
-FAST = json.dumps({"thought": "I hurry.", "commands": [{**DRIVE, "speed": 5}]})
-WORDS = "roll closer"
-
-
-class Answers:
-    """A server that obeys, and answers questions one after the other; the last one again."""
-
-    def __init__(self, *answers: str | Script) -> None:
-        self.left = list(answers)
-
-    def __call__(self, exchange: Exchange) -> None:
-        if "deck-" in json.dumps(exchange.request):
-            obeys("")(exchange)
-            return
-        answer = self.left.pop(0) if len(self.left) > 1 else self.left[0]
-        if isinstance(answer, str):
-            exchange.says(answer, usage=(412, 86))
-        else:
-            answer(exchange)
-
-
-class InPieces:
-    """An answer of which each piece waits for the test."""
-
-    def __init__(self, *pieces: str) -> None:
-        self._pieces = pieces
-        self._gates = [threading.Event() for _ in pieces]
-        self._given = 0
-        self.hung_up = threading.Event()
-
-    def give(self) -> None:
-        """Let the next piece go."""
-        self._gates[self._given].set()
-        self._given += 1
-
-    def __call__(self, exchange: Exchange) -> None:
-        exchange.begins()
-        for gate, piece in zip(self._gates, self._pieces, strict=True):
-            self._wait(gate, exchange)
-            exchange.piece({"content": piece})
-        exchange.ends(usage=(412, 86))
-
-    def _wait(self, gate: threading.Event, exchange: Exchange) -> None:
-        try:
-            while not gate.wait(0.02):
-                # A comment, which says nothing: it fails once the other end has hung up.
-                exchange._send(b": \n\n")
-        except OSError:
-            self.hung_up.set()
-            raise
-
-
-@pytest.fixture(autouse=True)
-def _own_folders(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("THE_KEY", KEY)
-    (tmp_path / "run" / SESSION.run_id).mkdir(parents=True)
-
-
-@pytest.fixture
-def server() -> Iterator[ModelServer]:
-    with ModelServer(Answers(GOOD)) as server:
-        yield server
-
-
-def set_up(url: str, **more: str) -> None:
-    """Write settings that name this server."""
-    fields = {"base_url": url, "model": "m-1", "key_env": "THE_KEY", **more}
-    settings_path().parent.mkdir(parents=True, exist_ok=True)
-    text = "".join(f"{name}: {value}\n" for name, value in fields.items())
-    settings_path().write_text(text, encoding="utf-8")
-
-
-@asynccontextmanager
-async def composer(size: tuple[int, int] = (120, 40)) -> AsyncIterator[Stage]:
-    """Open the Composer over a recorded lesson 9."""
-    topics = (*lesson_update().topics, PARSER)
-    graph = RecordedGraph(update=lesson_update(topics=topics))
-    look = Look(size, "en")
-    app = look.app("composer", RecordedOpener(graph=graph))
-    async with app.run_test(size=size) as pilot:
-        await settle(pilot)
-        yield Stage(app, pilot, graph)
-
-
-async def ask(stage: Stage, words: str = WORDS) -> None:
-    """Say it in the line, and press Enter."""
-    await stage.pilot.press("alt+q")
-    stage.screen.line.field.value = words
-    await stage.pilot.press("enter")
-    await stage.pilot.pause()
-
-
-async def answered(stage: Stage) -> None:
-    """Wait until nothing is under way any more."""
-    await until(lambda: not is_asking(stage), "the end of the question")
-    await stage.pilot.pause()
-
-
-def is_asking(stage: Stage) -> bool:
-    """Whether an answer is under way."""
-    return stage.screen.is_asking
-
-
-def is_auto(stage: Stage) -> bool:
-    """Whether a valid answer is sent by itself."""
-    return stage.screen.is_auto
-
-
-def shown(stage: Stage) -> str:
-    """Everything on the screen in front."""
-    return "\n".join(strip.text for strip in stage.app.screen._compositor.render_strips())
-
-
-def verdict(stage: Stage) -> str:
-    """The line that says how the JSON stands."""
-    return str(stage.screen.verdict.query_one(Static).content)
-
-
-def status(stage: Stage) -> str:
-    """What the answer took, and the budget."""
-    return str(stage.screen.query_one("#ask-status", Static).content)
-
-
-def sent(stage: Stage) -> list[object]:
-    """What went to the robot."""
-    return [value["data"] for topic, _, value, _ in stage.graph.published if topic == LLM_RAW_JSON]
+pytestmark = pytest.mark.usefixtures("own_folders")
 
 
 async def test_an_answer_waits_in_the_editor_to_be_sent(server: ModelServer) -> None:
@@ -504,82 +385,6 @@ async def test_what_an_answer_took_is_shown_and_noted_when_it_is_sent(server: Mo
         assert line.node == "composer"
         assert localized(line.text).startswith("m-1: 412 + 86 tokens, the first after ")
         assert "EUR" in line.text
-
-
-async def opened_comparison(stage: Stage) -> CompareDialog:
-    """Ask both, and wait for both."""
-    await stage.pilot.press("alt+q")
-    stage.screen.line.field.value = WORDS
-    await stage.pilot.press("alt+c")
-    await stage.pilot.pause()
-    dialog = stage.app.screen
-    assert isinstance(dialog, CompareDialog)
-    both = dialog.query(ComparedAnswer)
-    await until(lambda: all(one.state.whole for one in both), "both answers")
-    await stage.pilot.pause()
-    return dialog
-
-
-def below(dialog: CompareDialog) -> list[str]:
-    """What stands below each of the two answers."""
-    return [str(one.content) for one in dialog.query(".compared-below").results(Static)]
-
-
-async def test_two_models_are_compared_and_one_answer_is_taken(server: ModelServer) -> None:
-    def by_model(exchange: Exchange) -> None:
-        other = GOOD.replace("closer", "nearer")
-        exchange.says(other if exchange.request["model"] == "m-2" else GOOD, usage=(412, 86))
-
-    server.script = Answers(by_model)
-    set_up(server.url, compare_with="m-2")
-    async with composer() as stage:
-        dialog = await opened_comparison(stage)
-        assert [one.text for one in dialog.query(JsonEditor)] == [
-            GOOD,
-            GOOD.replace("closer", "nearer"),
-        ]
-        for words in below(dialog):
-            assert words.startswith("✓ valid: 1 command\n412 + 86 tokens · first ")
-        asked = [one.request["messages"] for one in server.exchanges if len(server.exchanges) > 3]
-        assert asked[1] == asked[3]
-        await stage.pilot.press("tab", "enter")
-        await stage.pilot.pause()
-        assert stage.screen.editor.text == GOOD.replace("closer", "nearer")
-        assert sent(stage) == []
-
-
-async def test_a_model_that_fails_does_not_spoil_the_comparison(server: ModelServer) -> None:
-    server.script = Answers(lambda one: one.fails(404), GOOD)
-    set_up(server.url, compare_with="m-2")
-    async with composer((80, 24)) as stage:
-        before = stage.screen.editor.text
-        dialog = await opened_comparison(stage)
-        first, second = below(dialog)
-        assert first.startswith("✗ ")
-        assert second.startswith("✓ valid")
-        await stage.pilot.press("enter")
-        assert stage.app.screen is dialog
-        await stage.pilot.press("escape")
-        await stage.pilot.pause()
-        assert stage.screen.editor.text == before
-
-
-async def test_comparing_needs_a_second_model(server: ModelServer) -> None:
-    set_up(server.url)
-    async with composer() as stage:
-        await stage.pilot.press("alt+c")
-        await stage.pilot.pause()
-        assert f"compare_with: MODEL in {settings_path()}" in stage.screen.line.note
-        assert server.exchanges == []
-
-
-async def test_the_emergency_stop_works_in_both_dialogs(server: ModelServer) -> None:
-    set_up(server.url, compare_with="m-2")
-    async with composer() as stage:
-        await opened_comparison(stage)
-        await stage.pilot.press("space")
-        await stage.pilot.pause()
-        assert stage.app.emergency.state.engaged
 
 
 async def test_a_hostile_answer_is_shown_and_noted_harmlessly(server: ModelServer) -> None:
