@@ -241,7 +241,7 @@ async def test_a_node_is_exchanged_for_ones_own_and_back(start: Launch, tmp_path
     write(tmp_path / "decks.py", own())
     write(tmp_path / "mine.py", WELL.format(number="sys.argv[1:]").replace("time", "sys, time", 1))
     client = await start(
-        {"own": {"run": "./decks.py", "params": {"rate": 2}}, "other": {"run": "./decks.py"}}
+        {"own": {"run": "./decks.py", "params": {"period": 2.0}}, "other": {"run": "./decks.py"}}
     )
     await until_state(client, "own", NodeState.READY)
     await client.exchange("own", tmp_path / "mine.py")
