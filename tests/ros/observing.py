@@ -14,6 +14,7 @@ from typing import Any
 from graph.data import GraphUpdate, NodeRow, Sample, TopicRow
 from graph.observer.observer import Observer
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
+from graph.scan.scan import NAMELESS
 from tests import ports
 from tests.waiting import wait_until
 
@@ -116,11 +117,14 @@ class Watcher:
         ]
 
     def wait_for(self, topic: str, test: Any, what: str) -> TopicRow:
-        """Wait until the topic's row is there and passes the test."""
+        """Wait until the topic's row is there and passes the test, and its nodes are known.
+
+        An endpoint is found a little before the name of its node.
+        """
 
         def passes() -> TopicRow | None:
             row = self.row(topic)
-            return row if row and test(row) else None
+            return row if row and _all_named(row) and test(row) else None
 
         return wait_until(passes, f"{topic}: {what}")
 
@@ -133,6 +137,11 @@ class Watcher:
             self.samples.setdefault(topic, []).extend(samples)
         self.update = update
         self.updates += 1
+
+
+def _all_named(row: TopicRow) -> bool:
+    ends = (*row.published_by, *row.subscribed_by)
+    return not any(end.node.endswith(NAMELESS) for end in ends)
 
 
 def let_updates_come(watcher: Watcher, count: int) -> None:

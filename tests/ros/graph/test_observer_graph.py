@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from graph.data import ActionRow, EndpointInfo, ServiceRow, TopicRow
+from graph.data import ActionRow, EndpointInfo, ServiceRow
 from graph.housekeeping import is_housekeeping
-from graph.scan.scan import NAMELESS
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
 
@@ -26,13 +25,9 @@ def peers(ros_domain: int) -> Iterator[list[Peer]]:
 
 
 def the_end(watcher: Watcher, topic: str, side: str) -> EndpointInfo:
-    """The only publisher or subscription of a topic, once its node's name is known, too."""
-
-    def named(row: TopicRow) -> bool:
-        ends = getattr(row, side)
-        return len(ends) == 1 and not ends[0].node.endswith(NAMELESS)
-
-    (end,) = getattr(watcher.wait_for(topic, named, side), side)
+    """The only publisher or subscription of a topic."""
+    row = watcher.wait_for(topic, lambda row: len(getattr(row, side)) == 1, side)
+    (end,) = getattr(row, side)
     assert isinstance(end, EndpointInfo)
     return end
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import threading
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -199,11 +200,12 @@ def test_a_server_that_says_nothing_is_not_waited_for(robot: Robot) -> None:
 @pytest.mark.parametrize("said", ["stop", "Стоп, машина!", "emergency stop"])
 def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
     """Neither the word nor the emergency stop; what the model answers afterwards is not done."""
+    stopped = threading.Event()
 
     def slow(exchange: Exchange) -> None:
         exchange.begins()
         exchange.piece({"content": GO[:9]})
-        robot.server.closing.wait(0.7)
+        stopped.wait(20)
         exchange.piece({"content": GO[9:]})
         exchange.ends()
 
@@ -216,6 +218,7 @@ def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
         robot.hear(said)
         wait_until(robot.speeds, "the stop on /drive")
     wait_until(lambda: "waits for a voice" in robot.state["words"], "no more thinking")
+    stopped.set()
     robot.server.script = obeys(answer(say="Another one."))
     if said != "emergency stop":
         wait_until(
