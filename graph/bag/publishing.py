@@ -28,7 +28,11 @@ if TYPE_CHECKING:
 DEPTH = 100
 """Queue of a publisher: how many messages a subscriber may lag behind."""
 FOUND_WITHIN_S = 1.0
-"""By then existing nodes have been discovered, and have discovered this publisher."""
+"""By then existing nodes have been discovered, and have discovered this publisher, as a rule."""
+SETTLED_S = 0.5
+FOUND_AT_LAST_S = 5.0
+"""On a busy machine it takes longer: as long as something new is found, but not beyond this."""
+POLLED_S = 0.05
 LOOK_S = 0.25
 """How often to look for other publishers of the topics."""
 TELL_S = 1.0
@@ -88,7 +92,16 @@ class BagPublisher:
 
     def find_others(self, stop: threading.Event) -> None:
         """Wait until all existing nodes are known; leave topics to those who publish them."""
-        stop.wait(FOUND_WITHIN_S)
+        begun_s = changed_s = time.monotonic()
+        known = self._found()
+        while not stop.wait(POLLED_S):
+            now_s = time.monotonic()
+            before, known = known, self._found()
+            if known != before:
+                changed_s = now_s
+            settled = now_s >= begun_s + FOUND_WITHIN_S and now_s >= changed_s + SETTLED_S
+            if settled or now_s >= begun_s + FOUND_AT_LAST_S:
+                break
         self._give_way()
 
     def play(
@@ -185,6 +198,16 @@ class BagPublisher:
             self.progress.left_out[topic.name] = say("not a valid name of a ROS topic")
         else:
             self._publishers[topic.name] = (topic, publisher)
+
+    def _found(self) -> tuple[int, ...]:
+        """Return what changes as long as something is discovered."""
+        node = self._ros.node
+        publishers = [publisher for _, publisher in self._publishers.values()]
+        return (
+            len(node.get_node_names()),
+            *(node.count_subscribers(one.topic_name) for one in publishers),
+            *(one.get_subscription_count() for one in publishers),
+        )
 
     def _give_way(self) -> None:
         """Leave topics to others who publish them."""

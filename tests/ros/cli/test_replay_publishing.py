@@ -64,7 +64,10 @@ def test_messages_are_heard_in_their_order_and_latched_ones_too(
         numbers, names = peer.hear("/number", Float32), peer.hear("/map_name", String)
         run = DeckProcess("replay", str(bag), "--publish")
         assert run.finish() == 0
-        wait_until(lambda: len(numbers) == 11 and len(names) == 1, "all messages")
+        wait_until(
+            lambda: len(numbers) == 11 and len(names) == 1,
+            lambda: f"all messages; there are {len(numbers)} and {len(names)}",
+        )
     assert [message.data for message in numbers] == [float(count) for count in range(11)]
     assert names[0].data == "kitchen"
     assert f"publishing walk in domain {ros_domain}: 2 topics, 1 s" in run.lines[0]
@@ -85,7 +88,7 @@ def test_what_moves_a_robot_is_left_out_by_default(ros_domain: int, tmp_path: Pa
         )
         run = DeckProcess("replay", str(bag), "--publish")
         assert run.finish() == 0
-        wait_until(lambda: len(distances) == 11, "the distances")
+        wait_until(lambda: distances, "the distances")
         assert [len(heard) for heard in (*moving, stops)] == [0, 0, 0]
     left_out = [line.split(": ")[1] for line in run.lines if line.startswith("not published")]
     assert left_out == ["/ai_command", "/cmd_vel", "/cmd_vel_stamped", "/emergency_stop"]
