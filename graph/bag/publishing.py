@@ -28,9 +28,11 @@ if TYPE_CHECKING:
 DEPTH = 100
 """Queue of a publisher: how many messages a subscriber may lag behind."""
 FOUND_WITHIN_S = 1.0
-"""By then existing nodes have been discovered, and have discovered this publisher, as a rule."""
+"""By then nodes with Deck's settings have discovered this publisher, and it them, as a rule."""
+ANSWERED_WITHIN_S = 3.2
+"""Others answer a new node only with their next announcement, each 3 s (Fast DDS's default)."""
 SETTLED_S = 0.5
-FOUND_AT_LAST_S = 5.0
+FOUND_AT_LAST_S = 6.0
 """On a busy machine it takes longer: as long as something new is found, but not beyond this."""
 POLLED_S = 0.05
 LOOK_S = 0.25
@@ -90,8 +92,11 @@ class BagPublisher:
         """How many topics are published."""
         return len(self._publishers)
 
-    def find_others(self, stop: threading.Event) -> None:
-        """Wait until all existing nodes are known; leave topics to those who publish them."""
+    def find_others(self, stop: threading.Event, after_s: float = ANSWERED_WITHIN_S) -> None:
+        """Wait until all existing nodes are known; leave topics to those who publish them.
+
+        That is `after_s` at the earliest.
+        """
         begun_s = changed_s = time.monotonic()
         known = self._found()
         while not stop.wait(POLLED_S):
@@ -99,7 +104,7 @@ class BagPublisher:
             before, known = known, self._found()
             if known != before:
                 changed_s = now_s
-            settled = now_s >= begun_s + FOUND_WITHIN_S and now_s >= changed_s + SETTLED_S
+            settled = now_s >= begun_s + after_s and now_s >= changed_s + SETTLED_S
             if settled or now_s >= begun_s + FOUND_AT_LAST_S:
                 break
         self._give_way()

@@ -106,7 +106,7 @@ def _play(bag: Bag, args: argparse.Namespace) -> None:
         until_s = args.start_offset + length_s if length_s >= 0 else math.inf
         with until_interrupted():
             # The real one takes as long to load, and who listens already has found it by then.
-            time.sleep(FOUND_WITHIN_S)
+            publisher.find_others(stop, FOUND_WITHIN_S)
             while True:
                 time.sleep(args.delay)
                 publisher.play(

@@ -13,6 +13,7 @@ from std_msgs.msg import Bool, Float32, String
 
 from tests.deck_process import DeckProcess
 from tests.middleware_words import own_words
+from tests.ros.observing import Peer as ProcessPeer
 from tests.ros.peer import Peer
 from tests.unit.bags import BEGIN_NS, SECOND_NS, store, write_bag, write_robot_bag
 from tests.waiting import wait_until
@@ -76,6 +77,35 @@ def test_messages_are_heard_in_their_order_and_latched_ones_too(
     )
     assert run.lines[-1] == "published: 1 s of 1 s · 12 messages"
     assert own_words("\n".join(run.errors)) == ""
+
+
+NO_SETTINGS = """\
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <participant profile_name="its_own" is_default_profile="true"><rtps/></participant>
+</profiles>
+"""
+
+
+def test_nodes_that_answer_late_miss_nothing(ros_domain: int, tmp_path: Path) -> None:
+    """Without Deck's settings a node answers a new one with its next announcement, in up to 3 s."""
+    bag = write_bag(tmp_path / "walk", seconds=1.0)
+    settings = tmp_path / "fastdds.xml"
+    settings.write_text(NO_SETTINGS)
+    # Half of such nodes answer at once, for one reason or another: seldom are all six in time.
+    strangers = [ProcessPeer(f"n{n}", ros_domain, fast_dds=settings) for n in range(6)]
+    try:
+        for one in strangers:
+            one.listen("/number", type_name="std_msgs/msg/Float32")
+        run = DeckProcess("replay", str(bag), "--publish")
+        assert run.finish() == 0
+        for one in strangers:
+            wait_until(
+                lambda: one.heard.get("/number", []) == [str(float(n)) for n in range(11)],  # noqa: B023
+                lambda: f"all messages: {one.name} has {one.heard}",  # noqa: B023
+            )
+    finally:
+        for one in strangers:
+            one.close()
 
 
 def test_what_moves_a_robot_is_left_out_by_default(ros_domain: int, tmp_path: Path) -> None:
