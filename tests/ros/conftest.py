@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import launcher.client.start
+from tests.conftest import take
 from tests.ros import warm_supervisor
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
@@ -18,7 +19,20 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from tests.domains import DomainPool
+
 __all__ = ["start", "unfinished"]
+
+
+@pytest.fixture(autouse=True, scope="package")
+def _found_in_tenths_of_a_second(domain_pool: DomainPool) -> None:
+    """Have Deck's settings hold in this process: Fast DDS reads them once, with the first node.
+
+    Which node is the first one depends on the tests that this worker gets.
+    """
+    domain = take(domain_pool)
+    Peer(domain).close()
+    domain_pool.let_go(domain)
 
 
 @pytest.fixture(autouse=True, scope="package")
