@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 import time
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
+import graph.ros
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.observer import Observer
@@ -177,3 +180,37 @@ def test_one_that_was_taken_back_in_time_is_not_published(peer: Peer, module_dom
         assert peer.heard["/taken_back"] == ["yes"]
     finally:
         observer.stop()
+
+
+def test_last_words_reach_a_node_that_is_held_up(
+    ros_domain: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They may be a stop; who leaves at once takes them along."""
+    monkeypatch.setattr(graph.ros, "ACKED_WITHIN_S", 30.0)
+    listeners = [Peer(f"n{number}", ros_domain) for number in range(5)]
+    watcher = Watcher(ros_domain)
+    try:
+        for one in listeners:
+            one.listen("/last", type_name=STRING)
+        watcher.wait_for("/last", lambda row: row.subscribers == len(listeners), "subscribers")
+        watcher.observer.publish("/last", STRING, {"data": "go"}).result(10)
+        for one in listeners:
+            wait_until(lambda: one.heard.get("/last"), one.name)  # noqa: B023
+            one.process.send_signal(signal.SIGSTOP)
+        awake = threading.Timer(0.5, _wake, [listeners])
+        awake.start()
+        watcher.observer.publish("/last", STRING, {"data": "stop"}).result(10)
+        watcher.close()
+        awake.join()
+        for one in listeners:
+            wait_until(lambda: one.heard["/last"] == ["go", "stop"], one.name)  # noqa: B023
+    finally:
+        _wake(listeners)
+        watcher.close()
+        for one in listeners:
+            one.close()
+
+
+def _wake(listeners: list[Peer]) -> None:
+    for one in listeners:
+        one.process.send_signal(signal.SIGCONT)
