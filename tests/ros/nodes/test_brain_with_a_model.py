@@ -68,7 +68,9 @@ class Robot:
 
     @property
     def state(self) -> dict[str, str]:
-        """The values of the newest /brain_state, with its level and its words."""
+        """The values of the newest /brain_state, its level and words; empty before the first."""
+        if not self.states:
+            return {"fault": "", "level": "", "words": ""}
         status: DiagnosticStatus = self.states[-1].status[0]
         values = {value.key: value.value for value in status.values}
         return {**values, "level": str(status.level[0]), "words": status.message}

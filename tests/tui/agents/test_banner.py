@@ -168,5 +168,6 @@ async def test_hostile_names_and_reasons_stay_in_their_line() -> None:
         shown = await until(lambda: banner(app), "the banner")
         assert all(line.isprintable() for line in shown.splitlines())
         assert len(shown.splitlines()) == 4
-        assert app.screen.query_one(AgentBanner).size.height == 4
+        shows = app.screen.query_one(AgentBanner)
+        await until(lambda: shows.size.height == 4, "its place on the screen")
         assert "STOP" in str(app.screen.query_one(KeyBar).render())
