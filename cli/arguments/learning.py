@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.arguments.options import add_seed
-from cli.values import at_once, domain, folder, seconds
+from cli.arguments.options import add_domain, add_seed
+from cli.values import at_once, folder, seconds
 from course.grade.defaults import FORMATS, WITHIN_S
 from text.i18n import _
 
@@ -87,12 +87,7 @@ def add_grade(parser: Parser) -> None:
         default=WITHIN_S,
         help=_("how long a folder may take, 180 s by default"),
     )
-    parser.add_argument(
-        "--domain",
-        metavar="N",
-        type=domain,
-        help=_("ROS domain, with one job; by default one that nobody is in"),
-    )
+    add_domain(parser, _("ROS domain, with one job; by default one that nobody is in"))
     add_seed(parser)
     parser.epilog = _(
         "The folders are left as they are. Exit code: 0 if all steps of all folders have passed, 1"
@@ -109,10 +104,5 @@ def add_shell(parser: Parser) -> None:
     parser.add_argument(
         "-c", dest="line", metavar=_("LINE"), help=_("run this command line and end")
     )
-    parser.add_argument(
-        "--domain",
-        metavar="N",
-        type=domain,
-        help=_("ROS domain; by default that of the running robot"),
-    )
+    add_domain(parser, _("ROS domain; by default that of the running robot"))
     parser.epilog = _("The shell is that of SHELL. The exit code is that of the shell or command.")

@@ -34,9 +34,12 @@ def add_profile_options(parser: Parser) -> None:
         default=[],
         help=_("a parameter of a node, the value as in YAML; may be repeated"),
     )
-    parser.add_argument(
-        "--domain", metavar="N", type=domain, help=_("ROS domain, 0 to 232, preferably 1 to 101")
-    )
+    add_domain(parser, _("ROS domain, 0 to 232, preferably 1 to 101"))
+
+
+def add_domain(parser: Parser, help_text: str) -> None:
+    """Add the ROS domain; what it is by default differs."""
+    parser.add_argument("--domain", metavar="N", type=domain, help=help_text)
 
 
 def add_bandwidth(parser: Parser) -> None:

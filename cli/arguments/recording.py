@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.arguments.options import add_bandwidth, add_json
-from cli.values import domain, folder, rate, seconds
+from cli.arguments.options import add_bandwidth, add_domain, add_json
+from cli.values import folder, rate, seconds
 from text.i18n import _
 
 if TYPE_CHECKING:
@@ -36,12 +36,7 @@ def add_record(parser: Parser) -> None:
     parser.add_argument(
         "--for", dest="seconds", metavar="S", type=seconds, help=_("stop after S seconds")
     )
-    parser.add_argument(
-        "--domain",
-        metavar="N",
-        type=domain,
-        help=_("ROS domain; by default that of the running robot"),
-    )
+    add_domain(parser, _("ROS domain; by default that of the running robot"))
     add_json(parser)
     parser.epilog = _(
         "Exit code: 0 if the recording is complete, 1 if it broke off or no messages "
@@ -78,10 +73,5 @@ def add_replay(parser: Parser) -> None:
     parser.add_argument(
         "--motion", action="store_true", help=_("with --publish: also what moves a robot")
     )
-    parser.add_argument(
-        "--domain",
-        metavar="N",
-        type=domain,
-        help=_("with --publish: ROS domain; by default that of the running robot"),
-    )
+    add_domain(parser, _("with --publish: ROS domain; by default that of the running robot"))
     add_bandwidth(parser)

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 from cli.arguments.options import (
     add_bandwidth,
+    add_domain,
     add_json,
     add_profile,
     add_profile_options,
     add_running,
 )
-from cli.values import count, domain, seconds
+from cli.values import count, seconds
 from text.i18n import _
 
 if TYPE_CHECKING:
@@ -92,12 +93,7 @@ def add_attach(parser: Parser) -> None:
 
 def add_watch(parser: Parser) -> None:
     """Add the options of `deck watch`."""
-    parser.add_argument(
-        "--domain",
-        metavar="N",
-        type=domain,
-        help=_("ROS domain; by default ROS_DOMAIN_ID, else one of your own"),
-    )
+    add_domain(parser, _("ROS domain; by default ROS_DOMAIN_ID, else one of your own"))
     parser.add_argument(
         "--discovery",
         choices=("localhost", "subnet"),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.arguments.options import add_language, add_running
-from cli.values import between, domain, port
+from cli.arguments.options import add_domain, add_language, add_running
+from cli.values import between, port
 from text.i18n import _
 
 if TYPE_CHECKING:
@@ -18,12 +18,7 @@ MCP_PORT = 8765
 def add_mcp(parser: Parser) -> None:
     """Add the options of `deck mcp`."""
     add_running(parser)
-    parser.add_argument(
-        "--domain",
-        metavar="N",
-        type=domain,
-        help=_("ROS domain; by default that of the running robot"),
-    )
+    add_domain(parser, _("ROS domain; by default that of the running robot"))
     parser.add_argument(
         "--approve",
         choices=("never", "ask", "always"),
