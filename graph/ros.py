@@ -30,15 +30,15 @@ FAST_DDS_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILE
 ONLY_THESE = "SKIP_DEFAULT_XML_FILE"
 """Keeps Fast DDS from reading DEFAULT_FASTRTPS_PROFILES.xml in the current folder as well."""
 LOCALHOST_ONLY = "ROS_LOCALHOST_ONLY"
+RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+PEERS = "ROS_STATIC_PEERS"
+RANGES = {"localhost": "LOCALHOST", "subnet": "SUBNET"}
 ACKED_WITHIN_S = 0.5
 """How long a node that leaves waits for those who have not received its last words.
 
 Who is not held up has them at once, and confirms that with the next heartbeat, each 3 s.
 """
 _LOOK_S = 0.02
-RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
-PEERS = "ROS_STATIC_PEERS"
-RANGES = {"localhost": "LOCALHOST", "subnet": "SUBNET"}
 
 
 @dataclass(frozen=True)
@@ -55,21 +55,21 @@ class Ros:
 
         A subscriber that is held up would never get it: it may be a stop.
         """
-        deadline_s = time.monotonic() + ACKED_WITHIN_S
-        while not self._is_heard() and time.monotonic() < deadline_s:
-            time.sleep(_LOOK_S)
+        self.wait_until_heard(ACKED_WITHIN_S)
         self.node.destroy_node()
         self.context.try_shutdown()
         self.context.destroy()
 
-    def _is_heard(self) -> bool:
-        """Whether every subscriber has all that was published; asked without waiting in rclpy.
-
-        That would hold up all other threads.
-        """
+    def wait_until_heard(self, within_s: float) -> None:
+        """Wait until every subscriber has all that was published, so long at most."""
         from rclpy.duration import Duration
 
-        return all(each.wait_for_all_acked(Duration()) for each in self.node.publishers)
+        deadline_s = time.monotonic() + within_s
+        # Waiting in rclpy would hold up all other threads.
+        while not all(each.wait_for_all_acked(Duration()) for each in self.node.publishers):
+            if time.monotonic() >= deadline_s:
+                return
+            time.sleep(_LOOK_S)
 
 
 def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observer") -> Ros:

@@ -231,15 +231,10 @@ class BagPublisher:
 
     def _end(self) -> None:
         """Stop what was set in motion, and let messages under way arrive."""
-        from rclpy.duration import Duration
-
-        deadline_s = time.monotonic() + ACKED_WITHIN_S
         for topic, publisher in self._publishers.values():
             if topic.kind.name in self._stopped_by_zeros:
                 publisher.publish(load_message(topic.kind.name)())
-        for _, publisher in self._publishers.values():
-            left_s = max(0.0, deadline_s - time.monotonic())
-            publisher.wait_for_all_acked(Duration(seconds=left_s))
+        self._ros.wait_until_heard(ACKED_WITHIN_S)
 
 
 def _latched(topic: TopicInBag) -> bool:
