@@ -118,7 +118,9 @@ def test_what_moves_a_robot_is_left_out_by_default(ros_domain: int, tmp_path: Pa
         )
         run = DeckProcess("replay", str(bag), "--publish")
         assert run.finish() == 0
-        wait_until(lambda: distances, "the distances")
+        wait_until(
+            lambda: len(distances) == 11, lambda: f"11 distances; there are {len(distances)}"
+        )
         assert [len(heard) for heard in (*moving, stops)] == [0, 0, 0]
     left_out = [line.split(": ")[1] for line in run.lines if line.startswith("not published")]
     assert left_out == ["/ai_command", "/cmd_vel", "/cmd_vel_stamped", "/emergency_stop"]
