@@ -52,6 +52,12 @@ def _own_history(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
 
+@pytest.fixture(autouse=True)
+def _budget_of_the_beginning(monkeypatch: pytest.MonkeyPatch) -> None:
+    """How many calls there were in the last minute would be told by the clock, again and again."""
+    monkeypatch.setattr(ComposerScreen, "_show_budget", lambda _screen: None)
+
+
 def with_parser() -> RecordedOpener:
     """A lesson with llm_parser in it."""
     topics = (*lesson_update().topics, PARSER)
@@ -194,9 +200,7 @@ def test_a_model_has_answered(look: Look, dump_compare: SnapCompare) -> None:
 
 
 @both_languages
-def test_nobody_answers(
-    look: Look, dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nobody_answers(look: Look, dump_compare: SnapCompare) -> None:
     """Why, and what to do about it, below the verdict on the text that stands there again."""
     settings()
 
@@ -205,8 +209,6 @@ def test_nobody_answers(
         screen = pilot.app.screen
         assert isinstance(screen, ComposerScreen)
         await until(lambda: not screen.is_asking, "the failure")
-        # How many calls there were in the last minute is told by the clock, again and again.
-        monkeypatch.setattr(screen.asking, "show_status", lambda: None)
         screen.line.show_status("")
         await pilot.pause()
 
