@@ -148,6 +148,7 @@ def robot(ros_domain: int, model_folder: Path) -> Iterator[tuple[ModelServer, Pe
             deck("down")
 
 
+@pytest.mark.timeout(240)  # A drive of a half minute on a quiet machine.
 def test_full_speed_for_ever_hits_nothing(robot: tuple[ModelServer, Peer]) -> None:
     """Forward until the gate holds it, then backward until it does: the robot touches nothing.
 
