@@ -40,7 +40,9 @@ class BoundedTransport(httpx2.AsyncBaseTransport):
     """Passes requests on, and counts the bytes of what comes back."""
 
     def __init__(self, longest: int = LONGEST_ANSWER) -> None:
-        self._inner = httpx2.AsyncHTTPTransport()
+        # A connection for each request: a server may close one that is kept just when the next
+        # request goes out by it, and a question is not to be repeated. llama.cpp does.
+        self._inner = httpx2.AsyncHTTPTransport(limits=httpx2.Limits(max_keepalive_connections=0))
         self._longest = longest
 
     async def handle_async_request(self, request: httpx2.Request) -> httpx2.Response:

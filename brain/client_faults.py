@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _LONGEST_WORDS = 200
 _LONGEST_WAIT_S = 3600.0
+_HANGS_UP = (httpx2.ReadError, httpx2.WriteError, httpx2.CloseError, httpx2.RemoteProtocolError)
+"""What the transport raises once it is connected."""
 
 
 def fault_of(
@@ -37,7 +39,7 @@ def fault_of(
     if isinstance(error, openai.APIError):
         return _of_api(error, settings, key)
     if isinstance(error, httpx2.HTTPError):
-        return ModelError(FaultKind.CUT, say("the connection was lost in the middle of the answer"))
+        return _cut()
     if isinstance(error, UnicodeDecodeError | ValueError):
         # What came is not what the protocol says: broken JSON in the stream, or no UTF-8.
         words = say("what the server sent cannot be read")
@@ -56,9 +58,16 @@ def _of_api(error: openai.APIError, settings: ModelSettings, key: ServerKey) -> 
     if isinstance(error, openai.APIConnectionError):
         # The fault of the transport's own limit comes wrapped.
         inner = error.__cause__
-        return inner if isinstance(inner, ModelError) else _unreachable(settings, inner)
+        return inner if isinstance(inner, ModelError) else _no_answer(settings, inner)
     words = say("the server broke off: {words}", words=words_of(error.message, key))
     return ModelError(FaultKind.SERVER, words)
+
+
+def _no_answer(settings: ModelSettings, inner: BaseException | None) -> ModelError:
+    """Tell a server that hangs up from one that is not there: the latter is done without."""
+    if isinstance(inner, _HANGS_UP):
+        return ModelError(FaultKind.CUT, say("the server closed the connection without an answer"))
+    return _unreachable(settings, inner)
 
 
 def _unreachable(settings: ModelSettings, inner: BaseException | None) -> ModelError:

@@ -32,6 +32,8 @@ class Exchange:
         self.request = request
         """The JSON of the request."""
         self.path = handler.path
+        self.port = handler.client_address[1]
+        """The other end's: what comes by one connection has the same."""
         self.headers = {name.lower(): value for name, value in handler.headers.items()}
         self._handler = handler
 

@@ -143,6 +143,10 @@ def breaks(exchange: Exchange) -> None:
     raise OSError
 
 
+def hangs_up(_: Exchange) -> None:
+    raise OSError
+
+
 def endless(exchange: Exchange) -> None:
     exchange.begins()
     for _ in range(10 * (1 << 20) // 4096):
@@ -153,6 +157,7 @@ def endless(exchange: Exchange) -> None:
     ("script", "fault", "words"),
     [
         (breaks, "cut", "in the middle of the answer"),
+        (hangs_up, "cut", "closed the connection without an answer"),
         (lambda exchange: exchange.fails(401, KEY), "key", "does not take the key"),
         (lambda exchange: exchange.fails(404), "model", "does not know the model m-1"),
         (lambda exchange: exchange.fails(429, Retry_After="1"), "busy", "too many requests"),

@@ -121,6 +121,26 @@ async def test_a_server_that_wants_to_be_left_alone_is() -> None:
         assert len(server.exchanges) == 1
 
 
+async def test_a_server_that_hangs_up_is_there() -> None:
+    """It is not "nobody": without a model, a robot may drive by its rules."""
+
+    def hangs_up(_: Exchange) -> None:
+        raise OSError
+
+    fault = await fault_with(hangs_up)
+    assert fault.kind is FaultKind.CUT
+    assert "the server closed the connection without an answer" in str(fault)
+
+
+async def test_each_question_has_a_connection_of_its_own() -> None:
+    """A server may close one that is kept just when the next question goes out by it."""
+    with ModelServer(lambda exchange: exchange.says("ok")) as server:
+        async with client_of(server) as client:
+            for _ in range(3):
+                await client.ask(ASKED)
+        assert len({exchange.port for exchange in server.exchanges}) == 3
+
+
 async def test_nobody_there() -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
