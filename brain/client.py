@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import anyio
 
 from brain.budget import TokenUsage, estimated_tokens
-from brain.faults import FaultKind, ModelError
+from brain.faults import FaultKind, ModelError, cut_off
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -237,8 +237,7 @@ def _whole(received: _Received) -> str:
         words = say("the answer is longer than the server allows: cut off")
         raise ModelError(FaultKind.TOO_LONG, words)
     if not received.finish:
-        words = say("the connection was lost in the middle of the answer")
-        raise ModelError(FaultKind.CUT, words)
+        raise cut_off()
     text = "".join(received.arguments) or "".join(received.text)
     if not text.strip():
         raise ModelError(FaultKind.EMPTY, say("the answer is empty"))

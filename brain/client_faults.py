@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import httpx2
 import openai
 
-from brain.faults import FaultKind, ModelError
+from brain.faults import FaultKind, ModelError, cut_off
 from text.plain import plain
 from text.sentences import say
 
@@ -32,24 +32,19 @@ def fault_of(
     """
     if begun and isinstance(error, httpx2.TransportError | openai.APIConnectionError):
         inner = error.__cause__
-        return inner if isinstance(inner, ModelError) else _cut()
+        return inner if isinstance(inner, ModelError) else cut_off()
     if isinstance(error, openai.APITimeoutError | httpx2.TimeoutException):
         words = say("no answer within {limit:g} s", limit=settings.timeout_s)
         return ModelError(FaultKind.TIMEOUT, words, say("timeout_s in llm.yaml"))
     if isinstance(error, openai.APIError):
         return _of_api(error, settings, key)
     if isinstance(error, httpx2.HTTPError):
-        return _cut()
+        return cut_off()
     if isinstance(error, UnicodeDecodeError | ValueError):
         # What came is not what the protocol says: broken JSON in the stream, or no UTF-8.
         words = say("what the server sent cannot be read")
         return ModelError(FaultKind.NOT_AN_API, words)
     return None
-
-
-def _cut() -> ModelError:
-    words = say("the connection was lost in the middle of the answer")
-    return ModelError(FaultKind.CUT, words)
 
 
 def _of_api(error: openai.APIError, settings: ModelSettings, key: ServerKey) -> ModelError:

@@ -60,6 +60,11 @@ class ModelError(Exception):
         """The server wishes to be left alone for this long."""
 
 
+def cut_off() -> ModelError:
+    """Return the fault of an answer that did not come to its end."""
+    return ModelError(FaultKind.CUT, say("the connection was lost in the middle of the answer"))
+
+
 def not_set_up() -> ModelError:
     """Return the fault of having no settings at all."""
     return ModelError(

@@ -185,6 +185,11 @@ def schema_of(request: Any) -> Any:
     return json.loads(request["messages"][-1]["content"].split("\n", 1)[1])
 
 
+def hangs_up(_: Exchange) -> None:
+    """Close the connection without an answer: the script of a server that does."""
+    raise OSError
+
+
 def obeys(answer: str, rung: Rung = Rung.STRICT) -> Script:
     """Return the script of a server that obeys one way to ask, and answers others with words."""
 

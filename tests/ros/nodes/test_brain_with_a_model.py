@@ -12,7 +12,7 @@ from ackermann_msgs.msg import AckermannDriveStamped
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import Bool, ByteMultiArray, Float32, String
 
-from tests.model_server import KEY, ModelServer, obeys
+from tests.model_server import KEY, ModelServer, hangs_up, obeys
 from tests.model_settings import write_settings
 from tests.ros.node_process import NodeProcess
 from tests.ros.nodes.test_brain import text, voice
@@ -140,10 +140,6 @@ def test_the_talk_is_remembered(robot: Robot) -> None:
 def breaks(exchange: Exchange) -> None:
     exchange.begins()
     exchange.piece({"content": GO[:40]})
-    raise OSError
-
-
-def hangs_up(_: Exchange) -> None:
     raise OSError
 
 

@@ -13,7 +13,7 @@ from brain.budget import Ledger
 from brain.client import LONGEST_TEXT, ModelRequest
 from brain.faults import FaultKind, ModelError
 from brain.settings import BudgetSettings, ModelSettings
-from tests.model_server import KEY, ModelServer
+from tests.model_server import KEY, ModelServer, hangs_up
 from tests.unit.brain.asking import HELLO, client_of
 
 if TYPE_CHECKING:
@@ -123,10 +123,6 @@ async def test_a_server_that_wants_to_be_left_alone_is() -> None:
 
 async def test_a_server_that_hangs_up_is_there() -> None:
     """It is not "nobody": without a model, a robot may drive by its rules."""
-
-    def hangs_up(_: Exchange) -> None:
-        raise OSError
-
     fault = await fault_with(hangs_up)
     assert fault.kind is FaultKind.CUT
     assert "the server closed the connection without an answer" in str(fault)
