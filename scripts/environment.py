@@ -34,8 +34,12 @@ TICK_S = 1.0
 BUILD = "--build-interfaces"
 PLAIN = re.compile(r"[\w/.,:=@%+~ -]+")
 """Paths that need no quoting in CMake and the shells it starts."""
-REQUIRE = ("install", "--require-hashes", "--requirement")
-"""Packages after this are installed only at the locked version, and only from the locked file."""
+REQUIRE = ("install", "--no-deps", "--require-hashes", "--requirement")
+"""Packages after this are installed only at the locked version, and only from the locked file.
+
+That file names every dependency. Were pip to look for them itself, it would take the newest release
+of a library that is asked for with an extra, and then refuse it.
+"""
 
 
 class StepError(Exception):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import subprocess
 import sys
 import threading
+import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -241,6 +243,37 @@ def test_what_comes_from_an_index_is_the_very_file_that_was_locked(
         assert "--require-hashes" in words or {"--no-deps", "--no-build-isolation"} <= {*words}
     files = [Path(words[-1]).name for words in installs if "--require-hashes" in words]
     assert files == ["deck.txt", "interfaces.txt"]
+
+
+def test_a_newer_release_of_what_is_locked_changes_nothing(tmp_path: Path) -> None:
+    """Pip asks for a library with an extra anew, though the file has the library without one."""
+    index = tmp_path / "index"
+    index.mkdir()
+    needs = wheel(index, "needs", "1.0", "library[extra]>=1.0")
+    locked = wheel(index, "library", "1.0")
+    wheel(index, "library", "2.0")
+    wanted = tmp_path / "locked.txt"
+    wanted.write_text(f"needs==1.0 --hash={needs}\nlibrary==1.0 --hash={locked}\n")
+    here = ("--no-index", "--find-links", index, "--target", tmp_path / "installed")
+    subprocess.run(
+        environment.pip(Path(sys.executable), *environment.REQUIRE, wanted, *here), check=True
+    )
+    names = {path.name for path in (tmp_path / "installed").glob("*.dist-info")}
+    assert names == {"needs-1.0.dist-info", "library-1.0.dist-info"}
+
+
+def wheel(folder: Path, name: str, version: str, *requires: str) -> str:
+    """Write a wheel that holds nothing but its metadata, and return the hash of its file."""
+    path = folder / f"{name}-{version}-py3-none-any.whl"
+    inside = f"{name}-{version}.dist-info"
+    needed = "".join(f"Requires-Dist: {line}\n" for line in requires)
+    with zipfile.ZipFile(path, "w") as file:
+        about = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+        file.writestr(f"{inside}/METADATA", f"{about}Provides-Extra: extra\n{needed}")
+        kind = "Wheel-Version: 1.0\nGenerator: test\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
+        file.writestr(f"{inside}/WHEEL", kind)
+        file.writestr(f"{inside}/RECORD", "")
+    return f"sha256:{hashlib.sha256(path.read_bytes()).hexdigest()}"
 
 
 def test_what_is_abandoned_ends_with_all_that_it_has_started(
