@@ -38,6 +38,11 @@ class Trouble(str, Enum):
 
 PROCESS_NUMBERS = 1 << 16
 """The middleware reports the number of a process modulo this."""
+NAMELESS = "_NODE_NAME_UNKNOWN_"
+"""The name of a node that is not known yet, or of a program that is no node.
+
+Source: rmw, `get_topic_endpoint_info.h`.
+"""
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,11 @@ class EndpointInfo:
     """`automatic`, `manual_by_topic`; empty if the peer does not report it."""
     process: int | None = field(default=None, compare=False)
     """Number of its process modulo `PROCESS_NUMBERS`; None if the middleware does not report it."""
+
+    @property
+    def is_named(self) -> bool:
+        """Whether its node is known; names arrive a little later than endpoints."""
+        return not self.node.endswith(NAMELESS)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.data import GraphUpdate
+from graph.data import PROCESS_NUMBERS, GraphUpdate
 from graph.ros import ONLY_LISTENING
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.processes.table import TICKS_PER_S, read_process
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
     from typing import Any
 
-    from graph.data import NodeRow, TopicRow, Value
+    from graph.data import EndpointInfo, NodeRow, TopicRow, Value
     from graph.observer.observer import Observer
     from launcher.client.client import SupervisorClient
     from launcher.profile.steps.expressions import Drawn
@@ -172,6 +172,20 @@ class Evidence:
     def node(self, name: str) -> NodeRow | None:
         """Return what is known of a node of the graph."""
         return next((row for row in self.update.nodes if row.name == name), None)
+
+    def has_found_everybody(self) -> bool:
+        """Whether every process that runs is known: some endpoints of it, and the node of each.
+
+        The name of a node comes apart from its endpoints. Either may be seconds late on a busy
+        machine: the middleware repeats what was lost only every 3 s.
+        """
+        ends: dict[int | None, list[EndpointInfo]] = {}
+        for row in self.update.topics:
+            for end in (*row.published_by, *row.subscribed_by):
+                ends.setdefault(end.process, []).append(end)
+        running = [node for node in self.nodes.values() if node.state.alive]
+        seen = [ends.get(node.pid % PROCESS_NUMBERS) for node in running if node.pid is not None]
+        return all(own and all(end.is_named for end in own) for own in seen)
 
     async def until(
         self, look: Callable[[], Observation | None], within_s: float, *, tick_s: float = TICK_S

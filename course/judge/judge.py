@@ -8,7 +8,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from course.judge.evidence import MET, Evidence
+from course.judge.evidence import MET, Evidence, Observation
 from course.judge.functions import LessonFaultError
 from course.judge.kinds import expected, judged, topics_of
 from course.results import CheckResult, LessonResult, State, StepResult
@@ -33,8 +33,10 @@ if TYPE_CHECKING:
 
 PERIOD_S = 0.1
 SETTLED_WITHIN_S = 15.0
-FOUND_WITHIN_S = 1.5
-"""A node whose name is another one is not waited for any longer."""
+NAMED_WITHIN_S = 1.5
+"""After this, a node need not have the name of the profile, or not run in the process started."""
+FOUND_WITHIN_S = 10.0
+"""A node is not waited for any longer: a program need not have one."""
 AGAIN_S = 2.0
 """How long a failed step rests before it is judged again, if nothing happens."""
 REST_S = {"publish": 5.0, "service": 5.0, "parameter": 5.0, "action": 60.0, "ends": 3600.0}
@@ -68,11 +70,16 @@ class Judge:
             if all(node.state in _SETTLED for node in self.evidence.nodes.values()):
                 break
             await self.evidence.wait(0.2)
-        alive = [node.name for node in self.evidence.nodes.values() if node.state.alive]
-        await self.evidence.until(
-            lambda: MET if all(self.evidence.node(f"/{name}") for name in alive) else None,
-            FOUND_WITHIN_S,
-        )
+        named_by_s = loop.time() + NAMED_WITHIN_S
+
+        def look() -> Observation | None:
+            alive = [node.name for node in self.evidence.nodes.values() if node.state.alive]
+            named = all(self.evidence.node(f"/{name}") for name in alive)
+            found = self.evidence.has_found_everybody()
+            enough = (named or found) if loop.time() >= named_by_s else (named and found)
+            return MET if enough else None
+
+        await self.evidence.until(look, FOUND_WITHIN_S)
 
     async def once(
         self, *, until: str = "", on_step: Callable[[StepResult], object] = lambda _: None

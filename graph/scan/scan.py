@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from graph.data import ActionRow, NodeRow, ServiceRow
 
-NAMELESS = "_NODE_NAME_UNKNOWN_"
-"""Source: rmw, `get_topic_endpoint_info.h`."""
 Signature = tuple[Any, ...]
 """Changes when the graph has changed; cheap to compute."""
 
@@ -36,9 +34,9 @@ class Scan:
 
 
 def is_complete(seen: Scan) -> bool:
-    """Return whether every endpoint has a node; names arrive a little later than endpoints."""
-    return not any(
-        end.node.endswith(NAMELESS)
+    """Return whether the node of every endpoint is known."""
+    return all(
+        end.is_named
         for topic in seen.topics.values()
         for end in (*topic.publishers, *topic.subscribers)
     )

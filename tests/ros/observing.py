@@ -14,7 +14,6 @@ from typing import Any
 from graph.data import GraphUpdate, NodeRow, Sample, TopicRow
 from graph.observer.observer import Observer
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
-from graph.scan.scan import NAMELESS
 from tests import ports
 from tests.waiting import wait_until
 
@@ -141,7 +140,7 @@ class Watcher:
 
 def _all_named(row: TopicRow) -> bool:
     ends = (*row.published_by, *row.subscribed_by)
-    return not any(end.node.endswith(NAMELESS) for end in ends)
+    return all(end.is_named for end in ends)
 
 
 def let_updates_come(watcher: Watcher, count: int) -> None:

@@ -12,6 +12,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from graph.data import NAMELESS
 from robot.topics import DRIVE_SAFE, WHEEL_COMMANDS
 from text.i18n import _
 from text.plain import plain
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 
 OURSELVES = "Deck"
 """Stands for what is published from this screen at a rate."""
-NAMELESS = "_NODE_NAME_UNKNOWN_"
-"""Source: rmw, `get_topic_endpoint_info.h`."""
 NAMED_WITHIN_S = 3.0
 """An endpoint gets its name slightly later; one without a node never gets a name."""
 FORGOTTEN_S = 25.0

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from textual.color import Color
 
-from graph.data import EndpointInfo, GraphUpdate
+from graph.data import NAMELESS, EndpointInfo, GraphUpdate
 from launcher.status import NodeState, NodeStatus
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NODES, TOPICS, RecordedGraph, RecordedOpener, lesson_update, topic
 from tests.tui.snapshots import settle
 from tui.frame.title_bar import TitleBar
-from tui.session.bypass import NAMELESS, BypassDetector
+from tui.session.bypass import BypassDetector
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

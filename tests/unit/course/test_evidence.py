@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import time
 from collections.abc import AsyncIterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 
-from course.judge.evidence import Evidence
+import pytest
+
+from course.judge.evidence import TICK_S, Evidence
+from course.judge.judge import Judge
+from graph.data import NAMELESS, PROCESS_NUMBERS, EndpointInfo, GraphUpdate, NodeRow, TopicRow
 from launcher.events import LogEvent
 from launcher.status import LogLine, NodeState, NodeStatus, Severity
 
@@ -54,3 +60,43 @@ def test_a_start_by_the_judge_counts_as_the_learners_if_the_file_was_saved_meanw
 
     assert started_by_the_judge(os.getppid(), 1.0) == 0
     assert started_by_the_judge(os.getpid(), time.time() + 1.0) == 1
+
+
+class _Told:
+    """What the graph says of a process, first and later."""
+
+    def __init__(self, pid: int) -> None:
+        self._process = pid % PROCESS_NUMBERS
+
+    def graph(self, *nodes: str) -> GraphUpdate:
+        """Return a graph in which each of these nodes of the process subscribes to one topic."""
+        ends = tuple(
+            EndpointInfo(node, "std_msgs/msg/Empty", "reliable", "volatile", process=self._process)
+            for node in nodes
+        )
+        row = TopicRow("/heard", ("std_msgs/msg/Empty",), 0, len(ends), subscribed_by=ends)
+        return GraphUpdate(0.0, topics=(row,), nodes=tuple(NodeRow(node) for node in nodes))
+
+
+@pytest.mark.parametrize(
+    "early",
+    [(), (f"/{NAMELESS}",), ("/another", f"/{NAMELESS}")],
+    ids=["nothing", "no name", "one name of two"],
+)
+@pytest.mark.parametrize("name", ["/talker", "/of_another_name"])
+async def test_nodes_are_judged_once_the_middleware_knows_them(
+    early: tuple[str, ...], name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A node at work is not said to lack what the middleware is only late to tell."""
+    monkeypatch.setattr("course.judge.judge.NAMED_WITHIN_S", 0.0)
+    evidence = Evidence(cast("Any", None), cast("Any", _ToldLate()), Path(), {})
+    told = _Told(os.getpid())
+    evidence.take(told.graph(*early))
+    judge = Judge(cast("Any", SimpleNamespace(steps=())), evidence, seed=1)
+
+    settling = asyncio.ensure_future(judge.settle())
+    await evidence.let_pass(TICK_S)
+    assert not settling.done()
+    evidence.take(told.graph(name))
+    await settling
+    await judge.close()
