@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
     from typing import Any
 
-    from graph.data import EndpointInfo, NodeRow, TopicRow, Value
+    from graph.data import NodeRow, TopicRow, Value
     from graph.observer.observer import Observer
     from launcher.client.client import SupervisorClient
     from launcher.profile.steps.expressions import Drawn
@@ -179,13 +179,19 @@ class Evidence:
         The name of a node comes apart from its endpoints. Either may be seconds late on a busy
         machine: the middleware repeats what was lost only every 3 s.
         """
-        ends: dict[int | None, list[EndpointInfo]] = {}
-        for row in self.update.topics:
-            for end in (*row.published_by, *row.subscribed_by):
-                ends.setdefault(end.process, []).append(end)
-        running = [node for node in self.nodes.values() if node.state.alive]
-        seen = [ends.get(node.pid % PROCESS_NUMBERS) for node in running if node.pid is not None]
-        return all(own and all(end.is_named for end in own) for own in seen)
+        known = {number for node in self.update.nodes for number in node.processes}
+        unnamed = {
+            end.process
+            for row in self.update.topics
+            for end in (*row.published_by, *row.subscribed_by)
+            if not end.is_named
+        }
+        running = {
+            node.pid % PROCESS_NUMBERS
+            for node in self.nodes.values()
+            if node.state.alive and node.pid is not None
+        }
+        return running <= known - unnamed
 
     async def until(
         self, look: Callable[[], Observation | None], within_s: float, *, tick_s: float = TICK_S

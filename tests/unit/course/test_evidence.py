@@ -62,20 +62,16 @@ def test_a_start_by_the_judge_counts_as_the_learners_if_the_file_was_saved_meanw
     assert started_by_the_judge(os.getpid(), time.time() + 1.0) == 1
 
 
-class _Told:
-    """What the graph says of a process, first and later."""
-
-    def __init__(self, pid: int) -> None:
-        self._process = pid % PROCESS_NUMBERS
-
-    def graph(self, *nodes: str) -> GraphUpdate:
-        """Return a graph in which each of these nodes of the process subscribes to one topic."""
-        ends = tuple(
-            EndpointInfo(node, "std_msgs/msg/Empty", "reliable", "volatile", process=self._process)
-            for node in nodes
-        )
-        row = TopicRow("/heard", ("std_msgs/msg/Empty",), 0, len(ends), subscribed_by=ends)
-        return GraphUpdate(0.0, topics=(row,), nodes=tuple(NodeRow(node) for node in nodes))
+def _graph(pid: int, *nodes: str) -> GraphUpdate:
+    """Return a graph in which each of these nodes of one process subscribes to a topic."""
+    process = pid % PROCESS_NUMBERS
+    ends = tuple(
+        EndpointInfo(node, "std_msgs/msg/Empty", "reliable", "volatile", process=process)
+        for node in nodes
+    )
+    row = TopicRow("/heard", ("std_msgs/msg/Empty",), 0, len(ends), subscribed_by=ends)
+    rows = tuple(NodeRow(end.node, processes=(process,)) for end in ends if end.is_named)
+    return GraphUpdate(0.0, topics=(row,), nodes=rows)
 
 
 @pytest.mark.parametrize(
@@ -90,13 +86,12 @@ async def test_nodes_are_judged_once_the_middleware_knows_them(
     """A node at work is not said to lack what the middleware is only late to tell."""
     monkeypatch.setattr("course.judge.judge.NAMED_WITHIN_S", 0.0)
     evidence = Evidence(cast("Any", None), cast("Any", _ToldLate()), Path(), {})
-    told = _Told(os.getpid())
-    evidence.take(told.graph(*early))
+    evidence.take(_graph(os.getpid(), *early))
     judge = Judge(cast("Any", SimpleNamespace(steps=())), evidence, seed=1)
 
     settling = asyncio.ensure_future(judge.settle())
     await evidence.let_pass(TICK_S)
     assert not settling.done()
-    evidence.take(told.graph(name))
+    evidence.take(_graph(os.getpid(), name))
     await settling
     await judge.close()
