@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent
 LOCALE = ROOT / "text" / "locale"
 DOMAIN = "deck"
-ROOMS = ("agents", "brain", "cli", "course", "graph", "launcher", "nodes", "robot", "text", "tui")
+ROOMS = (
+    *("agents", "brain", "cli", "course", "graph", "launcher", "nodes", "robot", "space", "text"),
+    "tui",
+)
 KEYWORDS = (
     *("_", "N_", "ngettext:1,2", "refused", "say"),
     # The descriptions of node parameters.

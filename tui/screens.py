@@ -23,6 +23,8 @@ SCREENS = {
     "graph": ("tui.graph.screen", "GraphScreen"),
     "flow": ("tui.flow.screen", "FlowScreen"),
     "devices": ("tui.devices.screen", "DevicesScreen"),
+    "frames": ("tui.frame_tree.screen", "FramesScreen"),
+    "space": ("tui.space.screen", "SpaceScreen"),
 }
 """Imported when first shown: the first frame needs only one of them."""
 

@@ -39,7 +39,7 @@ class DeckScreen(Screen[None], Acting, Working):
     A subclass yields its widgets in `compose_body`, names its topics in `watch_topics` and
     `follow_topics`, and handles the messages of `tui.session.messages` that it needs. When the
     topics it wants have changed, it calls `topics_changed`. The keys space, Ctrl+X, Ctrl+R, Ctrl+P,
-    Ctrl+Q, q, L, F1 to F5, 1 to 7, and Shift with F4, F5 and F9 belong to the app.
+    Ctrl+Q, q, L, F1 to F5, 1 to 9, and Shift with F4, F5 and F9 belong to the app.
     """
 
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS

@@ -170,6 +170,26 @@ class ShowDevices(ShowScreen):
     screen = "devices"
 
 
+class ShowFrames(ShowScreen):
+    """The tree of frames."""
+
+    id = "screen.frames"
+    key = "8"
+    title = N_("Frames")
+    tooltip = N_("The tree of frames: who publishes them, how often, and what is wrong with it.")
+    screen = "frames"
+
+
+class ShowSpace(ShowScreen):
+    """What is where."""
+
+    id = "screen.space"
+    key = "9"
+    title = N_("Space")
+    tooltip = N_("The robot, its map and what its sensors see, from above or in perspective.")
+    screen = "space"
+
+
 class ShowHelp(AppAction):
     """The keys, and what the screen shows."""
 
@@ -326,6 +346,8 @@ TABS = (
     ShowGraph,
     ShowFlow,
     ShowDevices,
+    ShowFrames,
+    ShowSpace,
 )
 """In the order in which the top line names them."""
 APP_ACTIONS = (

@@ -1,0 +1,1 @@
+"""Tests of `space` that need no ROS and no terminal."""

@@ -1,0 +1,1 @@
+"""The tree of frames, what is wrong with it, and where one frame is in another."""

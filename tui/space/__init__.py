@@ -1,0 +1,1 @@
+"""What is where: frames, the robot, its map and what its sensors see."""
