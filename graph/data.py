@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from space.buffer import Stamped
+
 Value: TypeAlias = Union[
     bool, int, float, str, bytes, "NDArray[np.generic]", Sequence["Value"], Mapping[str, "Value"]
 ]
@@ -182,6 +184,35 @@ class ActionRow:
     clients: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class FrameRow:
+    """A frame in one of its parents, as somebody publishes it on /tf or /tf_static.
+
+    A frame with two parents has two rows; so has one that is published on both topics.
+    """
+
+    newest: Stamped
+    """Names are without a leading slash."""
+    count: int
+    """How many have come since Deck began to look."""
+    hz: float | None = None
+    """Per second; None for a static one, and while fewer than two have come."""
+    age_s: float = 0.0
+    """Since the newest arrived."""
+    delay_s: float = 0.0
+    """Arrival minus stamp of the newest: negative if the stamp is from the future."""
+    publishers: tuple[str, ...] = ()
+    """Full names of the nodes that may publish it: more than one if it is not known which."""
+    fault: str = ""
+    """Why the newest was not taken, a sentence: NaN, a quaternion of length 0, no name. `newest`
+    is then the one before it, or the identity."""
+
+    @property
+    def is_static(self) -> bool:
+        """Whether it comes from /tf_static."""
+        return self.newest.static
+
+
 class GoalStatus(str, Enum):
     """The status of a goal (action_msgs/GoalStatus, and the states before it)."""
 
@@ -341,5 +372,7 @@ class GraphUpdate:
     seen_goals: tuple[SeenGoal, ...] = ()
     """Goals of other clients to the watched actions, as long as their servers list them."""
     publications: tuple[Publication, ...] = ()
+    frames: tuple[FrameRow, ...] = ()
+    """Every frame that has been heard of, sorted by name; empty unless frames are wanted."""
     error: str = ""
     """Set when the observer cannot work at all: rclpy is missing, the domain is refused."""
