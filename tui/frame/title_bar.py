@@ -14,9 +14,9 @@ NAME = " Deck "
 URGENT = ("danger", "stop")
 ENOUGH = 16
 """Cells of an alarm that are enough; its full text would hide the names of the tabs."""
-SHORT = 3
-"""Letters of a tab's name if there is little room."""
-NAMED = 4
+SHORT, SHORTEST = 3, 2
+"""Letters of a tab's name if there is little room, and if there is less."""
+NAMED = 5
 """This many of the levels show a part of each name."""
 
 
@@ -26,11 +26,14 @@ class _Level(NamedTuple):
     tabs: Sequence[tuple[str, str, bool]]
     gap: int
     """Blanks between two tabs."""
+    program: str = NAME
+    """The name of the program, or nothing."""
 
     @property
     def width(self) -> int:
-        """Cells of all tabs, including a blank before the first."""
-        return sum(cell_len(text) + self.gap for text, *_more in self.tabs) + (self.gap == 1)
+        """Cells of all tabs and of what is before them."""
+        tabs = sum(cell_len(text) + self.gap for text, *_more in self.tabs)
+        return cell_len(self.program) + tabs + (self.gap == 1)
 
 
 class TitleBar(Widget):
@@ -89,10 +92,10 @@ class TitleBar(Widget):
 
         `look` is `state`, `alarm`, `danger` or `stop`; with the last the whole line is red. The
         texts of the last two take precedence over the tabs. Otherwise, tabs that are not in front
-        are shortened before the state is: to a few letters, then moved together, then to their
-        keys; where room is left, the names that lack the fewest letters are whole again. `aside`
-        follows the state if there is room for it beside tabs with a few letters each, or beside all
-        tabs that the state leaves.
+        are shortened before the state is: to a few letters, then moved together, then to two
+        letters without the name of the program, then to their keys; where room is left, the names
+        that lack the fewest letters are whole again. `aside` follows the state if there is room for
+        it beside tabs with a few letters each, or beside all tabs that the state leaves.
         """
         shown = (tuple(tabs), tuple(states), look, aside)
         if shown != (self._tabs, self._states, self._look, self._aside):
@@ -163,19 +166,22 @@ class TitleBar(Widget):
         return level._replace(tabs=tabs)
 
     def _room(self) -> int:
-        """Return the cells that the name of the program leaves for tabs and state."""
-        return self.size.width - cell_len(NAME) - 3
+        """Return the cells for tabs and state."""
+        return self.size.width - 3
 
     def _levels(self) -> list[_Level]:
         """Return all tabs, shorter and shorter; the first NAMED levels show a part of each name."""
-        shapes = ((None, "", 2), (SHORT, ".", 2), (SHORT, ".", 1), (SHORT, "", 1), (0, "", 2))
-        levels = [
+        shapes = ((None, "", 2), (SHORT, ".", 2), (SHORT, ".", 1), (SHORT, "", 1))
+        named = [
             _Level(_shortened(self._tabs, letters, mark), gap) for letters, mark, gap in shapes
         ]
-        return [*levels, *(_Level(_keys(self._tabs), gap) for gap in (2, 1))]
+        # The name of a tab is worth more than that of the program.
+        named.append(_Level(_shortened(self._tabs, SHORTEST), 1, ""))
+        keys = _keys(self._tabs)
+        return [*named, _Level(_shortened(self._tabs, 0), 2), _Level(keys, 2), _Level(keys, 1)]
 
     def _left(self, level: _Level) -> Content:
-        parts = [Content.styled(NAME, self.get_visual_style("title-bar--name"))]
+        parts = [Content.styled(level.program, self.get_visual_style("title-bar--name"))]
         for text, action, front in level.tabs:
             style = self.get_visual_style("title-bar--front" if front else "title-bar--tab")
             click = Style.from_meta({"@click": action})
@@ -185,7 +191,7 @@ class TitleBar(Widget):
 
 
 def _shortened(
-    tabs: Sequence[tuple[str, str, bool]], letters: int | None, mark: str
+    tabs: Sequence[tuple[str, str, bool]], letters: int | None, mark: str = ""
 ) -> Sequence[tuple[str, str, bool]]:
     """Shorten all tabs but the one in front; their keys stay. With None nothing is shortened.
 

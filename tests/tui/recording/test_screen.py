@@ -116,21 +116,22 @@ async def test_beside_an_alarm_too_the_title_tells_how_much_is_recorded() -> Non
         _before, after = await stopped_and_recorded(app, pilot)
         assert "3.4 MB" in after
         assert "STOP" in after
-        assert "7 Dev." in after
+        assert "7 De" in after
 
 
 async def test_what_is_recorded_takes_no_tab_away_beside_an_alarm() -> None:
     async with opened(size=(80, 24)) as (app, pilot):
         before, after = await stopped_and_recorded(app, pilot)
-        assert after == before
-        assert " 6  7 " in after
+        tabs = "1 L 2 3 4 5 6 7 8 9"
+        assert tabs in before
+        assert tabs in after
 
 
 async def test_the_key_records_from_a_text_field_too() -> None:
     async with opened(screen="composer") as (app, pilot):
         assert isinstance(app.focused, TextArea)
         await pilot.press("f6")
-        await until(lambda: "● rec 12 s 3.4 MB" in title(app), "how much is recorded")
+        await until(lambda: "● 3.4 MB" in title(app), "how much is recorded")
         assert app.focused.selected_text == ""
 
 
