@@ -63,6 +63,7 @@ COMMANDS_TYPE = "std_msgs/msg/String"
 class LessonDeck(DeckScreen):
     """Nodes above the log, panels on the right; on a small terminal panels beside the log."""
 
+    AUTO_FOCUS: ClassVar[str] = "NodesTable"
     tab: ClassVar[str] = "deck"
     about: ClassVar[str] = N_(
         "The lesson at work. The table has the lesson's nodes: choose one with the arrow keys "
@@ -296,10 +297,6 @@ class LessonDeck(DeckScreen):
     def follow_topics(self) -> set[str]:
         """The topics of which the panels need every message."""
         return self._panels.followed()
-
-    def on_mount(self) -> None:
-        """Focus the nodes."""
-        self.table.focus()
 
     def on_resize(self, event: Resize) -> None:
         """Hide the panels if they do not fit."""
