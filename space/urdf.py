@@ -1,0 +1,180 @@
+"""Reading URDF, the text that describes a robot: http://wiki.ros.org/urdf/XML.
+
+What is seen and what moves is read: links with their visuals, and joints. Masses, collisions,
+transmissions and what is meant for simulators are passed over, as are elements that URDF does not
+know. What RViz refuses is refused here as well, but with the line and with what to do.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+from space.robot_model import ModelJoint, ModelLink, RobotModel
+from space.urdf_parts import Materials, read_joint, read_link
+from space.urdf_values import name_of, written
+from space.xml_elements import Element, XmlError, read_elements
+from text.sentences import reason_of, say
+from text.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+XACRO = "xacro:"
+_SHOWN = 3
+"""Names that a sentence lists."""
+
+T = TypeVar("T")
+
+
+class UrdfError(ValueError):
+    """Why a text describes no robot; its text is a sentence with the line and the mend."""
+
+
+def read_urdf(text: str) -> RobotModel:
+    """Return the robot that a text describes. Raises UrdfError."""
+    try:
+        return _robot(read_elements(text))
+    except XmlError as error:
+        raise UrdfError(reason_of(error)) from None
+
+
+def _robot(robot: Element) -> RobotModel:
+    _refuse_xacro(robot)
+    if robot.tag != "robot":
+        raise robot.wrong(
+            say("the outermost element is <{tag}>", tag=robot.tag), say("URDF begins with <robot>")
+        )
+    materials = Materials(robot)
+    links = _by_name(robot.all("link"), lambda element: read_link(element, materials))
+    joints = _by_name(robot.all("joint"), read_joint)
+    if not links:
+        raise robot.wrong(say("<robot> has no <link>"), say("a robot has at least one"))
+    elements = {name_of(element).strip(): element for element in robot.all("joint")}
+    _check_ends(joints, elements, links)
+    _check_mimics(joints, elements)
+    return RobotModel(name_of(robot), _root(robot, joints, elements, links), links, joints)
+
+
+def _refuse_xacro(robot: Element) -> None:
+    waiting = [robot]
+    while waiting:
+        element = waiting.pop()
+        if element.tag.startswith(XACRO) or any(
+            "${" in value for value in element.attributes.values()
+        ):
+            raise element.wrong(
+                say("this is xacro, from which URDF is still to be made"),
+                say("run xacro first: xacro robot.urdf.xacro > robot.urdf"),
+            )
+        waiting.extend(reversed(element.children))
+
+
+def _by_name(elements: Iterable[Element], read: Callable[[Element], T]) -> dict[str, T]:
+    found: dict[str, T] = {}
+    lines: dict[str, int] = {}
+    for element in elements:
+        name = written(element, "name")
+        if name in found:
+            raise element.wrong(
+                say(
+                    "<{tag}> {name} is there a second time, first in line {first}",
+                    tag=element.tag,
+                    name=name,
+                    first=lines[name],
+                ),
+                say("rename one"),
+            )
+        found[name], lines[name] = read(element), element.line
+    return found
+
+
+def _check_ends(
+    joints: Mapping[str, ModelJoint],
+    elements: Mapping[str, Element],
+    links: Mapping[str, ModelLink],
+) -> None:
+    """Refuse a joint to an unknown link, and a second joint that holds the same link."""
+    held_by: dict[str, str] = {}
+    for name, joint in joints.items():
+        element = elements[name]
+        for end in (joint.parent, joint.child):
+            if end not in links:
+                raise element.wrong(
+                    say("joint {name}: there is no link {link}", name=name, link=end),
+                    did_you_mean(end, links) or say('write <link name="..."/>'),
+                )
+        other = held_by.setdefault(joint.child, name)
+        if other != name:
+            raise element.wrong(
+                say(
+                    "link {link} is held by two joints, {one} and {other}",
+                    link=joint.child,
+                    one=other,
+                    other=name,
+                ),
+                say("remove one: a robot is a tree"),
+            )
+
+
+def _check_mimics(joints: Mapping[str, ModelJoint], elements: Mapping[str, Element]) -> None:
+    """Refuse a joint that follows an unknown one, or itself by any way."""
+    ends_well: set[str] = set()
+    for name in joints:
+        way: dict[str, None] = {}
+        here: str | None = name
+        while here is not None and here not in ends_well:
+            if here in way:
+                raise elements[here].wrong(
+                    say("joint {name} follows itself by <mimic>", name=here),
+                    say("one of the joints must not follow"),
+                )
+            way[here] = None
+            mimic = joints[here].mimic
+            if mimic is not None and mimic.joint not in joints:
+                raise elements[here].wrong(
+                    say("joint {name}: there is no joint {other}", name=here, other=mimic.joint),
+                    did_you_mean(mimic.joint, joints) or say("correct <mimic>"),
+                )
+            here = None if mimic is None else mimic.joint
+        ends_well.update(way)
+
+
+def _root(
+    robot: Element,
+    joints: Mapping[str, ModelJoint],
+    elements: Mapping[str, Element],
+    links: Mapping[str, ModelLink],
+) -> str:
+    """Return the only link that no joint holds, from which all others can be reached."""
+    holds: dict[str, list[str]] = {}
+    for joint in joints.values():
+        holds.setdefault(joint.parent, []).append(joint.child)
+    held = {joint.child for joint in joints.values()}
+    roots = [link for link in links if link not in held]
+    if len(roots) > 1:
+        second = next(link for link in robot.all("link") if written(link, "name") == roots[1])
+        raise second.wrong(
+            say(
+                "{count} links are held by no joint: {links}",
+                count=len(roots),
+                links=_few(roots),
+            ),
+            say("join all but one to the rest by a joint"),
+        )
+    reached, waiting = set(roots), list(roots)
+    while waiting:
+        below = holds.get(waiting.pop(), ())
+        reached.update(below)
+        waiting.extend(below)
+    for name, joint in joints.items():
+        if joint.child not in reached:
+            raise elements[name].wrong(
+                say("link {link} is held by joints in a loop", link=joint.child),
+                say("remove one of them: a robot is a tree"),
+            )
+    return roots[0]
+
+
+def _few(names: list[str]) -> str:
+    more = ["..."] if len(names) > _SHOWN else []
+    return ", ".join(names[:_SHOWN] + more)

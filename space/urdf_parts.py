@@ -1,0 +1,185 @@
+"""One link and one joint of a URDF, without regard to the others."""
+
+from __future__ import annotations
+
+import math
+
+from space.robot_model import (
+    AHEAD,
+    LIMITED,
+    Colour,
+    Cuboid,
+    Cylinder,
+    JointType,
+    Mesh,
+    Mimic,
+    ModelJoint,
+    ModelLink,
+    Solid,
+    Sphere,
+    Visual,
+)
+from space.transform import Vector
+from space.urdf_values import (
+    inner,
+    length,
+    lengths,
+    name_of,
+    number,
+    numbers,
+    one_of,
+    origin,
+    vector,
+    written,
+)
+from space.xml_elements import Element
+from text.i18n import N_
+from text.sentences import say
+from text.suggestions import did_you_mean
+
+_ONES: Vector = (1.0, 1.0, 1.0)
+_WRITE_LIMIT = {
+    JointType.REVOLUTE: N_(
+        'write <limit lower="-1.57" upper="1.57" effort="1" velocity="1"/>, or make it continuous'
+    ),
+    JointType.PRISMATIC: N_('write <limit lower="0" upper="0.1" effort="1" velocity="1"/>'),
+}
+_SHAPES = ("box", "cylinder", "sphere", "mesh")
+
+
+class Materials:
+    """Colours by name: those of the robot, and those that visuals define in passing."""
+
+    def __init__(self, robot: Element) -> None:
+        """Read the definitions. Raises XmlError."""
+        self._colours: dict[str, Colour | None] = {}
+        places = [robot, *(visual for link in robot.all("link") for visual in link.all("visual"))]
+        for place in places:
+            for element in place.all("material"):
+                name = name_of(element)
+                if place is robot and written(element, "name") in self._colours:
+                    raise element.wrong(
+                        say("there is a material {name} already", name=name), say("rename one")
+                    )
+                if element.children and name:
+                    self._colours.setdefault(name, _colour(element))
+
+    def of(self, visual: Element) -> tuple[Colour | None, str]:
+        """Return the colour of a visual, None without one, and its material. Raises XmlError."""
+        element = visual.first("material")
+        if element is None:
+            return None, ""
+        if element.children:
+            return _colour(element), name_of(element)
+        name = written(element, "name")
+        if name not in self._colours:
+            raise element.wrong(
+                say("there is no material {name}", name=name),
+                did_you_mean(name, self._colours)
+                or say('define it below <robot>: <material name="..."><color rgba="1 0 0 1"/>'),
+            )
+        return self._colours[name], name
+
+
+def read_link(element: Element, materials: Materials) -> ModelLink:
+    """Return a link with its visuals. Raises XmlError."""
+    visuals = tuple(_visual(visual, materials) for visual in element.all("visual"))
+    return ModelLink(written(element, "name"), visuals)
+
+
+def read_joint(element: Element) -> ModelJoint:
+    """Return a joint. Raises XmlError."""
+    name = written(element, "name")
+    kind = JointType(one_of(element, "type", [each.value for each in JointType]))
+    lower, upper, velocity = _limits(element, kind)
+    return ModelJoint(
+        name,
+        kind,
+        written(inner(element, "parent"), "link"),
+        written(inner(element, "child"), "link"),
+        origin(element),
+        _axis(element, kind),
+        lower,
+        upper,
+        velocity,
+        _mimic(element),
+    )
+
+
+def _visual(element: Element, materials: Materials) -> Visual:
+    geometry = inner(element, "geometry")
+    shape = next((child for child in geometry.children if child.tag in _SHAPES), None)
+    if shape is None:
+        raise geometry.wrong(
+            say("<geometry> has no shape"), say("it can be: {known}", known=", ".join(_SHAPES))
+        )
+    return Visual(_solid(shape), origin(element), *materials.of(element))
+
+
+def _solid(shape: Element) -> Solid:
+    if shape.tag == "box":
+        x, y, z = lengths(shape, "size", 3)
+        return Cuboid((x, y, z))
+    if shape.tag == "cylinder":
+        return Cylinder(length(shape, "radius"), length(shape, "length"))
+    if shape.tag == "sphere":
+        return Sphere(length(shape, "radius"))
+    return Mesh(written(shape, "filename"), vector(shape, "scale", _ONES))
+
+
+def _colour(material: Element) -> Colour | None:
+    element = material.first("color")
+    if element is None:
+        return None
+    red, green, blue, opacity = numbers(element, "rgba", 4)
+    if not all(0.0 <= part <= 1.0 for part in (red, green, blue, opacity)):
+        raise element.wrong(say("a part of rgba is not between 0 and 1"), say("divide each by 255"))
+    return red, green, blue, opacity
+
+
+def _axis(element: Element, kind: JointType) -> Vector:
+    found = element.first("axis")
+    if found is None:
+        return AHEAD
+    x, y, z = vector(found, "xyz", AHEAD)
+    size = math.hypot(x, y, z)
+    if kind in (JointType.FIXED, JointType.FLOATING):
+        return AHEAD
+    if not 0.0 < size < math.inf or not math.isclose(math.hypot(x / size, y / size, z / size), 1.0):
+        raise found.wrong(
+            say("the axis of joint {name} has no length", name=name_of(element)),
+            say('write one such as <axis xyz="0 0 1"/>'),
+        )
+    return x / size, y / size, z / size
+
+
+def _limits(element: Element, kind: JointType) -> tuple[float, float, float]:
+    """Return the lowest and highest position, and the highest speed."""
+    found = element.first("limit")
+    if found is None:
+        if kind not in LIMITED:
+            return -math.inf, math.inf, math.inf
+        raise element.wrong(
+            say("joint {name} is {kind} without a <limit>", name=name_of(element), kind=kind.value),
+            say(_WRITE_LIMIT[kind]),
+        )
+    # RViz and ROS's own publisher refuse a limit without both.
+    velocity, _effort = number(found, "velocity"), number(found, "effort")
+    if kind not in LIMITED:
+        return -math.inf, math.inf, velocity
+    lower, upper = number(found, "lower", 0.0), number(found, "upper", 0.0)
+    if lower > upper:
+        raise found.wrong(
+            say("the lower limit of joint {name} is above the upper one", name=name_of(element)),
+            say("swap them"),
+        )
+    return lower, upper, velocity
+
+
+def _mimic(element: Element) -> Mimic | None:
+    found = element.first("mimic")
+    if found is None:
+        return None
+    return Mimic(
+        written(found, "joint"), number(found, "multiplier", 1.0), number(found, "offset", 0.0)
+    )

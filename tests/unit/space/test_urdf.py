@@ -1,0 +1,308 @@
+"""Reading URDF: what it says, and what is said of what is none."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from space.robot_model import Cuboid, Cylinder, JointError, JointType, Mesh, Mimic, Sphere
+from space.transform import Transform
+from space.urdf import UrdfError, read_urdf
+
+ARM = """<?xml version="1.0"?>
+<robot name="arm">
+  <material name="blue"><color rgba="0 0 0.8 1"/></material>
+  <link name="base">
+    <visual>
+      <origin xyz="0 0 0.1" rpy="0 0 1.5707963267948966"/>
+      <geometry><box size="0.3 0.2 0.1"/></geometry>
+      <material name="blue"/>
+    </visual>
+    <visual>
+      <geometry><mesh filename="package://arm/base.stl" scale="1 1 -1"/></geometry>
+      <material name="red"><color rgba="1 0 0 0.5"/></material>
+    </visual>
+    <collision><geometry><box size="1 1 1"/></geometry></collision>
+  </link>
+  <link name="upper">
+    <visual><geometry><cylinder radius="0.05" length="0.4"/></geometry></visual>
+  </link>
+  <link name="hand">
+    <visual><geometry><sphere radius="0.06"/></geometry><material name="red"/></visual>
+  </link>
+  <link name="finger"/>
+  <joint name="shoulder" type="revolute">
+    <parent link="base"/> <child link="upper"/>
+    <origin xyz="0 0 0.2"/> <axis xyz="0 0 2"/>
+    <limit lower="-1" upper="2" effort="3" velocity="4"/>
+  </joint>
+  <joint name="wrist" type="continuous"><parent link="upper"/><child link="hand"/></joint>
+  <joint name="grip" type="prismatic">
+    <parent link="hand"/> <child link="finger"/>
+    <origin rpy="0 0 1.5707963267948966"/> <axis xyz="0 1 0"/>
+    <limit upper="0.1" effort="1" velocity="1"/>
+    <mimic joint="wrist" multiplier="0.5" offset="0.01"/>
+  </joint>
+  <gazebo reference="base"><anything/></gazebo>
+</robot>
+"""
+
+
+def robot(*parts: str) -> str:
+    """A robot of the links a and b, and what follows in line 2 and below."""
+    return "\n".join(("<robot name='r'><link name='a'/><link name='b'/>", *parts, "</robot>"))
+
+
+def joint(inside: str = "", kind: str = "fixed", ends: tuple[str, str] = ("a", "b")) -> str:
+    parent, child = ends
+    return (
+        f"<joint name='j' type='{kind}'><parent link='{parent}'/><child link='{child}'/>"
+        f"{inside}</joint>"
+    )
+
+
+def visual(shape: str, material: str = "") -> str:
+    return robot(
+        f"<link name='c'><visual><geometry>{shape}</geometry>{material}</visual></link>", joint()
+    )
+
+
+def refusal(text: str) -> str:
+    """What is said of a text, empty if it is read."""
+    try:
+        read_urdf(text)
+    except UrdfError as error:
+        return str(error)
+    return ""
+
+
+def test_links_are_shapes_at_places_in_colours() -> None:
+    arm = read_urdf(ARM)
+    assert (arm.name, arm.root) == ("arm", "base")
+    assert list(arm.links) == ["base", "upper", "hand", "finger"]
+    box, mesh = arm.links["base"].visuals
+    assert (box.shape, box.colour, box.material) == (
+        Cuboid((0.3, 0.2, 0.1)),
+        (0.0, 0.0, 0.8, 1.0),
+        "blue",
+    )
+    assert box.origin.point((1.0, 0.0, 0.0)) == pytest.approx((0.0, 1.0, 0.1))
+    assert mesh.shape == Mesh("package://arm/base.stl", (1.0, 1.0, -1.0))
+    (cylinder,) = arm.links["upper"].visuals
+    assert (cylinder.shape, cylinder.colour) == (Cylinder(0.05, 0.4), None)
+    (ball,) = arm.links["hand"].visuals
+    # Defined by another link's visual, as RViz accepts it.
+    assert (ball.shape, ball.colour) == (Sphere(0.06), (1.0, 0.0, 0.0, 0.5))
+    assert arm.links["finger"].visuals == ()
+
+
+def test_joints_have_ends_axes_and_limits() -> None:
+    joints = read_urdf(ARM).joints
+    shoulder = joints["shoulder"]
+    assert (shoulder.type, shoulder.parent, shoulder.child) == (
+        JointType.REVOLUTE,
+        "base",
+        "upper",
+    )
+    assert (shoulder.axis, shoulder.lower, shoulder.upper, shoulder.velocity) == (
+        (0.0, 0.0, 1.0),
+        -1.0,
+        2.0,
+        4.0,
+    )
+    assert (joints["wrist"].axis, joints["wrist"].upper) == ((1.0, 0.0, 0.0), math.inf)
+    assert joints["grip"].mimic == Mimic("wrist", 0.5, 0.01)
+
+
+def test_joints_turn_by_the_right_hand_rule_and_slide_along_their_own_axis() -> None:
+    arm = read_urdf(ARM)
+    turned = arm.transform("shoulder", math.pi / 2)
+    assert turned.point((1.0, 0.0, 0.0)) == pytest.approx((0.0, 1.0, 0.2))
+    assert arm.transform("wrist", math.pi / 2).point((0.0, 1.0, 0.0)) == pytest.approx((0, 0, 1))
+    # The axis y of a frame that is turned to the left points backwards.
+    assert arm.transform("grip", 0.1).translation == pytest.approx((-0.1, 0.0, 0.0))
+    assert arm.transform("shoulder") == Transform((0.0, 0.0, 0.2))
+
+
+def test_joints_follow_joints() -> None:
+    arm = read_urdf(ARM)
+    assert arm.followed({"wrist": 1.0, "shoulder": 2.0}) == {
+        "wrist": 1.0,
+        "shoulder": 2.0,
+        "grip": 0.51,
+    }
+    assert arm.followed({"shoulder": 2.0}) == {"shoulder": 2.0}
+    # What is known by itself does not follow.
+    assert arm.followed({"wrist": 1.0, "grip": 0.0})["grip"] == 0.0
+
+
+def test_followers_are_followed_in_whatever_order_they_are_written() -> None:
+    links = "".join(f"<link name='{name}'/>" for name in "cde")
+    joints = "".join(
+        f"<joint name='{name}{child}' type='continuous'><parent link='a'/><child link='{child}'/>"
+        f"{follows}</joint>"
+        for name, child, follows in (
+            ("j", "e", "<mimic joint='jd' multiplier='2'/>"),
+            ("j", "d", "<mimic joint='jc' offset='1'/>"),
+            ("j", "c", ""),
+            ("j", "b", ""),
+        )
+    )
+    model = read_urdf(robot(links, joints))
+    assert model.followed({"jc": 3.0}) == {"jc": 3.0, "jd": 4.0, "je": 8.0}
+
+
+@pytest.mark.parametrize("kind", ["floating", "planar"])
+def test_joints_that_one_number_cannot_describe_are_read_and_not_moved(kind: str) -> None:
+    model = read_urdf(robot(joint(kind=kind)))
+    assert not model.joints["j"].movable
+    with pytest.raises(JointError, match=f"joint j is {kind}, .*by a node of your own"):
+        model.transform("j", 1.0)
+
+
+def test_no_transform_comes_of_what_is_not_a_number_or_not_a_joint() -> None:
+    arm = read_urdf(ARM)
+    with pytest.raises(JointError, match="position of joint wrist is not a number"):
+        arm.transform("wrist", math.nan)
+    with pytest.raises(JointError, match="no joint elbow"):
+        arm.transform("elbow", 0.0)
+
+
+HOSTILE = {
+    "nothing": ("", "line 1: the text ends before"),
+    "no XML": ("wheels: 4", "line 1: this is not XML"),
+    "an unclosed tag": ("<robot>\n<link name='a'>\n</robot>", "line 3: this tag closes another"),
+    "two ends": ("<robot/>\n<robot/>", "line 2: something follows the end"),
+    "another format": ("<sdf/>", "outermost element is <sdf>; URDF begins with <robot>"),
+    "xacro": ("<robot>\n<xacro:include filename='x'/></robot>", "line 2: .* run xacro first"),
+    "an expression": ("<robot>\n<link name='${side}'/></robot>", "line 2: .* run xacro first"),
+    "a bomb": (
+        '<!DOCTYPE r [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;">]>\n<robot name="&b;"/>',
+        "line 1: a document type .* remove it",
+    ),
+    "a file's text": (
+        '\n<!DOCTYPE r [<!ENTITY a SYSTEM "/etc/passwd">]>\n<robot name="&a;"/>',
+        "line 2: a document type",
+    ),
+    "an entity": ("<robot name='&auml;'/>", "line 1: only &lt;"),
+    "an escape": ("<robot>\n\x1b[2J</robot>", "line 2: a '<', a quote or a character"),
+    "half a character": ("<robot>\n\ud800</robot>", r"line 2: the character U\+D800"),
+    "ten megabytes": (f"<robot>{' ' * 10_000_000}</robot>", "longer than 4 MiB"),
+    "a deep well": ("<a>" * 100_000, "more than 100 elements"),
+    "no links": ("<robot/>", "<robot> has no <link>"),
+    "two roots": (robot(), "line 1: 2 links are held by no joint: a, b; join all but one"),
+    "no name": ("<robot>\n<link/></robot>", 'line 2: <link> has no name; write <link name="...">'),
+    "a name twice": (robot("<link name='a'/>"), "line 2: <link> a .*, first in line 1; rename one"),
+    "a joint twice": (
+        robot("<link name='c'/>", joint(), joint(ends=("a", "c"))),
+        "line 4: <joint> j .*, first in line 3",
+    ),
+    "a link held twice": (
+        robot(joint(), joint().replace("'j'", "'k'")),
+        "line 3: link b is held by two joints, j and k; remove one",
+    ),
+    "no root": (
+        robot(joint(), joint(ends=("b", "a")).replace("'j'", "'k'")),
+        "line 2: link b is held by joints in a loop",
+    ),
+    "a loop beside a root": (
+        robot(
+            "<link name='c'/>",
+            joint(ends=("c", "b")),
+            joint(ends=("b", "c")).replace("'j'", "'k'"),
+        ),
+        "line 3: link b is held by joints in a loop",
+    ),
+    "its own parent": (robot(joint(ends=("b", "b"))), "line 2: link b is held by joints in a loop"),
+    "an unknown link": (robot(joint(ends=("a", "wheel"))), "line 2: .* there is no link wheel; wr"),
+    "a mistyped link": (
+        robot("<link name='camera_link'/>", joint(ends=("a", "camera_lnk"))),
+        "line 3: .* no link camera_lnk; did you mean camera_link?",
+    ),
+    "no child": (robot("<joint name='j' type='fixed'><parent link='a'/></joint>"), "no <child>"),
+    "an unknown kind": (
+        robot(joint(kind="hinge")),
+        "type of <joint> j is hinge; it can be: fixed,",
+    ),
+    "a size that is no number": (
+        visual("<box size='1 nan 1'/>"),
+        "size of <box>: nan is not a fin",
+    ),
+    "a size with a comma": (visual("<sphere radius='0,5'/>"), "write a fraction with a point: 0.5"),
+    "a negative size": (visual("<sphere radius='-1'/>"), "radius of <sphere> is -1 m"),
+    "a box of two sizes": (visual("<box size='1 2'/>"), "size of <box> has 2 numbers, and not 3"),
+    "an endless cylinder": (visual("<cylinder radius='1' length='1e300'/>"), r"is 1e\+300 m"),
+    "no shape": (visual("<cone/>"), "<geometry> has no shape; it can be: box,"),
+    "an unknown material": (
+        visual("<sphere radius='1'/>", "<material name='x'/>"),
+        "no material x",
+    ),
+    "a colour to 255": (
+        visual("<sphere radius='1'/>", "<material name='x'><color rgba='255 0 0 1'/></material>"),
+        "divide each by 255",
+    ),
+    "a place far away": (robot(joint("<origin xyz='1e9 0 0'/>")), "more than"),
+    "an axis of no length": (robot(joint("<axis xyz='0 0 0'/>", "continuous")), "has no length"),
+    "a hinge without limits": (robot(joint(kind="revolute")), "without a <limit>; write <limit lo"),
+    "a slide without limits": (
+        robot(joint(kind="prismatic")),
+        "without a <limit>; write <limit lo",
+    ),
+    "a limit without a speed": (
+        robot(joint("<limit lower='0' upper='1' effort='1'/>", "revolute")),
+        "<limit> has no velocity",
+    ),
+    "swapped limits": (
+        robot(joint("<limit lower='1' upper='0' effort='1' velocity='1'/>", "revolute")),
+        "above the upper one; swap them",
+    ),
+    "a joint that follows itself": (
+        robot(joint("<mimic joint='j'/>", "continuous")),
+        "joint j follows itself",
+    ),
+    "a joint that follows nobody": (
+        robot(joint("<mimic joint='elbow'/>", "continuous")),
+        "there is no joint elbow; correct <mimic>",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", HOSTILE)
+def test_what_is_no_robot_is_told_by_line_and_mend(case: str) -> None:
+    text, said = HOSTILE[case]
+    told = refusal(text)
+    assert re.search(said, told), told
+
+
+def test_names_can_neither_steer_a_terminal_nor_fill_it() -> None:
+    told = refusal(robot(joint(kind="\u202e" * 10_000)))
+    assert "type of <joint> j" in told
+    assert "\u202e" not in told
+    assert len(told) < 500
+
+
+def test_many_links_in_a_row_are_no_trouble() -> None:
+    count = 10_000
+    links = "".join(f"<link name='{n}'/>" for n in range(count))
+    joints = "".join(
+        f"<joint name='j{n}' type='fixed'><parent link='{n}'/><child link='{n + 1}'/></joint>"
+        for n in range(count - 1)
+    )
+    assert read_urdf(f"<robot>{links}{joints}</robot>").root == "0"
+
+
+@given(st.lists(st.sampled_from([*"<>/='\"&; \n", "robot", "link", "joint", "name", "a", "1"])))
+def test_any_text_is_read_or_refused_in_a_sentence(words: list[str]) -> None:
+    told = refusal("<robot><link name='a'/>" + "".join(words) + "</robot>")
+    assert not told or told.startswith("line ")
+
+
+@given(st.text())
+def test_any_attribute_is_read_or_refused_in_a_sentence(value: str) -> None:
+    value = re.sub("[<&']", "", value)
+    told = refusal(robot(joint(f"<origin xyz='{value}'/><axis xyz='{value}'/>", kind="continuous")))
+    assert not told or told.startswith("line ")
