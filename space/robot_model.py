@@ -20,6 +20,8 @@ Colour: TypeAlias = tuple[float, float, float, float]
 """Red, green, blue and opacity, 0 to 1."""
 
 AHEAD: Vector = (1.0, 0.0, 0.0)
+FARTHEST = 1e12
+"""Radians or metres: a wheel turns for ages to get there, and sums are still numbers."""
 
 
 class JointError(ValueError):
@@ -129,8 +131,8 @@ class ModelJoint:
     def transform(self, position: float) -> Transform:
         """Return where the child is in the parent, also beyond the limits.
 
-        Raises JointError for a position that is not a number, and for a joint that one number
-        cannot describe.
+        Raises JointError for what is not a position, and for a joint that one number cannot
+        describe.
         """
         if self.type is JointType.FIXED:
             return self.origin
@@ -143,8 +145,10 @@ class ModelJoint:
                     kind=self.type.value,
                 )
             )
-        if not math.isfinite(position):
-            raise JointError(say("the position of joint {name} is not a number", name=self.name))
+        if not is_position(position):
+            raise JointError(
+                say("joint {name} cannot be at {position:g}", name=self.name, position=position)
+            )
         if self.type is JointType.PRISMATIC:
             x, y, z = self.axis
             return self.origin @ Transform((x * position, y * position, z * position))
@@ -179,8 +183,15 @@ class RobotModel:
             for one in reversed(way):
                 if one.mimic is not None and position is not None:
                     position = one.mimic.multiplier * position + one.mimic.offset
+                    if not is_position(position):
+                        break
                     known[one.name] = position
         return known
+
+
+def is_position(value: float) -> bool:
+    """Tell whether a joint can be there: a number that is not beyond all measure."""
+    return abs(value) <= FARTHEST
 
 
 def turned_about(axis: Vector, angle_rad: float) -> Quaternion:

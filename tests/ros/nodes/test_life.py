@@ -40,6 +40,7 @@ NODES = {
     "camera": "camera",
     "hearing": "hearing",
     "speaking": "speaking",
+    "robot_state_publisher": "robot_state_publisher",
 }
 """Module to the name in the graph that the course gave it."""
 SIGNALS = (signal.SIGINT, signal.SIGTERM)

@@ -34,7 +34,7 @@ MODULES = (
     "hello", "mock_sonar", "safety_stop", "head_controller", "ai_driver", "electronic_differential",
     "camera_tf", "mock_camera", "vlm_agent_stub", "vlm_agent", "mock_audio", "audio", "ai_brain",
     "realtime_brain", "llm_parser", "drive_to_point", "mock_robot", "tof_sonar", "chassis",
-    "hearing", "speaking",
+    "hearing", "speaking", "robot_state_publisher",
 )  # fmt: skip
 
 

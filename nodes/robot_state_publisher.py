@@ -1,0 +1,234 @@
+"""The robot's model: where each of its links is, from a URDF and the positions of its joints.
+
+/robot_description (latched) is the URDF, /tf_static has the links that are fixed, and /tf, for
+whoever listens, those that move, `publish_frequency` times a second. A joint that others follow
+(`<mimic>`) moves them, too. Without parameters it is the robot of the course. A position holds for
+`hold_s`, as a head at rest reports once a second; after that the frame grows old, and whoever looks
+at it sees that nobody knows where it is.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from geometry_msgs.msg import TransformStamped
+from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
+
+from nodes.parts.joint_positions import JointPositions
+from nodes.parts.node import LessonNode, NodeUsageError, change_period
+from nodes.parts.parameters import Number, Switch, Text, Value
+from nodes.parts.qos import LATCHED
+from nodes.parts.runner import run
+from robot.topics import HEAD_STATE, JOINT_STATES, ROBOT_DESCRIPTION, TF, TF_STATIC
+from space.robot_model import JointType, ModelJoint
+from space.urdf import UrdfError, read_urdf
+from space.xml_elements import LONGEST
+from text.i18n import N_
+from text.os_words import os_reason
+from text.sentences import reason_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from builtin_interfaces.msg import Time
+
+    from space.robot_model import RobotModel
+    from space.transform import Transform
+
+COURSE_ROBOT = Path(__file__).parents[1] / "robot" / "description" / "robot.urdf"
+_LOOK_AFTER_S = 5.0
+
+_STARTED = N_("{robot}: {links} links, {moving} joints move; their positions come from {topics}")
+_TWO = N_("give robot_description or urdf_file, not both")
+_UNREADABLE = N_("cannot read {file}: {reason}; set the parameter urdf_file")
+_NO_ROBOT = N_("{file}, {reason}")
+_NO_LINK = N_("leave_out: the robot has no link {link}; its links are {links}")
+_FREE = N_("joint {joint} is {kind}: the place of {link} has to come from a node of your own")
+_SILENT = N_("Nobody has said where {joints} are: their links have no place; see {topics}")
+
+
+class RobotStatePublisher(LessonNode):
+    """Publishes what is fixed once, and what moves at a steady pace."""
+
+    NAME = "robot_state_publisher"
+    SETTINGS = (
+        Text(
+            "robot_description",
+            "",
+            "The robot as URDF; empty: see urdf_file",
+            fixed=True,
+            may_be_empty=True,
+        ),
+        Text(
+            "urdf_file",
+            "",
+            "The file with the URDF; empty: the robot of the course",
+            fixed=True,
+            may_be_empty=True,
+        ),
+        Number("publish_frequency", 20.0, "Messages on /tf", low=0.1, high=200.0, unit="Hz"),
+        Text(
+            "joint_topics",
+            f"{JOINT_STATES} {HEAD_STATE}",
+            "Topics with the positions of joints, with spaces between",
+            fixed=True,
+        ),
+        Text(
+            "leave_out",
+            "",
+            "Links whose place other nodes publish, with spaces between",
+            fixed=True,
+            may_be_empty=True,
+        ),
+        Switch("start_at_zero", False, "Whether a joint is at 0 until its position is heard"),
+        Number("hold_s", 2.0, "How long a position holds", low=0.05, high=3600.0, unit="s"),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        text = self._description()
+        self._model = self._read(text)
+        topics = list(dict.fromkeys(self.text("joint_topics").split()))
+        joints = self._published_joints()
+        self._moving = {joint.name: joint for joint in joints if joint.movable}
+        self._positions = JointPositions(self, topics, self._model.joints)
+        self._told = self.create_publisher(String, ROBOT_DESCRIPTION, LATCHED)
+        self._fixed = self.create_publisher(TFMessage, TF_STATIC, LATCHED)
+        self._transforms = self.quick_publisher(TFMessage, TF)
+        self._told.publish(String(data=text))
+        self._publish_fixed([joint for joint in joints if joint.type is JointType.FIXED])
+        self._tell_unmoved(joints)
+        self._last_s = time.monotonic()
+        self._timer = self.every(1.0 / self.number("publish_frequency"), self._publish)
+        self._look = self.every(_LOOK_AFTER_S, self._miss_positions)
+        self.say.info(
+            _STARTED,
+            robot=self._model.name,
+            links=len(self._model.links),
+            moving=len(self._moving),
+            topics=", ".join(topics),
+        )
+
+    def contradiction(self, values: Mapping[str, Value]) -> str | None:
+        """Refuse two robots."""
+        return _TWO if values["robot_description"] and values["urdf_file"] else None
+
+    def parameters_changed(self) -> None:
+        """Apply the new pace."""
+        change_period(self._timer, 1.0 / self.number("publish_frequency"))
+
+    # ---------------------------------------------------------------- at the start
+
+    def _description(self) -> str:
+        if given := self.text("robot_description"):
+            return given
+        file = self._file
+        try:
+            with file.open("rb") as opened:
+                # A byte that is not UTF-8 becomes half a character, which the reader refuses.
+                return opened.read(LONGEST + 1).decode(errors="surrogateescape")
+        except (OSError, ValueError) as error:
+            raise NodeUsageError(_UNREADABLE, file=file, reason=os_reason(error)) from None
+
+    @property
+    def _file(self) -> Path:
+        return Path(self.text("urdf_file") or COURSE_ROBOT).expanduser()
+
+    def _read(self, text: str) -> RobotModel:
+        try:
+            return read_urdf(text)
+        except UrdfError as error:
+            source = "robot_description" if self.text("robot_description") else self._file
+            raise NodeUsageError(_NO_ROBOT, file=source, reason=reason_of(error)) from None
+
+    def _published_joints(self) -> list[ModelJoint]:
+        left_out = set(self.text("leave_out").split())
+        for link in left_out - set(self._model.links):
+            raise NodeUsageError(_NO_LINK, link=link, links=", ".join(self._model.links))
+        return [joint for joint in self._model.joints.values() if joint.child not in left_out]
+
+    def _publish_fixed(self, joints: list[ModelJoint]) -> None:
+        now = self.get_clock().now().to_msg()
+        self._fixed.publish(
+            TFMessage(transforms=[_stamped(joint, joint.transform(0.0), now) for joint in joints])
+        )
+
+    def _tell_unmoved(self, joints: list[ModelJoint]) -> None:
+        for joint in joints:
+            if not joint.movable and joint.type is not JointType.FIXED:
+                self.say.warn(_FREE, joint=joint.name, kind=joint.type.value, link=joint.child)
+
+    def _miss_positions(self) -> None:
+        self._look.cancel()
+        unknown = self._moving.keys() - self._known(time.monotonic()).keys()
+        if unknown:
+            joints = ", ".join(name for name in self._moving if name in unknown)
+            self.say.warn(_SILENT, joints=joints, topics=self.text("joint_topics"))
+
+    # ---------------------------------------------------------------- at a pace
+
+    def _publish(self) -> None:
+        """Publish each joint: just heard as its driver stamped it, held as it is now."""
+        since_s, self._last_s = self._last_s, time.monotonic()
+        if not self._transforms.get_subscription_count():
+            return
+        now = self.get_clock().now().to_msg()
+        heard = self._positions.heard
+        transforms = []
+        for name, position in self._known(self._last_s).items():
+            if name not in self._moving:
+                continue
+            source = heard.get(self._leader(name))
+            fresh = source is not None and source.heard_s > since_s and _is_set(source.stamp)
+            stamp = source.stamp if fresh and source is not None else now
+            joint = self._moving[name]
+            transforms.append(_stamped(joint, joint.transform(position), stamp))
+        if transforms:
+            self._transforms.publish(TFMessage(transforms=transforms))
+
+    def _known(self, now_s: float) -> dict[str, float]:
+        """Return the positions that hold now, by joint."""
+        oldest_s = now_s - self.number("hold_s")
+        heard = self._positions.heard
+        known = {name: one.position for name, one in heard.items() if one.heard_s > oldest_s}
+        if self.switch("start_at_zero"):
+            for name, joint in self._moving.items():
+                if joint.mimic is None and name not in heard:
+                    known[name] = 0.0
+        return self._model.followed(known)
+
+    def _leader(self, name: str) -> str:
+        """Return whose position moves a joint: its own, or that of the joint that it follows."""
+        while name not in self._positions.heard:
+            mimic = self._model.joints[name].mimic
+            if mimic is None:
+                break
+            name = mimic.joint
+        return name
+
+
+def _stamped(joint: ModelJoint, transform: Transform, stamp: Time) -> TransformStamped:
+    message = TransformStamped()
+    message.header.stamp = stamp
+    message.header.frame_id, message.child_frame_id = joint.parent, joint.child
+    place, turn = message.transform.translation, message.transform.rotation
+    place.x, place.y, place.z = transform.translation
+    turn.x, turn.y, turn.z, turn.w = transform.rotation
+    return message
+
+
+def _is_set(stamp: Time) -> bool:
+    return bool(stamp.sec or stamp.nanosec)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(RobotStatePublisher, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
