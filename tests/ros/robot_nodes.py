@@ -27,6 +27,9 @@ READY = {
     "safety_stop": "",
     "sonar_front": "Connected",
     "sonar_rear": "Connected",
+    "head_controller": "The servo controller answers",
+    "camera_tf": "camera_link relative to",
+    "robot_state_publisher": "deck_robot: 13 links",
 }
 """Words that a node says once it works."""
 OWN = {"safety_stop": {"max_age_s": BELIEVED_S, "critical_distance": 0.3, "slow_distance": 0.0}}

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 from builtin_interfaces.msg import Time
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
@@ -15,8 +14,7 @@ from tf2_msgs.msg import TFMessage
 from nodes.mock_camera import MockCamera
 from nodes.robot_state_publisher import COURSE_ROBOT
 from nodes.tof_sonar import TofSonar
-from space.buffer import Stamped, TransformBuffer
-from space.transform import Transform
+from tests.ros.heard_frames import buffer_of, children
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
@@ -25,7 +23,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MODULE = "nodes.robot_state_publisher"
-ALL_LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 WHEEL, STEERING = "rear_left_wheel_joint", "steering_joint"
 ARM = """<robot name='arm'>
   <link name='base'/> <link name='arm'/> <link name='hand'/> <link name='cloud'/>
@@ -41,26 +38,6 @@ def joints(position: dict[str, float], stamp_s: int = 0) -> JointState:
     message = JointState(name=list(position), position=list(position.values()))
     message.header.stamp = Time(sec=stamp_s)
     return message
-
-
-def children(message: TFMessage) -> set[str]:
-    return {transform.child_frame_id for transform in message.transforms}
-
-
-def buffer_of(*topics: list[TFMessage]) -> TransformBuffer:
-    """All that was heard; the first of the topics is static."""
-    buffer = TransformBuffer(keep_s=math.inf)
-    for number, messages in enumerate(topics):
-        for one in (one for message in messages for one in message.transforms):
-            place, turn, stamp = one.transform.translation, one.transform.rotation, one.header.stamp
-            transform = Transform.of((place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
-            stamp_s = stamp.sec + stamp.nanosec / 1e9
-            static = number == 0
-            found = Stamped(
-                one.header.frame_id, one.child_frame_id, stamp_s, transform, static=static
-            )
-            buffer.add([found])
-    return buffer
 
 
 def test_the_description_and_what_is_fixed_wait_for_whoever_comes_late(
