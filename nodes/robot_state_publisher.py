@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 COURSE_ROBOT = Path(__file__).parents[1] / "robot" / "description" / "robot.urdf"
 _LOOK_AFTER_S = 5.0
+_IDLE_S = 0.2
+"""How often to look whether somebody listens."""
 
 _STARTED = N_("{robot}: {links} links, {moving} joints move; their positions come from {topics}")
 _TWO = N_("give robot_description or urdf_file, not both")
@@ -103,7 +105,8 @@ class RobotStatePublisher(LessonNode):
         self._publish_fixed([joint for joint in joints if joint.type is JointType.FIXED])
         self._tell_unmoved(joints)
         self._last_s = time.monotonic()
-        self._timer = self.every(1.0 / self.number("publish_frequency"), self._publish)
+        self._period_s = _IDLE_S
+        self._timer = self.every(_IDLE_S, self._tick)
         self._look = self.every(_LOOK_AFTER_S, self._miss_positions)
         self.say.info(
             _STARTED,
@@ -116,10 +119,6 @@ class RobotStatePublisher(LessonNode):
     def contradiction(self, values: Mapping[str, Value]) -> str | None:
         """Refuse two robots."""
         return _TWO if values["robot_description"] and values["urdf_file"] else None
-
-    def parameters_changed(self) -> None:
-        """Apply the new pace."""
-        change_period(self._timer, 1.0 / self.number("publish_frequency"))
 
     # ---------------------------------------------------------------- at the start
 
@@ -171,11 +170,19 @@ class RobotStatePublisher(LessonNode):
 
     # ---------------------------------------------------------------- at a pace
 
-    def _publish(self) -> None:
-        """Publish each joint: just heard as its driver stamped it, held as it is now."""
+    def _tick(self) -> None:
+        self._positions.take()
+        listened = self._transforms.get_subscription_count() > 0
+        period_s = 1.0 / self.number("publish_frequency") if listened else _IDLE_S
+        if period_s != self._period_s:
+            self._period_s = period_s
+            change_period(self._timer, period_s)
         since_s, self._last_s = self._last_s, time.monotonic()
-        if not self._transforms.get_subscription_count():
-            return
+        if listened:
+            self._publish(since_s)
+
+    def _publish(self, since_s: float) -> None:
+        """Publish each joint: heard since then as its driver stamped it, held as it is now."""
         now = self.get_clock().now().to_msg()
         heard = self._positions.heard
         transforms = []
