@@ -103,6 +103,16 @@ def test_an_installed_deck_uses_its_own_modules(installed: Installed) -> None:
     assert not installed.imported.exists()
 
 
+def test_an_installed_deck_has_the_robot_s_model(installed: Installed) -> None:
+    program = """import deck; deck.enter()
+from nodes.robot_state_publisher import COURSE_ROBOT
+from space.urdf import read_urdf
+print(COURSE_ROBOT, read_urdf(COURSE_ROBOT.read_text()).name)"""
+    found = installed.python("-c", program)
+    assert found.startswith(str(installed.site / "deck" / "robot"))
+    assert found.endswith("deck_robot\n")
+
+
 @pytest.mark.parametrize("room", INSIDE)
 def test_the_packages_of_others_stay_theirs(installed: Installed, room: str) -> None:
     """To import Deck's package moves nothing either."""
