@@ -163,10 +163,15 @@ class RobotStatePublisher(LessonNode):
 
     def _miss_positions(self) -> None:
         self._look.cancel()
-        unknown = self._moving.keys() - self._known(time.monotonic()).keys()
-        if unknown:
-            joints = ", ".join(name for name in self._moving if name in unknown)
-            self.say.warn(_SILENT, joints=joints, topics=self.text("joint_topics"))
+        known = self._known(time.monotonic())
+        silent = [
+            name
+            for name, joint in self._moving.items()
+            if joint.mimic is None and name not in known
+        ]
+        if silent:
+            topics = self.text("joint_topics")
+            self.say.warn(_SILENT, joints=", ".join(silent), topics=topics)
 
     # ---------------------------------------------------------------- at a pace
 

@@ -126,7 +126,7 @@ def test_joints_start_at_zero_where_that_is_asked_for(peer: Peer, ros_domain: in
 
 def test_it_warns_of_joints_that_nobody_reports(ros_domain: int) -> None:
     with NodeProcess(MODULE, ros_domain, lang="ru") as node:
-        node.wait_for_words("[WARN]", "steering_joint", "положени")
+        node.wait_for_words("[WARN]", "steering_joint, pan_joint, tilt_joint", "положени")
 
 
 def test_another_robot_from_a_file(peer: Peer, ros_domain: int, tmp_path: Path) -> None:

@@ -37,7 +37,7 @@ ARM = """<?xml version="1.0"?>
   <link name="finger"/>
   <joint name="shoulder" type="revolute">
     <parent link="base"/> <child link="upper"/>
-    <origin xyz="0 0 0.2"/> <axis xyz="0 0 2"/>
+    <origin xyz="0.5 0 0.2"/> <axis xyz="0 0 2"/>
     <limit lower="-1" upper="2" effort="3" velocity="4"/>
   </joint>
   <joint name="wrist" type="continuous"><parent link="upper"/><child link="hand"/></joint>
@@ -121,11 +121,11 @@ def test_joints_have_ends_axes_and_limits() -> None:
 def test_joints_turn_by_the_right_hand_rule_and_slide_along_their_own_axis() -> None:
     arm = read_urdf(ARM)
     turned = arm.transform("shoulder", math.pi / 2)
-    assert turned.point((1.0, 0.0, 0.0)) == pytest.approx((0.0, 1.0, 0.2))
+    assert turned.point((1.0, 0.0, 0.0)) == pytest.approx((0.5, 1.0, 0.2))
     assert arm.transform("wrist", math.pi / 2).point((0.0, 1.0, 0.0)) == pytest.approx((0, 0, 1))
     # The axis y of a frame that is turned to the left points backwards.
     assert arm.transform("grip", 0.1).translation == pytest.approx((-0.1, 0.0, 0.0))
-    assert arm.transform("shoulder") == Transform((0.0, 0.0, 0.2))
+    assert arm.transform("shoulder") == Transform((0.5, 0.0, 0.2))
 
 
 def test_joints_follow_joints() -> None:
