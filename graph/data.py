@@ -97,6 +97,14 @@ class TopicRow:
     latency_s: float | None = None
     """Mean of arrival time minus `header.stamp`; None without a header, or if the stamp is from
     another clock."""
+    clock_off_s: float | None = None
+    """Arrival time minus `header.stamp` of the newest message, if that is from another clock: a
+    simulation, a board just booted. None otherwise, and while quiet."""
+    several_send: bool = False
+    """Whether the messages of the last seconds came from more than one publisher, as far as their
+    sequence numbers show."""
+    steady_hz: float | None = None
+    """The rate at which messages came regularly until they stopped; None while they come."""
     lost: int | None = None
     """Messages that were sent but never arrived, since `measured`; None if the middleware does not
     report them."""
@@ -170,6 +178,8 @@ class ServiceRow:
     type_names: tuple[str, ...]
     nodes: tuple[str, ...] = ()
     """Full names of the nodes that serve it."""
+    called_as: tuple[str, ...] = ()
+    """Types by which nodes call it that are not among `type_names`: they get no answer."""
 
 
 @dataclass(frozen=True)

@@ -49,3 +49,7 @@ WHEEL_COMMANDS = "/wheel_commands"
 
 COMMAND_SOURCES = (DRIVE_TELEOP, DRIVE_ACTION, DRIVE)
 """Commands for the gate, by rank: a person's keys, a drive to a point, words and the model."""
+OF_MANY = frozenset({JOINT_STATES})
+"""Topics that several nodes publish together, each for its own joints."""
+SPOKEN_BY_PEOPLE = frozenset({EMERGENCY_STOP, SAY, SPEAKER})
+"""Topics that need no publisher: somebody may say something there, or not."""

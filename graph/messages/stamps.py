@@ -22,7 +22,8 @@ def delay_reader(cls: type[Any]) -> Callable[[bytes, float], float | None] | Non
     """Return a function for the delay of messages of this class, None if they have no header.
 
     It takes the serialized message and its arrival in unix time, and returns seconds; None for a
-    stamp of zero or of another clock. The delay is negative if the sender's clock is ahead.
+    stamp of zero. The delay is negative if the sender's clock is ahead; beyond `FARTHEST_S` it only
+    says how far apart two clocks are.
     """
     fields: dict[str, str] = cls.get_fields_and_field_types()
     return delay_s if next(iter(fields.values()), "") == HEADER else None
@@ -37,4 +38,4 @@ def delay_s(raw: bytes, arrived_s: float) -> float | None:
     if not seconds and not nanoseconds:
         return None
     passed_s: float = arrived_s - (seconds + nanoseconds * NANOSECONDS)
-    return passed_s if abs(passed_s) <= FARTHEST_S else None
+    return passed_s

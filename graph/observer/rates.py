@@ -6,6 +6,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from graph.messages.stamps import FARTHEST_S
 from graph.observer.timing import Arrival, Intervals, Spread
 
 if TYPE_CHECKING:
@@ -17,6 +18,13 @@ FEW = 3
 """Points that are kept whatever their age, so that a slow topic has a rate, too."""
 QUIET_S = 3.0
 QUIET_PERIODS = 3.0
+TURNS = 3
+"""So many steps back in the sequence numbers within `WINDOW_S` show that several publishers send:
+a publisher that was started again makes one."""
+STEADY = 10
+"""The fewest messages that can be called regular, and below, the greatest spread of the time
+between them, in periods."""
+STEADY_SPREAD = 0.5
 
 
 @dataclass(frozen=True)
@@ -45,6 +53,9 @@ class RateMeter:
         self._sequence: int | None = None
         self._intervals = Intervals()
         self._delays = Spread()
+        self._turns: deque[float] = deque(maxlen=TURNS)
+        """When the last steps back in the sequence numbers came."""
+        self._clock_off_s: float | None = None
 
     def add(
         self,
@@ -66,6 +77,7 @@ class RateMeter:
         self.count += len(batch) + skipped
         self._bytes += size * (1 + skipped / len(batch))
         self.mean_size_bytes = size / len(batch)
+        self._note_turns(batch)
         self._sequence = batch[-1].sequence
         stamp_s = batch[-1].stamp_s
         if self._is_another_story(stamp_s):
@@ -73,10 +85,24 @@ class RateMeter:
             self._intervals.clear()
             self._delays.clear()
         self._intervals.add(batch, overflowed=overflowed, numbered=one_publisher)
-        self._delays.add(stamp_s, [a.delay_s for a in batch if a.delay_s is not None])
+        self._add_delays(stamp_s, [a.delay_s for a in batch if a.delay_s is not None])
         self._points.append(_Point(stamp_s, self.count, self._bytes))
         while len(self._points) > FEW and stamp_s - self._points[0].stamp_s > WINDOW_S:
             self._points.popleft()
+
+    def _add_delays(self, stamp_s: float, delays_s: list[float]) -> None:
+        """Keep those of this clock, and how far off the newest one is if it is of another."""
+        self._delays.add(stamp_s, [each for each in delays_s if abs(each) <= FARTHEST_S])
+        if delays_s:
+            newest_s = delays_s[-1]
+            self._clock_off_s = newest_s if abs(newest_s) > FARTHEST_S else None
+
+    def _note_turns(self, batch: list[Arrival]) -> None:
+        before = self._sequence
+        for arrival in batch:
+            if arrival.sequence is not None and before is not None and arrival.sequence <= before:
+                self._turns.append(arrival.stamp_s)
+            before = arrival.sequence
 
     def _is_another_story(self, stamp_s: float) -> bool:
         """Return whether the clock was set back, or a topic with a known rate had gone quiet."""
@@ -115,6 +141,22 @@ class RateMeter:
         """Mean of arrival minus stamp; None while quiet, or without stamps from this clock."""
         return None if self.is_quiet(now_s) else self._delays.mean_s
 
+    def clock_off_s(self, now_s: float) -> float | None:
+        """Arrival minus stamp of the newest message if it is of another clock; None while quiet."""
+        return None if self.is_quiet(now_s) else self._clock_off_s
+
+    def several_send(self, now_s: float) -> bool:
+        """Return whether the messages of the last seconds have come from several publishers."""
+        return len(self._turns) == TURNS and now_s - self._turns[0] <= WINDOW_S
+
+    def steady_hz(self, now_s: float) -> float | None:
+        """The rate at which messages came regularly until they stopped; None while they come."""
+        spread_s = self._intervals.deviation_s
+        if self.count < STEADY or spread_s is None or not self.is_quiet(now_s):
+            return None
+        hz = self._latest_rate(lambda point: point.messages)
+        return hz if hz and spread_s <= STEADY_SPREAD / hz else None
+
     def is_quiet(self, now_s: float) -> bool:
         """Return whether nothing has come for longer than usual for this topic."""
         age_s = self.age_s(now_s)
@@ -123,8 +165,12 @@ class RateMeter:
     def _rate(self, now_s: float, of: Callable[[_Point], float]) -> float | None:
         if len(self._points) < 2:
             return None
-        if self.is_quiet(now_s):
-            return 0.0
+        return 0.0 if self.is_quiet(now_s) else self._latest_rate(of)
+
+    def _latest_rate(self, of: Callable[[_Point], float]) -> float | None:
+        """Return the rate while messages last came."""
+        if len(self._points) < 2:
+            return None
         first, last = self._points[0], self._points[-1]
         span_s = last.stamp_s - first.stamp_s
         return (of(last) - of(first)) / span_s if span_s > 0 else None

@@ -115,8 +115,18 @@ def service_rows(found: Mapping[str, NodeServices]) -> tuple[ServiceRow, ...]:
         for name, kinds in one.serves.services.items():
             types[name] |= set(kinds)
             nodes[name].append(node)
+    called: defaultdict[str, set[str]] = defaultdict(set)
+    for one in found.values():
+        for name, kinds in one.calls.services.items():
+            called[name] |= set(kinds)
     return tuple(
-        ServiceRow(name, tuple(sorted(types[name])), tuple(nodes[name])) for name in sorted(nodes)
+        ServiceRow(
+            name,
+            tuple(sorted(types[name])),
+            tuple(nodes[name]),
+            tuple(sorted(called[name] - types[name])),
+        )
+        for name in sorted(nodes)
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from robot.topics import (
     AI_COMMAND,
+    DRIVE_SAFE,
     GOAL_POSE,
     HEARD,
     LLM_RAW_JSON,
@@ -35,6 +36,8 @@ MOVING_NAMES = frozenset(
         GOAL_POSE,
     }
 )
+SOLE = frozenset({DRIVE_SAFE, WHEEL_COMMANDS})
+"""What the wheels obey: only the gate and the differential may publish these."""
 
 
 def moves(name: str, type_name: str) -> bool:

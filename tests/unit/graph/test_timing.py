@@ -124,13 +124,69 @@ def test_a_stamp_is_read_in_both_byte_orders(order: str, head: bytes) -> None:
     assert delay_s(raw, T0 + 0.125) == pytest.approx(-0.125)
 
 
+def test_a_stamp_of_nothing_is_left_out() -> None:
+    assert delay_s(b"\0\1\0\0" + struct.pack("<iI", 0, 0), T0) is None
+
+
+@pytest.mark.parametrize("off_s", [601.0, -602.0, T0])
+def test_a_stamp_of_another_clock_is_no_latency_but_tells_how_far_off_it_is(off_s: float) -> None:
+    meter = RateMeter()
+    meter.add([Arrival(T0, 8, 1, 0.25), Arrival(T0 + 0.1, 8, 2, off_s)])
+    assert meter.latency_s(T0 + 0.2) == pytest.approx(0.25)
+    assert meter.clock_off_s(T0 + 0.2) == off_s
+    meter.add([Arrival(T0 + 0.2, 8, 3, 0.25)])
+    assert meter.clock_off_s(T0 + 0.3) is None
+
+
+def numbered(meter: RateMeter, *sequences: int, every_s: float = 0.1) -> float:
+    """Let messages with these numbers come; return when the last did."""
+    for step, sequence in enumerate(sequences):
+        meter.add([Arrival(T0 + step * every_s, 8, sequence)], one_publisher=False)
+    return T0 + (len(sequences) - 1) * every_s
+
+
 @pytest.mark.parametrize(
-    ("second", "nanosecond"),
-    [(0, 0), (42, 0), (1_700_000_000 - 601, 0), (1_700_000_000 + 602, 0), (-1, 5)],
+    ("sequences", "several"),
+    [
+        ((1, 2, 3, 4, 5, 6, 7, 8), False),
+        ((41, 5, 42, 6, 43, 7, 44, 8), True),
+        ((5, 5, 6, 6, 7, 7, 8, 8), True),
+        # One that was started again, twice.
+        ((7, 8, 1, 2, 3, 1, 2, 3), False),
+    ],
 )
-def test_stamps_of_nothing_and_of_another_clock_are_left_out(second: int, nanosecond: int) -> None:
-    raw = b"\0\1\0\0" + struct.pack("<iI", second, nanosecond)
-    assert delay_s(raw, T0) is None
+def test_numbers_that_go_back_again_and_again_are_of_several_publishers(
+    sequences: tuple[int, ...], several: bool
+) -> None:
+    meter = RateMeter()
+    now_s = numbered(meter, *sequences)
+    assert meter.several_send(now_s) is several
+    assert not meter.several_send(now_s + 5.0)
+
+
+def test_several_in_one_look_are_seen_as_well() -> None:
+    meter = RateMeter()
+    meter.add([Arrival(T0 + n / 100, 8, n // 2 + 30 * (n % 2)) for n in range(10)])
+    assert meter.several_send(T0 + 0.2)
+
+
+def test_what_was_regular_is_known_once_it_stops() -> None:
+    meter = RateMeter()
+    last_s = numbered(meter, *range(30))
+    assert meter.steady_hz(last_s) is None
+    assert meter.steady_hz(last_s + 5.0) == pytest.approx(10.0)
+    # A single message after the pause is no rate.
+    meter.add([Arrival(last_s + 6.0, 8, 31)])
+    assert meter.steady_hz(last_s + 20.0) is None
+
+
+def test_what_comes_now_and_then_was_never_regular() -> None:
+    meter = RateMeter()
+    for n, at_s in enumerate((0, 0.01, 0.02, 1, 1.01, 1.02, 1.9, 1.91, 1.92, 3, 3.01, 3.02)):
+        meter.add([Arrival(T0 + at_s, 8, n)])
+    assert meter.steady_hz(T0 + 9.0) is None
+    few = RateMeter()
+    assert few.steady_hz(numbered(few, *range(9)) + 5.0) is None
 
 
 def test_a_message_that_ends_in_its_header_is_no_error() -> None:
