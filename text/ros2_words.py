@@ -60,6 +60,11 @@ def call(service: str, type_name: str, request: Mapping[str, Any]) -> str:
     return _line("service", "call", service, type_name, flow(request))
 
 
+def topic_info(topic: str) -> str:
+    """Return what tells who publishes and hears a topic, and by which QoS."""
+    return _line("topic", "info", "--verbose", topic)
+
+
 def service_type(service: str) -> str:
     """Return what tells the type of a service."""
     return _line("service", "type", service)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from textual.widgets import ContentSwitcher
 
 from tui.graph.action import ActionPane
+from tui.graph.finding import FindingPane
 from tui.graph.node import NodePane
 from tui.graph.pane import EmptyNotice
 from tui.graph.places import GraphKind
@@ -22,6 +23,7 @@ PANES: dict[GraphKind, type[GraphPane]] = {
     GraphKind.SERVICE: ServicePane,
     GraphKind.ACTION: ActionPane,
     GraphKind.TYPE: TypePane,
+    GraphKind.FINDING: FindingPane,
 }
 WORDS = "graph-words"
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from graph.housekeeping import is_housekeeping
 from text.i18n import _, localized
+from tui.graph.finding_words import LOOKS, FindingsBook, checked_words, title
 from tui.graph.places import LISTED, GraphKind
 
 if TYPE_CHECKING:
@@ -27,6 +28,12 @@ class GraphEntry(NamedTuple):
     detail: str = ""
     """Its type, or for a type the number of its users."""
     housekeeping: bool = False
+    label: str = ""
+    """What is listed in place of the name."""
+    remark: str = ""
+    """What is listed beside it if there is room."""
+    meaning: str = ""
+    """Of its colour, as in `tui.widgets.rows.Cell`."""
 
 
 class GraphIndex:
@@ -37,12 +44,23 @@ class GraphIndex:
         """Whether what belongs to ROS itself is listed."""
         self.listed: dict[GraphKind, list[GraphEntry]] = {}
         """Everything of each kind."""
+        self.findings = FindingsBook()
+        """What is wrong with the graph."""
         self._installed: tuple[str, ...] = ()
         """Every type installed on this computer, once it has been requested."""
 
     def take(self, update: GraphUpdate | None) -> None:
         """Use this graph from now on."""
         self.listed = {kind: entries(update, kind, self._installed) for kind in LISTED}
+        self.findings.take(update)
+        self.listed[GraphKind.FINDING] = _findings(self.findings)
+
+    def settle(self) -> bool:
+        """List findings that have held for long enough by now; return whether that changed any."""
+        if not self.findings.settle():
+            return False
+        self.listed[GraphKind.FINDING] = _findings(self.findings)
+        return True
 
     async def find_installed(self) -> None:
         """Find installed types that nobody uses, for the next `take`."""
@@ -71,7 +89,10 @@ class GraphIndex:
 def entries(
     update: GraphUpdate | None, kind: GraphKind, installed: Iterable[str] = ()
 ) -> list[GraphEntry]:
-    """Return everything of a kind, sorted by name; types that nobody uses count as ROS's own."""
+    """Return everything of a kind, sorted by name; types that nobody uses count as ROS's own.
+
+    Findings take time to be sure of: they are not made here.
+    """
     if update is None:
         return []
     if kind is GraphKind.NODE:
@@ -80,8 +101,10 @@ def entries(
         found = [_typed(row.name, row.type_names) for row in update.services]
     elif kind is GraphKind.ACTION:
         found = [_typed(row.name, row.type_names) for row in update.actions]
-    else:
+    elif kind is GraphKind.TYPE:
         found = _types(update, installed)
+    else:
+        return []
     return sorted(set(found))
 
 
@@ -110,6 +133,19 @@ def users_of(update: GraphUpdate | None, type_name: str) -> dict[GraphKind, list
         for kind, of_kind in rows.items()
     }
     return {kind: names for kind, names in found.items() if names}
+
+
+def _findings(book: FindingsBook) -> list[GraphEntry]:
+    return [
+        GraphEntry(
+            finding.key,
+            f"{finding.place.name} {title(finding)} {localized(finding.what)}",
+            label=f"{LOOKS[finding.level][0]} {finding.place.name}",
+            remark=title(finding),
+            meaning=LOOKS[finding.level][2],
+        )
+        for finding in book.told
+    ]
 
 
 def _typed(name: str, type_names: tuple[str, ...]) -> GraphEntry:
@@ -154,4 +190,6 @@ def _none(kind: GraphKind) -> tuple[str, str]:
         return _("nobody serves a service"), _("Start a node that does: head_controller is one.")
     if kind is GraphKind.ACTION:
         return _("nobody serves an action"), _("Start a node that does: drive_to_point is one.")
+    if kind is GraphKind.FINDING:
+        return _("no findings"), checked_words()
     return _("no type is in use"), _("Types are those of topics, services and actions.")

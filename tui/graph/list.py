@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 
 from text.i18n import _
 from text.plain import plain
+from tui.graph.index import GraphEntry
 from tui.graph.places import GraphKind
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from tui.graph.index import GraphEntry
 
 LONGEST = 300
 
@@ -22,8 +21,8 @@ class GraphList(Rows):
 
     def __init__(self) -> None:
         super().__init__(header=False)
-        self._named: tuple[tuple[str, bool], ...] = ()
-        """Name, and whether it still exists."""
+        self._listed: tuple[tuple[GraphEntry, bool], ...] = ()
+        """Each entry, and whether it still exists."""
         self._kind = GraphKind.NODE
 
     @property
@@ -35,11 +34,13 @@ class GraphList(Rows):
         self, kind: GraphKind, shown: Sequence[GraphEntry], chosen: str, words: str
     ) -> None:
         """Show these entries; `chosen` was chosen last, and `words` are the filter."""
-        names = [(entry.name, True) for entry in shown]
-        if chosen and not words and chosen not in {entry.name for entry in shown}:
+        listed = [(entry, True) for entry in shown]
+        missing = chosen and not words and chosen not in {entry.name for entry in shown}
+        # A finding that has gone was mended.
+        if missing and kind is not GraphKind.FINDING:
             # A type does not disappear when nobody uses it.
-            names.append((chosen, kind is GraphKind.TYPE))
-        self._kind, self._named = kind, tuple(names)
+            listed.append((GraphEntry(chosen), kind is GraphKind.TYPE))
+        self._kind, self._listed = kind, tuple(listed)
         self._lay()
         if chosen:
             self.choose(f"{kind.value}|{chosen}")
@@ -49,17 +50,19 @@ class GraphList(Rows):
         self._lay()
 
     def _lay(self) -> None:
-        rows = [self._row(self._kind, name, there=there) for name, there in self._named]
+        rows = [self._row(self._kind, entry, there=there) for entry, there in self._listed]
         self.show([Column("")], rows)
 
-    def _row(self, kind: GraphKind, name: str, *, there: bool) -> Row:
+    def _row(self, kind: GraphKind, entry: GraphEntry, *, there: bool) -> Row:
         room = max(4, self.size.width - 4) if self.size.width else LONGEST
-        words = plain(name, LONGEST)
+        words = plain(entry.label or entry.name, LONGEST)
         if not there:
             gone = _("gone")
             words = f"✗ {words} ({gone})"
-        cell = Cell(ended(words, room), "" if there else "dim")
-        return Row(f"{kind.value}|{name}", (cell,))
+        if entry.remark and len(words) + len(entry.remark) + 2 <= room:
+            words = f"{words}  {entry.remark}"
+        cell = Cell(ended(words, room), entry.meaning if there else "dim")
+        return Row(f"{kind.value}|{entry.name}", (cell,))
 
 
 def ended(words: str, room: int) -> str:

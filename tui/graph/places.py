@@ -19,9 +19,13 @@ class GraphKind(str, Enum):
     ACTION = "action"
     TYPE = "type"
     TOPIC = "topic"
+    FINDING = "finding"
 
 
-LISTED = (GraphKind.NODE, GraphKind.SERVICE, GraphKind.ACTION, GraphKind.TYPE)
+LISTED = (
+    *(GraphKind.NODE, GraphKind.SERVICE, GraphKind.ACTION, GraphKind.TYPE),
+    GraphKind.FINDING,
+)
 """The kinds that the Graph screen itself lists; topics have their own screen."""
 
 TITLES = {
@@ -29,6 +33,7 @@ TITLES = {
     GraphKind.SERVICE: N_("Services"),
     GraphKind.ACTION: N_("Actions"),
     GraphKind.TYPE: N_("Types"),
+    GraphKind.FINDING: N_("Findings"),
 }
 """The titles of the tabs."""
 

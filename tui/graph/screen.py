@@ -15,6 +15,7 @@ from tui.frame.screen import DeckScreen
 from tui.graph.actions import GRAPH_ACTIONS, ShowEverything
 from tui.graph.ask import AskPane
 from tui.graph.detail import GraphDetail
+from tui.graph.finding import place_meant
 from tui.graph.index import GraphIndex, why_empty
 from tui.graph.list import GraphList
 from tui.graph.map import GraphMap, middle_of
@@ -35,6 +36,10 @@ if TYPE_CHECKING:
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
 
+SETTLE_S = 1.0
+"""How often findings are looked at, whether or not anything arrives."""
+
+
 class ShowsTopic(Protocol):
     """The part of the Topics screen that the graph uses."""
 
@@ -48,8 +53,9 @@ class GraphScreen(DeckScreen):
     tab: ClassVar[str] = "graph"
     about: ClassVar[str] = N_(
         "Nodes with what they publish, hear, serve and call; services to be called, actions to "
-        "be sent goals, types down to their fields. Enter on a name goes there. The map draws a "
-        "node with those that it talks to: () marks a service, ⚑ an action."
+        "be sent goals, types down to their fields; findings are what is wrong, with what to do "
+        "about it. Enter on a name goes there. The map draws a node with those that it talks to: "
+        "() marks a service, ⚑ an action."
     )
     BINDINGS: ClassVar = [
         *bindings(*GRAPH_ACTIONS),
@@ -89,8 +95,7 @@ class GraphScreen(DeckScreen):
         self.history = PlaceHistory()
         self.index = GraphIndex()
         self._detail = GraphDetail()
-        self._goals_of: set[str] = set()
-        """Actions whose goals were requested."""
+        self._goals_of: set[str] = set()  # Actions whose goals were requested.
 
     def compose_body(self) -> ComposeResult:
         """Kinds and filter above list and detail."""
@@ -134,6 +139,11 @@ class GraphScreen(DeckScreen):
     def pane(self) -> GraphPane | None:
         """The current detail."""
         return self._detail.pane_of(self.history.here)
+
+    @property
+    def _place(self) -> GraphPlace | None:
+        """The chosen place; of a finding, where it is."""
+        return place_meant(self.history.here, self.index.findings, self.feed.update)
 
     @property
     def shows_pane(self) -> bool:
@@ -191,19 +201,21 @@ class GraphScreen(DeckScreen):
         kind, words = self.history.kind, self.filter.value
         self.filter.placeholder = _("filter: words of a name or a type")
         counts = {each: len(self.index.fitting(each)) for each in self.index.listed}
-        self.query_one(GraphTabs).show(kind, counts)
+        self.query_one(GraphTabs).show(kind, counts, self.index.findings.worst)
         shown = self.index.fitting(kind, words)
         self._count(len(shown), len(self.index.all_of(kind)))
         self.names.show_entries(kind, shown, self.history.chosen.get(kind, ""), words)
         if self.names.chosen_name and not self.history.chosen.get(kind):
             self.history.choose(self.names.chosen_name)
         self._show_detail(shown)
-        if self.watch_goals() != self._goals_of:
-            self._goals_of = self.watch_goals()
+        # What only messages show is found while somebody looks at findings: it costs more.
+        wants = (self.watch_goals(), kind is GraphKind.FINDING)
+        if wants != (self._goals_of, self.measure_all):
+            self._goals_of, self.measure_all = wants
             self.topics_changed()
         if self.draws:
             update = self.feed.update
-            middle = middle_of(update, self.history.here)
+            middle = middle_of(update, self._place)
             self.map.show_node(update, middle, everything=self.index.everything)
 
     def _show_detail(self, shown: list[GraphEntry]) -> None:
@@ -226,6 +238,7 @@ class GraphScreen(DeckScreen):
     def on_mount(self) -> None:
         """Focus the list."""
         self.names.focus()
+        self.set_interval(SETTLE_S, self._settle)
         self.redraw()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
@@ -260,10 +273,17 @@ class GraphScreen(DeckScreen):
             self.redraw()
             self.refresh_bindings()
 
+    def _settle(self) -> None:
+        """Tell findings that have held for long enough, whether or not anything arrives."""
+        if self.index.settle():
+            self.redraw()
+
     @on(Rows.Opened, "GraphList")
-    def _opened(self) -> None:
+    async def _opened(self) -> None:
         first = None if self.pane is None else self.pane.first()
-        if first is not None:
+        if self.history.kind is GraphKind.FINDING and self._place is not None:
+            await self.go(self._place)
+        elif first is not None:
             first.focus()
 
     @on(Rows.Opened, ".graph-links")
@@ -337,7 +357,7 @@ class GraphScreen(DeckScreen):
         """Show the map around the chosen node, or the list."""
         self.toggle_class("-map")
         if self.draws:
-            middle = middle_of(self.feed.update, self.history.here)
+            middle = middle_of(self.feed.update, self._place)
             if middle:
                 self.history.go(GraphPlace(GraphKind.NODE, middle))
         self._arrive()

@@ -28,7 +28,10 @@ class GraphTabs(Widget):
             super().__init__()
             self.kind = kind
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {"graph-tabs--tab", "graph-tabs--front"}
+    COMPONENT_CLASSES: ClassVar[set[str]] = {
+        *("graph-tabs--tab", "graph-tabs--front"),
+        *("graph-tabs--bad", "graph-tabs--warn"),
+    }
     DEFAULT_CSS = """
     GraphTabs {
         width: auto; height: 1; background: $panel;
@@ -36,6 +39,8 @@ class GraphTabs(Widget):
         link-style-hover: reverse;
         .graph-tabs--tab { color: $foreground; }
         .graph-tabs--front { color: $foreground; text-style: bold reverse; }
+        .graph-tabs--bad { color: $text-error; text-style: bold; }
+        .graph-tabs--warn { color: $text-warning; text-style: bold; }
     }
     """
 
@@ -43,11 +48,15 @@ class GraphTabs(Widget):
         super().__init__()
         self._front = GraphKind.NODE
         self._counts: dict[GraphKind, int] = {}
+        self._worst = ""
 
-    def show(self, front: GraphKind, counts: Mapping[GraphKind, int]) -> None:
-        """Show the number of entries of each kind, and which kind is listed."""
-        if (front, dict(counts)) != (self._front, self._counts):
-            self._front, self._counts = front, dict(counts)
+    def show(self, front: GraphKind, counts: Mapping[GraphKind, int], worst: str) -> None:
+        """Show the number of entries of each kind, and which kind is listed.
+
+        `worst` is the meaning of the worst finding: `bad`, `warn` or none.
+        """
+        if (front, dict(counts), worst) != (self._front, self._counts, self._worst):
+            self._front, self._counts, self._worst = front, dict(counts), worst
             self.refresh(layout=True)
 
     def get_content_width(self, container: Size, viewport: Size) -> int:
@@ -64,6 +73,8 @@ class GraphTabs(Widget):
         parts = []
         for kind in LISTED:
             name = "front" if kind is self._front else "tab"
+            if kind is GraphKind.FINDING and name == "tab" and self._worst:
+                name = self._worst
             click = Style.from_meta({"@click": f"choose({kind.value!r})"})
             style = self.get_visual_style(f"graph-tabs--{name}") + click
             parts.append(Content.styled(f" {_(TITLES[kind])} {self._counts.get(kind, 0)} ", style))

@@ -12,9 +12,11 @@ from textual.widgets import Input
 
 from graph.data import CallResult, GoalStatus, GraphUpdate, ParametersResult, SeenGoal
 from tests.tui.recorded import RecordedGraph, RecordedOpener
+from tests.tui.recorded_findings import ill_graph
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, one_look, settle
 from tests.waiting import until
+from tui import clock
 from tui.app import DeckApp
 from tui.graph.places import GraphKind, GraphPlace
 from tui.graph.screen import GraphScreen
@@ -174,6 +176,56 @@ def test_the_map(look: Look, snap_compare: SnapCompare) -> None:
     """safety_stop in a box; what it hears at the left, what it says at the right, with whom."""
     before = at(NODE, "M", "left")
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+
+
+def told(*choices: str, mend: bool = False) -> Callable[[Pilot[Any]], Awaitable[None]]:
+    """List the findings of a graph that is ill, as they are once they have lasted."""
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await settle(pilot)
+        assert isinstance(pilot.app, DeckApp)
+        screen, graph = pilot.app.screen, pilot.app.feed.graph
+        assert isinstance(screen, GraphScreen)
+        assert isinstance(graph, RecordedGraph)
+        screen.list_kind(GraphKind.FINDING)
+        with pytest.MonkeyPatch.context() as patch:
+            late_s = clock.steady() + 60.0
+            patch.setattr(clock, "steady", lambda: late_s)
+            graph.show(graph_update() if mend else ill_graph())
+            await still(pilot, screen)
+            for name in choices:
+                screen.names.choose(f"finding|{name}")
+                await still(pilot, screen)
+
+    return before
+
+
+@every_look
+def test_findings(look: Look, snap_compare: SnapCompare) -> None:
+    """Four findings, the worst first; of a misspelt name what is wrong, what to do, and where."""
+    before = told("near-name topic /sensor/sonar_frnt")
+    app = app_of(look, ill_graph())
+    assert snap_compare(app, terminal_size=look.size, run_before=before)
+
+
+@both_languages
+def test_no_findings(look: Look, dump_compare: SnapCompare) -> None:
+    """Nothing is wrong, and what was looked for."""
+    assert dump_compare(app_of(look), terminal_size=look.size, run_before=told(mend=True))
+
+
+@one_look
+def test_findings_are_seen_from_another_tab(look: Look, dump_compare: SnapCompare) -> None:
+    """Nodes are listed, and the last tab has the number of findings in red."""
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await told()(pilot)
+        assert isinstance(pilot.app.screen, GraphScreen)
+        pilot.app.screen.list_kind(GraphKind.NODE)
+        await still(pilot, pilot.app.screen)
+
+    app = app_of(look, ill_graph())
+    assert dump_compare(app, terminal_size=look.size, run_before=before)
 
 
 @one_look
