@@ -109,5 +109,14 @@ def add_doctor(parser: Parser) -> None:
     parser.add_argument(
         "what", nargs="?", choices=("llm",), help=_("llm: ask the language model for a test")
     )
+    parser.add_argument(
+        "--graph",
+        action="store_true",
+        help=_("examine the running ROS graph instead, whoever has started its nodes"),
+    )
+    add_domain(parser, _("with --graph: ROS domain; by default that of the running robot"))
     add_json(parser)
-    parser.epilog = _("Exit code: 0, or 1 if something essential is missing.")
+    parser.epilog = _(
+        "Exit code: 0, or 1 if something essential is missing. With --graph: 0 without findings, 1 "
+        "with some, 2 if there is no graph to look at."
+    )

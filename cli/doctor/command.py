@@ -10,6 +10,7 @@ from launcher.errors import UsageError
 from text.i18n import N_, _
 from text.output import DIM, GREEN, RED, YELLOW, Paint, json_text, write
 from text.plain import plain
+from text.sentences import say
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -25,13 +26,35 @@ LOOKS = {
 
 
 def doctor_command(options: Namespace) -> int:
-    """Examine everything, or try the language model; return 1 if something essential is missing."""
+    """Examine everything, or try the language model; return 1 if something essential is missing.
+
+    Of the graph, any finding makes it 1.
+    """
+    if options.graph:
+        return _graph(options)
+    if options.domain is not None:
+        raise UsageError(say("--domain goes with --graph"))
     findings = _tried() if options.what == "llm" else examine()
     if options.json:
         write(json_text([finding.for_programs() for finding in findings], indent=2))
     else:
         show(findings, Paint(sys.stdout))
     return 1 if any(finding.level is Level.FAIL for finding in findings) else 0
+
+
+def _graph(options: Namespace) -> int:
+    """Examine the running graph. Raises UsageError if there is none."""
+    from cli.doctor.graph import examine_graph
+
+    if options.what:
+        raise UsageError(say("--graph does not go with {what}", what=options.what))
+    seen = examine_graph(options.domain)
+    if options.json:
+        write(json_text(seen.for_programs(), indent=2))
+    else:
+        show(seen.lines(), Paint(sys.stdout))
+        write(seen.summary())
+    return 1 if seen.found else 0
 
 
 def _tried() -> list[Finding]:

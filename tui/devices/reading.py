@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from text.plain import plain
+from graph.diagnostics.reading import DiagnosticStatus, statuses
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from graph.data import Sample, TopicRow
 
@@ -21,32 +20,13 @@ STALE_S = 3.0
 """A driver that has been silent for this long is stale: each reports once a second."""
 MOST = 200
 """Maximum number of drivers kept."""
-_MOST_VALUES = 64
-_LONGEST = 400
 _STRING = "std_msgs/msg/String"
 _ISO = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d")
 
 
-class DeviceLevel(IntEnum):
-    """The levels of diagnostic_msgs/DiagnosticStatus."""
-
-    OK = 0
-    WARN = 1
-    ERROR = 2
-    STALE = 3
-
-
 @dataclass(frozen=True)
-class Device:
+class Device(DiagnosticStatus):
     """The last report of a driver."""
-
-    name: str
-    level: DeviceLevel
-    message: str
-    hardware: str
-    values: Mapping[str, str]
-    heard_s: float
-    """Unix time."""
 
     @property
     def port(self) -> str:
@@ -104,11 +84,9 @@ class DeviceBook:
     def take(self, samples: Iterable[Sample]) -> None:
         """Read messages of diagnostic_msgs/DiagnosticArray; malformed ones are ignored."""
         for sample in samples:
-            statuses: Any = sample.value.get("status")
-            for status in statuses if isinstance(statuses, list) else ():
-                device = _device(status, sample.received_s - sample.age_s)
-                if device and (device.name in self._devices or len(self._devices) < MOST):
-                    self._devices[device.name] = device
+            for status in statuses(sample):
+                if status.name in self._devices or len(self._devices) < MOST:
+                    self._devices[status.name] = Device(**vars(status))
 
 
 def frames_topic(device: Device, topics: Iterable[TopicRow]) -> str | None:
@@ -123,20 +101,3 @@ def frames_topic(device: Device, topics: Iterable[TopicRow]) -> str | None:
         if row.name.endswith(f"/{name}/frames") and _STRING in row.type_names and row.publishers
     ]
     return min(fitting, key=len, default=None) if name else None
-
-
-def _device(status: Any, heard_s: float) -> Device | None:  # noqa: ANN401 - of any make
-    try:
-        name, level = _text(status["name"]), int(status["level"])
-        values = {
-            _text(item["key"]): _text(item["value"]) for item in status["values"][:_MOST_VALUES]
-        }
-        said, hardware = _text(status["message"]), _text(status["hardware_id"])
-    except (KeyError, TypeError, ValueError):
-        return None
-    known = DeviceLevel(level) if level in DeviceLevel.__members__.values() else DeviceLevel.ERROR
-    return Device(name or "?", known, said, hardware, values, heard_s)
-
-
-def _text(value: object) -> str:
-    return plain(str(value), _LONGEST)

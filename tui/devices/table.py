@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from graph.diagnostics.reading import StatusLevel
 from text.figures import whole
 from text.i18n import N_, _
 from text.plain import plain
-from tui.devices.reading import STALE_S, Device, DeviceLevel
+from tui.devices.reading import STALE_S, Device
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _STATES = {
-    DeviceLevel.OK: (N_("● fine"), "good"),
-    DeviceLevel.WARN: (N_("▲ warning"), "warn"),
-    DeviceLevel.ERROR: (N_("✗ error"), "bad"),
-    DeviceLevel.STALE: (N_("○ stale"), "dim"),
+    StatusLevel.OK: (N_("● fine"), "good"),
+    StatusLevel.WARN: (N_("▲ warning"), "warn"),
+    StatusLevel.ERROR: (N_("✗ error"), "bad"),
+    StatusLevel.STALE: (N_("○ stale"), "dim"),
 }
 _HOME, _WIDE = 100, 160
 """Widths from which on there is a column for the message, and for more figures."""

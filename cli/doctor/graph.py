@@ -1,0 +1,105 @@
+"""`deck doctor --graph`: what is wrong with the running ROS graph, whoever has started it."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from cli.doctor.finding import Finding, fail, warn
+from cli.observing import FOUND_S, LOOK_S, domain_view, tell_that_it_takes_time
+from graph.data import GraphUpdate
+from graph.findings.finding import FORGOTTEN_S, FindingLevel
+from graph.findings.lasting import LastingFindings
+from graph.housekeeping import is_housekeeping
+from text.i18n import N_, _, localized
+from text.plain import plain
+from tui.session.norms import NORMS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from cli.observing import DomainView
+    from graph.findings.finding import GraphFinding
+
+LISTEN_S = FOUND_S + 2.0
+"""Long enough to find everybody, and to hear whether what they say is regular."""
+MOST_S = LISTEN_S + FORGOTTEN_S + 5.0
+"""A graph in which something comes and goes all the time is taken as it is."""
+_PLACES = {
+    "topic": N_("topic {name}: {what}"),
+    "service": N_("service {name}: {what}"),
+    "action": N_("action {name}: {what}"),
+    "node": N_("node {name}: {what}"),
+}
+
+
+class GraphExamination:
+    """The findings of one domain, and the graph that they were found in."""
+
+    def __init__(self, domain: int, update: GraphUpdate, found: Sequence[GraphFinding]) -> None:
+        self.domain = domain
+        self.update = update
+        self.found = found
+
+    def for_programs(self) -> list[dict[str, object]]:
+        """Return the findings as they are written with `--json`."""
+        return [
+            {
+                **_line(one).for_programs(),
+                "text": localized(one.what),
+                "place": {"kind": one.place.kind, "name": one.place.name},
+                "nodes": list(one.nodes),
+            }
+            for one in self.found
+        ]
+
+    def lines(self) -> list[Finding]:
+        """Return the findings as lines of the doctor's report."""
+        return [_line(one) for one in self.found]
+
+    def summary(self) -> str:
+        """Return what was examined, and how much was found."""
+        rows = (self.update.nodes, self.update.topics, self.update.services)
+        nodes, topics, services = (
+            sum(not is_housekeeping(row.name) for row in of_kind) for of_kind in rows
+        )
+        words = _("domain {domain}: nodes: {nodes}, topics: {topics}, services: {services}")
+        told = words.format(domain=self.domain, nodes=nodes, topics=topics, services=services)
+        if not self.found:
+            return f"{told} · " + _("no findings")
+        return f"{told} · " + _("findings: {count}").format(count=len(self.found))
+
+
+def _line(one: GraphFinding) -> Finding:
+    words = _(_PLACES[one.place.kind])
+    text = words.format(name=plain(one.place.name), what=localized(one.what))
+    make = fail if one.level is FindingLevel.ERROR else warn
+    return make(f"graph.{one.rule}", text, localized(one.mend))
+
+
+def examine_graph(asked: int | None) -> GraphExamination:
+    """Look at the graph until it is known and all that is wrong has lasted.
+
+    Raises:
+        UsageError: if ROS cannot be used, or nobody is in the domain.
+    """
+    with domain_view(asked, all_topics=True) as view:
+        words = _("looking at domain {domain} for {seconds} s").format(
+            domain=view.domain, seconds=round(LISTEN_S)
+        )
+        tell_that_it_takes_time(words)
+        return _examined(view)
+
+
+def _examined(view: DomainView) -> GraphExamination:
+    lasting, update = LastingFindings(NORMS), GraphUpdate(0.0)
+    began_s = time.monotonic()
+    while True:
+        for update in view.updates(LOOK_S):
+            lasting.take(update, time.monotonic())
+        now_s = time.monotonic()
+        passed_s = now_s - began_s
+        settled = lasting.settles_in_s(now_s) is None
+        if passed_s >= MOST_S or (passed_s >= LISTEN_S and settled):
+            view.refuse_empty(update)
+            return GraphExamination(view.domain, update, lasting.told(now_s))

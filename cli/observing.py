@@ -1,0 +1,94 @@
+"""A look at the ROS graph of a running domain by a command that then ends."""
+
+from __future__ import annotations
+
+import queue
+import sys
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from cli.running_domain import running_domain
+from launcher.errors import UsageError
+from launcher.processes.shared_memory_unfinished import discard_unfinished
+from text.output import keep_stdout_to_ourselves, say_error
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from graph.data import GraphUpdate
+
+FOUND_S = 4.0
+"""A peer with the settings of ROS is found within this: it announces itself each 3 s."""
+LOOK_S = 0.2
+
+
+class DomainView:
+    """What an observer tells of one domain."""
+
+    def __init__(self, domain: int, updates: queue.SimpleQueue[GraphUpdate]) -> None:
+        self.domain = domain
+        self._updates = updates
+
+    def updates(self, within_s: float = LOOK_S) -> Iterator[GraphUpdate]:
+        """Yield what has come by then, at least one unless nothing has; return in time.
+
+        Raises:
+            UsageError: if ROS cannot be used.
+        """
+        deadline_s = time.monotonic() + within_s
+        while (left_s := deadline_s - time.monotonic()) > 0.0:
+            try:
+                update = self._updates.get(timeout=left_s)
+            except queue.Empty:
+                return
+            if update.error:
+                raise UsageError(update.error)
+            yield update
+
+    def refuse_empty(self, update: GraphUpdate) -> None:
+        """Raise UsageError if nobody but Deck's own observers is in the domain."""
+        from graph.findings.names import is_deck
+
+        ends = any(row.publishers or row.subscribers for row in update.topics)
+        if not ends and all(is_deck(node.name) for node in update.nodes):
+            raise UsageError(
+                say(
+                    "no node was found in domain {domain}: start one, or choose another with "
+                    "--domain",
+                    domain=self.domain,
+                )
+            )
+
+
+@contextmanager
+def domain_view(
+    asked: int | None, *, follow: Iterable[str] = (), all_topics: bool = False
+) -> Iterator[DomainView]:
+    """Observe the domain that was asked for, else that of the running robot, and leave it again.
+
+    Raises:
+        UsageError: if robots run in several domains.
+    """
+    from graph.observer.observer import Observer
+
+    _name, domain, discovery = running_domain(asked)
+    keep_stdout_to_ourselves()
+    # There may be no supervisor here that does it.
+    discard_unfinished()
+    updates: queue.SimpleQueue[GraphUpdate] = queue.SimpleQueue()
+    observer = Observer(domain, discovery, period_s=LOOK_S)
+    observer.follow(follow)
+    observer.measure(all_topics)
+    observer.start(updates.put)
+    try:
+        yield DomainView(domain, updates)
+    finally:
+        observer.stop()
+
+
+def tell_that_it_takes_time(words: str) -> None:
+    """Write to standard error, if a person reads it, why there is no answer yet."""
+    if sys.stderr is not None and sys.stderr.isatty():
+        say_error(words)
