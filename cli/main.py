@@ -41,6 +41,7 @@ HANDLERS = {
     "grade": ("cli.grade", "grade_command"),
     "model": ("cli.model", "model_command"),
     "shell": ("cli.shell", "shell_command"),
+    "diagnostics": ("cli.diagnostics", "diagnostics_command"),
     "doctor": ("cli.doctor.command", "doctor_command"),
 }
 """Command to module and function: only the module of the given command is imported."""

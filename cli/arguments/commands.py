@@ -37,6 +37,7 @@ COMMANDS = {
     "grade": N_("grade the files of folders by the steps of a lesson, whatever they do"),
     "model": N_("a language model on this machine, for Deck to ask"),
     "shell": N_("open a shell in the lesson's domain, with ros2, colcon and Deck's Python"),
+    "diagnostics": N_("show what drivers and others say on /diagnostics, as a tree"),
     "doctor": N_(
         "check what is installed, which ROS, which ports, and say how to fix what is missing"
     ),
@@ -63,6 +64,7 @@ _ADD = {
     "grade": learning.add_grade,
     "model": thinking.add_model,
     "shell": learning.add_shell,
+    "diagnostics": running.add_diagnostics,
     "doctor": running.add_doctor,
 }
 
@@ -106,7 +108,7 @@ def parser_of(command: str) -> Parser:
 
 
 def _open_parser() -> Parser:
-    lines = [f"  {name:<8} {_(help_text)}" for name, help_text in COMMANDS.items()]
+    lines = [f"  {name:<11} {_(help_text)}" for name, help_text in COMMANDS.items()]
     parser = Parser(
         prog="deck",
         usage=_("deck [PROFILE] [options]\n       deck COMMAND ..."),

@@ -120,3 +120,20 @@ def add_doctor(parser: Parser) -> None:
         "Exit code: 0, or 1 if something essential is missing. With --graph: 0 without findings, 1 "
         "with some, 2 if there is no graph to look at."
     )
+
+
+def add_diagnostics(parser: Parser) -> None:
+    """Add the options of `deck diagnostics`."""
+    parser.add_argument(
+        "--for",
+        dest="seconds",
+        metavar="S",
+        type=seconds,
+        default=3.0,
+        help=_("listen for S seconds, 3 by default"),
+    )
+    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    add_json(parser)
+    parser.epilog = _(
+        "Exit code: 0 if everything is all right, 1 if anything is not, 2 if nobody says anything."
+    )

@@ -127,7 +127,7 @@ class NextKind(GraphAction):
     id = "graph.next"
     key = "right"
     title = N_("Next kind")
-    tooltip = N_("List the next kind: nodes, services, actions, types.")
+    tooltip = N_("List the next kind: nodes, services, actions, types, findings.")
     from_elsewhere = True
 
     @classmethod
@@ -142,7 +142,7 @@ class PreviousKind(GraphAction):
     id = "graph.previous"
     key = "left"
     title = N_("Previous kind")
-    tooltip = N_("List the previous kind: types, actions, services, nodes.")
+    tooltip = N_("List the previous kind: findings, types, actions, services, nodes.")
     from_elsewhere = True
 
     @classmethod

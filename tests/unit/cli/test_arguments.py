@@ -111,7 +111,7 @@ def test_every_command_has_help_in_both_languages(
 def test_the_help_of_all_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     text = capsys.readouterr().out
-    assert all(f"\n  {command:<8} " in text for command in COMMANDS)
+    assert all(f"\n  {command:<11} " in text for command in COMMANDS)
 
 
 @pytest.mark.parametrize(("words", "usage"), [(["help"], "deck"), (["help", "run"], "deck run")])

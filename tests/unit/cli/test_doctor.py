@@ -345,3 +345,18 @@ def test_the_lines_say_the_level_in_words(
         "FAIL  gone",
         "      -> bring it",
     ]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--domain", "7"], "--domain goes with --graph"),
+        (["llm", "--graph"], "--graph does not go with llm"),
+        (["--graph", "--domain", "999"], "999"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["doctor", *words]) == 2
+    assert said in capsys.readouterr().err
