@@ -50,6 +50,8 @@ class DiagnosticsBook:
     def __init__(self) -> None:
         self.left_out = 0
         """How many statuses were not kept, since there are too many."""
+        self.revision = 0
+        """Changes whenever anything else does."""
         self._records: dict[str, StatusRecord] = {}
         self._excused_s = 0.0
 
@@ -66,6 +68,7 @@ class DiagnosticsBook:
         """Forget everything."""
         self._records.clear()
         self.left_out = 0
+        self.revision += 1
 
     def excuse(self, now_s: float) -> None:
         """Do not count the time before `now_s` (unix) as silence: nobody was listening."""
@@ -82,9 +85,11 @@ class DiagnosticsBook:
         for record in self._records.values():
             heard_s = max(record.status.heard_s, self._excused_s)
             if now_s - heard_s > STALE_S and record.level is not StatusLevel.STALE:
+                self.revision += 1
                 _set(record, StatusLevel.STALE, now_s)
 
     def _take(self, status: DiagnosticStatus) -> None:
+        self.revision += 1
         record = self._records.get(status.name)
         if record is None:
             if len(self._records) >= MOST:

@@ -37,6 +37,17 @@ class DevicesTarget(ShowsLines, Protocol):
         """Whether good frames are hidden."""
 
     @property
+    def has_diagnostics(self) -> bool:
+        """Whether anybody has said anything on /diagnostics."""
+
+    @property
+    def shows_tree(self) -> bool:
+        """Whether the diagnostics of everybody are shown in place of the drivers."""
+
+    def show_tree(self, shown: bool) -> None:
+        """Show them, or the drivers."""
+
+    @property
     def simulated(self) -> tuple[str, str] | None:
         """The simulated robot's node, and which of its serial lines is chosen."""
 
@@ -54,6 +65,37 @@ class DevicesTarget(ShowsLines, Protocol):
 
     def switch_trouble(self, trouble: SimulatedTrouble) -> object:
         """Cause this trouble on the chosen device, or clear it."""
+
+
+class NextDevicesTab(Action[DevicesTarget]):
+    """Switch from the drivers to the diagnostics of everybody, and back."""
+
+    id = "devices.tab"
+    key = "right"
+    title = N_("Diagnostics")
+    means = "the tab to the right"
+    tooltip = N_("Show what everybody says on /diagnostics as a tree, or the drivers.")
+    from_elsewhere = True
+
+    @classmethod
+    def possible(cls, target: DevicesTarget) -> bool | None:
+        """Only with something to show."""
+        return target.has_diagnostics
+
+    @classmethod
+    async def run(cls, target: DevicesTarget) -> None:
+        """Switch to the other one."""
+        target.show_tree(not target.shows_tree)
+
+
+class PreviousDevicesTab(NextDevicesTab):
+    """The same: there are two."""
+
+    id = "devices.tab_back"
+    key = "left"
+    title = N_("Drivers")
+    means = "the tab to the left"
+    from_elsewhere = False
 
 
 class DevicesAction(Action[DevicesTarget]):
@@ -254,6 +296,8 @@ class LowBattery(_MakeTrouble):
 
 
 DEVICES_ACTIONS = (
+    NextDevicesTab,
+    PreviousDevicesTab,
     PauseFrames,
     OneWay,
     OnlyBad,

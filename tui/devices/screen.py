@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 from textual import on, work
 from textual.widgets import Static
 
+from graph.diagnostics.book import DiagnosticsBook
 from launcher.status import Severity
 from robot.frames.lines import decode
 from robot.topics import DIAGNOSTICS
@@ -18,12 +19,19 @@ from tui.actions import bindings
 from tui.devices import trouble as device_trouble
 from tui.devices import words
 from tui.devices.actions import DEVICES_ACTIONS
+from tui.devices.diagnostics import (
+    DiagnosticsTree,
+    DiagnosticsView,
+    StatusFacts,
+    worst_of,
+)
 from tui.devices.frame_rows import KEPT, WAYS, FrameRows, frame_columns
 from tui.devices.reading import Device, DeviceBook, frames_topic
 from tui.devices.table import DevicesTable
 from tui.frame.screen import DeckScreen
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
+from tui.widgets.tab_line import TabEntry, TabLine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -32,7 +40,10 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate, Sample
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
+    from tui.widgets.rows import Rows
 
+DRIVERS, TREE = "drivers", "tree"
+"""The tabs."""
 _LOOK_EVERY_S = 0.5
 """How often ages are updated, whether or not anything arrives."""
 
@@ -46,12 +57,15 @@ class DevicesScreen(DeckScreen):
         "connected, bytes a second, errors in total and now. Below is the traffic on the port of "
         "the chosen driver, with the bytes: ~ marks noise, ✗ a frame whose check failed. Frames "
         "are requested only while they are shown. The arrow keys choose a driver or, after Tab, "
-        "lines, several with Shift."
+        "lines, several with Shift. The second tab has what everybody reports, as a tree with the "
+        "worst on top, and since when."
     )
     BINDINGS: ClassVar = bindings(*DEVICES_ACTIONS)
     DEFAULT_CSS = """
     DevicesScreen {
         DevicesTable { height: auto; max-height: 40%; }
+        DiagnosticsView { display: none; }
+        &.-tree DiagnosticsView { display: block; }
         #devices-empty { height: 1fr; padding: 1 2; color: $text-muted; }
         #devices-chosen { height: auto; max-height: 3; padding: 0 1; background: $panel; }
     }
@@ -62,6 +76,7 @@ class DevicesScreen(DeckScreen):
         super().__init__()
         self.frames = FrameRows()
         self._book = DeviceBook()
+        self._diagnostics = DiagnosticsBook()
         self._update: GraphUpdate | None = None
         self._topic: str | None = None
         """Topic with the frames of the chosen driver."""
@@ -72,9 +87,11 @@ class DevicesScreen(DeckScreen):
     def compose_body(self) -> ComposeResult:
         """The table, the report of the chosen driver, and its frames or why there are none."""
         yield Static(id="devices-empty", markup=False)
+        yield TabLine()
         yield DevicesTable()
         yield Static(id="devices-chosen", markup=False)
         yield LogPane(LogView(max_lines=KEPT, fold=False, columns_for=frame_columns))
+        yield DiagnosticsView(self._diagnostics)
 
     @property
     def table(self) -> DevicesTable:
@@ -88,8 +105,20 @@ class DevicesScreen(DeckScreen):
 
     @property
     def chosen(self) -> Device | None:
-        """The chosen driver."""
-        return self._book.get(self.table.chosen) if self.is_mounted else None
+        """The chosen driver, if drivers are shown."""
+        if not self.is_mounted or self.shows_tree:
+            return None
+        return self._book.get(self.table.chosen)
+
+    @property
+    def has_diagnostics(self) -> bool:
+        """Whether anybody has said anything on /diagnostics."""
+        return bool(self._diagnostics.records)
+
+    @property
+    def shows_tree(self) -> bool:
+        """Whether the diagnostics of everybody are shown in place of the drivers."""
+        return self.has_class("-tree")
 
     @property
     def only_bad(self) -> bool:
@@ -100,7 +129,8 @@ class DevicesScreen(DeckScreen):
         """The reports of every driver, and the frames of the chosen one; nothing while hidden."""
         if self.feed.front is not self:
             return set()
-        return {DIAGNOSTICS} if self._topic is None else {DIAGNOSTICS, self._topic}
+        frames = set() if self._topic is None or self.shows_tree else {self._topic}
+        return {DIAGNOSTICS} | frames
 
     def on_mount(self) -> None:
         """Focus the table."""
@@ -111,6 +141,7 @@ class DevicesScreen(DeckScreen):
     def on_screen_resume(self) -> None:
         """Excuse the drivers: nobody was listening while another screen was in front."""
         self._book.excuse(clock.now())
+        self._diagnostics.excuse(clock.now())
         self._look()
 
     def on_session_changed(self, message: SessionChanged) -> None:
@@ -120,6 +151,7 @@ class DevicesScreen(DeckScreen):
         if session is not None:
             self.pane.save_folder = session.log_dir
             self._book.clear()
+            self._diagnostics.clear()
             self._update = None
         self._look()
 
@@ -133,6 +165,7 @@ class DevicesScreen(DeckScreen):
         self._update = message.update
         samples = message.update.samples
         self._book.take(samples.get(DIAGNOSTICS, ()))
+        self._diagnostics.take(samples.get(DIAGNOSTICS, ()))
         self._look()
         if self._topic is not None:
             self._take_frames(samples.get(self._topic, ()))
@@ -158,19 +191,43 @@ class DevicesScreen(DeckScreen):
     def _go_to_frames(self) -> None:
         self.pane.view.focus()
 
+    @on(DiagnosticsTree.Highlighted)
+    def _status_chosen(self) -> None:
+        self.query_one(DiagnosticsView).show_chosen()
+
+    @on(DiagnosticsTree.Opened)
+    def _go_to_facts(self) -> None:
+        self.query_one(StatusFacts).focus()
+
+    @on(TabLine.Selected)
+    def _tab_chosen(self, message: TabLine.Selected) -> None:
+        self.show_tree(message.key == TREE)
+
     @on(LogView.StateChanged)
     def _keys_changed(self) -> None:
         self.refresh_bindings()
 
     def key_escape(self) -> None:
-        """Go back to the drivers."""
-        self.table.focus()
+        """Go back to the list."""
+        self._list.focus()
 
     # Actions
 
     async def ros2_command(self) -> str:
         """Return what prints the reports of the drivers."""
-        return ros2_words.echo(DIAGNOSTICS) if self.chosen else ""
+        return ros2_words.echo(DIAGNOSTICS) if self.has_diagnostics else ""
+
+    def show_tree(self, shown: bool) -> None:
+        """Show the diagnostics of everybody, or the drivers."""
+        self.set_class(shown, "-tree")
+        self._look()
+        self._list.focus()
+        self.topics_changed()
+        self.refresh_bindings()
+
+    @property
+    def _list(self) -> Rows:
+        return self.query_one(DiagnosticsTree) if self.shows_tree else self.table
 
     def next_way(self) -> None:
         """Switch between both directions, in, and out."""
@@ -238,9 +295,10 @@ class DevicesScreen(DeckScreen):
         """Show the current state."""
         if not self.is_mounted or self.feed.front is not self:
             return
-        devices = self._book.devices
+        devices, now_s = self._book.devices, clock.now()
         for widget in (self.table, self.query_one("#devices-chosen"), self.pane):
-            widget.display = bool(devices)
+            widget.display = bool(devices) and not self.shows_tree
+        self._show_tabs(now_s)
         empty = self.query_one("#devices-empty", Static)
         empty.display = not devices
         if not devices:
@@ -250,10 +308,24 @@ class DevicesScreen(DeckScreen):
                 self.run_worker(self._find_lessons())
             return
         if self.focused is None:
-            self.table.focus()
-        now_s = clock.now()
+            self._list.focus()
+        if self.shows_tree:
+            self.query_one(DiagnosticsView).redraw()
+            return
         self.table.show_devices(devices, now_s)
         self._show_chosen(now_s)
+
+    def _show_tabs(self, now_s: float) -> None:
+        self._diagnostics.look(now_s)
+        tabs, devices = self.query_one(TabLine), len(self._book.devices)
+        tabs.display = bool(devices)
+        words, drivers = _("Diagnostics"), _("Drivers")
+        told = len(self._diagnostics.records)
+        entries = (
+            TabEntry(DRIVERS, f"{drivers} {devices}"),
+            TabEntry(TREE, f"{words} {told}", worst_of(self._diagnostics)),
+        )
+        tabs.show_tabs(TREE if self.shows_tree else DRIVERS, entries)
 
     def _show_chosen(self, now_s: float) -> None:
         device = self.chosen

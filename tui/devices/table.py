@@ -14,12 +14,13 @@ from tui.widgets.rows import Cell, Column, Row, Rows
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_STATES = {
+STATES = {
     StatusLevel.OK: (N_("● fine"), "good"),
     StatusLevel.WARN: (N_("▲ warning"), "warn"),
     StatusLevel.ERROR: (N_("✗ error"), "bad"),
     StatusLevel.STALE: (N_("○ stale"), "dim"),
 }
+"""Words and meaning (`tui.widgets.rows.Cell`) of each level."""
 _HOME, _WIDE = 100, 160
 """Widths from which on there is a column for the message, and for more figures."""
 NOTHING = Cell("–", "dim")
@@ -89,7 +90,7 @@ def state(device: Device, now_s: float) -> Cell:
     age_s = device.age_s(now_s)
     if age_s > STALE_S:
         return Cell(_("○ stale {seconds} s").format(seconds=round(min(age_s, 9999.0))), "dim")
-    words, meaning = _STATES[device.level]
+    words, meaning = STATES[device.level]
     return Cell(_(words), meaning)
 
 

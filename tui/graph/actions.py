@@ -127,6 +127,7 @@ class NextKind(GraphAction):
     id = "graph.next"
     key = "right"
     title = N_("Next kind")
+    means = "the tab to the right"
     tooltip = N_("List the next kind: nodes, services, actions, types, findings.")
     from_elsewhere = True
 
@@ -142,6 +143,7 @@ class PreviousKind(GraphAction):
     id = "graph.previous"
     key = "left"
     title = N_("Previous kind")
+    means = "the tab to the left"
     tooltip = N_("List the previous kind: findings, types, actions, services, nodes.")
     from_elsewhere = True
 

@@ -304,7 +304,7 @@ class GraphScreen(DeckScreen):
 
     @on(GraphTabs.Selected)
     def _selected(self, message: GraphTabs.Selected) -> None:
-        self.list_kind(message.kind)
+        self.list_kind(GraphKind(message.key))
 
     @on(Input.Changed, "#graph-filter")
     def _filter_changed(self) -> None:

@@ -12,11 +12,21 @@ from textual.widgets import Static
 
 from graph.data import Sample
 from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
-from tests.tui.recorded_devices import STATUSES, of_chassis, of_sonar, update, with_drivers
+from tests.tui.recorded_devices import (
+    AGGREGATED,
+    STATUSES,
+    of_chassis,
+    of_sonar,
+    reported,
+    update,
+    with_drivers,
+)
 from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.devices import words as devices_words
+from tui.devices.diagnostics import DiagnosticsTree
+from tui.devices.screen import DevicesScreen
 
 Before = Callable[[Pilot[Any]], Awaitable[None]]
 
@@ -62,6 +72,29 @@ def test_frames_of_a_sonar(look: Look, dump_compare: SnapCompare) -> None:
     """The second driver is chosen; the bytes are in a column of their own."""
     metres = (1.23, 1.24, 9.0, 0.1, 1.25)
     before = shown(of_sonar(*metres, language=look.language), keys=("down", "down"))
+    assert dump_compare(
+        look.app("devices", with_drivers()), terminal_size=look.size, run_before=before
+    )
+
+
+@every_look
+def test_diagnostics(look: Look, dump_compare: SnapCompare) -> None:
+    """The worst on top, a branch like the worst in it; of the lidar its changes and values."""
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await shown(*AGGREGATED, keys=("right",))(pilot)
+        assert isinstance(pilot.app, DeckApp)
+        screen, graph = pilot.app.screen, pilot.app.feed.graph
+        assert isinstance(screen, DevicesScreen)
+        assert isinstance(graph, RecordedGraph)
+        for level, message in ((2, "no data"), (1, "12 % of the points are missing")):
+            graph.show(update(reported("/sensors/lidar", level, message, rate="9.8")))
+            await pilot.pause()
+        screen._look()
+        screen.query_one(DiagnosticsTree).choose("sensors/lidar")
+        for _round in range(3):
+            await pilot.pause()
+
     assert dump_compare(
         look.app("devices", with_drivers()), terminal_size=look.size, run_before=before
     )

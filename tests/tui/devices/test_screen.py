@@ -23,6 +23,7 @@ from tests.tui.recorded_devices import (
     frames,
     of_chassis,
     of_sonar,
+    reported,
     status,
     update,
     with_drivers,
@@ -32,8 +33,10 @@ from tests.waiting import until
 from tui import clock
 from tui.app import DeckApp
 from tui.devices import words as devices_words
+from tui.devices.diagnostics import DiagnosticsView, StatusFacts
 from tui.devices.screen import DevicesScreen
 from tui.frame.key_bar import KeyBar
+from tui.widgets.tab_line import TabLine
 
 ESCAPE = "\x1b[31m[bold red]\x00\u202e"
 
@@ -233,3 +236,52 @@ async def test_what_others_put_into_it_does_no_harm() -> None:
             at.graph.show(update(frames("chassis", many)))
             await at.pilot.pause()
         assert 5000 <= len(at.lines()) <= 6250
+
+
+async def test_the_second_tab_has_what_everybody_says_the_worst_on_top() -> None:
+    async with stage() as at:
+        await at.press("right")
+        view = at.screen.query_one(DiagnosticsView)
+        assert at.screen.focused is view.names
+        first, second, *_ = (row.cells[0].text for row in view.names._rows)
+        assert first.startswith("✗ sonar_rear  Cannot open ")
+        assert second == "▲ chassis  The wheels stand: no drive line for 250 ms"
+        # The frames of a driver are not asked for while nobody sees them.
+        assert at.graph.followed >= {"/diagnostics"}
+        assert not any("frames" in topic for topic in at.graph.followed)
+        await at.press("left")
+        assert not at.screen.shows_tree
+        assert any("frames" in topic for topic in at.graph.followed)
+
+
+async def test_silence_makes_stale_and_stands_in_the_history(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with stage() as at:
+        await at.press("right")
+        view = at.screen.query_one(DiagnosticsView)
+        view.names.choose("chassis")
+        later_s = clock.now() + 6.0
+        monkeypatch.setattr(clock, "now", lambda: later_s)
+        await until(
+            lambda: "▲" not in str(at.screen.query_one(TabLine).render()), "the tab is calm"
+        )
+        facts = at.screen.query_one(StatusFacts)
+        await until(lambda: len(facts._rows) > 2 and "stale" in facts._rows[1].cells[0].text, "it")
+        assert "warning" in facts._rows[2].cells[0].text
+
+
+async def test_thousands_of_statuses_with_hostile_names_do_not_break_it() -> None:
+    async with stage() as at:
+        samples = [
+            reported(f"{ESCAPE}/{number}: x", 77, ESCAPE, nan="nan") for number in range(300)
+        ]
+        at.graph.show(update(*samples))
+        await at.press("right")
+        view = at.screen.query_one(DiagnosticsView)
+        await until(lambda: len(view.names._rows) > 600, "all of them")
+        assert "\x1b" not in "".join(row.cells[0].text for row in view.names._rows)
+        await at.press("down", "down", "enter")
+        assert at.screen.query_one(StatusFacts).has_focus
+        await at.press("escape")
+        assert view.names.has_focus

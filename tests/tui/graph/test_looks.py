@@ -201,11 +201,11 @@ def told(*choices: str, mend: bool = False) -> Callable[[Pilot[Any]], Awaitable[
 
 
 @every_look
-def test_findings(look: Look, snap_compare: SnapCompare) -> None:
+def test_findings(look: Look, dump_compare: SnapCompare) -> None:
     """Four findings, the worst first; of a misspelt name what is wrong, what to do, and where."""
     before = told("near-name topic /sensor/sonar_frnt")
     app = app_of(look, ill_graph())
-    assert snap_compare(app, terminal_size=look.size, run_before=before)
+    assert dump_compare(app, terminal_size=look.size, run_before=before)
 
 
 @both_languages
