@@ -64,12 +64,12 @@ ELSEWHERE: Final = {
     "component": "Every node of Deck is a process; the Deck tab starts and stops them.",
     "control": "Deck knows no ros2_control; the Devices tab shows joints and drives.",
     "daemon": "This ros2 has no daemon: it looks at the graph anew each time.",
-    "doctor": "Ask `deck doctor` instead.",
+    "doctor": "Ask `deck doctor` instead, of the graph `deck doctor --graph`.",
     "launch": "A profile starts the nodes of a lesson together: `deck run`, or the Deck tab.",
     "lifecycle": "The Graph tab shows the state of a lifecycle node.",
     "multicast": "Ask `deck doctor` instead.",
     "security": "Deck has no screen for security enclaves.",
-    "wtf": "Ask `deck doctor` instead.",
+    "wtf": "Ask `deck doctor` instead, of the graph `deck doctor --graph`.",
 }
 """Commands of the real tool that are not here, and where Deck does the same."""
 

@@ -68,6 +68,7 @@ def test_every_command_shown_exists(readme: str) -> None:
         "model",
         "mcp",
         "doctor",
+        "diagnostics",
     }
     assert shown | {"ps", "logs", "attach", "down"} <= set(COMMANDS)
 
