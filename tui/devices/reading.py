@@ -9,10 +9,10 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from graph.diagnostics.reading import DiagnosticStatus, statuses
+from graph.diagnostics.reading import StatusLevel, statuses
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from graph.data import Sample, TopicRow
 
@@ -25,8 +25,16 @@ _ISO = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d")
 
 
 @dataclass(frozen=True)
-class Device(DiagnosticStatus):
-    """The last report of a driver."""
+class Device:
+    """The last report of a driver: what a `DiagnosticStatus` has, and what it tells of a port."""
+
+    name: str
+    level: StatusLevel
+    message: str
+    hardware: str
+    values: Mapping[str, str]
+    heard_s: float
+    """Unix time."""
 
     @property
     def port(self) -> str:

@@ -22,10 +22,11 @@ from tui.graph.map import GraphMap, middle_of
 from tui.graph.node import NodePane
 from tui.graph.parameters import PARAMETER_EVENTS
 from tui.graph.places import LISTED, GraphKind, GraphPlace, PlaceHistory
-from tui.graph.tabs import GraphTabs
+from tui.graph.tabs import tab_entries
 from tui.graph.type import GraphTypeTree
 from tui.widgets.field import Field
 from tui.widgets.rows import Rows
+from tui.widgets.tab_line import TabLine
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -100,7 +101,7 @@ class GraphScreen(DeckScreen):
     def compose_body(self) -> ComposeResult:
         """Kinds and filter above list and detail."""
         with Horizontal(id="graph-bar"):
-            yield GraphTabs()
+            yield TabLine()
             yield Field(id="graph-filter", compact=True, select_on_focus=False)
             yield Static(id="graph-count", markup=False)
         with Horizontal(id="graph-body"):
@@ -201,7 +202,8 @@ class GraphScreen(DeckScreen):
         kind, words = self.history.kind, self.filter.value
         self.filter.placeholder = _("filter: words of a name or a type")
         counts = {each: len(self.index.fitting(each)) for each in self.index.listed}
-        self.query_one(GraphTabs).show(kind, counts, self.index.findings.worst)
+        worst = self.index.findings.worst
+        self.query_one(TabLine).show_tabs(kind.value, tab_entries(counts, worst))
         shown = self.index.fitting(kind, words)
         self._count(len(shown), len(self.index.all_of(kind)))
         self.names.show_entries(kind, shown, self.history.chosen.get(kind, ""), words)
@@ -228,10 +230,9 @@ class GraphScreen(DeckScreen):
         self._detail.show_words(*(words if not shown else ("", "")))
 
     def _count(self, shown: int, everything: int) -> None:
-        words = _("{shown} of {n}").format(shown=shown, n=everything)
-        count = self.query_one("#graph-count", Static)
-        if words != count.content:
-            count.update(words)
+        words, count = _("{shown} of {n}"), self.query_one("#graph-count", Static)
+        if (told := words.format(shown=shown, n=everything)) != count.content:
+            count.update(told)
 
     # Message handlers
 
@@ -302,8 +303,8 @@ class GraphScreen(DeckScreen):
             self.remove_class("-map")
         await self.go(message.place)
 
-    @on(GraphTabs.Selected)
-    def _selected(self, message: GraphTabs.Selected) -> None:
+    @on(TabLine.Selected)
+    def _selected(self, message: TabLine.Selected) -> None:
         self.list_kind(GraphKind(message.key))
 
     @on(Input.Changed, "#graph-filter")
@@ -356,10 +357,8 @@ class GraphScreen(DeckScreen):
     def toggle_map(self) -> None:
         """Show the map around the chosen node, or the list."""
         self.toggle_class("-map")
-        if self.draws:
-            middle = middle_of(self.feed.update, self._place)
-            if middle:
-                self.history.go(GraphPlace(GraphKind.NODE, middle))
+        if self.draws and (middle := middle_of(self.feed.update, self._place)):
+            self.history.go(GraphPlace(GraphKind.NODE, middle))
         self._arrive()
 
     def list_kind(self, kind: GraphKind) -> None:

@@ -12,7 +12,7 @@ from tests.tui.recorded_findings import ill_graph
 from tests.tui.recorded_nodes import graph_update
 from tui import clock
 from tui.graph.places import GraphKind, GraphPlace
-from tui.graph.tabs import GraphTabs
+from tui.widgets.tab_line import TabLine
 
 LATER_S = 60.0
 NEAR = "near-name topic /sensor/sonar_frnt"
@@ -32,7 +32,7 @@ def later(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
 
 
 def tab_words(stage: Stage) -> str:
-    return stage.screen.query_one(GraphTabs).render().plain
+    return stage.screen.query_one(TabLine).render().plain
 
 
 async def test_what_lasts_is_counted_on_the_tab_and_listed_the_worst_first(

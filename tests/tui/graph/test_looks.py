@@ -178,7 +178,9 @@ def test_the_map(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-def told(*choices: str, mend: bool = False) -> Callable[[Pilot[Any]], Awaitable[None]]:
+def told(
+    patch: pytest.MonkeyPatch, *choices: str, mend: bool = False
+) -> Callable[[Pilot[Any]], Awaitable[None]]:
     """List the findings of a graph that is ill, as they are once they have lasted."""
 
     async def before(pilot: Pilot[Any]) -> None:
@@ -188,38 +190,43 @@ def told(*choices: str, mend: bool = False) -> Callable[[Pilot[Any]], Awaitable[
         assert isinstance(screen, GraphScreen)
         assert isinstance(graph, RecordedGraph)
         screen.list_kind(GraphKind.FINDING)
-        with pytest.MonkeyPatch.context() as patch:
-            late_s = clock.steady() + 60.0
-            patch.setattr(clock, "steady", lambda: late_s)
-            graph.show(graph_update() if mend else ill_graph())
+        late_s = clock.steady() + 60.0
+        patch.setattr(clock, "steady", lambda: late_s)
+        graph.show(graph_update() if mend else ill_graph())
+        await still(pilot, screen)
+        for name in choices:
+            screen.names.choose(f"finding|{name}")
             await still(pilot, screen)
-            for name in choices:
-                screen.names.choose(f"finding|{name}")
-                await still(pilot, screen)
 
     return before
 
 
 @every_look
-def test_findings(look: Look, dump_compare: SnapCompare) -> None:
+def test_findings(look: Look, dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch) -> None:
     """Four findings, the worst first; of a misspelt name what is wrong, what to do, and where."""
-    before = told("near-name topic /sensor/sonar_frnt")
+    before = told(monkeypatch, "near-name topic /sensor/sonar_frnt")
     app = app_of(look, ill_graph())
     assert dump_compare(app, terminal_size=look.size, run_before=before)
 
 
 @both_languages
-def test_no_findings(look: Look, dump_compare: SnapCompare) -> None:
+def test_no_findings(
+    look: Look, dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Nothing is wrong, and what was looked for."""
-    assert dump_compare(app_of(look), terminal_size=look.size, run_before=told(mend=True))
+    assert dump_compare(
+        app_of(look), terminal_size=look.size, run_before=told(monkeypatch, mend=True)
+    )
 
 
 @one_look
-def test_findings_are_seen_from_another_tab(look: Look, dump_compare: SnapCompare) -> None:
+def test_findings_are_seen_from_another_tab(
+    look: Look, dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Nodes are listed, and the last tab has the number of findings in red."""
 
     async def before(pilot: Pilot[Any]) -> None:
-        await told()(pilot)
+        await told(monkeypatch)(pilot)
         assert isinstance(pilot.app.screen, GraphScreen)
         pilot.app.screen.list_kind(GraphKind.NODE)
         await still(pilot, pilot.app.screen)
