@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from graph.data import NAMELESS
@@ -53,11 +54,10 @@ def meant(name: str, known: Iterable[str]) -> str:
 
     Names that differ in a number, or in a whole word, are different things: `left` and `right`.
     """
-    parts = _words(name)
     scored = sorted(
         (score, other)
         for other in known
-        if other != name and (score := _likeness(parts, _words(other))) > 0.0
+        if other != name and (score := _likeness(name, other)) > 0.0
     )
     return scored[-1][1] if scored else ""
 
@@ -66,8 +66,13 @@ def _words(name: str) -> list[str]:
     return [word for word in _WORDS.split(name.casefold()[: 4 * LONGEST]) if word]
 
 
-def _likeness(one: list[str], other: list[str]) -> float:
-    """Return how alike two names are, 0 if they do not mean the same, 1 at most."""
+@lru_cache(maxsize=1 << 16)
+def _likeness(name: str, known: str) -> float:
+    """Return how alike two names are, 0 if they do not mean the same, 1 at most.
+
+    The same pairs are asked for with every update of the graph.
+    """
+    one, other = _words(name), _words(known)
     if one == other or "".join(one) == "".join(other):
         return 1.0
     if len(one) == len(other):

@@ -243,6 +243,7 @@ def test_a_name_that_nearly_matches_is_worse_than_none() -> None:
         ("/sensor/sonar_rear", "/sensor/sonar_front", False),
         ("/sensors/ultrasound/front_left", "/sensors/ultrasound/front_right", False),
         ("/wheel_1", "/wheel_2", False),
+        ("/sensor/range1", "/sensor/range2", False),
         ("/drive", "/drive_safe", False),
         ("/drive_action", "/drive_safe", False),
         ("/" + "a" * 100_000, "/" + "b" * 100_000, False),
