@@ -51,5 +51,5 @@ COMMAND_SOURCES = (DRIVE_TELEOP, DRIVE_ACTION, DRIVE)
 """Commands for the gate, by rank: a person's keys, a drive to a point, words and the model."""
 OF_MANY = frozenset({JOINT_STATES})
 """Topics that several nodes publish together, each for its own joints."""
-SPOKEN_BY_PEOPLE = frozenset({EMERGENCY_STOP, SAY, SPEAKER})
-"""Topics that need no publisher: somebody may say something there, or not."""
+MAY_WAIT = frozenset({EMERGENCY_STOP, HEAD_STATE, JOINT_STATES, SAY, SPEAKER})
+"""Topics that need no publisher: people speak there, or drivers that a lesson may do without."""

@@ -73,5 +73,5 @@ class GraphNorms:
     """Topics that must not even have a second publisher."""
     of_many: frozenset[str] = frozenset()
     """Topics that many publish together, each a part."""
-    fed_by_hand: frozenset[str] = frozenset()
-    """Topics on which people speak: nobody need publish them."""
+    may_wait: frozenset[str] = frozenset()
+    """Other topics that nobody need publish."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def unfed(update: GraphUpdate, norms: GraphNorms) -> Iterator[GraphFinding]:
     """Yield topics that somebody hears and nobody publishes, with the name that was meant.
 
-    A topic that waits for people or for commands is one of them only if its name nearly matches.
+    A topic that may wait for somebody is one of them only if its name nearly matches.
     """
     fed = {
         row.name: set(row.type_names)
@@ -32,10 +32,11 @@ def unfed(update: GraphUpdate, norms: GraphNorms) -> Iterator[GraphFinding]:
         hearers = sorted({end.node for end in row.subscribed_by if not is_deck(end.node)})
         if row.publishers or row.own_publishers or not hearers or is_hidden(row.name):
             continue
-        if row.name == CLOCK or row.name in norms.fed_by_hand:
+        if row.name == CLOCK:
             continue
         instead = meant(row.name, _of_one_type(row, fed))
-        waits = any(norms.moves(row.name, kind) for kind in row.type_names)
+        waits = row.name in norms.may_wait
+        waits = waits or any(norms.moves(row.name, kind) for kind in row.type_names)
         if not instead and (waits or is_housekeeping(row.name)):
             continue
         place = FindingPlace("topic", row.name)

@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from graph.findings.finding import GraphNorms
 from robot.safety.moving_topics import SOLE, moves
-from robot.topics import OF_MANY, SPOKEN_BY_PEOPLE
+from robot.topics import MAY_WAIT, OF_MANY
 
-NORMS = GraphNorms(moves, SOLE, OF_MANY, SPOKEN_BY_PEOPLE)
+NORMS = GraphNorms(moves, SOLE, OF_MANY, MAY_WAIT)

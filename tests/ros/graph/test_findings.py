@@ -115,11 +115,14 @@ def test_a_stream_that_stops_is_found(ros_domain: int, watcher: Watcher) -> None
         assert "from /sonar, and then nothing" in finding.what
 
 
-def test_a_healthy_robot_has_none_while_it_starts_either(watcher: Watcher) -> None:
+@pytest.mark.parametrize(("profile", "nodes", "seconds"), [("robot", 15, 8), ("06-rviz", 4, 6)])
+def test_a_healthy_robot_has_none_while_it_starts_either(
+    watcher: Watcher, profile: str, nodes: int, seconds: int
+) -> None:
     """Whatever is missing for a moment while fifteen nodes start and end is not told."""
     watcher.observer.measure(all_topics=True)
     lasting, told, most = LastingFindings(NORMS), set[str](), 0
-    run = DeckProcess("run", "robot", "--for", "8")
+    run = DeckProcess("run", profile, "--for", str(seconds))
 
     def ended() -> bool:
         nonlocal most
@@ -133,5 +136,5 @@ def test_a_healthy_robot_has_none_while_it_starts_either(watcher: Watcher) -> No
         wait_until(ended, "its end", 50.0)
     finally:
         run.close()
-    assert most >= 15
+    assert most >= nodes
     assert told == set()

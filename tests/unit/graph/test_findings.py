@@ -71,12 +71,12 @@ def test_a_healthy_graph_has_none() -> None:
     rows = (
         FED,
         topic("/emergency_stop", "", "/safety_stop", "std_msgs/msg/Bool"),
+        topic("/joint_states", "", "/robot_state_publisher", "sensor_msgs/msg/JointState"),
         topic("/drive", "/ai_driver /llm_parser", "/safety_stop", DRIVE),
         topic("/drive_teleop", "", "/safety_stop", DRIVE),
         topic("/ai_command", "/brain", "", STRING, trouble=Trouble.QUIET, measured=True),
         topic("/diagnostics", "/a /b", "", ARRAY, several_send=True),
         topic("/tf", "/a /b", "", "tf2_msgs/msg/TFMessage", several_send=True),
-        topic("/joint_states", "/a /b", "", "sensor_msgs/msg/JointState", several_send=True),
         topic("/rosout", "/a /b", "", "rcl_interfaces/msg/Log", several_send=True),
         topic("/unheard", "/a"),
         topic("/recorded", "/bag", "", trouble=Trouble.QUIET, steady_hz=9.0, age_s=5.0,
@@ -212,6 +212,12 @@ def test_losses_that_matter_are_told_with_their_cause() -> None:
         assert found(topic("/image", published_by=camera, lost=lost, count=count)) == []
 
 
+def test_many_may_publish_the_states_of_joints() -> None:
+    joints = topic("/joint_states", "/arm /base", "", "sensor_msgs/msg/JointState")
+    assert found(replace(joints, several_send=True)) == []
+    assert only(replace(joints, name="/head_state", several_send=True)).rule == "fight"
+
+
 def test_a_subscriber_that_nobody_feeds() -> None:
     finding = only(topic("/scan", "", "/nav /rviz", RANGE))
     assert (finding.rule, finding.level) == ("unfed", FindingLevel.WARNING)
@@ -226,7 +232,9 @@ def test_a_name_that_nearly_matches_is_worse_than_none() -> None:
     assert "/sensor/sonar_front" in finding.what
     assert "-r /sensor/sonar_frnt:=/sensor/sonar_front" in finding.mend
     assert finding.nodes == ("/guard", "/sonar_front")
-    # Also of what may rest, but not of another type.
+    # Also of what may wait, but not of another type.
+    stop = topic("/emergency_stop", "", "/gate", "std_msgs/msg/Bool")
+    assert only(stop, topic("/emergency_stpo", "/me", "", "std_msgs/msg/Bool")).rule == "near-name"
     drive = topic("/drive", "/ai_driver", "/gate", DRIVE)
     assert only(drive, topic("/drve", "", "/wheels", DRIVE)).rule == "near-name"
     assert only(FED, topic("/sensor/sonar_frnt", "", "/guard", STRING)).rule == "unfed"
