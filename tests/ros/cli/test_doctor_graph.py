@@ -51,20 +51,24 @@ def test_findings_have_a_place_and_a_mend_and_make_the_exit_code_1(
     assert russian.lines[4].endswith("замечаний: 2")
 
 
-def test_a_graph_without_findings_says_what_was_seen(peer: Peer, ros_domain: int) -> None:
-    peer.publisher("/sensor/sonar_front", Float32)
-    run = deck("doctor", "--graph")
-    assert run.process.returncode == 0
-    (line,) = run.lines
+def test_a_graph_without_findings_in_which_nobody_reports_anything(
+    peer: Peer, ros_domain: int
+) -> None:
+    peer.publisher("/diagnostics", DiagnosticArray)
+    doctor, reports = DeckProcess("doctor", "--graph"), DeckProcess("diagnostics")
+    assert [doctor.finish(), reports.finish()] == [0, 2]
+    (line,) = doctor.lines
     assert line.startswith(f"domain {ros_domain}: nodes: 1, topics: 1,")
     assert line.endswith("no findings")
+    assert reports.lines == []
+    assert "nobody has said anything on /diagnostics" in "\n".join(reports.errors)
 
 
-@pytest.mark.parametrize("command", [("doctor", "--graph"), ("diagnostics",)])
-def test_an_empty_domain_is_no_healthy_one(command: tuple[str, ...], ros_domain: int) -> None:
-    run = deck(*command, "--json")
-    assert (run.process.returncode, run.lines) == (2, [])
-    assert f"no node was found in domain {ros_domain}" in "\n".join(run.errors)
+def test_an_empty_domain_is_no_healthy_one(ros_domain: int) -> None:
+    doctor, reports = DeckProcess("doctor", "--graph", "--json"), DeckProcess("diagnostics")
+    for run in (doctor, reports):
+        assert (run.finish(), run.lines) == (2, [])
+        assert f"no node was found in domain {ros_domain}" in "\n".join(run.errors)
 
 
 def diagnostics(*told: DiagnosticStatus) -> DiagnosticArray:
@@ -103,10 +107,3 @@ def test_diagnostics_that_are_all_well_make_the_exit_code_0(peer: Peer) -> None:
         run = deck("diagnostics", "--for", "1", "--lang", "ru")
     assert run.process.returncode == 0
     assert [line.split() for line in run.lines] == [["ок", "battery", "7.4", "V"]]
-
-
-def test_nobody_who_says_anything_is_not_well(peer: Peer) -> None:
-    peer.publisher("/diagnostics", DiagnosticArray)
-    run = deck("diagnostics")
-    assert run.process.returncode == 2
-    assert "nobody has said anything on /diagnostics" in "\n".join(run.errors)
