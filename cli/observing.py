@@ -51,8 +51,7 @@ class DomainView:
         """Raise UsageError if nobody but Deck's own observers is in the domain."""
         from graph.findings.names import is_deck
 
-        ends = any(row.publishers or row.subscribers for row in update.topics)
-        if not ends and all(is_deck(node.name) for node in update.nodes):
+        if all(is_deck(node.name) for node in update.nodes):
             raise UsageError(
                 say(
                     "no node was found in domain {domain}: start one, or choose another with "
