@@ -57,6 +57,7 @@ class ComposerScreen(DeckScreen):
     """Editor and verdict beside the outcome, or above it if the screen is narrow."""
 
     tab: ClassVar[str] = "composer"
+    parts: ClassVar[tuple[str, ...]] = ("#composer-right",)
     about: ClassVar[str] = N_(
         "The JSON that a language model would send to the robot. It is checked as you write; what "
         "is wrong is underlined and listed below with line, column and field. Sending puts it on "
@@ -73,6 +74,7 @@ class ComposerScreen(DeckScreen):
         #composer-body { height: 1fr; layout: horizontal; }
         #composer-left { width: 1fr; height: 1fr; }
         #composer-right { width: 1fr; height: 1fr; border-left: solid $panel; }
+        #composer-right.-maximized { border-left: none; }
         .composer-title {
             height: 1; width: 1fr; background: $panel; color: $text-muted; padding: 0 1;
         }

@@ -42,6 +42,10 @@ class DeckTarget(Protocol):
         """The learner's own file that the chosen node runs, empty for other nodes."""
 
     @property
+    def sees_nodes(self) -> bool:
+        """Whether the nodes are not hidden behind another part of the screen."""
+
+    @property
     def log_filter(self) -> LogFilter:
         """The filter of the log."""
 
@@ -68,8 +72,12 @@ class DeckTarget(Protocol):
     def hear_all(self) -> None:
         """Show the log of every node, at every severity."""
 
+    @property
+    def shows_one_panel(self) -> bool:
+        """Whether a panel is enlarged."""
+
     def turn_page(self) -> None:
-        """Show the next page of panels."""
+        """Show the next page of panels, or the next panel in the place of an enlarged one."""
 
     @property
     def fits_lesson(self) -> bool:
@@ -96,8 +104,8 @@ class _OfNode(DeckAction):
 
     @classmethod
     def possible(cls, target: DeckTarget) -> bool | None:
-        """Only with a node chosen, in a session with nodes of its own; a recording has none."""
-        if target.feed.watching or not target.feed.nodes:
+        """Only with a node chosen and seen, in a session with nodes of its own."""
+        if target.feed.watching or not target.feed.nodes or not target.sees_nodes:
             return False
         return True if target.chosen_node else None
 
@@ -335,14 +343,19 @@ class TurnPage(DeckAction):
     key = "v,м"
     title = N_("More panels")
     means = "another view"
-    tooltip = N_("Show the panels that have no room on this page.")
+    tooltip = N_("Show the panels that have no room on this page; enlarged, the next panel.")
     footer = True
     from_elsewhere = True
 
     @classmethod
     def possible(cls, target: DeckTarget) -> bool | None:
-        """Only if there is more than one page."""
-        return target.pages > 1
+        """Only if there is more than one page, or a panel is enlarged."""
+        return target.pages > 1 or target.shows_one_panel
+
+    @classmethod
+    def label(cls, target: DeckTarget) -> str:
+        """Named after what it would show."""
+        return N_("Next panel") if target.shows_one_panel else cls.title
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:

@@ -52,6 +52,20 @@ class DeckPanels:
         if self._grid is not None:
             self._grid.turn()
 
+    @property
+    def chosen(self) -> Panel | None:
+        """The chosen panel, None if there are none or they do not fit."""
+        return None if self._grid is None or not self.pages else self._grid.chosen
+
+    @property
+    def have_focus(self) -> bool:
+        """Whether the chosen panel has the focus."""
+        return self._grid is not None and self._grid.has_focus
+
+    def choose_next(self) -> Panel | None:
+        """Choose the next panel, and return it."""
+        return None if self._grid is None else self._grid.choose_next(1)
+
     def watched(self) -> set[str]:
         """Return the topics that the panels show."""
         return set().union(*(panel.watched() for panel in self.all))
@@ -105,6 +119,7 @@ class DeckPanels:
 
     async def _put_up(self, names: Iterable[str]) -> None:
         if self._grid is not None:
+            self._screen.minimize()
             await self._grid.remove()
             self._grid = None
         panels = [make_panel(name) for name in names if name in PANELS]

@@ -28,6 +28,7 @@ from tui.frame.screen import DeckScreen
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
 from tui.panels.panel import row_of
+from tui.panels.panel_grid import PanelGrid
 from tui.session.messages import SessionChanged
 from tui.session.node_command import node_command
 from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.binding import BindingType
     from textual.events import Resize
+    from textual.widget import Widget
 
     from tui.actions import Action
     from tui.emergency.messages import EmergencyChanged
@@ -65,6 +67,7 @@ class LessonDeck(DeckScreen):
 
     AUTO_FOCUS: ClassVar[str] = "NodesTable"
     tab: ClassVar[str] = "deck"
+    parts: ClassVar[tuple[str, ...]] = ("#nodes", "LogPane", "LessonColumn")
     about: ClassVar[str] = N_(
         "The lesson at work. The table has the lesson's nodes: choose one with the arrow keys "
         "to start, stop or restart it, or to show only its lines in the log. The panels show "
@@ -260,8 +263,31 @@ class LessonDeck(DeckScreen):
         return self._panels.pages
 
     def turn_page(self) -> None:
-        """Show the next page of panels."""
-        self._panels.turn_page()
+        """Show the next page of panels, or the next panel in the place of an enlarged one."""
+        if not self.shows_one_panel:
+            self._panels.turn_page()
+        elif (panel := self._panels.choose_next()) is not None:
+            self.enlarge(panel)
+
+    @property
+    def sees_nodes(self) -> bool:
+        """Whether the nodes are not hidden behind another part of the screen."""
+        return self.maximized is None or self.maximized.id == "nodes"
+
+    @property
+    def shows_one_panel(self) -> bool:
+        """Whether a panel is enlarged."""
+        return self.maximized in self.panels
+
+    def part_to_enlarge(self) -> Widget | None:
+        """Return the part that has the focus; without nodes, the chosen panel."""
+        usual, panel = super().part_to_enlarge(), self._panels.chosen
+        in_panels = self._panels.have_focus or self.focused is None
+        return panel if panel is not None and in_panels else usual
+
+    @on(PanelGrid.Opened)
+    def _panel_opened(self, message: PanelGrid.Opened) -> None:
+        self.enlarge(message.panel)
 
     @property
     def fits_lesson(self) -> bool:

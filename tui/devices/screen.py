@@ -52,6 +52,7 @@ class DevicesScreen(DeckScreen):
     """Drivers above, the full report of the chosen one, its frames below."""
 
     tab: ClassVar[str] = "devices"
+    parts: ClassVar[tuple[str, ...]] = ("LogPane",)
     about: ClassVar[str] = N_(
         "Every driver that reports its state on /diagnostics: its port, since when it is "
         "connected, bytes a second, errors in total and now. Below is the traffic on the port of "

@@ -179,9 +179,9 @@ class ChangeTimeScale(FlowAction):
     """A linear time axis, or one that stretches the beginning."""
 
     id = "flow.scale"
-    key = "z,я"
+    key = "A,Ф"
     title = N_("Scale")
-    means = "time span"
+    means = "time axis"
     tooltip = N_("Stretch the first milliseconds on the time axis, or make it linear.")
     footer = True
 

@@ -39,6 +39,7 @@ class FlowScreen(DeckScreen):
     """The lanes, the chains, and the full text of the chosen step."""
 
     tab: ClassVar[str] = "flow"
+    parts: ClassVar[tuple[str, ...]] = ("FlowView",)
     about: ClassVar[str] = N_(
         "What followed when somebody spoke into the microphone, or sent a command: every message "
         "and log line with its delay from the first. The dot is the moment, the line before it the "

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual import on
 from textual.events import ScreenResume
 from textual.screen import Screen
+from textual.widgets import Input, TextArea
 
-from tui.actions import Acting
+from tui.actions import Acting, bindings
 from tui.emergency.messages import EmergencyChanged
 from tui.frame import title
+from tui.frame.actions.enlarge import Enlarge
 from tui.frame.agent_banner import AgentBanner
 from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from textual.app import ComposeResult
+    from textual.binding import BindingType
+    from textual.widget import Widget
 
     from tui.actions import Action
     from tui.session.feed import Feed
@@ -39,24 +43,40 @@ class DeckScreen(Screen[None], Acting, Working):
     A subclass yields its widgets in `compose_body`, names its topics in `watch_topics` and
     `follow_topics`, and handles the messages of `tui.session.messages` that it needs. When the
     topics it wants have changed, it calls `topics_changed`. The keys space, Ctrl+X, Ctrl+R, Ctrl+P,
-    Ctrl+Q, q, L, F1 to F5, 1 to 9, and Shift with F4, F5 and F9 belong to the app.
+    Ctrl+Q, q, L, F1 to F5, 0 to 9, and Shift with F4, F5 and F9 belong to the app.
+
+    `z` gives the whole screen to one of its `parts`, below the title and above the keys; focusing
+    something else ends that.
     """
 
+    BINDINGS: ClassVar[list[BindingType]] = bindings(Enlarge)
+    ALLOW_IN_MAXIMIZED_VIEW = "TitleBar, AgentBanner, ReplayBar, KeyBar"
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
     VERTICAL_BREAKPOINTS = HEIGHTS
     DEFAULT_CSS = """
     DeckScreen { layers: base overlay; layout: vertical; }
+    DeckScreen.-maximized-view {
+        TitleBar { dock: top; }
+        .-maximized {
+            width: 1fr !important; height: 1fr !important;
+            max-width: 100% !important; max-height: 100% !important;
+        }
+    }
     """
 
     tab: ClassVar[str] = ""
     """The tab of the title bar that is highlighted while this screen is in front."""
     about: ClassVar[str] = ""
     """What the screen shows, in a few sentences for the help page, marked by `N_`."""
+    parts: ClassVar[tuple[str, ...]] = ()
+    """Selectors of what can be enlarged; if the focus is in none of them, the first one shown."""
     period_s: float = 0.25
     """Seconds between two updates of the graph while this screen is in front."""
     measure_all: bool = False
     """Whether the rates of every topic are wanted while this screen is in front."""
     _styled_for: tuple[str, frozenset[str], frozenset[str]] | None = None
+    _focused_before: Widget | None = None
+    """What had the focus when a part was enlarged."""
 
     @property
     def deck(self) -> Host:
@@ -103,6 +123,46 @@ class DeckScreen(Screen[None], Acting, Working):
     def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
         """Yield headings and actions of the parts of the screen that have keys of their own."""
         yield from ()
+
+    def part_to_enlarge(self) -> Widget | None:
+        """Return the part that has the focus, else the first one that is shown."""
+        around = [] if self.focused is None else self.focused.ancestors_with_self
+        shown = [part for name in self.parts for part in self.query(name) if _is_shown(part)]
+        return next((part for part in shown if part in around), shown[0] if shown else None)
+
+    def toggle_enlarged(self) -> None:
+        """Enlarge a part, or show all of them again."""
+        part = self.part_to_enlarge() if self.maximized is None else None
+        if part is None:
+            self.minimize()
+        else:
+            self.enlarge(part)
+
+    def enlarge(self, part: Widget) -> None:
+        """Give the whole screen to this part, and the focus to what can be scrolled in it."""
+        if self.maximized is None:
+            self._focused_before = self.focused
+        self.maximized = part
+        inside = [one for one in self.focus_chain if part in one.ancestors_with_self]
+        if self.focused not in inside:
+            lists = [one for one in inside if not isinstance(one, (Input, TextArea))]
+            self.set_focus(lists[0] if lists else None)
+        self.refresh_bindings()
+
+    def watch_maximized(self, before: Widget | None, now: Widget | None) -> None:
+        """Give the focus back once all parts are shown again."""
+        if before is None or now is not None:
+            return
+        had, self._focused_before = self._focused_before, None
+        if had is not None and had.is_attached and self.focused in (None, *before.walk_children()):
+            self.set_focus(had)
+        self.refresh_bindings()
+
+    def watch_focused(self, focused: Widget | None) -> None:
+        """Show all parts again as soon as one that is hidden gets the focus."""
+        large = self.maximized
+        if large is not None and focused is not None and large not in focused.ancestors_with_self:
+            self.minimize()
 
     def on_compose(self) -> None:
         """Set the classes for this size before the children exist, so that each is styled once."""
@@ -178,3 +238,8 @@ class DeckScreen(Screen[None], Acting, Working):
     def _surroundings(self) -> tuple[str, frozenset[str], frozenset[str]]:
         """Everything outside this screen that its styles depend on."""
         return self.app.theme, self.app.pseudo_classes, self.app.classes
+
+
+def _is_shown(part: Widget) -> bool:
+    """Return whether neither the part nor anything around it is hidden."""
+    return all(node.display for node in part.ancestors_with_self)

@@ -52,6 +52,7 @@ class GraphScreen(DeckScreen):
     """Kinds and filter above a list and the detail of the chosen entry, or above the map."""
 
     tab: ClassVar[str] = "graph"
+    parts: ClassVar[tuple[str, ...]] = ("GraphDetail",)
     about: ClassVar[str] = N_(
         "Nodes with what they publish, hear, serve and call; services to be called, actions to "
         "be sent goals, types down to their fields; findings are what is wrong, with what to do "
@@ -71,6 +72,7 @@ class GraphScreen(DeckScreen):
         #graph-count { width: auto; padding: 0 1; color: $text-muted; }
         #graph-body { height: 1fr; }
         #graph-detail { width: 1fr; height: 1fr; border-left: solid $panel; }
+        #graph-detail.-maximized { border-left: none; }
         GraphList { width: 26; height: 1fr; }
         GraphMap { display: none; }
     }

@@ -43,6 +43,7 @@ class LessonScreen(DeckScreen):
     """The step above or beside its checks; a judge looks at the nodes as long as they run."""
 
     tab: ClassVar[str] = "lesson"
+    parts: ClassVar[tuple[str, ...]] = ("#lesson-reading", "#lesson-side")
     about: ClassVar[str] = N_(
         "What this step asks you to write, and what is judged of your running nodes: each check "
         "says what is expected, what was seen instead, and where to look. Save your file, and its "
@@ -71,6 +72,7 @@ class LessonScreen(DeckScreen):
         &.-home #lesson-side, &.-wide #lesson-side {
             width: 9fr; height: 1fr; max-height: 100%; border-top: none; border-left: solid $panel;
         }
+        #lesson-side.-maximized { border: none !important; }
         &.-compares.-compact #lesson-side, &.-compares.-tiny #lesson-side { display: none; }
         &.-tall #lesson-judged > *, &.-high #lesson-judged > * { margin-top: 1; }
     }

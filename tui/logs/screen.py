@@ -33,6 +33,7 @@ class LogsScreen(DeckScreen):
     """The log of every node, with the nodes on the left; on a narrow screen only on request."""
 
     tab: ClassVar[str] = "logs"
+    parts: ClassVar[tuple[str, ...]] = ("LogPane",)
     about: ClassVar[str] = N_(
         "The messages of all nodes. The arrow keys select lines, with Shift several; that pauses "
         "the log, End follows it again. The list has the nodes with their lines, warnings (W) and "

@@ -74,7 +74,9 @@ class Panel(Vertical):
         source = f"← {self._source}" if self._source else ""
         name = plain(" ".join(filter(None, (_(self.title), source))))
         room = self.outer_size.width - (SIDES if self.styles.border_left[0] else CORNERS)
-        titles = [f"{name} {plain(words)}" for words in self._pages] or [name]
+        # An enlarged panel is alone, whatever page it stands on.
+        pages = () if self.has_class("-maximized") else self._pages
+        titles = [f"{name} {plain(words)}" for words in pages] or [name]
         fits = (title for title in titles if cell_len(title) <= room)
         self.border_title = Content(next(fits, titles[-1]))
 

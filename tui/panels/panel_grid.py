@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
+from textual.binding import Binding, BindingType
 from textual.containers import Container
+from textual.message import Message
 
 from text.i18n import _
 
@@ -18,15 +20,30 @@ if TYPE_CHECKING:
 Row: TypeAlias = "list[Panel]"
 BESIDE_FROM = 52
 """Width from which on two panels stand side by side."""
+TWICE = 2
+"""Clicks that enlarge a panel."""
 
 
-class PanelGrid(Container):
-    """Shows as many panels as fit, and the number of pages."""
+class PanelGrid(Container, can_focus=True):
+    """Shows as many panels as fit, and the number of pages; one panel is the chosen one."""
 
+    class Opened(Message):
+        """A panel was clicked twice."""
+
+        def __init__(self, panel: Panel) -> None:
+            super().__init__()
+            self.panel = panel
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("right,down,l,j", "choose_next(1)", show=False),
+        Binding("left,up,h,k", "choose_next(-1)", show=False),
+    ]
     DEFAULT_CSS = """
     PanelGrid { layout: grid; grid-gutter: 0; width: 1fr; height: 1fr; overflow: hidden; }
     PanelGrid.-thin > Panel { border: none; border-top: solid $primary 60%; }
     PanelGrid.-thin > Panel:focus-within { border: none; border-top: solid $accent; }
+    PanelGrid:focus > Panel.-chosen { border: round $accent; }
+    PanelGrid.-thin:focus > Panel.-chosen { border: none; border-top: solid $accent; }
     """
 
     def __init__(self, panels: Sequence[Panel], id: str | None = None) -> None:
@@ -36,6 +53,40 @@ class PanelGrid(Container):
         self._page = 0
         self._frame = 2
         self._pages: list[list[list[Panel]]] = []
+        self._chosen: Panel | None = None
+
+    @property
+    def chosen(self) -> Panel | None:
+        """The chosen panel, by default the first of the page."""
+        shown = [panel for panel in self._panels if panel.display]
+        return self._chosen if self._chosen in shown else next(iter(shown), None)
+
+    def choose(self, panel: Panel) -> None:
+        """Choose a panel, and show the page that it is on."""
+        self._chosen = panel
+        holds = (at for at, page in enumerate(self._pages) if any(panel in row for row in page))
+        page = next(holds, self._page)
+        if page != self._page:
+            self._page = page
+            self._lay_out(self.size.height)
+        self._mark_chosen()
+
+    def choose_next(self, step: int) -> Panel | None:
+        """Choose the panel this many places further, after the last one the first; return it."""
+        here = self.chosen
+        if here is None:
+            return None
+        there = self._panels[(self._panels.index(here) + step) % len(self._panels)]
+        self.choose(there)
+        return there
+
+    def action_choose_next(self, step: int) -> None:
+        """Choose the panel this many places further."""
+        self.choose_next(step)
+
+    def on_focus(self) -> None:
+        """Show which panel is chosen."""
+        self._mark_chosen()
 
     @property
     def pages(self) -> int:
@@ -54,7 +105,14 @@ class PanelGrid(Container):
             self._lay_out(self.size.height)
 
     def on_click(self, event: Click) -> None:
-        """Turn the page when the part of the title that mentions it is clicked."""
+        """Choose the clicked panel; the title that mentions the pages turns them."""
+        around = [] if event.widget is None else event.widget.ancestors_with_self
+        clicked = [panel for panel in self._panels if panel in around]
+        for panel in clicked:
+            self.choose(panel)
+            if event.chain == TWICE:
+                self.post_message(self.Opened(panel))
+                return
         first = next((panel for panel in self._panels if panel.display), None)
         if first is not None and event.screen_y == first.region.y and self.pages > 1:
             self.turn()
@@ -92,6 +150,12 @@ class PanelGrid(Container):
         words = (whole.format(**at), short.format(**at)) if len(self._pages) > 1 else ()
         for panel in self._panels:
             panel.name_page(*(words if panel in shown[:1] else ()))
+        self._mark_chosen()
+
+    def _mark_chosen(self) -> None:
+        chosen = self.chosen
+        for panel in self._panels:
+            panel.set_class(panel is chosen, "-chosen")
 
 
 def in_rows(panels: Sequence[Panel], width: int) -> list[Row]:

@@ -187,9 +187,9 @@ class NextPlotWindow(TopicsAction):
     """Change how many seconds the plot shows."""
 
     id = "topics.plot_window"
-    key = "z,я"
+    key = "A,Ф"
     title = N_("Time span")
-    means = "time span"
+    means = "time axis"
     tooltip = N_("Let the plot show 10, 30 or 60 seconds, or 5 minutes.")
     footer = True
 

@@ -46,6 +46,7 @@ class TopicsScreen(DeckScreen):
     """A table of topics and, for the chosen one, the newest message as a tree or a picture."""
 
     tab: ClassVar[str] = "topics"
+    parts: ClassVar[tuple[str, ...]] = ("TopicPlot", "TopicDetail")
     about: ClassVar[str] = N_(
         "Every topic of the robot with its type, who publishes and who listens, its rate and "
         "bandwidth, and how old its newest message is. The selected one is shown live below or "
@@ -74,6 +75,9 @@ class TopicsScreen(DeckScreen):
         TopicDetail { width: 1fr; border-top: none; border-left: solid $panel; }
     }
     TopicsScreen.-flat TopicDetail { border-top: none; }
+    TopicsScreen TopicDetail.-maximized, TopicsScreen TopicPlot.-maximized {
+        border: none !important;
+    }
     TopicsScreen.-low.-plot, TopicsScreen.-flat.-plot {
         TopicPlot { height: 5fr; border-top: none; background: $panel; }
         TopicsTable { max-height: 20%; }

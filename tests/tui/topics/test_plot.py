@@ -318,7 +318,7 @@ async def test_the_plot_goes_beside_alone_and_away(stage: Any) -> None:
     await pilot.pause()
     assert screen.plotting.covers_all
     assert not screen.table.display
-    await pilot.press("z", "p")
+    await pilot.press("A", "p")
     assert "Plot · 60 s" in screen.plot.render_line(0).text
     assert screen.plot.paused
     await pilot.press("escape")

@@ -24,6 +24,10 @@ KEPT = 240
 BIG_FROM = 5
 """Lines from which on the number is drawn large."""
 DIGIT_CELLS = 16
+TREND_ROWS = 4
+"""Lines of the trend beside other panels."""
+ENLARGED_FROM = 18
+"""Lines from which on the trend has all that are left."""
 
 
 class Sonar(Drawing):
@@ -76,7 +80,7 @@ class Sonar(Drawing):
             lines.append(scale(width, self._bounds))
             rest -= 1
         if rest > 0:
-            lines += self._trend(width, rest)
+            lines += self._trend(width, rest, rest if height >= ENLARGED_FROM else TREND_ROWS)
         return lines
 
     def _digits(self, metres: float, width: int) -> list[Line]:
@@ -110,11 +114,10 @@ class Sonar(Drawing):
             return beside(self._number(metres), self._word(metres), width)
         return [*line, *(bar(metres, room, self._bounds) if room >= 6 else ())]
 
-    def _trend(self, width: int, rest: int) -> list[Line]:
-        rows = min(rest, 4)
+    def _trend(self, width: int, rest: int, most: int) -> list[Line]:
         if rest < 3:
-            return trend(self._values, width, rows, self._bounds)
-        drawn = trend(self._values, width, min(rest - 1, 4), self._bounds)
+            return trend(self._values, width, min(rest, most), self._bounds)
+        drawn = trend(self._values, width, min(rest - 1, most), self._bounds)
         return [*drawn, self._span(width)]
 
     def _span(self, width: int) -> Line:
