@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from cli.running_domain import running_domain
 from graph.bag.errors import BagError
+from graph.heavy_types import IMAGES, POINT_CLOUD
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.rundir import new_recording
@@ -46,9 +47,12 @@ def record_command(options: Namespace) -> int:
 
     topics = [_topic(name) for name in options.topics]
     what, domain, discovery = running_domain(options.domain)
+    without = (frozenset() if options.images else IMAGES) | (
+        frozenset() if options.clouds else {POINT_CLOUD}
+    )
     folder = Path(options.output) if options.output else new_recording(what)
     recorder = Recorder(
-        domain, discovery, folder, topics or None, hidden=options.hidden, images=options.images
+        domain, discovery, folder, topics or None, hidden=options.hidden, without=without
     )
     stop = threading.Event()
     for number in SIGNALS:

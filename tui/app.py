@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 
     from tui.faults import Journal
     from tui.frame.host import SharedLesson
+    from tui.recording.wish import RecordingWish
     from tui.session.ports import SessionOpener
     from tui.session.requests import OpenRequest
 
@@ -251,6 +252,35 @@ class DeckApp(App[int], Acting):
 
         if not isinstance(self.screen, HelpScreen):
             self.push_screen(HelpScreen(self.screen))
+
+    def record(self) -> None:
+        """Ask what to record, and start; or stop what is being recorded."""
+        from graph.recording.recorder import room_bytes
+        from launcher.rundir import new_recording
+        from tui.bags.begin import BeginRecordingScreen
+
+        session = self.feed.session
+        if self.recording.active:
+            self.recording.end_soon()
+        elif isinstance(self.screen, BeginRecordingScreen):
+            self.screen.begin()
+        elif session is not None:
+            folder = new_recording(session.name)
+            left_out = self.recording.left_out
+            dialog = BeginRecordingScreen(folder, room_bytes(folder), left_out)
+            self.push_screen(dialog, self._record_as_wished)
+
+    def _record_as_wished(self, wish: RecordingWish | None) -> None:
+        if wish is not None:
+            self._remember(left_out=",".join(sorted(wish.left_out)))
+            self.recording.begin(wish)
+
+    def show_recordings(self) -> None:
+        """List the recordings on this machine."""
+        from tui.bags.listing import RecordingsScreen
+
+        if not isinstance(self.screen, RecordingsScreen):
+            self.push_screen(RecordingsScreen())
 
     @property
     def crashed(self) -> bool:

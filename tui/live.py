@@ -63,6 +63,7 @@ class RealTerminal:
         app.set_keymap(self._settings.keys)
         app.sessions.last_lesson = self._settings.lesson
         app.editor = self._settings.editor
+        app.recording.left_out = frozenset(filter(None, self._settings.left_out.split(",")))
         app.tour_is_due = not self._settings.tour
         loop = asyncio.get_running_loop()
         for number in SIGNALS:

@@ -29,6 +29,8 @@ SCREENS = {
 """Imported when first shown: the first frame needs only one of them."""
 
 DIALOGS = (
+    "tui.bags.begin",
+    "tui.bags.listing",
     "tui.dialogs.choice",
     "tui.help.screen",
     "tui.lifecycle.domain_taken",

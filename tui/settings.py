@@ -13,6 +13,7 @@ from pathlib import Path
 
 from platformdirs import user_config_path
 
+from graph.heavy_types import HEAVY_TYPES
 from text.i18n import LANGUAGES, N_, _, localized
 from text.os_words import os_reason
 
@@ -39,6 +40,8 @@ class Settings:
     """Name of the profile that was opened last."""
     editor: str = ""
     """The command that opens the learner's files, where EDITOR names none."""
+    left_out: str = ""
+    """Types that are not recorded, comma-separated, as chosen the last time."""
     tour: str = ""
     """`SEEN` once the tour of the first start was shown."""
 
@@ -115,16 +118,19 @@ def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collect
             if not isinstance(value, str):
                 words, example = _TEXTS[name]
                 return _(words).format(example=example)
-        elif value not in (known_values := sorted(_values(name, themes))):
-            known = ", ".join(known_values)
-            return _("{name}: unknown value {value!r}; available: {known}").format(
-                name=name, value=value, known=known
-            )
+        else:
+            known_values = sorted(_values(name, themes))
+            several = name == "left_out" and isinstance(value, str)
+            if any(one not in known_values for one in (value.split(",") if several else [value])):
+                known = ", ".join(known_values)
+                return _("{name}: unknown value {value!r}; available: {known}").format(
+                    name=name, value=value, known=known
+                )
     return ""
 
 
 def _values(name: str, themes: Collection[str]) -> Collection[str]:
-    return {"theme": themes, "language": LANGUAGES, "tour": (SEEN,)}[name]
+    return {"theme": themes, "language": LANGUAGES, "tour": (SEEN,), "left_out": HEAVY_TYPES}[name]
 
 
 def _keys_problem(value: object, actions: Collection[str]) -> str:

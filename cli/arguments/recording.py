@@ -24,6 +24,12 @@ def add_record(parser: Parser) -> None:
         "--no-images", dest="images", action="store_false", help=_("all topics without pictures")
     )
     parser.add_argument(
+        "--no-clouds",
+        dest="clouds",
+        action="store_false",
+        help=_("all topics without point clouds"),
+    )
+    parser.add_argument(
         "-o",
         "--output",
         metavar=_("FOLDER"),

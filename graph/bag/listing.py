@@ -10,6 +10,7 @@ from typing import Any
 
 from graph.bag.defects import defect_of, endless
 from graph.bag.reading import SUFFIXES, metadata_of
+from text.os_words import os_reason
 from text.sentences import say
 
 
@@ -37,10 +38,19 @@ def bags_in(folder: Path) -> list[ListedBag]:
     with suppress(OSError):
         for path in folder.iterdir():
             with suppress(OSError):
-                bag = _listed(path)
+                bag = _listed_or_refused(path)
                 if bag is not None:
                     found.append(bag)
     return sorted(found, key=lambda bag: (-bag.changed_s, bag.name))
+
+
+def _listed_or_refused(path: Path) -> ListedBag | None:
+    """Return a bag, or what forbids to look whether it is one. Raises OSError if it has gone."""
+    try:
+        return _listed(path)
+    except PermissionError as error:
+        why = say("it cannot be read: {reason}", reason=os_reason(error))
+        return ListedBag(path.name, path, 0, path.stat().st_mtime, trouble=why)
 
 
 def _listed(path: Path) -> ListedBag | None:

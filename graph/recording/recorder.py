@@ -14,12 +14,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.recording.disk_room import RESERVE_BYTES, DiskRoom
+from graph.recording.disk_room import RESERVE_BYTES, DiskRoom, free_bytes
 from graph.recording.topics import RecordingTopics, TopicChoice
 from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Set as AbstractSet
 
     from graph.recording.file import BagFile
     from graph.recording.writer import RecordingWriter
@@ -77,6 +78,17 @@ class RecordingStatus:
     ended: bool = False
 
 
+def room_bytes(folder: Path) -> int | None:
+    """Return how much a recording in this folder may grow to; None if the disk does not say.
+
+    The folder need not exist yet.
+    """
+    try:
+        return max(0, free_bytes(folder) - RESERVE_BYTES)
+    except OSError:
+        return None
+
+
 class Recorder:
     """Records topics of one domain from `start` to `stop`. `status` may be read at any time."""
 
@@ -88,7 +100,7 @@ class Recorder:
         topics: Sequence[str] | None = None,
         *,
         hidden: bool = False,
-        images: bool = True,
+        without: AbstractSet[str] = frozenset(),
         reserve_bytes: int = RESERVE_BYTES,
         wanted: Callable[[str, Sequence[str]], bool] | None = None,
     ) -> None:
@@ -96,14 +108,14 @@ class Recorder:
 
         `wanted` decides in its place, by the name of a topic and its types.
 
-        With `hidden`, all includes the inner topics of actions; without `images`, no pictures.
+        With `hidden`, all includes the inner topics of actions; the types `without` are left out.
         It stops by itself when no more than `reserve_bytes` are free on the disk.
         """
         self._domain = domain
         self._discovery = discovery
         self._folder = folder
         named = None if topics is None else frozenset(topics)
-        self._choice = TopicChoice(named, hidden, images, wanted)
+        self._choice = TopicChoice(named, hidden, without, wanted)
         self._room = DiskRoom(folder, reserve_bytes)
         self._error = ""
         self._since_s = time.time()

@@ -15,14 +15,12 @@ from graph.scan.endpoints import full_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from collections.abc import Set as AbstractSet
 
     from rclpy.node import Node
     from rclpy.topic_endpoint_info import TopicEndpointInfo
 
     from graph.recording.writer import Message, RecordingWriter
-
-
-IMAGES = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"})
 
 
 class TopicChoice(NamedTuple):
@@ -32,8 +30,8 @@ class TopicChoice(NamedTuple):
     """None for all."""
     hidden: bool = False
     """Whether "all" includes names that begin with an underscore."""
-    images: bool = True
-    """Whether "all" includes pictures."""
+    without: AbstractSet[str] = frozenset()
+    """Types that "all" does not include."""
     wanted: Callable[[str, Sequence[str]], bool] | None = None
     """Decides, by name and types, in the place of all this."""
 
@@ -43,7 +41,7 @@ class TopicChoice(NamedTuple):
             return self.wanted(name, types)
         if self.topics is not None:
             return name in self.topics
-        return (self.hidden or not is_hidden(name)) and (self.images or IMAGES.isdisjoint(types))
+        return (self.hidden or not is_hidden(name)) and self.without.isdisjoint(types)
 
 
 class RecordingTopics:

@@ -285,8 +285,8 @@ class LessonDeck(DeckScreen):
         in_panels = self._panels.have_focus or self.focused is None
         return panel if panel is not None and in_panels else usual
 
-    @on(PanelGrid.Opened)
-    def _panel_opened(self, message: PanelGrid.Opened) -> None:
+    @on(PanelGrid.PanelWanted)
+    def _panel_wanted(self, message: PanelGrid.PanelWanted) -> None:
         self.enlarge(message.panel)
 
     @property

@@ -123,6 +123,12 @@ class Host(KeyNames, Protocol):
     async def show_screen(self, name: str) -> None:
         """Bring the screen of this name to the front."""
 
+    def record(self) -> None:
+        """Ask what to record, and start; or stop what is being recorded."""
+
+    def show_recordings(self) -> None:
+        """List the recordings on this machine."""
+
     def show_help(self) -> None:
         """Open the help page of the screen in front."""
 

@@ -27,7 +27,7 @@ TWICE = 2
 class PanelGrid(Container, can_focus=True):
     """Shows as many panels as fit, and the number of pages; one panel is the chosen one."""
 
-    class Opened(Message):
+    class PanelWanted(Message):
         """A panel was clicked twice."""
 
         def __init__(self, panel: Panel) -> None:
@@ -111,7 +111,7 @@ class PanelGrid(Container, can_focus=True):
         for panel in clicked:
             self.choose(panel)
             if event.chain == TWICE:
-                self.post_message(self.Opened(panel))
+                self.post_message(self.PanelWanted(panel))
                 return
         first = next((panel for panel in self._panels if panel.display), None)
         if first is not None and event.screen_y == first.region.y and self.pages > 1:

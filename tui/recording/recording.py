@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from text.i18n import _, localized
 from text.plain import plain
+from tui.recording.wish import RecordingLimit
 from tui.recording.words import (
     complaints,
     is_low,
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
     from graph.recording.recorder import Recorder, RecordingStatus
     from launcher.status import SessionInfo
+    from tui.recording.wish import RecordingWish
     from tui.session.feed import Feed
 
 LOOK_S = 1.0
@@ -46,6 +48,9 @@ class Recording:
         self._timer: Timer | None = None
         self._busy = asyncio.Lock()
         self._slow_told = self._low_told = False
+        self._limit = RecordingLimit()
+        self.left_out: frozenset[str] = frozenset()
+        """The types that were left out the last time."""
 
     @property
     def active(self) -> bool:
@@ -67,9 +72,14 @@ class Recording:
         short = _("● rec {length} {size}").format(length=length, size=size)
         return (f"{short} {rate_words(status.bytes_per_s)}", short, f"● {size}")
 
-    def toggle(self, *, images: bool = True) -> None:
-        """Start, with or without images, or stop."""
-        self._app.run_worker(self.end() if self.active else self._begin(images), group="recording")
+    def begin(self, wish: RecordingWish) -> None:
+        """Start it; nothing happens if one is under way."""
+        self.left_out = wish.left_out
+        self._app.run_worker(self._begin(wish), group="recording")
+
+    def end_soon(self) -> None:
+        """Stop it, without waiting for that."""
+        self._app.run_worker(self.end(), group="recording")
 
     async def end(self) -> None:
         """Stop it if it is running, and say where it is."""
@@ -82,23 +92,19 @@ class Recording:
             self._changed()
             self._tell(await asyncio.to_thread(recorder.stop))
 
-    async def _begin(self, images: bool) -> None:
+    async def _begin(self, wish: RecordingWish) -> None:
         from graph.bag.errors import BagError
-        from launcher.errors import LauncherError
 
         async with self._busy:
             session = self._feed.session
             if session is None or self.active:
                 return
             try:
-                recorder = await asyncio.to_thread(_started, session, images)
+                recorder = await asyncio.to_thread(_started, session, wish)
             except BagError as error:
                 self._complain(localized(error.words))
                 return
-            except LauncherError as error:
-                self._complain(localized(error.args[0]))
-                return
-            self._recorder = recorder
+            self._recorder, self._limit = recorder, wish.limit
             self._slow_told = self._low_told = False
             self._timer = self._app.set_interval(LOOK_S, self._look)
         folder = plain(recorder.status.folder, 400)
@@ -112,7 +118,10 @@ class Recording:
         if status is None:
             return
         if status.ended or status.error:
-            self.toggle()
+            self.end_soon()
+        elif self._limit.is_reached(status):
+            self._app.notify(_("The recording ends as it was asked to."), markup=False)
+            self.end_soon()
         elif status.slow and not self._slow_told:
             self._slow_told = True
             self._complain(_("The disk does not keep up with the recording."))
@@ -140,12 +149,10 @@ class Recording:
         self._app.refresh_bindings()
 
 
-def _started(session: SessionInfo, images: bool) -> Recorder:
-    """Start recording the whole session, where `deck replay` finds it by name."""
+def _started(session: SessionInfo, wish: RecordingWish) -> Recorder:
+    """Start recording the whole session but for what is left out."""
     from graph.recording.recorder import Recorder
-    from launcher.rundir import new_recording
 
-    folder = new_recording(session.name)
-    recorder = Recorder(session.domain, session.discovery, folder, images=images)
+    recorder = Recorder(session.domain, session.discovery, wish.folder, without=wish.left_out)
     recorder.start()
     return recorder

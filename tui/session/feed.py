@@ -105,6 +105,8 @@ class Feed:
         self.outside = Outside()
         """Nodes in the domain that Deck did not start."""
         self._rosout = RosoutReader()
+        self._measures_all = False
+        """Whether a dialog needs the rates of every topic."""
         self.ended = ""
         """Why the previous session has ended."""
         self._ended_nodes: Mapping[str, NodeStatus] = {}
@@ -308,8 +310,13 @@ class Feed:
         graph.watch(kept if front is None else kept | front.watch_topics())
         graph.follow(followed)
         graph.watch_goals(set() if front is None else front.watch_goals())
-        graph.measure(front is not None and front.measure_all)
+        graph.measure(self._measures_all or (front is not None and front.measure_all))
         graph.period_s = 0.25 if front is None else front.period_s
+
+    def measure_all(self, wanted: bool) -> None:
+        """Measure the rates of every topic, whatever the screen in front needs."""
+        self._measures_all = wanted
+        self.ask_for_topics()
 
     def _tell_status(self, changed: frozenset[str]) -> None:
         nodes = dict(self.nodes)

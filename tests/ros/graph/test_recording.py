@@ -28,6 +28,7 @@ from tf2_msgs.msg import TFMessage
 from graph.bag.decoding import bag_decoder
 from graph.bag.errors import BagError
 from graph.bag.reading import open_bag
+from graph.heavy_types import IMAGES
 from graph.recording import disk_room as recording_room
 from graph.recording import tap as recording_tap
 from graph.recording.recorder import Recorder
@@ -140,7 +141,7 @@ def test_latched_messages_of_before_are_recorded_and_later_topics_taken_up(
 
 
 def test_all_is_ros_own_topics_too_and_no_hidden_ones(ros_domain: int, tmp_path: Path) -> None:
-    plain = Recorder(ros_domain, "localhost", tmp_path / "plain", images=False)
+    plain = Recorder(ros_domain, "localhost", tmp_path / "plain", without=IMAGES)
     whole = Recorder(ros_domain, "localhost", tmp_path / "whole", hidden=True)
     with Peer(ros_domain) as peer:
         served = Served(peer.node, "/go", reject=False, refuse_cancel=False)

@@ -29,8 +29,10 @@ class Recorder:
     made: list[Recorder]
     refusal: Exception | None
 
-    def __init__(self, domain: int, discovery: object, folder: Path, *, images: bool) -> None:
-        self.asked = (domain, discovery, images)
+    def __init__(
+        self, domain: int, discovery: object, folder: Path, *, without: frozenset[str]
+    ) -> None:
+        self.asked = (domain, discovery, without)
         self.status = replace(GOING, folder=str(folder))
         self.stopped = False
 
@@ -45,7 +47,8 @@ class Recorder:
 
 
 @pytest.fixture(autouse=True)
-def _stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
+def stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let recordings be made by the stand-in."""
     Recorder.made, Recorder.refusal = [], None
     monkeypatch.setattr(recording, "Recorder", Recorder)
 
@@ -60,12 +63,12 @@ def told(app: DeckApp) -> list[str]:
 
 async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) -> None:
     async with opened() as (app, pilot):
-        await pilot.press("f6")
+        await pilot.press("f6", "enter")
         await until(lambda: "● rec 12 s 3.4 MB" in title(app), "how much is recorded")
         (recorder,) = Recorder.made
         assert app.feed.session is not None
         session = app.feed.session
-        assert recorder.asked == (session.domain, session.discovery, True)
+        assert recorder.asked == (session.domain, session.discovery, frozenset())
         assert recorder.status.folder.startswith(str(tmp_path / "recordings" / "09-brain"))
         assert f"Recording into {recorder.status.folder}; f6 ends it." in told(app)
         await pilot.press("f6")
@@ -74,22 +77,9 @@ async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) 
         await until(lambda: any("240 messages" in words for words in told(app)), "its size")
 
 
-async def test_with_shift_it_records_without_pictures() -> None:
-    async with opened() as (app, pilot):
-        await pilot.press("shift+f6")
-        await until(lambda: "● rec" in title(app), "the mark in the title")
-        (recorder,) = Recorder.made
-        assert recorder.asked[2] is False
-        # Another press does not end it, and does not begin a second one.
-        await pilot.press("shift+f6")
-        await pilot.press("f6")
-        await until(lambda: recorder.stopped, "the end of the recording")
-        assert Recorder.made == [recorder]
-
-
 async def test_that_the_disk_will_be_full_is_told_once() -> None:
     async with opened() as (app, pilot):
-        await pilot.press("f6")
+        await pilot.press("f6", "enter")
         await until(lambda: Recorder.made, "the recorder")
         (recorder,) = Recorder.made
         recorder.status = replace(recorder.status, left_s=90.0)
@@ -105,7 +95,7 @@ async def stopped_and_recorded(app: DeckApp, pilot: Pilot[Any]) -> tuple[str, st
     await pilot.press("space")
     await until(lambda: "STOP" in title(app).upper(), "the stop in the title")
     before = title(app)
-    await pilot.press("f6")
+    await pilot.press("f6", "enter")
     await until(lambda: app.recording.words, "the words of the recording")
     await pilot.pause()
     return before, title(app)
@@ -130,14 +120,14 @@ async def test_what_is_recorded_takes_no_tab_away_beside_an_alarm() -> None:
 async def test_the_key_records_from_a_text_field_too() -> None:
     async with opened(screen="composer") as (app, pilot):
         assert isinstance(app.focused, TextArea)
-        await pilot.press("f6")
+        await pilot.press("f6", "enter")
         await until(lambda: "● 3.4 MB" in title(app), "how much is recorded")
         assert app.focused.selected_text == ""
 
 
 async def test_it_ends_with_the_session() -> None:
     async with opened() as (app, pilot):
-        await pilot.press("f6")
+        await pilot.press("f6", "enter")
         await until(lambda: app.recording.active, "the recording")
         await app.sessions.let_go()
         assert Recorder.made[0].stopped
@@ -145,7 +135,7 @@ async def test_it_ends_with_the_session() -> None:
 
 async def test_it_ends_before_the_screen_is_left() -> None:
     async with opened() as (app, pilot):
-        await pilot.press("f6")
+        await pilot.press("f6", "enter")
         await until(lambda: app.recording.active, "the recording")
         await pilot.press("q")
         await until(lambda: app._exit, "the end of the app")
@@ -154,7 +144,7 @@ async def test_it_ends_before_the_screen_is_left() -> None:
 
 async def test_what_goes_wrong_is_said_and_ends_it() -> None:
     async with opened() as (app, pilot):
-        await pilot.press("f6")
+        await pilot.press("f6", "enter")
         await until(lambda: app.recording.active, "the recording")
         (recorder,) = Recorder.made
         recorder.status = replace(recorder.status, error="the disk is full", dropped=3, lost=3)
@@ -166,7 +156,7 @@ async def test_what_goes_wrong_is_said_and_ends_it() -> None:
 async def test_a_folder_that_cannot_be_made_is_said() -> None:
     Recorder.refusal = not_made(Path("/full"), OSError(28, "No space left on device"))
     async with opened() as (app, pilot):
-        await pilot.press("f6")
+        await pilot.press("f6", "enter")
         why = "/full cannot be created: No space left on device"
         await until(lambda: why in told(app), "the reason")
         assert not app.recording.active
@@ -180,7 +170,7 @@ def test_recording_looks(look: Look, dump_compare: SnapCompare) -> None:
         app = pilot.app
         assert isinstance(app, DeckApp)
         await look.settle(pilot)
-        await pilot.press("f6")
+        await pilot.press("f6", "enter")
         await until(lambda: app.recording.active, "the recording")
         # The folder is named by the time.
         app.clear_notifications()

@@ -1,4 +1,4 @@
-"""Recording the session, from any screen."""
+"""Recording the session, and the recordings there are, from any screen."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class RecordToggle(Action["Host"]):
     id = "recording.toggle"
     key = "f6"
     title = N_("Record")
-    tooltip = N_("Record all topics into a folder that `ros2 bag` and `deck replay` read.")
+    tooltip = N_("Record into a folder that `ros2 bag` and `deck replay` read; it asks what first.")
     priority = True
 
     @classmethod
@@ -34,29 +34,29 @@ class RecordToggle(Action["Host"]):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Start, or stop."""
-        target.recording.toggle()
+        """Ask what to record, or stop."""
+        target.record()
 
 
-class RecordWithoutImages(Action["Host"]):
-    """Start recording everything but images, which are most of the data if there is a camera."""
+class ShowRecordings(Action["Host"]):
+    """List the recordings, to open one."""
 
-    id = "recording.without_images"
+    id = "recording.list"
     key = "shift+f6"
-    title = N_("Record without images")
-    tooltip = N_("Record all topics but those of pictures; F6 ends it.")
+    title = N_("Recordings")
+    tooltip = N_("The recordings on this machine: how long, how large, whether damaged; open one.")
     priority = True
-    footer = False
+    footer = True
 
     @classmethod
-    def possible(cls, target: Host) -> bool | None:
-        """Only while nothing is being recorded."""
-        return RecordToggle.possible(target) and not target.recording.active
+    def shown(cls, target: Host) -> bool:
+        """Only beside the lessons: the keys of a session need the room."""
+        return not target.feed.opened
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Start."""
-        target.recording.toggle(images=False)
+        """Show them."""
+        target.show_recordings()
 
 
 class RecordAsRos2(Action["Host"]):
@@ -79,4 +79,4 @@ class RecordAsRos2(Action["Host"]):
         copy_command(target, ros2_words.record())
 
 
-RECORDING_ACTIONS = (RecordToggle, RecordWithoutImages, RecordAsRos2)
+RECORDING_ACTIONS = (RecordToggle, ShowRecordings, RecordAsRos2)
