@@ -26,7 +26,8 @@ def test_without_a_file_nothing_is_settled(tmp_path: Path) -> None:
 
 def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
     path = tmp_path / "deck" / "settings.json"
-    settings = Settings("textual-light", "ru", {"node.restart": "f7"}, "05-tf2")
+    left_out = "sensor_msgs/msg/Image,sensor_msgs/msg/PointCloud2"
+    settings = Settings("textual-light", "ru", {"node.restart": "f7"}, "05-tf2", left_out=left_out)
     save(path, settings)
     assert read(path) == settings
     assert [file.name for file in path.parent.iterdir()] == ["settings.json"]
@@ -45,6 +46,8 @@ def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
         ('{"language": "fr"}', "language: unknown value 'fr'; available: en, ru"),
         ('{"theme": 7}', "theme: unknown value 7"),
         ('{"theme": []}', "theme: unknown value []"),
+        ('{"left_out": "Image"}', "left_out: unknown value 'Image'; available: sensor_msgs/msg/"),
+        ('{"left_out": [1]}', "left_out: unknown value [1]"),
         ('{"lesson": 5}', "lesson: expected the name of a profile"),
         ('{"keys": ["f7"]}', "keys: expected an object"),
         ('{"keys": {"node.dance": "f7"}}', "unknown action 'node.dance'"),
