@@ -35,7 +35,7 @@ def replay_command(options: Namespace) -> int:
     from tui.live import run_live
 
     order = ReplayRequest(bag, options.rate, options.loop, options.start)
-    return run_live(OpenRequest(replay=order), options.lang, options.bandwidth)
+    return run_live(OpenRequest(replay=order, wall=options.wall), options.lang, options.bandwidth)
 
 
 def _check(bag: Path, *, whole: bool) -> None:

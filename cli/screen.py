@@ -39,6 +39,7 @@ def open_command(options: Namespace) -> int:
         lang=options.lang,
         attach=None,
         bandwidth=options.bandwidth,
+        wall=options.wall,
     )
 
 
@@ -78,6 +79,7 @@ def attach_command(options: Namespace) -> int:
         lang=options.lang,
         attach=options.name or session.name,
         bandwidth=options.bandwidth,
+        wall=options.wall,
     )
 
 

@@ -27,5 +27,5 @@ def watch_command(options: Namespace) -> int:
 
     # There may be no supervisor here that does it.
     discard_unfinished()
-    order = OpenRequest(watch=WatchRequest(domain, options.discovery))
+    order = OpenRequest(watch=WatchRequest(domain, options.discovery), wall=options.wall)
     return run_live(order, options.lang, options.bandwidth)

@@ -146,13 +146,14 @@ def run_screen(
     lang: str | None = None,
     attach: str | None = None,
     bandwidth: int | None = None,
+    wall: bool = False,
 ) -> int:
     """Show the screen until the user leaves it; return the exit code of the program.
 
     Starts `profile` if there is one, shows the session `attach` if that is given, and otherwise
-    opens the picker. `bandwidth` is as in `run_live`.
+    opens the picker; `wall` begins with the wall. `bandwidth` is as in `run_live`.
     """
-    request = OpenRequest(profile, attach, hardware, tuple(overrides), domain)
+    request = OpenRequest(profile, attach, hardware, tuple(overrides), domain, wall=wall)
     return run_live(request, lang, bandwidth)
 
 

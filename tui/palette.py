@@ -25,6 +25,7 @@ from tui.frame.actions.app import (
     ShowLogs,
     ShowScreen,
     ShowTopics,
+    ShowWall,
 )
 from tui.frame.actions.replay import ReplayAction
 from tui.frame.host import host_of
@@ -35,6 +36,7 @@ from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
 from tui.themes import CYCLE
 from tui.topics.actions import TOPICS_ACTIONS, OpenPublish
 from tui.topics.publish.actions import PUBLISH_ACTIONS
+from tui.wall.actions import WALL_ACTIONS
 
 if TYPE_CHECKING:
     from textual.app import App
@@ -80,6 +82,7 @@ PLACES = (
     ActionPlace(ShowGraph, GRAPH_ACTIONS),
     ActionPlace(ShowFlow, FLOW_ACTIONS),
     ActionPlace(ShowDevices, DEVICES_ACTIONS),
+    ActionPlace(ShowWall, WALL_ACTIONS),
 )
 """Every screen of a session, listed without importing any of them: that would delay keys."""
 

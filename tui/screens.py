@@ -25,6 +25,7 @@ SCREENS = {
     "devices": ("tui.devices.screen", "DevicesScreen"),
     "frames": ("tui.frame_tree.screen", "FramesScreen"),
     "space": ("tui.space.screen", "SpaceScreen"),
+    "wall": ("tui.wall.screen", "WallScreen"),
 }
 """Imported when first shown: the first frame needs only one of them."""
 

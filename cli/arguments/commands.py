@@ -10,7 +10,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from cli.arguments import learning, recording, running, thinking
-from cli.arguments.options import add_bandwidth, add_language, add_profile_options, add_running
+from cli.arguments.options import add_language, add_profile_options, add_running, add_screen
 from cli.arguments.parser import Parser
 from text.i18n import N_, _
 
@@ -123,7 +123,7 @@ def _open_parser() -> Parser:
         "profile", nargs="?", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain")
     )
     add_profile_options(parser)
-    add_bandwidth(parser)
+    add_screen(parser)
     add_language(parser)
     parser.add_argument("--version", action="store_true", help=_("show the version and exit"))
     return parser

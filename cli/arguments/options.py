@@ -42,8 +42,13 @@ def add_domain(parser: Parser, help_text: str) -> None:
     parser.add_argument("--domain", metavar="N", type=domain, help=help_text)
 
 
-def add_bandwidth(parser: Parser) -> None:
-    """Add the limit for pictures in the terminal."""
+def add_screen(parser: Parser) -> None:
+    """Add what the screen begins with, and the limit for its pictures."""
+    parser.add_argument(
+        "--wall",
+        action="store_true",
+        help=_("begin with the wall: big numbers and a big picture, for a projector"),
+    )
     parser.add_argument(
         "--bandwidth",
         metavar="KB",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.arguments.options import add_bandwidth, add_domain, add_json
+from cli.arguments.options import add_domain, add_json, add_screen
 from cli.values import folder, rate, seconds
 from text.i18n import _
 
@@ -80,4 +80,4 @@ def add_replay(parser: Parser) -> None:
         "--motion", action="store_true", help=_("with --publish: also what moves a robot")
     )
     add_domain(parser, _("with --publish: ROS domain; by default that of the running robot"))
-    add_bandwidth(parser)
+    add_screen(parser)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from cli.arguments.options import (
-    add_bandwidth,
     add_domain,
     add_json,
     add_profile,
     add_profile_options,
     add_running,
+    add_screen,
 )
 from cli.values import count, seconds
 from text.i18n import _
@@ -88,7 +88,7 @@ def add_logs(parser: Parser) -> None:
 def add_attach(parser: Parser) -> None:
     """Add the options of `deck attach`."""
     add_running(parser)
-    add_bandwidth(parser)
+    add_screen(parser)
 
 
 def add_watch(parser: Parser) -> None:
@@ -100,7 +100,7 @@ def add_watch(parser: Parser) -> None:
         default="localhost",
         help=_("look on this machine only (the default) or on the network too"),
     )
-    add_bandwidth(parser)
+    add_screen(parser)
     parser.epilog = _("Deck starts and stops nothing here.")
 
 

@@ -82,9 +82,13 @@ class OpenRequest(NamedTuple):
     watch: WatchRequest | None = None
     beside: bool = False
     """Whether it may share its domain with other sessions."""
+    wall: bool = False
+    """Whether to begin with the wall."""
 
     @property
     def screen(self) -> str:
         """The screen to show first: for files of the learner's own, what is to be done."""
+        if self.wall:
+            return "wall"
         own = self.profile is not None and self.profile.name == FOLDERS_OWN
         return "lesson" if own else "deck"

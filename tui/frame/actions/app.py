@@ -190,6 +190,16 @@ class ShowSpace(ShowScreen):
     screen = "space"
 
 
+class ShowWall(ShowScreen):
+    """What matters, to be read from afar."""
+
+    id = "screen.wall"
+    key = "0"
+    title = N_("Wall")
+    tooltip = N_("Big numbers and a big picture, to be read across a room; Esc goes back.")
+    screen = "wall"
+
+
 class ShowHelp(AppAction):
     """The keys, and what the screen shows."""
 
@@ -355,6 +365,7 @@ APP_ACTIONS = (
     EmergencyRelease,
     ShowHelp,
     *TABS,
+    ShowWall,
     ShowPalette,
     ShowTour,
     CloseSession,

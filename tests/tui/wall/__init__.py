@@ -1,0 +1,1 @@
+"""Tests of `tui.wall`: the screen, fed by recorded data."""

@@ -1,0 +1,265 @@
+"""The wall: numbers that are published, large; the gate, the stop, the picture, the words."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Digits, Static
+
+from graph.data import GraphUpdate, Sample, Trouble
+from robot.topics import BATTERY, ODOMETRY, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
+from tests.tui.app_runs import LESSON_9, opened
+from tests.tui.recorded import (
+    SESSION,
+    TOPICS,
+    RecordedOpener,
+    RecordedSession,
+    lesson_update,
+    sample,
+    topic,
+)
+from tests.tui.recorded_emergency import held
+from tests.tui.snapshots import Look, SnapCompare, every_look, one_look
+from tests.waiting import until
+from tui.app import DeckApp
+from tui.deck.screen import LessonDeck
+from tui.frame.title_bar import TitleBar
+from tui.panels.camera import CameraPanel
+from tui.panels.sonar.words import COURSE
+from tui.panels.voice.panel import VoicePanel
+from tui.wall.figure import BigNumber, big_word
+from tui.wall.reading import WallNumber, WallReader
+from tui.wall.screen import WallScreen
+from tui.widgets.image_view import ImageView
+
+TYPES = {
+    SONAR_FRONT: "std_msgs/msg/Float32",
+    SONAR_REAR: "std_msgs/msg/Float32",
+    ODOMETRY: "nav_msgs/msg/Odometry",
+    WHEEL_COMMANDS: "sensor_msgs/msg/JointState",
+    BATTERY: "sensor_msgs/msg/BatteryState",
+}
+HALF_FULL = {"percentage": 0.5, "voltage": 11.1}
+
+
+def moving(speed: object) -> dict[str, Any]:
+    return {"twist": {"twist": {"linear": {"x": speed}}}}
+
+
+def graph(values: dict[str, dict[str, Any]], **more: Any) -> GraphUpdate:
+    """Return a graph in which exactly these topics are published, each with a message."""
+    rows = tuple(topic(name, TYPES[name], 10.0, **more) for name in values)
+    samples = {name: (sample(name, TYPES[name], value),) for name, value in values.items()}
+    return lesson_update(topics=rows, samples=samples)
+
+
+def numbers(values: dict[str, dict[str, Any]], **more: Any) -> list[WallNumber]:
+    return WallReader().numbers(graph(values, **more), COURSE)
+
+
+def on_wall(app: DeckApp) -> list[tuple[str, str, str]]:
+    """Return label, digits and note of each number that is shown."""
+    return [
+        (
+            str(one.query_one(".big-label", Static).content),
+            one.query_one(Digits).value,
+            str(one.query_one(".big-note", Static).content),
+        )
+        for one in app.screen.query(BigNumber)
+        if one.display
+    ]
+
+
+def state(app: DeckApp) -> str:
+    return str(app.screen.query_one("#wall-state", Static).content)
+
+
+def test_only_what_is_published_is_there_in_a_fixed_order() -> None:
+    values = {BATTERY: HALF_FULL, ODOMETRY: moving(0.3), SONAR_FRONT: {"data": 0.3}}
+    assert numbers(values) == [
+        WallNumber("ahead, m", "0.30", "STOP", "bad"),
+        WallNumber("speed, m/s", "0.30", "ahead"),
+        WallNumber("battery, %", "50", "11.1 V", "good"),
+    ]
+    assert numbers({SONAR_REAR: {"data": 0.8}}) == [
+        WallNumber("behind, m", "0.80", "CLOSE", "warn")
+    ]
+    assert numbers({}) == []
+
+
+@pytest.mark.parametrize(
+    ("metres", "shown"),
+    [
+        (math.nan, ("---", "no valid reading", "bad")),
+        (math.inf, ("∞", "nothing in range", "good")),
+        (-math.inf, ("0", "too close to measure", "bad")),
+        ("1.8", ("---", "no valid reading", "bad")),
+        (True, ("---", "no valid reading", "bad")),
+        (None, ("---", "no valid reading", "bad")),
+    ],
+)
+def test_what_is_no_distance_is_said_in_words(metres: object, shown: tuple[str, ...]) -> None:
+    assert numbers({SONAR_FRONT: {"data": metres}}) == [WallNumber("ahead, m", *shown)]
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (moving(-0.2), ("-0.20", "back")),
+        (moving(0.001), ("0.00", "stands")),
+        (moving(math.nan), ("---", "")),
+        (moving("fast"), ("---", "")),
+        ({"twist": None}, ("---", "")),
+        ({}, ("---", "")),
+    ],
+)
+def test_the_speed_is_that_of_the_odometry(value: dict[str, Any], shown: tuple[str, str]) -> None:
+    assert numbers({ODOMETRY: value}) == [WallNumber("speed, m/s", *shown)]
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        ({"percentage": 0.15, "voltage": 10.2}, ("battery, %", "15", "10.2 V", "bad")),
+        ({"percentage": 1.0, "voltage": math.nan}, ("battery, %", "100", "", "good")),
+        ({"percentage": math.nan, "voltage": 11.84}, ("battery, V", "11.8")),
+        ({"percentage": 87.0, "voltage": 11.84}, ("battery, V", "11.8")),
+        ({}, ("battery, V", "---")),
+    ],
+)
+def test_a_battery_without_a_charge_shows_its_voltage(
+    value: dict[str, Any], shown: tuple[str, ...]
+) -> None:
+    assert numbers({BATTERY: value}) == [WallNumber(*shown)]
+
+
+def test_what_is_not_current_is_grey_and_says_since_when() -> None:
+    more = {"trouble": Trouble.QUIET, "age_s": 7.0}
+    (shown,) = numbers({SONAR_FRONT: {"data": 1.0}}, **more)
+    assert (shown.value, shown.look) == ("1.00", "muted")
+    assert "7" in shown.note
+
+
+def test_a_value_stays_until_the_next_message() -> None:
+    reader = WallReader()
+    first = reader.numbers(graph({SONAR_FRONT: {"data": 1.0}}), COURSE)
+    quiet = replace(graph({SONAR_FRONT: {"data": 1.0}}), samples={})
+    assert reader.numbers(quiet, COURSE) == first
+
+
+def test_the_word_of_the_stop_has_large_letters_in_both_languages() -> None:
+    for word in ("STOP", "СТОП"):
+        lines = big_word(word).splitlines()
+        assert len(lines) == 5
+        assert len({len(line) for line in lines}) == 1
+    assert big_word("HALT!") == "HALT!"
+
+
+async def test_a_key_shows_it_and_escape_goes_back() -> None:
+    async with opened() as (app, pilot):
+        await pilot.press("0")
+        await until(lambda: isinstance(app.screen, WallScreen), "the wall")
+        await until(lambda: on_wall(app), "the numbers")
+        assert on_wall(app) == [("ahead, m", "1.84", "FREE"), ("speed, m/s", "0.30", "ahead")]
+        assert app.screen.query_one(ImageView).has_picture
+        assert app.screen.query_one(VoicePanel).region.height > 2
+        assert state(app) == "● The gate lets the wheels turn"
+        await pilot.press("escape")
+        await until(lambda: isinstance(app.screen, LessonDeck), "the Deck")
+
+
+async def test_it_can_be_what_the_screen_begins_with() -> None:
+    async with opened(screen="", order=LESSON_9._replace(wall=True)) as (app, _pilot):
+        assert isinstance(app.screen, WallScreen)
+
+
+async def test_words_are_heard_only_while_it_is_in_front() -> None:
+    opener = RecordedOpener()
+    async with opened(opener, screen="wall") as (app, pilot):
+        await until(lambda: "/audio/mic_raw" in opener.graph.followed, "the words")
+        await pilot.press("2")
+        await until(lambda: not isinstance(app.screen, WallScreen), "another screen")
+        await until(lambda: "/audio/mic_raw" not in opener.graph.followed, "silence")
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)])
+async def test_the_stop_is_in_large_letters_and_the_title_stays(size: tuple[int, int]) -> None:
+    opener = RecordedOpener()
+    async with opened(opener, screen="wall", size=size) as (app, pilot):
+        await pilot.press("space")
+        await pilot.pause()
+        letters = app.screen.query_one("#wall-state", Static)
+        assert state(app).startswith(big_word("STOP"))
+        assert letters.region.height >= 7
+        assert letters.has_class("-stop")
+        assert "STOP" in app.screen.query_one(TitleBar).text
+        assert app.screen.query_one(CameraPanel).region.height > 2
+        await pilot.press("ctrl+r")
+        await until(lambda: not state(app).startswith(big_word("STOP")), "the release")
+
+
+async def test_it_says_why_the_gate_holds() -> None:
+    opener = RecordedOpener()
+    async with opened(opener, screen="wall") as (app, _pilot):
+        opener.graph.show(held(b"\x02", "obstacle\x1b[31m at 0.31 m"))
+        await until(lambda: "obstacle" in state(app), "the reason")
+        assert state(app).startswith("⚠ The gate holds the wheels: obstacle␛[31m at 0.31 m")
+
+
+async def test_the_session_decides_what_there_is() -> None:
+    rows = tuple(row for row in TOPICS if row.name == SONAR_FRONT)
+    session = RecordedSession(replace(SESSION, panels=("sonar",)))
+    opener = RecordedOpener(session)
+    opener.graph.update = replace(lesson_update(topics=rows))
+    async with opened(opener, screen="wall") as (app, _pilot):
+        await until(lambda: len(on_wall(app)) == 1, "the distance")
+        assert not app.screen.query_one(CameraPanel).display
+        assert not app.screen.query_one("#wall-said").display
+        assert state(app) == ""
+
+
+async def test_with_nothing_to_show_it_says_so() -> None:
+    opener = RecordedOpener(RecordedSession(replace(SESSION, panels=())))
+    opener.graph.update = lesson_update(topics=(), samples={})
+    async with opened(opener, screen="wall") as (app, pilot):
+        await pilot.pause()
+        none = app.screen.query_one("#wall-none", Static)
+        await until(lambda: none.region.height, "the words")
+        assert "Nothing that the wall could show" in str(none.content)
+
+
+async def test_any_values_leave_the_wall_standing() -> None:
+    opener = RecordedOpener()
+    async with opened(opener, screen="wall") as (app, _pilot):
+        for metres in (1e308, -1.0, "\x1b]0;x\x07", [1], {"a": 1}):
+            value = Sample(SONAR_FRONT, "any/msg/Any", 1.0, 0.0, 8, {"data": metres})
+            opener.graph.show(lesson_update(samples={SONAR_FRONT: (value,)}))
+        await until(lambda: on_wall(app)[0][:2] == ("ahead, m", "---"), "what is no distance")
+
+
+def test_the_wall_looks(snap_compare: SnapCompare) -> None:
+    """The picture as large as it gets, numbers on the right, the gate and the words below."""
+    look = Look((120, 40), "en")
+    assert snap_compare(look.app("wall"), terminal_size=look.size, run_before=look.settle)
+
+
+@every_look
+def test_the_wall_looks_in_every_size(look: Look, dump_compare: SnapCompare) -> None:
+    """At 80x24 numbers below the picture, else beside it; nothing is cut."""
+    assert dump_compare(look.app("wall"), terminal_size=look.size, run_before=look.settle)
+
+
+@one_look
+def test_the_stop_looks(look: Look, dump_compare: SnapCompare) -> None:
+    """Large letters in white on red; the words of the voice give way to the picture."""
+
+    async def stop(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        await pilot.press("space")
+        await pilot.pause()
+
+    assert dump_compare(look.app("wall"), terminal_size=look.size, run_before=stop)
