@@ -12,6 +12,7 @@ from textual.widget import Widget
 from course.lessons.catalog import SHIPPED
 from course.lessons.lesson import LessonFolder
 from tests.tui import recorded_flow
+from tests.tui.agents.test_banner import asks
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, SESSION, RecordedOpener, lesson_update, sample
 from tests.tui.recorded_devices import with_drivers
@@ -20,6 +21,7 @@ from tests.waiting import until
 from tui.app import DeckApp
 from tui.deck.command_line import CommandLine
 from tui.deck.nodes_table import NodesTable
+from tui.frame.agent_banner import AgentBanner
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
 from tui.panels.camera import CameraPanel
@@ -115,6 +117,19 @@ async def test_the_stop_works_and_is_seen_above_an_enlarged_panel() -> None:
         assert "STOP" in app.screen.query_one(TitleBar).text
         assert app.screen.query_one(TitleBar).region.y == 0
         assert fills_the_screen(app)
+
+
+async def test_an_agent_can_ask_beside_an_enlarged_panel_and_is_answered() -> None:
+    opener = RecordedOpener()
+    async with opened(opener, size=(80, 24)) as (app, pilot):
+        await pilot.press("tab", "z")
+        opener.link.say(asks())
+        banner = app.screen.query_one(AgentBanner)
+        await until(lambda: banner.region.height >= 3, "the question")
+        assert "claude" in banner.text
+        await until(lambda: app.agents.was_read, "a question that was read")
+        await pilot.press("shift+f9")
+        await until(lambda: ("answer", "1", "refuse") in opener.link.asked, "the answer")
 
 
 async def test_no_key_acts_on_a_node_that_is_hidden() -> None:
