@@ -85,7 +85,8 @@ class WallScreen(DeckScreen):
         &.-home BigNumber, &.-wide BigNumber { height: 6; }
         &.-home #wall-state.-free, &.-home #wall-state.-held { padding: 1 1; }
         &.-wide #wall-state.-free, &.-wide #wall-state.-held { padding: 1 1; }
-        &.-home #wall-said, &.-wide #wall-said { height: 6; }
+        &.-home #wall-said { height: 4; }
+        &.-wide #wall-said { height: 5; }
         #wall-bottom { height: auto; }
         &.-no-camera #wall CameraPanel { display: none; }
         &.-no-camera #wall { layout: vertical; }
