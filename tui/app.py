@@ -264,7 +264,7 @@ class DeckApp(App[int], Acting):
             self.recording.end_soon()
         elif isinstance(self.screen, BeginRecordingScreen):
             self.screen.begin()
-        elif session is not None:
+        elif session is not None and self._can_be_covered:
             folder = new_recording(session.name)
             left_out = self.recording.left_out
             dialog = BeginRecordingScreen(folder, room_bytes(folder), left_out)
@@ -279,8 +279,13 @@ class DeckApp(App[int], Acting):
         """List the recordings on this machine."""
         from tui.bags.listing import RecordingsScreen
 
-        if not isinstance(self.screen, RecordingsScreen):
+        if not isinstance(self.screen, RecordingsScreen) and self._can_be_covered:
             self.push_screen(RecordingsScreen())
+
+    @property
+    def _can_be_covered(self) -> bool:
+        """Whether a dialog may be opened above what is in front: not above one that goes itself."""
+        return getattr(self.screen, "can_be_covered", True)
 
     @property
     def crashed(self) -> bool:

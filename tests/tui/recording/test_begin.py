@@ -20,6 +20,7 @@ from tests.tui.snapshots import Look, SnapCompare, every_look
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.bags.begin import BeginRecordingScreen
+from tui.lifecycle.stopping import StoppingScreen
 from tui.widgets.rows import Rows
 
 __all__ = ["stand_in"]
@@ -152,6 +153,19 @@ async def test_a_limit_that_cannot_be_read_is_said_before_anything_is_recorded()
         assert not Recorder.made
         await pilot.press(*["backspace"] * 4, "enter")
         await until(lambda: app.recording.active, "the recording without a limit")
+
+
+@pytest.mark.parametrize("key", ["f6", "shift+f6"])
+async def test_nothing_covers_the_dialog_that_goes_by_itself(key: str) -> None:
+    opener = RecordedOpener()
+    opener.link.hold_shutdown = True
+    async with opened(opener) as (app, pilot):
+        await pilot.press("q")
+        await until(lambda: isinstance(app.screen, StoppingScreen), "the nodes that stop")
+        await pilot.press(key)
+        await pilot.pause()
+        assert isinstance(app.screen, StoppingScreen)
+        await pilot.press("q")
 
 
 async def test_names_from_the_graph_cannot_control_the_terminal() -> None:
