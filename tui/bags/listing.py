@@ -120,10 +120,17 @@ class RecordingsScreen(Dialog[None]):
         chosen = next((rows.chosen for rows in self.query(Rows)), "")
         return next((bag for bag in self._bags or () if str(bag.path) == chosen), None)
 
-    def open_chosen(self) -> None:
-        """End what is shown, and play the chosen recording."""
+    @work(exclusive=True, group="open")
+    async def open_chosen(self) -> None:
+        """End what is shown, and play the chosen recording; nothing ends for one without use."""
         bag, sessions = self.chosen, self.deck.sessions
         if bag is None:
+            return
+        refusal = await asyncio.to_thread(_refusal, bag.path)
+        if not self.is_current:
+            return
+        if refusal:
+            self.notify(plain(localized(refusal), LONGEST), severity="error", markup=False)
             return
         request = sessions.request._replace(
             profile=None, attach=None, watch=None, replay=ReplayRequest(bag.path)
@@ -170,7 +177,7 @@ class RecordingsScreen(Dialog[None]):
         lines = [Content.styled(plain(str(bag.path), LONGEST), "$text-muted")]
         if bag.trouble:
             why = plain(localized(bag.trouble), LONGEST)
-            lines.append(Content.styled(f"✗ {why[:1].upper()}{why[1:]}.", "$text-warning"))
+            lines.append(Content.styled(f"✗ {why}", "$text-warning"))
         link = self.deck.feed.link
         if link is not None and link.own:
             lines.append(Content(_("Opening it ends the lesson that runs here.")))
@@ -198,6 +205,18 @@ def _listed(folder: Path) -> tuple[list[ListedBag], str]:
     except OSError as error:
         return [], os_reason(error)
     return bags_in(folder), ""
+
+
+def _refusal(path: Path) -> str:
+    """Return why a recording cannot be played, empty if it can."""
+    from graph.bag.errors import BagError
+    from graph.bag.reading import open_bag
+
+    try:
+        open_bag(path).close()
+    except BagError as error:
+        return error.words
+    return ""
 
 
 def _row(bag: ListedBag, *, topics: bool) -> Row:

@@ -23,7 +23,6 @@ from tui.app import DeckApp
 from tui.bags.listing import RecordingsScreen
 from tui.dialogs.dialog import Dialog
 from tui.frame.key_bar import KeyBar
-from tui.lifecycle.refused import RefusedScreen
 from tui.picker.screen import PickerScreen
 from tui.session.requests import OpenRequest
 from tui.widgets.rows import Rows
@@ -92,7 +91,7 @@ async def test_they_are_listed_with_what_is_known_of_them_the_newest_first() -> 
         assert walk[3:6] == ["1:15", "3", "753"]
         assert sonar[0] == "02-sonar-safety-2026"
         assert str(folder / "cut") in said(app)
-        assert "✗ Cut.mcap is empty, nothing was written to it." in said(app)
+        assert "✗ cut.mcap is empty, nothing was written to it" in said(app)
 
 
 async def test_enter_plays_the_chosen_one() -> None:
@@ -121,14 +120,17 @@ async def test_from_a_lesson_it_says_that_this_ends_and_ends_it() -> None:
         assert opener.orders[-1].profile is None
 
 
-async def test_one_that_cannot_be_read_says_why_and_the_list_of_lessons_is_back() -> None:
+async def test_one_that_cannot_be_read_says_why_and_no_lesson_ends_for_it() -> None:
     some()
-    async with picking() as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await listed(app, pilot, 3)
         await pilot.press("enter")
-        await until(lambda: isinstance(app.screen, RefusedScreen), "the reason")
-        await pilot.press("escape")
-        await until(lambda: isinstance(app.screen, PickerScreen), "the lessons")
+        await until(lambda: app._notifications, "the reason")
+        (notice,) = app._notifications
+        assert "cut.mcap is empty" in notice.message
+        assert isinstance(app.screen, RecordingsScreen)
+        assert not opener.link.asked
 
 
 async def test_where_there_are_none_it_says_how_to_make_one() -> None:
@@ -163,7 +165,7 @@ async def test_what_may_not_be_looked_at_is_listed_with_the_reason(
     async with picking() as (app, pilot):
         await listed(app, pilot, 1)
         assert rows(app)[1][:3] == ["▶", "✗", "theirs"]
-        assert "✗ It cannot be read: Permission denied." in said(app)
+        assert "✗ it cannot be read: Permission denied" in said(app)
 
 
 async def test_names_cannot_control_the_terminal() -> None:
