@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from graph.inner_states import ContainerRow, LifecycleRow
     from space.buffer import Stamped
 
 Value: TypeAlias = Union[
@@ -384,5 +385,9 @@ class GraphUpdate:
     publications: tuple[Publication, ...] = ()
     frames: tuple[FrameRow, ...] = ()
     """Every frame that has been heard of, sorted by name; empty unless frames are wanted."""
+    lifecycles: tuple[LifecycleRow, ...] = ()
+    """Every node with a lifecycle, sorted by name; empty unless inner states are wanted."""
+    containers: tuple[ContainerRow, ...] = ()
+    """Every container of components, likewise."""
     error: str = ""
     """Set when the observer cannot work at all: rclpy is missing, the domain is refused."""

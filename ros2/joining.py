@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import time
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from graph.ros import FAST_DDS_VARIABLES, RANGE, announcing
 
@@ -29,6 +29,8 @@ LONGEST_S = 3.0
 """A graph that never comes to rest is taken as it is."""
 MISSING_S = 1.2
 """So long is one thing waited for that is named on the command line."""
+READY_S = 5.0
+"""So long may a service of a node that is there take to be found."""
 LOOK_S = 0.01
 SPIN_S = 0.1
 """How late Ctrl-C may be noticed: the middleware does not wake up for signals."""
@@ -50,6 +52,22 @@ class Guest:
         """Wait for an answer."""
         while not future.done():
             self.spin_once()
+
+    def call(self, service: str, kind: Any, owner: str, **fields: object) -> Any:  # noqa: ANN401
+        """Call a service of the node `owner` and return the answer; RuntimeError without one."""
+        client = self.node.create_client(kind, service)
+        try:
+            if not client.wait_for_service(timeout_sec=READY_S):
+                raise RuntimeError("Wait for service timed out")
+            future = client.call_async(kind.Request(**fields))
+            self.finish(future)
+            response = future.result()
+            if response is None:
+                why = future.exception()
+                raise RuntimeError(f"Exception while calling service of node '{owner}': {why}")
+            return response
+        finally:
+            self.node.destroy_client(client)
 
     def settle(self) -> None:
         """Wait until nothing new has been found for a moment."""

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from ros2.joining import Guest
 
-READY_S = 5.0
 NOT_FOUND = "Node not found"
 TYPES = (
     "not set", "boolean", "integer", "double", "string", "byte array", "boolean array",
@@ -43,19 +42,7 @@ def call(me: Guest, node_name: str, service: str, **fields: object) -> Any:  # n
 
     kind = getattr(srv, service)
     name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in service)
-    client = me.node.create_client(kind, f"{node_name}/{name[1:]}")
-    try:
-        if not client.wait_for_service(timeout_sec=READY_S):
-            raise RuntimeError("Wait for service timed out")
-        future = client.call_async(kind.Request(**fields))
-        me.finish(future)
-        response = future.result()
-        if response is None:
-            why = future.exception()
-            raise RuntimeError(f"Exception while calling service of node '{node_name}': {why}")
-        return response
-    finally:
-        me.node.destroy_client(client)
+    return me.call(f"{node_name}/{name[1:]}", kind, node_name, **fields)
 
 
 def write(

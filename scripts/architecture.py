@@ -17,7 +17,13 @@ from importlinter.configuration import configure
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "ARCHITECTURE.md"
 BEGIN, END = "<!-- scripts/architecture.py: begin -->\n", "<!-- scripts/architecture.py: end -->\n"
-OUR_OWN_MESSAGES = ("ackermann_msgs", "deck_interfaces", "example_interfaces", "tf2_msgs")
+OUR_OWN_MESSAGES = (
+    "ackermann_msgs",
+    "composition_interfaces",
+    "deck_interfaces",
+    "example_interfaces",
+    "tf2_msgs",
+)
 
 
 def picture() -> str:

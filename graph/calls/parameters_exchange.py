@@ -1,45 +1,39 @@
 """The exchange between Deck and a node about its parameters, request by request.
 
-An exchange is a generator: it yields requests, is sent the answers as trees, and knows neither
-time nor ROS; `graph.calls.parameters` delivers the requests.
+`graph.calls.exchanges` delivers the requests.
 """
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
+from graph.calls.exchanges import NodeRequest, ServiceSet
 from graph.calls.parameters_values import WrongValueError, carried, row, type_of
+from text.i18n import N_
 from text.sentences import say
 
 if TYPE_CHECKING:
+    from collections.abc import Generator, Mapping, Sequence
+
+    from graph.calls.exchanges import Exchange
     from graph.data import ParameterRow, Value
 
-SERVICES = {
-    "list_parameters": "rcl_interfaces/srv/ListParameters",
-    "describe_parameters": "rcl_interfaces/srv/DescribeParameters",
-    "get_parameters": "rcl_interfaces/srv/GetParameters",
-    "set_parameters": "rcl_interfaces/srv/SetParameters",
-}
-"""The services through which a node is asked, and their types."""
+SERVICES = ServiceSet(
+    {
+        "list_parameters": "rcl_interfaces/srv/ListParameters",
+        "describe_parameters": "rcl_interfaces/srv/DescribeParameters",
+        "get_parameters": "rcl_interfaces/srv/GetParameters",
+        "set_parameters": "rcl_interfaces/srv/SetParameters",
+    },
+    N_("{node} has no parameter services: it has just appeared, or was started without them"),
+)
 AT_ONCE = 200
 """Parameters in one request: a node with thousands of them must fit into its messages."""
 
 
-class ParameterRequest(NamedTuple):
-    """A request to one of a node's own services."""
-
-    service: str
-    """The service relative to the node's name: `list_parameters`."""
-    value: Mapping[str, Value]
-
-
-ParameterExchange = Generator[ParameterRequest, Mapping[str, Any], None]
-
-
-def read(rows: list[ParameterRow]) -> ParameterExchange:
+def read(rows: list[ParameterRow]) -> Exchange:
     """Read all parameters into `rows`, which is sorted by name when this ends."""
-    listed = yield ParameterRequest("list_parameters", {"depth": 0})
+    listed = yield NodeRequest("list_parameters", {"depth": 0})
     names = sorted(set(listed["result"]["names"]))
     descriptors = yield from _describe(names)
     values = yield from _of_each("get_parameters", "values", names)
@@ -48,7 +42,7 @@ def read(rows: list[ParameterRow]) -> ParameterExchange:
     ]
 
 
-def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> ParameterExchange:
+def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Exchange:
     """Set parameters, keeping their types; each that is not accepted is put into `refused`."""
     descriptors = yield from _describe(list(wanted))
     made: dict[str, Value] = {}
@@ -59,7 +53,7 @@ def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> ParameterExch
         else:
             made[name] = {"name": name, "value": tree}
     for some in _parts(list(made)):
-        answer = yield ParameterRequest(
+        answer = yield NodeRequest(
             "set_parameters",
             {"parameters": [made[name] for name in some]},
         )
@@ -94,19 +88,19 @@ def _made_anew(value: Value) -> tuple[str, dict[str, Value] | None]:
         return error.words, None
 
 
-def _describe(names: list[str]) -> Generator[ParameterRequest, Mapping[str, Any], dict[str, Any]]:
+def _describe(names: list[str]) -> Generator[NodeRequest, Mapping[str, Any], dict[str, Any]]:
     return (yield from _of_each("describe_parameters", "descriptors", names))
 
 
 def _of_each(
     service: str, field: str, names: list[str]
-) -> Generator[ParameterRequest, Mapping[str, Any], dict[str, Any]]:
+) -> Generator[NodeRequest, Mapping[str, Any], dict[str, Any]]:
     """Ask for something about each parameter; those that the node does not have are left out."""
     found: dict[str, Any] = {}
     parts = list(_parts(names))
     while parts:
         some = parts.pop(0)
-        answers = (yield ParameterRequest(service, {"names": some}))[field]
+        answers = (yield NodeRequest(service, {"names": some}))[field]
         if len(answers) == len(some):
             found.update(zip(some, answers, strict=True))
         elif len(some) > 1:

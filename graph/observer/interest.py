@@ -14,6 +14,8 @@ class Interest:
     all_topics: bool = False
     actions: frozenset[str] = frozenset()
     """Actions whose goals are wanted, including other clients' goals."""
+    inner_states: bool = False
+    """Whether nodes are asked for their lifecycle, and containers for their components."""
 
     @property
     def named(self) -> frozenset[str]:

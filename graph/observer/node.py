@@ -5,8 +5,12 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+from graph.calls.components import Containers
+from graph.calls.exchanges import Exchanges
 from graph.calls.goals import Goals
 from graph.calls.goals_seen import SeenGoals
+from graph.calls.lifecycle import Lifecycles
+from graph.calls.logger_levels import LoggerLevels
 from graph.calls.parameters import ParameterCalls
 from graph.calls.services import Calls
 from graph.data import GraphUpdate
@@ -44,7 +48,11 @@ class ObserverNode:
         self.seen_goals = SeenGoals(ros.node, self.goals.has_sent)
         self.publications = RepeatedPublications(ros.node)
         self.dead_man_switch = DeadManSwitch(ros.node)
-        self.parameters = ParameterCalls(self.calls, self._known_node, self._known_service)
+        self.exchanges = Exchanges(self.calls, self._known_node, self._known_service)
+        self.parameters = ParameterCalls(self.exchanges)
+        self.logger_levels = LoggerLevels(self.exchanges)
+        self.lifecycles = Lifecycles(ros.node, self.exchanges)
+        self.containers = Containers(self.exchanges)
         self.serve_urgent: Callable[[], object] = _nothing
         """Called repeatedly during long operations, for what cannot wait."""
         self._ros = ros
@@ -85,6 +93,11 @@ class ObserverNode:
             self._tuned = tuned
             self._taps.tune(*tuned)
             self.seen_goals.tune(interest.actions, self._scan.actions)
+            services = self._scan.services if interest.inner_states else ()
+            self.lifecycles.tune(self._scan.nodes, services)
+            self.containers.tune(self._scan.nodes, services)
+        self.lifecycles.look()
+        self.containers.look()
         return self._update(self._taps.drain(self.serve_urgent))
 
     def step(self) -> float | None:
@@ -96,7 +109,7 @@ class ObserverNode:
         due_s = _sooner(self.dead_man_switch.step(), self.publications.step())
         calling = self.calls.step()
         # Answers that have just arrived lead to the next question.
-        talking = self.parameters.step()
+        talking = self.exchanges.step()
         pursuing = self.goals.step()
         canceling = self.seen_goals.step()
         sending = self.outbox.step()
@@ -112,7 +125,8 @@ class ObserverNode:
             self.goals.close()
             self.seen_goals.close()
         finally:
-            self.parameters.fail(error)
+            self.exchanges.fail(error)
+            self.lifecycles.close()
             self.calls.fail(error)
             self.outbox.fail(error)
             self._taps.close()
@@ -143,12 +157,21 @@ class ObserverNode:
         rows = self._taps.rows()
         seen = self._scan
         doing = (self.goals.rows(), self.seen_goals.rows(), self.publications.rows())
-        told = (rows, seen.nodes, seen.services, seen.actions, *doing)
+        inner = (self.lifecycles.rows(), self.containers.rows())
+        told = (rows, seen.nodes, seen.services, seen.actions, *doing, *inner)
         if not samples and told == self._told:
             return None
         self._told = told
         return GraphUpdate(
-            time.time(), rows, samples, seen.nodes, seen.services, seen.actions, *doing
+            time.time(),
+            rows,
+            samples,
+            seen.nodes,
+            seen.services,
+            seen.actions,
+            *doing,
+            lifecycles=inner[0],
+            containers=inner[1],
         )
 
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import GraphUpdate, ParametersResult, SetResult
+from graph.observer.inner import InnerStates
 from graph.observer.interest import Interest
 from graph.observer.node import LOOK_AT_GRAPH_S, ObserverNode
 from graph.observer.requests import (
@@ -66,6 +67,8 @@ class Observer:
         self._lock = threading.Lock()
         self._wake = threading.Event()
         self._requests = RequestQueue(self._wake)
+        self.inner = InnerStates(self._requests)
+        """Requests about lifecycles and log levels."""
         self._stopping = False
         self._thread: threading.Thread | None = None
 
@@ -116,6 +119,10 @@ class Observer:
     def watch_goals(self, actions: Iterable[str]) -> None:
         """Report in each update the goals that others have sent to exactly these actions."""
         self._look_at(actions=frozenset(actions))
+
+    def watch_inner_states(self, wanted: bool) -> None:
+        """Ask nodes for their lifecycle and containers for their components, or stop asking."""
+        self._look_at(inner_states=wanted)
 
     def prepare_publisher(
         self, topic: str, type_name: str, *, latched: bool = False

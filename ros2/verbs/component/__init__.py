@@ -1,0 +1,1 @@
+"""`ros2 component`: containers and what they hold."""

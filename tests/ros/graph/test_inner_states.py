@@ -1,0 +1,177 @@
+"""Lifecycles, log levels and components of real nodes, as an observer sees and changes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+from lifecycle_msgs.srv import ChangeState
+
+from tests.ros.managed_nodes import NAMES, started
+from tests.ros.observing import Watcher
+from tests.ros.peer import Peer
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    import subprocess
+
+    from graph.inner_states import LifecycleRow
+
+PATIENT_S = 30
+
+
+@pytest.fixture(scope="module")
+def nodes(module_domain: int) -> Iterator[subprocess.Popen[bytes]]:
+    with started(module_domain) as process:
+        yield process
+
+
+@pytest.fixture(scope="module")
+def watcher(module_domain: int, nodes: subprocess.Popen[bytes]) -> Iterator[Watcher]:
+    del nodes
+    watcher = Watcher(module_domain)
+    watcher.observer.watch_inner_states(True)
+    wait_until(
+        lambda: {row.node for row in watcher.update.lifecycles if row.state} == whole(NAMES),
+        "the states of all",
+    )
+    yield watcher
+    watcher.close()
+
+
+def whole(names: tuple[str, ...]) -> set[str]:
+    return {f"/{name}" for name in names}
+
+
+def row(watcher: Watcher, name: str) -> LifecycleRow:
+    return next(row for row in watcher.update.lifecycles if row.node == f"/{name}")
+
+
+def until_it_is(watcher: Watcher, name: str, state: str, *transitions: str) -> None:
+    wait_until(
+        lambda: (row(watcher, name).state, row(watcher, name).transitions) == (state, transitions),
+        f"{name} to be {state} with {transitions}, not {row(watcher, name)}",
+    )
+
+
+def change(watcher: Watcher, name: str, transition: str) -> tuple[str, str]:
+    """The state that it led to, and why it was not made."""
+    result = watcher.observer.inner.change_state(f"/{name}", transition).result(PATIENT_S)
+    assert (result.node, result.transition) == (f"/{name}", transition)
+    return result.state, result.error
+
+
+def test_only_nodes_with_a_lifecycle_have_a_row(watcher: Watcher) -> None:
+    assert watcher.node("/ordinary") is not None
+    assert [each.node for each in watcher.update.lifecycles] == sorted(whole(NAMES))
+
+
+def test_a_node_goes_through_its_states(watcher: Watcher) -> None:
+    until_it_is(watcher, "good", "unconfigured", "configure", "shutdown")
+    assert change(watcher, "good", "configure") == ("inactive", "")
+    until_it_is(watcher, "good", "inactive", "cleanup", "activate", "shutdown")
+    assert change(watcher, "good", "activate") == ("active", "")
+    until_it_is(watcher, "good", "active", "deactivate", "shutdown")
+    assert change(watcher, "good", "configure") == (
+        "active",
+        "/good is active: configure is not possible there, only deactivate, shutdown",
+    )
+    assert change(watcher, "good", "deactivate") == ("inactive", "")
+    assert change(watcher, "good", "cleanup") == ("unconfigured", "")
+
+
+def test_a_transition_by_somebody_else_is_seen_at_once(
+    watcher: Watcher, module_domain: int
+) -> None:
+    until_it_is(watcher, "good", "unconfigured", "configure", "shutdown")
+    with Peer(module_domain, "somebody") as peer:
+        request = ChangeState.Request()
+        request.transition.label = "configure"
+        assert peer.ask("/good/change_state", ChangeState, request).success
+        until_it_is(watcher, "good", "inactive", "cleanup", "activate", "shutdown")
+        request.transition.label = "cleanup"
+        assert peer.ask("/good/change_state", ChangeState, request).success
+        until_it_is(watcher, "good", "unconfigured", "configure", "shutdown")
+
+
+def test_a_refusal_and_an_error_are_told_apart(watcher: Watcher) -> None:
+    assert change(watcher, "refusing", "configure") == (
+        "unconfigured",
+        "/refusing refuses to configure and stays unconfigured; its log may say why",
+    )
+    assert change(watcher, "raising", "configure") == (
+        "unconfigured",
+        (
+            "configure failed with an error in /raising, which is now unconfigured; "
+            "its log may say why"
+        ),
+    )
+
+
+def test_a_node_that_is_finalized_can_nothing_more(watcher: Watcher) -> None:
+    state, error = change(watcher, "hopeless", "configure")
+    assert state == "finalized"
+    assert error.startswith("configure failed with an error that /hopeless could not recover from")
+    until_it_is(watcher, "hopeless", "finalized")
+    assert change(watcher, "hopeless", "configure") == (
+        "finalized",
+        "/hopeless is finalized: nothing leads out of that state",
+    )
+
+
+@pytest.mark.timeout(60)
+def test_a_node_that_hangs_is_told_of(watcher: Watcher, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its transition is seen to begin; then it answers nobody, which its row says, too."""
+    monkeypatch.setattr("graph.calls.lifecycle_exchange.CHANGE_WITHIN_S", 1.0)
+    monkeypatch.setattr("graph.calls.lifecycle.ANSWER_WITHIN_S", 1.0)
+    monkeypatch.setattr("graph.calls.lifecycle.ASK_AGAIN_S", 0.5)
+    assert change(watcher, "hanging", "configure") == (
+        "",
+        "/hanging does not answer within 1 s",
+    )
+    wait_until(lambda: row(watcher, "hanging").state == "configuring", "it to be configuring")
+    wait_until(lambda: "does not answer" in row(watcher, "hanging").error, "the reason")
+    assert row(watcher, "hanging").transitions == ()
+
+
+def test_a_node_without_a_lifecycle_is_not_changed(watcher: Watcher) -> None:
+    _state, error = change(watcher, "ordinary", "configure")
+    assert error == (
+        "/ordinary has no lifecycle: it is an ordinary node, at work as long as it runs"
+    )
+    assert change(watcher, "nobody", "configure")[1] == "there is no node /nobody in the graph"
+
+
+def test_a_log_level_is_read_and_set(watcher: Watcher) -> None:
+    inner = watcher.observer.inner
+    assert inner.logger_level("/good").result(PATIENT_S).level == "info"
+    for level in ("debug", "info", "warn", "error", "fatal"):
+        result = inner.set_logger_level("/good", level).result(PATIENT_S)
+        assert (result.level, result.error) == (level, "")
+    assert inner.logger_level("good").result(PATIENT_S).level == "fatal"
+    assert inner.logger_level("/refusing").result(PATIENT_S).level == "info"
+
+
+def test_a_node_without_logger_services_says_how_to_get_them(watcher: Watcher) -> None:
+    result = watcher.observer.inner.set_logger_level("/ordinary", "debug").result(PATIENT_S)
+    assert result.level == ""
+    assert "/ordinary does not let others change its log level" in result.error
+    assert "enable_logger_service=True" in result.error
+
+
+def test_components_are_listed_with_their_container(watcher: Watcher) -> None:
+    wait_until(lambda: any(each.components for each in watcher.update.containers), "components")
+    (container,) = watcher.update.containers
+    assert container.node == "/arm/container"
+    assert [(each.unique_id, each.node) for each in container.components] == [
+        (1, "/good"),
+        (2, "/arm/gripper"),
+    ]
+
+
+def test_nobody_is_asked_once_nobody_wants_to_know(watcher: Watcher) -> None:
+    watcher.observer.watch_inner_states(False)
+    wait_until(lambda: not watcher.update.lifecycles and not watcher.update.containers, "no rows")
+    watcher.observer.watch_inner_states(True)
+    wait_until(lambda: watcher.update.lifecycles and watcher.update.containers, "rows again")

@@ -1,0 +1,73 @@
+"""`ros2 lifecycle` and `ros2 component` against real nodes: what is printed, and the exit code."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.ros.managed_nodes import started
+from tests.ros.ros2.typed import typed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+NODES = "/good\n/hanging\n/hopeless\n/raising\n/refusing\n"
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _managed(module_domain: int) -> Iterator[None]:
+    with started(module_domain):
+        yield
+
+
+def out(*words: str) -> str:
+    done = typed(*words)
+    assert (done.code, done.err) == (0, ""), done
+    return done.out
+
+
+def failed(*words: str) -> str:
+    done = typed(*words)
+    assert (done.code, done.out) == (1, ""), done
+    return done.err
+
+
+def test_nodes_with_a_lifecycle_are_listed() -> None:
+    assert out("lifecycle", "nodes", "--spin-time", "2") == NODES
+    assert out("lifecycle", "nodes", "-c", "--spin-time", "2") == "5\n"
+
+
+def test_states_are_got_and_transitions_made() -> None:
+    assert out("lifecycle", "get", "/good") == "unconfigured [1]\n"
+    assert out("lifecycle", "list", "good") == (
+        "- configure [1]\n\tStart: unconfigured\n\tGoal: configuring\n"
+        "- shutdown [5]\n\tStart: unconfigured\n\tGoal: shuttingdown\n"
+    )
+    assert "- deactivate [4]\n\tStart: active\n" in out("lifecycle", "list", "good", "-a")
+    assert out("lifecycle", "set", "/good", "configure") == "Transitioning successful\n"
+    assert out("lifecycle", "set", "good", "3") == "Transitioning successful\n"
+    states = out("lifecycle", "get", "--spin-time", "2").splitlines()
+    assert states[0] == "/good: active [3]"
+    assert states[1:] == [f"{name}: unconfigured [1]" for name in NODES.split()[1:]]
+
+
+def test_what_fails_says_so_to_a_script() -> None:
+    assert failed("lifecycle", "get", "/nobody") == "Node not found\n"
+    assert failed("lifecycle", "set", "/refusing", "configure") == "Transitioning failed\n"
+    assert failed("lifecycle", "set", "/refusing", "activate") == (
+        "Unknown transition requested, available ones are:\n- configure [1]\n- shutdown [5]\n"
+    )
+    assert failed("component", "list", "/good") == "Unable to find container node '/good'\n"
+    assert typed("lifecycle", "set", "/good").code == 2
+    assert typed("component", "unload", "/arm/container", "1").code == 2
+
+
+def test_components_are_listed_below_their_container() -> None:
+    assert (
+        out("component", "list", "--spin-time", "2")
+        == "/arm/container\n  2  /arm/gripper\n  1  /good\n"
+    )
+    assert out("component", "list", "/arm/container") == "2  /arm/gripper\n1  /good\n"
+    only = out("component", "list", "--containers-only", "--spin-time", "2")
+    assert only == "/arm/container\n"
