@@ -18,7 +18,7 @@ from text.yaml_tree import empty, find, place_of
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from launcher.profile.model import NodeDocument
+    from launcher.profile.model import NodeDocument, ReadyDocument
     from launcher.profile.problems import Problems
     from text.yaml_tree import Branch, Where
 
@@ -53,12 +53,11 @@ def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) 
         message = say("has both `run` and `exec`")
         problems.add(place_of(tree, (*where, "exec"), key=True), where, message, say("keep one"))
     if node.ready is not None:
-        conditions = [node.ready.topic, node.ready.service, node.ready.node]
-        if sum(value is not None for value in conditions) != 1:
+        if not _is_one_condition(node, node.ready):
             problems.add(
                 place_of(tree, (*where, "ready")),
                 (*where, "ready"),
-                say("expected exactly one of topic, service, node"),
+                say("expected exactly one of topic, service, node, lifecycle"),
                 say("write ready: {topic: /chatter, within: 10}"),
             )
         for key in ("type", "rate"):
@@ -69,6 +68,13 @@ def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) 
                     say("`{key}` belongs to a topic, but none is given here", key=key),
                     say("write ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1}"),
                 )
+
+
+def _is_one_condition(node: NodeDocument, ready: ReadyDocument) -> bool:
+    """Whether one thing is waited for; a node whose lifecycle is meant may be named, too."""
+    one = ready.lifecycle if node.lifecycle else ready.lifecycle or ready.node
+    count = sum(each is not None for each in (ready.topic, ready.service, one))
+    return count == 1 or (count == 0 and node.lifecycle is not None)
 
 
 def check_run(

@@ -184,9 +184,12 @@ class _SpecBuilder:
 def _ready(name: str, node: NodeDocument) -> Ready | None:
     """Return the condition as written; by default a `run` node must be in the graph."""
     if node.ready is None:
-        return None if node.run is None else Ready("node", name)
+        return None if node.run is None or node.lifecycle else Ready("node", name)
     ready = node.ready
-    for kind in ("topic", "service", "node"):
+    if ready.lifecycle is not None:
+        return Ready("lifecycle", ready.node or name, ready.lifecycle, within_s=ready.within)
+    # A node that is brought up is in the graph.
+    for kind in ("topic", "service") if node.lifecycle else ("topic", "service", "node"):
         found = getattr(ready, kind)
         if found is not None:
             return Ready(kind, found, ready.type or "", ready.rate or 0.0, ready.within)

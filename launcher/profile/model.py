@@ -21,6 +21,7 @@ from launcher.profile.serial_choice import KINDS
 from launcher.profile.steps.model import StepDocument, Values
 from text.sentences import say
 
+Lifecycle = Literal["inactive", "active"]
 Restart = Literal["never", "on-failure", "always"]
 
 NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -136,7 +137,7 @@ _DEVICE: dict[str, Any] = {
 
 
 class ReadyDocument(Document):
-    """When a node counts as ready: exactly one of topic, service and node."""
+    """When a node counts as ready: exactly one of topic, service, node and lifecycle."""
 
     topic: RosName | None = Field(None, description="Ready when somebody publishes this topic.")
     type: TypeName | None = Field(
@@ -152,6 +153,11 @@ class ReadyDocument(Document):
     )
     service: RosName | None = Field(None, description="Ready when this service is offered.")
     node: RosName | None = Field(None, description="Ready when this node is in the ROS graph.")
+    lifecycle: Lifecycle | None = Field(
+        None,
+        description="Ready when the node, or the one that `node` names, is in this state of its"
+        " lifecycle; somebody else has to bring it there.",
+    )
     within: float = Field(READY_WITHIN_S, gt=0, le=3600, description="Seconds it may take.")
 
 
@@ -190,6 +196,11 @@ class NodeDocument(Document):
     )
     ready: ReadyDocument | None = Field(
         None, description="Default: `run` nodes are ready when seen in the ROS graph."
+    )
+    lifecycle: Lifecycle | None = Field(
+        None,
+        description="A node with a lifecycle is configured, and with `active` activated, once it"
+        " runs; it is not ready before. A transition that fails is a failure of the node.",
     )
     restart: Restart = Field(
         "never", description="Whether to restart it when it ends; the delay doubles, up to 30 s."

@@ -28,11 +28,12 @@ class Ready:
     """The condition under which a node counts as ready."""
 
     kind: str
-    """`topic`, `service` or `node`."""
+    """`topic`, `service`, `node` or `lifecycle`."""
     name: str
     """A ROS name as in the profile, absolute or not."""
     type: str = ""
-    """For a topic: the expected type, `std_msgs/msg/Float32`; empty: any."""
+    """For a topic: the expected type, `std_msgs/msg/Float32`; empty: any. For a lifecycle: the
+    state, `active`."""
     rate_hz: float = 0.0
     """For a topic: how often messages must arrive; 0: none need to."""
     within_s: float = READY_WITHIN_S
@@ -56,6 +57,12 @@ class NodeSpec:
     """An absolute path; None: the folder in which the launcher was started."""
     folder: Path = field(compare=False)
     """That of the profile."""
+
+    @property
+    def managed(self) -> str:
+        """The name in the graph of the node whose lifecycle is meant, absolute or not."""
+        ready = self.document.ready
+        return self.name if ready is None or ready.node is None else ready.node
 
     @property
     def command(self) -> str:

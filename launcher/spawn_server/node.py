@@ -35,7 +35,8 @@ class ForkSpec:
     """Everything a forked process needs to know to become its node."""
 
     kind: str
-    """`module`: run here, in the warm interpreter; `exec`: a program; `probe`: the graph probe."""
+    """`module`: run here, in the warm interpreter; `exec`: a program; `probe`: the graph probe;
+    `lifecycle`: watch one node's lifecycle."""
     name: str
     title: str
     argv: tuple[str, ...]
@@ -98,6 +99,11 @@ def become(spec: ForkSpec) -> None:
         from launcher.spawn_server.probe import probe
 
         probe(spec.argv)
+    elif spec.kind == "lifecycle":
+        _hear_signals()
+        from launcher.spawn_server.lifecycle import watch_lifecycle
+
+        watch_lifecycle(spec.argv)
     else:
         _run_module(spec.argv, spec.shared)
 

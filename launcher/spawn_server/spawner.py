@@ -36,7 +36,7 @@ class SpawnRequest:
     """One process to be started."""
 
     kind: str
-    """`module`, `exec` or `probe`, see `launcher.spawn_server.node.ForkSpec`."""
+    """`module`, `exec`, `probe` or `lifecycle`, see `launcher.spawn_server.node.ForkSpec`."""
     name: str
     title: str
     argv: tuple[str, ...]

@@ -13,17 +13,14 @@ from launcher.processes.exit import Exit
 from launcher.processes.stop import PATIENT, QUICK, StagedStop
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import NodeFault, NodeState, NodeStatus, Severity
-from launcher.supervisor.readiness import UnwatchableError
+from launcher.supervisor.readying import Readying, why_unready
 from launcher.supervisor.restart_policy import Again, Finished, GivenUp, RestartPolicy
 from launcher.supervisor.words import (
     NOT_EXECUTABLE,
     NOT_FOUND,
     end_words,
-    instead,
-    late,
     left_undone,
     stopped_words,
-    what,
     who,
 )
 from text.sentences import say
@@ -36,12 +33,11 @@ if TYPE_CHECKING:
     from launcher.processes.usage import Usage
     from launcher.supervisor.node_context import NodeContext, RunningProcess
     from launcher.supervisor.plan import NodePlan
-    from launcher.supervisor.readiness import Seen
 
-LATE_S = 60.0
-"""How long after its time limit a node may still become ready."""
 USAGE = 2
 """Exit code of a program that rejects its arguments; Deck's nodes use it for parameters."""
+UNREADY = Exit(1)
+"""The end of a process that could not be brought up."""
 USAGE_WITHIN_S = 10.0
 """A program that rejects its arguments does so within this time."""
 ASKED_TWICE_S = 0.3
@@ -55,6 +51,8 @@ class _Now:
     process: RunningProcess
     started: float
     stop: StagedStop | None = None
+    failure: str = ""
+    """Why it will never be ready, although it runs."""
 
 
 class SupervisedNode:
@@ -132,7 +130,7 @@ class SupervisedNode:
             self._go_down(now=now or self._asked_before())
             await asyncio.wait([self._task])
         elif self.state in (NodeState.WAITING, NodeState.BACKOFF):
-            self._become(NodeState.EXITED, say("stopped"))
+            self.become(NodeState.EXITED, say("stopped"))
 
     def restart(self) -> None:
         """Restart it; a node that is already waiting for a restart is not started twice."""
@@ -191,7 +189,7 @@ class SupervisedNode:
     def _tell_fault(self, task: asyncio.Task[None]) -> None:
         """Report an exception in Deck itself, so that the node does not seem to be healthy."""
         if not task.cancelled() and task.exception() is not None:
-            self._become(
+            self.become(
                 NodeState.FAILED, say("an error in Deck itself: {error!r}", error=task.exception())
             )
             asyncio.get_running_loop().call_exception_handler(
@@ -208,7 +206,8 @@ class SupervisedNode:
             self._now.stop.hurry()
         self._nudge.set()
 
-    def _become(self, state: NodeState, detail: str = "", *, serves: bool = False) -> None:
+    def become(self, state: NodeState, detail: str = "", *, serves: bool = False) -> None:
+        """Give it another state; `serves`: the nodes that need it may start."""
         self.state, self.detail, self.serves = state, detail, serves and not self._down
         self._around.changed(self.plan.name, self.state)
 
@@ -221,7 +220,7 @@ class SupervisedNode:
                     return
             if self._down:
                 if not self._again:
-                    self._become(NodeState.EXITED, stopped_words(self._last))
+                    self.become(NodeState.EXITED, stopped_words(self._last))
                     return
                 self._again = self._down = self._hurried = False
                 self._policy.reset()
@@ -232,14 +231,14 @@ class SupervisedNode:
             if not missing:
                 break
             if (self.state, self.detail) != (NodeState.WAITING, missing):
-                self._become(NodeState.WAITING, missing)
+                self.become(NodeState.WAITING, missing)
             await self._nudge.wait()
             self._nudge.clear()
         self._forced = False
 
     async def _one_process(self) -> bool:
         """Start a process and follow it until it ends; return whether to start another."""
-        self._become(NodeState.STARTING)
+        self.become(NodeState.STARTING)
         try:
             process = await self._launched()
         except SpawnError as problem:
@@ -250,9 +249,12 @@ class SupervisedNode:
         else:
             if process is None:
                 return False
-            end, lasted = await self._see_through(process)
+            end, lasted, failure = await self._see_through(process)
             why = self._end_words(end)
-            if self.fault is not None and not self._down:
+            if failure:
+                # Deck has ended it, which is none of the node's own success.
+                end, why = UNREADY, failure
+            elif self.fault is not None and not self._down:
                 why = self.fault.words
                 self._around.say(self.plan.name, Severity.ERROR, why)
         if self._down:
@@ -271,20 +273,25 @@ class SupervisedNode:
             await asyncio.wait([launching])
         return None if launching.cancelled() else launching.result()
 
-    async def _see_through(self, process: RunningProcess) -> tuple[Exit, float]:
+    async def _see_through(self, process: RunningProcess) -> tuple[Exit, float, str]:
+        """Follow a process; return its end, its age in seconds, and why it was ended by Deck."""
         clock = self._around.clock
         self._now = now = _Now(process, clock.now())
         self._last = self.usage = self.fault = self._clash = None
         self._around.say(self.plan.name, Severity.INFO, say("started, pid {pid}", pid=process.pid))
         process.ended.add_done_callback(lambda _ended: self._nudge.set())
-        ready = asyncio.create_task(self._become_ready())
-        while not process.ended.done() and not self._down:
+        ready = asyncio.create_task(Readying(self.plan, self._around, self).run())
+        ready.add_done_callback(lambda _ready: self._nudge.set())
+        while not (process.ended.done() or self._down or now.failure):
             self._nudge.clear()
             await self._nudge.wait()
+            now.failure = why_unready(ready)
         ready.cancel()
         lasted = clock.now() - now.started
-        if self._down:
-            self._become(NodeState.STOPPING)
+        if now.failure:
+            self._around.say(self.plan.name, Severity.ERROR, now.failure)
+        if self._down or now.failure:
+            self.become(NodeState.STOPPING, now.failure)
         await self._end_all_of_it(now)
         end = await process.ended
         await process.close()
@@ -292,7 +299,7 @@ class SupervisedNode:
         self._around.say(self.plan.name, self._gravity(end), self._end_words(end))
         if self.plan.file:
             self._judge_end(end)
-        return end, lasted
+        return end, lasted, now.failure
 
     def _judge_end(self, end: Exit) -> None:
         """Note what is wrong with the learner's own file if it ended other than as it should."""
@@ -316,52 +323,16 @@ class SupervisedNode:
             left = now.process.left()
             if not left:
                 return
-            self._become(NodeState.STOPPING, say("it ended and left {who} running", who=who(left)))
+            self.become(NodeState.STOPPING, say("it ended and left {who} running", who=who(left)))
         stop = now.stop
         now.process.ended.add_done_callback(lambda _ended: stop.look())
         await stop.run()
 
     def _held_up(self, left: Sequence[Process], number: signal.Signals) -> None:
         words = say("{signal} sent, waiting for {who}", signal=number.name, who=who(left))
-        self._become(NodeState.STOPPING, words)
+        self.become(NodeState.STOPPING, words)
         if number.name != "SIGINT":
             self._around.say(self.plan.name, Severity.WARN, words)
-
-    async def _become_ready(self) -> None:
-        plan, condition = self.plan, self.plan.ready
-        if condition is None:
-            self._become(NodeState.RUNNING, serves=True)
-            return
-        self._become(NodeState.STARTING, say("waiting for {what}", what=what(condition)))
-        clock = self._around.clock
-        seen: Seen | None = None
-
-        def tell(found: Seen) -> None:
-            nonlocal seen
-            seen = found
-            if self.state is NodeState.STARTING:
-                self._become(NodeState.STARTING, instead(condition, found))
-            elif self.state is NodeState.RUNNING:
-                self._become(NodeState.RUNNING, late(condition, found, plan.within_s))
-
-        ready = asyncio.ensure_future(self._around.ready(condition, tell))
-        came = asyncio.Event()
-        ready.add_done_callback(lambda _ready: came.set())
-        try:
-            if not await clock.wait(came, plan.within_s):
-                words = late(condition, seen, plan.within_s)
-                self._become(NodeState.RUNNING, words)
-                self._around.say(plan.name, Severity.WARN, words)
-                if not await clock.wait(came, LATE_S):
-                    return
-            ready.result()
-            self._become(NodeState.READY, serves=True)
-        except UnwatchableError:
-            self._become(
-                NodeState.RUNNING, say("whether it is ready cannot be determined"), serves=True
-            )
-        finally:
-            ready.cancel()
 
     async def _after(self, end: Exit, lasted: float, why: str) -> bool:
         """Apply the restart policy; return whether to start it again."""
@@ -373,16 +344,16 @@ class SupervisedNode:
         )
         if isinstance(verdict, Again):
             words = say("{why}; again in {seconds:g} s", why=why, seconds=verdict.delay_s)
-            self._become(NodeState.BACKOFF, words)
+            self.become(NodeState.BACKOFF, words)
             self._nudge.clear()
             await clock.wait(self._nudge, verdict.delay_s)
             self._forced = False
             if not self._down:
                 self._restarts += 1
             return not self._down
-        undone = "" if self.plan.ready is None else left_undone(self.plan.ready)
+        undone = next(filter(None, map(left_undone, self.plan.conditions[::-1])), "")
         if self.plan.optional or (isinstance(verdict, Finished) and not undone):
-            self._become(NodeState.EXITED, why)
+            self.become(NodeState.EXITED, why)
             return False
         if isinstance(verdict, Finished):
             why = why if self.fault is not None else undone
@@ -395,7 +366,7 @@ class SupervisedNode:
                 why=why,
             )
             self._around.say(self.plan.name, Severity.ERROR, why)
-        self._become(NodeState.FAILED, why)
+        self.become(NodeState.FAILED, why)
         return False
 
     def _is_hopeless(self, end: Exit, lasted: float) -> bool:

@@ -44,7 +44,10 @@ class NodeContext(Protocol):
         """Start the node's process; raises `SpawnError`."""
 
     async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
-        """Return once the condition holds; `tell` gets other states; raises `UnwatchableError`."""
+        """Return once the condition holds; `tell` gets other states.
+
+        Raises `UnwatchableError`, and `NotBroughtUpError` for a lifecycle.
+        """
 
     def missing(self, plan: NodePlan) -> str:
         """Say which needed nodes are not ready yet; empty if all are."""

@@ -45,11 +45,18 @@ class NodePlan:
     cwd: str = "/"
     needs: tuple[str, ...] = ()
     ready: ReadyCondition | None = None
+    lifecycle: ReadyCondition | None = None
+    """The state that it is brought to before that."""
     within_s: float = READY_WITHIN_S
     restart: str = "never"
     optional: bool = False
     file: str = ""
     """The learner's own file that it runs, absolute."""
+
+    @property
+    def conditions(self) -> tuple[ReadyCondition, ...]:
+        """Everything that has to hold, in this order."""
+        return tuple(each for each in (self.lifecycle, self.ready) if each is not None)
 
 
 @dataclass(frozen=True)
@@ -116,8 +123,9 @@ class Plan:
 def _node_from(fields: dict[str, Any]) -> NodePlan:
     for key in ("argv", "module", "needs"):
         fields[key] = tuple(fields[key])
-    if fields["ready"] is not None:
-        fields["ready"] = ReadyCondition(**fields["ready"])
+    for key in ("ready", "lifecycle"):
+        if fields[key] is not None:
+            fields[key] = ReadyCondition(**fields[key])
     return NodePlan(**fields)
 
 
@@ -189,7 +197,10 @@ def _node_plan(node: NodeSpec) -> NodePlan:
         ready=None
         if ready is None
         else ReadyCondition(ready.kind, ready.name, ready.type, ready.rate_hz),
-        within_s=READY_WITHIN_S if ready is None else ready.within_s,
+        lifecycle=None
+        if said.lifecycle is None
+        else ReadyCondition("lifecycle", node.managed, said.lifecycle, goes=True),
+        within_s=READY_WITHIN_S if said.ready is None else said.ready.within,
         restart=said.restart,
         optional=said.optional,
         file=node.own_file,

@@ -9,19 +9,17 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-import os
-import signal
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from launcher.processes.signal import send
 from launcher.spawn_server.spawner import SpawnError, SpawnRequest
+from launcher.supervisor.helper import helping
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from launcher.processes.exit import Reaper
-    from launcher.spawn_server.spawner import SpawnedProcess, Spawner
+    from launcher.spawn_server.spawner import Spawner
 
 MAX_PROBES = 3
 """After this many probes have died in a row, the graph counts as unwatchable."""
@@ -34,20 +32,23 @@ class ReadyCondition:
     """Something that must be in the ROS graph."""
 
     kind: str
-    """`node`, `topic` (a publisher of it) or `service`."""
+    """`node`, `topic` (a publisher of it), `service`; or `lifecycle`, of a node."""
     name: str
     type: str = ""
-    """For a topic: only a publisher of this type counts, `std_msgs/msg/Float32`; empty: any."""
+    """For a topic: only a publisher of this type counts, `std_msgs/msg/Float32`; empty: any. For
+    a lifecycle: the state, `active`."""
     rate_hz: float = 0.0
     """For a topic: messages must arrive at least this often; 0: none need to."""
+    goes: bool = False
+    """For a lifecycle: whether the node is to be brought to that state, not only waited for."""
 
 
 @dataclass(frozen=True)
 class Seen:
-    """The state of a topic whose condition is not met."""
+    """The state of a topic whose condition is not met, or that of a node's lifecycle."""
 
     types: tuple[str, ...]
-    """The types of its publishers."""
+    """The types of its publishers; for a lifecycle the one state."""
     rate_hz: float | None = None
     """The rate of its messages; None if it is not required or cannot be measured."""
 
@@ -151,30 +152,8 @@ class Readiness:
 
     async def _one_probe(self) -> None:
         """Start a probe and listen to it until it ends."""
-        hold_read, hold = os.pipe()
-        report, report_write = os.pipe()
-        spawned: SpawnedProcess | None = None
-        try:
-            try:
-                spawned = await self._spawner.spawn(self._request(), (hold_read, report_write, 2))
-            finally:
-                os.close(hold_read)
-                os.close(report_write)
-            await self._listen(report)
-        finally:
-            # The probe ends cleanly when its stdin is closed, and announces that to the graph.
-            os.close(hold)
-            os.close(report)
-            if spawned is not None:
-                _ = asyncio.create_task(self._see_off(spawned))  # noqa: RUF006 - it ends by itself
-
-    async def _listen(self, fd: int) -> None:
-        reader = asyncio.StreamReader()
-        transport, _protocol = await asyncio.get_running_loop().connect_read_pipe(
-            lambda: asyncio.StreamReaderProtocol(reader), os.fdopen(os.dup(fd), "rb", 0)
-        )
-        try:
-            async for line in reader:
+        async with helping(self._spawner, self._reaper, self._request()) as reports:
+            async for line in reports:
                 told = json.loads(line)
                 self._learn(
                     frozenset(self._conditions[position] for position in told["met"]),
@@ -190,8 +169,6 @@ class Readiness:
                             for topic, users in told["clashes"]
                         ]
                     )
-        finally:
-            transport.close()
 
     def _learn(self, holding: frozenset[ReadyCondition], seen: dict[ReadyCondition, Seen]) -> None:
         before, self._holding, self._seen = self._seen, holding, seen
@@ -204,14 +181,5 @@ class Readiness:
                 tell(seen[condition])
 
     def _request(self) -> SpawnRequest:
-        wanted = json.dumps([astuple(condition) for condition in self._conditions])
+        wanted = json.dumps([(c.kind, c.name, c.type, c.rate_hz) for c in self._conditions])
         return SpawnRequest("probe", "deck_probe", "deck: probe", (wanted,), "/", self._env)
-
-    async def _see_off(self, spawned: SpawnedProcess, within_s: float = 3.0) -> None:
-        ended = self._reaper.exit_of(spawned.pid, spawned.started_ticks)
-        try:
-            await asyncio.wait_for(asyncio.shield(ended), within_s)
-        except asyncio.TimeoutError:
-            send(spawned, signal.SIGKILL)
-            await ended
-        self._spawner.forget(spawned.pid)

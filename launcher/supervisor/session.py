@@ -15,6 +15,7 @@ from launcher.status import NodeState, Severity
 from launcher.supervisor.clashes import clash_of
 from launcher.supervisor.dependencies import stop_waves, with_needs
 from launcher.supervisor.exchange import exchanged
+from launcher.supervisor.lifecycle import LIFECYCLE, LifecycleWaits
 from launcher.supervisor.node import SupervisedNode
 from launcher.supervisor.readiness import Readiness
 from launcher.supervisor.shared_memory import SharedMemory
@@ -59,12 +60,13 @@ class Session:
         self._on_start = on_start
         self._meter = UsageMeter()
         self._readiness = Readiness(
-            [node.ready for node in plan.nodes if node.ready is not None],
+            [each for node in plan.nodes for each in node.conditions if each.kind != LIFECYCLE],
             launcher.spawner,
             launcher.reaper,
             plan.env,
             self._tell_clashes,
         )
+        self._lifecycles = LifecycleWaits(launcher.spawner, launcher.reaper, plan.env)
         self.processes: dict[str, tuple[int, int]] = {}
         """Node to the number and the start, in ticks, of its latest process."""
         self._to_return: set[str] = set()
@@ -163,8 +165,12 @@ class Session:
         return process
 
     async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
-        """Return once the condition holds; `tell` gets other states; raises `UnwatchableError`."""
-        await self._readiness.until(condition, tell)
+        """Return once the condition holds; `tell` gets other states.
+
+        Raises `UnwatchableError`, and `NotBroughtUpError` for a lifecycle.
+        """
+        waits = self._lifecycles if condition.kind == LIFECYCLE else self._readiness
+        await waits.until(condition, tell)
 
     def missing(self, plan: NodePlan) -> str:
         """Say which needed nodes are not ready yet; empty if all are."""
@@ -197,7 +203,7 @@ class Session:
                 node.warn(warning_in(line.text, node.plan.file))
 
     def _is_watched(self) -> bool:
-        return any(node.plan.ready or node.plan.file for node in self.nodes.values())
+        return any(node.plan.conditions or node.plan.file for node in self.nodes.values())
 
     def _tell_clashes(self, clashes: Sequence[Clash]) -> None:
         """Tell the learner's own nodes of their topics that others use with another type."""

@@ -57,11 +57,20 @@ def what(condition: ReadyCondition) -> str:
         return say("publisher of {name}", name=condition.name)
     if condition.kind == "service":
         return say("service {name}", name=condition.name)
+    if condition.kind == "lifecycle":
+        return say("{name} to be {state}", name=condition.name, state=condition.type)
     return say("node {name} in the graph", name=condition.name)
 
 
 def instead(condition: ReadyCondition, seen: Seen) -> str:
-    """Describe why the condition does not hold: another type, or too few messages."""
+    """Describe why the condition does not hold: another type or state, or too few messages."""
+    if condition.kind == "lifecycle":
+        return say(
+            "{name} is {state}, expected {wanted}",
+            name=condition.name,
+            state=", ".join(seen.types),
+            wanted=condition.type,
+        )
     if condition.type and condition.type not in seen.types:
         return say(
             "{name} is published as {types}, expected {type}",
@@ -95,6 +104,10 @@ def lack(condition: ReadyCondition) -> str:
         return say("nobody publishes {name}", name=condition.name)
     if condition.kind == "service":
         return say("nobody serves {name}", name=condition.name)
+    if condition.kind == "lifecycle":
+        return say(
+            "{name} tells no state: it is not there, or has no lifecycle", name=condition.name
+        )
     return say("node {name} is not in the graph", name=condition.name)
 
 
@@ -104,7 +117,19 @@ def left_undone(condition: ReadyCondition) -> str:
         return say("ended by itself, but should still publish {name}", name=condition.name)
     if condition.kind == "service":
         return say("ended by itself, but should still serve {name}", name=condition.name)
+    if condition.kind == "lifecycle":
+        return say("ended by itself, but should still be {state}", state=condition.type)
     return ""
+
+
+def not_brought_up(transition: str, state: str, last: str) -> str:
+    """Say that a node did not get where it should by its lifecycle; `last` is what it said last."""
+    how = (
+        say("{transition} failed, it is {state} now", transition=transition, state=state)
+        if transition
+        else say("it is {state}, from where it gets nowhere", state=state)
+    )
+    return say("{how}: {last}", how=how, last=_short(last)) if last else how
 
 
 def who(left: Sequence[Process], most: int = 3) -> str:

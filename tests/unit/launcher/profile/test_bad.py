@@ -20,7 +20,10 @@ BAD = {
     ),
     "unknown key near nothing": (
         "nodes: {a: {exec: [x], ready: {zzz: 1, node: b}}}",
-        "1:32: nodes.a.ready.zzz: unknown key (known: topic, type, rate, service, node, within)",
+        (
+            "1:32: nodes.a.ready.zzz: unknown key (known: topic, type, rate, service, node,"
+            " lifecycle, within)"
+        ),
     ),
     "number where text belongs": (
         "nodes: {a: {run: 12}}",
@@ -240,10 +243,31 @@ BAD = {
     "two conditions of readiness": (
         "nodes: {a: {exec: [x], ready: {node: a, topic: b}}}",
         (
-            "1:31: nodes.a.ready: expected exactly one of topic, service, node (write"
+            "1:31: nodes.a.ready: expected exactly one of topic, service, node,"
+            " lifecycle (write"
             " ready: {topic:"
             " /chatter, within: 10})"
         ),
+    ),
+    "a state and a topic": (
+        "nodes: {a: {exec: [x], ready: {lifecycle: active, topic: b}}}",
+        "1:31: nodes.a.ready: expected exactly one of topic, service, node, lifecycle (write",
+    ),
+    "a state and a topic, where the node is brought up": (
+        "nodes: {a: {exec: [x], lifecycle: active, ready: {topic: b, service: c}}}",
+        "1:50: nodes.a.ready: expected exactly one of topic, service, node, lifecycle (write",
+    ),
+    "a state that nobody waits for": (
+        "nodes: {a: {exec: [x], ready: {lifecycle: activ}}}",
+        "1:43: nodes.a.ready.lifecycle: ",
+    ),
+    "a state that a node cannot be brought to": (
+        "nodes: {a: {exec: [x], lifecycle: finalized}}",
+        "1:35: nodes.a.lifecycle: ",
+    ),
+    "no state": (
+        "nodes: {a: {exec: [x], lifecycle: {state: active}}}",
+        "1:35: nodes.a.lifecycle: ",
     ),
     "a type that is none": (
         "nodes: {a: {exec: [x], ready: {topic: b, type: Float32}}}",

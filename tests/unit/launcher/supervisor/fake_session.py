@@ -10,6 +10,7 @@ from launcher.processes.exit import Exit
 from launcher.processes.table import Process
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import NodeFault, NodeState, Severity
+from launcher.supervisor.lifecycle import NotBroughtUpError
 from launcher.supervisor.node import SupervisedNode
 from launcher.supervisor.plan import NodePlan
 from launcher.supervisor.readiness import ReadyCondition, Seen, UnwatchableError
@@ -62,6 +63,8 @@ class FakeSession:
         self.refuses = ""
         self.is_ready = asyncio.Event()
         self.watchable = True
+        self.never: NotBroughtUpError | None = None
+        self.awaited: list[ReadyCondition] = []
         self.absent = ""
         self.states: list[NodeState] = []
         self.lines: list[str] = []
@@ -80,11 +83,14 @@ class FakeSession:
         self.started.append(FakeProcess(number, self.ends_by, self.grandchild_ends_by))
         return self.process
 
-    async def ready(self, _condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
+    async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
         self.tell = tell
+        self.awaited.append(condition)
         if not self.watchable:
             raise UnwatchableError
         await self.is_ready.wait()
+        if self.never is not None:
+            raise self.never
 
     def missing(self, _plan: NodePlan) -> str:
         return self.absent

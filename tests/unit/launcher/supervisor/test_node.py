@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from dataclasses import replace
 
 import pytest
@@ -9,10 +10,14 @@ import pytest
 from launcher.processes.exit import Exit
 from launcher.processes.usage import Usage
 from launcher.status import NodeState, Severity
-from launcher.supervisor.node import LATE_S
+from launcher.supervisor.lifecycle import NotBroughtUpError
 from launcher.supervisor.readiness import ReadyCondition, Seen
+from launcher.supervisor.readying import LATE_S
 from tests.unit.launcher.supervisor.fake_session import PLAN, FakeSession, crash, started
 from tests.unit.manual_clock import settle
+
+ACTIVE = ReadyCondition("lifecycle", "sonar", "active", goes=True)
+TOPIC = ReadyCondition("topic", "/sonar")
 
 
 async def test_a_node_without_a_condition_runs_at_once(session: FakeSession) -> None:
@@ -78,6 +83,45 @@ async def test_where_readiness_cannot_be_seen_nobody_waits_for_it(session: FakeS
     session.watchable = False
     node = await started(session, replace(PLAN, ready=ReadyCondition("node", "sonar")))
     assert (node.state, node.serves) == (NodeState.RUNNING, True)
+
+
+async def test_a_node_is_brought_up_before_its_other_condition(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, lifecycle=ACTIVE, ready=TOPIC, within_s=7))
+    assert (node.state, node.detail) == (NodeState.STARTING, "waiting for sonar to be active")
+    session.tell(Seen(("configuring",)))
+    assert node.detail == "sonar is configuring, expected active"
+    await session.clock.advance(7)
+    assert node.state is NodeState.RUNNING
+    assert node.detail == "not ready within 7 s: sonar is configuring, expected active"
+    session.is_ready.set()
+    await settle()
+    assert session.awaited == [ACTIVE, TOPIC]
+    assert (node.state, node.serves) == (NodeState.READY, True)
+
+
+async def test_a_node_that_fails_to_come_up_is_ended_and_has_failed(session: FakeSession) -> None:
+    session.never = NotBroughtUpError("configure", "unconfigured")
+    session.is_ready.set()
+    node = await started(session, replace(PLAN, lifecycle=ACTIVE, restart="never"))
+    await settle()
+    assert session.process.heard == [(100, signal.SIGINT)]
+    why = "configure failed, it is unconfigured now: no such port"
+    assert (node.state, node.detail, node.serves) == (NodeState.FAILED, why, False)
+    assert why in session.lines
+    assert session.gravest is Severity.ERROR
+
+
+async def test_a_node_that_fails_to_come_up_is_tried_again(session: FakeSession) -> None:
+    session.never = NotBroughtUpError("", "finalized")
+    session.said_last = ""
+    session.is_ready.set()
+    node = await started(session, replace(PLAN, lifecycle=ACTIVE))
+    await settle()
+    assert node.state is NodeState.BACKOFF
+    assert node.detail == "it is finalized, from where it gets nowhere; again in 1 s"
+    session.never = None
+    await session.clock.advance(1)
+    assert (node.state, node.status().restarts) == (NodeState.READY, 1)
 
 
 async def test_a_node_waits_for_those_it_needs(session: FakeSession) -> None:

@@ -1,0 +1,93 @@
+"""How a node that runs becomes ready: what is waited for, what is said meanwhile, what fails."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Protocol
+
+from launcher.status import NodeState, Severity
+from launcher.supervisor.lifecycle import NotBroughtUpError
+from launcher.supervisor.readiness import UnwatchableError
+from launcher.supervisor.words import instead, late, not_brought_up, what
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from launcher.supervisor.node_context import NodeContext
+    from launcher.supervisor.plan import NodePlan
+    from launcher.supervisor.readiness import ReadyCondition, Seen
+
+LATE_S = 60.0
+"""How long after its time limit a node may still become ready."""
+
+
+class HasState(Protocol):
+    """The node whose state this is about."""
+
+    @property
+    def state(self) -> NodeState:
+        """Its state now."""
+
+    def become(self, state: NodeState, detail: str = "", *, serves: bool = False) -> None:
+        """Give it another state; `serves`: the nodes that need it may start."""
+
+
+class Readying:
+    """One process of a node on its way to be ready."""
+
+    def __init__(self, plan: NodePlan, around: NodeContext, node: HasState) -> None:
+        """`around`: the session that the node belongs to."""
+        self._plan = plan
+        self._around = around
+        self._node = node
+
+    async def run(self) -> str:
+        """Wait for every condition in turn; return why it will never be ready, empty if it may."""
+        if not self._plan.conditions:
+            self._node.become(NodeState.RUNNING, serves=True)
+            return ""
+        try:
+            for condition in self._plan.conditions:
+                if not await self._holds(condition):
+                    return ""
+            self._node.become(NodeState.READY, serves=True)
+        except UnwatchableError:
+            words = say("whether it is ready cannot be determined")
+            self._node.become(NodeState.RUNNING, words, serves=True)
+        except NotBroughtUpError as error:
+            last = self._around.last_words(self._plan.name)
+            return not_brought_up(error.transition, error.state, last)
+        return ""
+
+    async def _holds(self, condition: ReadyCondition) -> bool:
+        """Wait for a condition; return False if it does not come to hold in the longest time."""
+        plan, node, clock = self._plan, self._node, self._around.clock
+        node.become(NodeState.STARTING, say("waiting for {what}", what=what(condition)))
+        seen: Seen | None = None
+
+        def tell(found: Seen) -> None:
+            nonlocal seen
+            seen = found
+            if node.state is NodeState.STARTING:
+                node.become(NodeState.STARTING, instead(condition, found))
+            elif node.state is NodeState.RUNNING:
+                node.become(NodeState.RUNNING, late(condition, found, plan.within_s))
+
+        ready = asyncio.ensure_future(self._around.ready(condition, tell))
+        came = asyncio.Event()
+        ready.add_done_callback(lambda _ready: came.set())
+        try:
+            if not await clock.wait(came, plan.within_s):
+                words = late(condition, seen, plan.within_s)
+                node.become(NodeState.RUNNING, words)
+                self._around.say(plan.name, Severity.WARN, words)
+                if not await clock.wait(came, LATE_S):
+                    return False
+            ready.result()
+        finally:
+            ready.cancel()
+        return True
+
+
+def why_unready(ready: asyncio.Task[str]) -> str:
+    """Return what `Readying.run` says once it has ended, otherwise nothing."""
+    return ready.result() if ready.done() and not ready.cancelled() else ""
