@@ -18,6 +18,7 @@ from graph.bag.errors import BagError
 from graph.bag.reading import open_bag
 from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult
+from graph.inner_states import LevelResult, TransitionResult
 from graph.observer.interest import Interest
 from graph.observer.requests import ObserverError
 from graph.replay.player import Player
@@ -100,6 +101,14 @@ class Replay:
 
     def watch_goals(self, actions: Iterable[str]) -> None:
         """Do nothing: a bag has no actions."""
+
+    def watch_inner_states(self, wanted: bool) -> None:
+        """Do nothing: recordings contain no answers of nodes."""
+
+    @property
+    def inner(self) -> RecordedInner:
+        """Requests to nodes, all of which are refused."""
+        return RecordedInner()
 
     def toggle(self) -> None:
         """Pause or continue; at the end, start again."""
@@ -296,6 +305,29 @@ class Replay:
     def _fail(self, words: str, on_update: Callable[[GraphUpdate], None]) -> None:
         self._set(error=words, paused=True)
         on_update(GraphUpdate(time.time(), error=words))
+
+
+class RecordedInner:
+    """Answers that no node can be asked."""
+
+    def change_state(
+        self, node: str, transition: str, timeout_s: float = ANSWER_WITHIN_S
+    ) -> Future[TransitionResult]:
+        """Answer that no node changes."""
+        del timeout_s
+        return _done(TransitionResult(node, transition, error=_refusal()))
+
+    def logger_level(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
+        """Answer that it is not known."""
+        del timeout_s
+        return _done(LevelResult(node, error=_refusal()))
+
+    def set_logger_level(
+        self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S
+    ) -> Future[LevelResult]:
+        """Answer that it cannot be set."""
+        del level, timeout_s
+        return _done(LevelResult(node, error=_refusal()))
 
 
 def _refusal() -> str:

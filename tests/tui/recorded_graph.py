@@ -18,6 +18,7 @@ from graph.data import (
     SetResult,
 )
 from graph.publishing.dead_man_switch import HeldCommand
+from tests.tui.recorded_inner import RecordedInner
 from tests.tui.recorded_lesson import NOW_S, lesson_update
 
 PARAMETERS: tuple[ParameterRow, ...] = (
@@ -75,6 +76,8 @@ class RecordedGraph:
     """(action, type, goal)."""
     canceled_goals: list[int] = field(default_factory=list)
     forgotten_goals: list[int] = field(default_factory=list)
+    inner: RecordedInner = field(default_factory=RecordedInner)
+    inner_wanted: bool = False
     goals_watched: set[str] = field(default_factory=set)
     """Actions whose goals of others are wanted."""
     canceled_of_others: list[tuple[str, str]] = field(default_factory=list)
@@ -103,6 +106,9 @@ class RecordedGraph:
 
     def measure(self, all_topics: bool) -> None:
         self.measured = all_topics
+
+    def watch_inner_states(self, wanted: bool) -> None:
+        self.inner_wanted = wanted
 
     def watch_goals(self, actions: Iterable[str]) -> None:
         self.goals_watched = set(actions)

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
 from textual.message import Message
 
+from launcher.status import NodeState
 from text.i18n import N_, _
 from text.plain import plain
 from tui.widgets.node_words import STATES, duration, memory, percent, state_words, why
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
+    from graph.inner_states import LifecycleRow
     from launcher.status import NodeStatus
 
 OUTSIDE = ("◇", N_("outside"))
 UNKNOWN = "—"
+AT_WORK = (NodeState.READY, NodeState.RUNNING)
+"""In these, the state of a lifecycle is shown in place of the word."""
 OWN, MUTED = "✎", "⊘"
 """Follow the name of a node that runs the learner's own file, or is left out of the log."""
 
@@ -42,6 +46,7 @@ class NodesTable(Rows):
         self._statuses: tuple[NodeStatus, ...] = ()
         self.outside: tuple[str, ...] = ()
         """Names of the nodes that Deck did not start."""
+        self._lifecycles: Mapping[str, str] = {}
         self._muted: frozenset[str] = frozenset()
         self._full = self._told = False
         self._cut = ("", "")
@@ -53,9 +58,14 @@ class NodesTable(Rows):
         nodes: Mapping[str, NodeStatus],
         muted: Collection[str] = frozenset(),
         outside: Sequence[str] = (),
+        lifecycles: Mapping[str, str] | None = None,
     ) -> None:
-        """Show these nodes; the log of `muted` ones is hidden, others started `outside` ones."""
+        """Show these nodes; the log of `muted` ones is hidden, others started `outside` ones.
+
+        `lifecycles`: the state of each node that has a lifecycle, by its name.
+        """
         self._statuses, self.outside = tuple(nodes.values()), tuple(outside)
+        self._lifecycles = lifecycles or {}
         self._muted = frozenset(muted)
         self._show()
 
@@ -68,7 +78,8 @@ class NodesTable(Rows):
         if not width:
             return
         alive = [word for state, (_sign, word, _meaning) in STATES.items() if state.alive]
-        self._word = max(cell_len(_(word)) for word in alive) + 2
+        words = [*map(_, alive), *map(plain, self._lifecycles.values())]
+        self._word = max(map(cell_len, words)) + 2
         names = [self._named(node.name, own=bool(node.file)) for node in self._statuses]
         names += map(self._named, self.outside)
         name = max(map(cell_len, names), default=4)
@@ -101,9 +112,15 @@ class NodesTable(Rows):
         node = next((node for node in self._statuses if node.name == self.chosen), None)
         if node is None:
             sign, word = OUTSIDE
-            return (self.chosen, f"{sign} {_(word)} · {_('not started by Deck')}")
+            word = self._state(self.chosen, _(word))
+            return (self.chosen, f"{sign} {word} · {_('not started by Deck')}")
         sign, word, _meaning = state_words(node)
-        return (node.name, f"{sign} {_(word)} · {why(node)}")
+        word = self._state(node.name, _(word)) if node.state in AT_WORK else _(word)
+        return (node.name, f"{sign} {word} · {why(node)}")
+
+    def _state(self, name: str, word: str) -> str:
+        """Return the state of the node's lifecycle, which says more than that it runs."""
+        return plain(self._lifecycles.get(name.removeprefix("/"), word))
 
     def _named(self, name: str, *, own: bool = False) -> str:
         marks = (OWN if own else "") + (MUTED if name in self._muted else "")
@@ -112,7 +129,7 @@ class NodesTable(Rows):
     def _cells_of(self, name: str) -> tuple[Cell, ...]:
         """Return the row of a node that Deck did not start, of which only the name is known."""
         sign, word = OUTSIDE
-        cells = [Cell(self._named(name)), Cell(f"{sign} {_(word)}", "dim")]
+        cells = [Cell(self._named(name)), Cell(f"{sign} {self._state(name, _(word))}", "dim")]
         cells += [Cell(UNKNOWN, "dim")] * (5 if self._full else 2)
         if self._full:
             cells.append(Cell(_("not started by Deck") if self._told else "", "dim"))
@@ -120,7 +137,8 @@ class NodesTable(Rows):
 
     def _cells(self, node: NodeStatus) -> tuple[Cell, ...]:
         sign, word, meaning = state_words(node)
-        state = f"{sign} {_(word)}"
+        at_work = node.state in AT_WORK
+        state = f"{sign} {self._state(node.name, _(word)) if at_work else _(word)}"
         name = Cell(self._named(node.name, own=bool(node.file)))
         if not node.state.alive or node.fault is not None:
             # One cell up to the edge: a long state would widen the column for all rows.
@@ -137,3 +155,17 @@ class NodesTable(Rows):
         if self._full:
             cells.append(Cell(why(node) if self._told else "", "dim"))
         return tuple(cells)
+
+
+def lifecycle_states(rows: Iterable[LifecycleRow], session: Collection[str]) -> dict[str, str]:
+    """Return the state of each node that has a lifecycle, by its name in the table.
+
+    A node of the `session` may be in a namespace, which its name in the table does not have.
+    """
+    states: dict[str, str] = {}
+    for row in rows:
+        last = row.node.rpartition("/")[2]
+        name = last if last in session else row.node.removeprefix("/")
+        if row.state:
+            states[name] = row.state
+    return states

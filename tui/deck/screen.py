@@ -21,7 +21,7 @@ from tui.actions import bindings
 from tui.deck.actions import DECK_ACTIONS
 from tui.deck.command_line import CommandLine
 from tui.deck.lesson_beside import LessonBesideNodes
-from tui.deck.nodes_table import NodesTable
+from tui.deck.nodes_table import NodesTable, lifecycle_states
 from tui.deck.panels import DeckPanels
 from tui.editing import edit_node
 from tui.frame.screen import DeckScreen
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from textual.events import Resize
     from textual.widget import Widget
 
+    from graph.inner_states import LifecycleRow
     from tui.actions import Action
     from tui.emergency.messages import EmergencyChanged
     from tui.log_view.filter import LogFilter
@@ -108,6 +109,7 @@ class LessonDeck(DeckScreen):
 
     _cut: tuple[str, str] = ("", "")
     """Name and state of the chosen node, if the table cannot show them in full."""
+    _lifecycles: tuple[LifecycleRow, ...] = ()
     _offered_for: tuple[NodeState | None, str] = (None, "")
     """State and own file of the chosen node for which its keys were last updated."""
 
@@ -379,6 +381,8 @@ class LessonDeck(DeckScreen):
                 self._lay_out(self.size.height)
                 self.topics_changed()
         self._panels.take(message.update, seen=self.feed.front is self)
+        if message.update.lifecycles != self._lifecycles:
+            self._show_nodes()
         if self.table.outside != self.feed.outside.now:
             self._show_nodes()
             self._lay_out(self.size.height)
@@ -427,7 +431,8 @@ class LessonDeck(DeckScreen):
         chosen = self.log_filter
         nodes, outside = self.feed.nodes, self.feed.outside.now
         muted = [name for name in (*nodes, *outside) if not chosen.shows_node(name)]
-        self.table.show_nodes(nodes, muted, outside)
+        self._lifecycles = () if self.feed.update is None else self.feed.update.lifecycles
+        self.table.show_nodes(nodes, muted, outside, lifecycle_states(self._lifecycles, nodes))
 
     def _lay_out(self, height: int) -> None:
         """Give the table of nodes the rows it needs, but not too much of the screen."""

@@ -67,13 +67,21 @@ class ChoiceScreen(Dialog[str]):
     """
 
     def __init__(
-        self, title: Callable[[], str], words: Callable[[], str], choices: Mapping[str, str]
+        self,
+        title: Callable[[], str],
+        words: Callable[[], str],
+        choices: Mapping[str, str],
+        chosen: str = "",
     ) -> None:
-        """Offer `choices`, key to text; `title` and `words` say it in the current language."""
+        """Offer `choices`, key to text, with `chosen` or the first one chosen.
+
+        `title` and `words` say it in the current language.
+        """
         super().__init__()
         self._title = title
         self._words = words
         self._choices = choices
+        self._chosen = chosen
 
     def compose(self) -> ComposeResult:
         """The words above the list."""
@@ -83,9 +91,11 @@ class ChoiceScreen(Dialog[str]):
             yield KeyBar()
 
     def on_mount(self) -> None:
-        """Show the list with the first one chosen."""
+        """Show the list with the one chosen that is to be."""
         rows = self.query_one(Rows)
         rows.show([Column("")], [Row(key, (Cell(text),)) for key, text in self._choices.items()])
+        if self._chosen in self._choices:
+            rows.choose(self._chosen)
         rows.focus()
 
     def title_words(self) -> str:

@@ -2,70 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
-
 from text.i18n import N_
-from tui.actions.action import Action
-
-if TYPE_CHECKING:
-    from tui.graph.ask import AskPane
-    from tui.graph.node import NodePane
-    from tui.session.feed import Feed
-
-
-class GraphTarget(Protocol):
-    """The part of the Graph screen that its actions use."""
-
-    @property
-    def feed(self) -> Feed:
-        """The session."""
-
-    @property
-    def ask_pane(self) -> AskPane | None:
-        """The current detail, if it has a form."""
-
-    @property
-    def node_pane(self) -> NodePane | None:
-        """The current detail, if it is that of a node."""
-
-    @property
-    def shows_pane(self) -> bool:
-        """Whether the detail is visible."""
-
-    @property
-    def shows_parameters(self) -> bool:
-        """Whether parameters are shown."""
-
-    @property
-    def is_in_list(self) -> bool:
-        """Whether the list of names has the focus."""
-
-    @property
-    def is_typing(self) -> bool:
-        """Whether letters are typed into a text field."""
-
-    @property
-    def draws(self) -> bool:
-        """Whether the map is shown."""
-
-    def focus_filter(self) -> None:
-        """Focus the filter."""
-
-    def list_next(self, by: int) -> None:
-        """List the kind this many tabs to the right."""
-
-    def toggle_map(self) -> None:
-        """Show the map around the chosen node, or the list."""
-
-    def toggle_everything(self) -> None:
-        """Show or hide what belongs to ROS itself."""
-
-    def go_back(self) -> None:
-        """Go back to where the last link was followed, otherwise to the list."""
-
-
-class GraphAction(Action[GraphTarget]):
-    """An action of the Graph screen."""
+from tui.graph.node_actions import (
+    ChangeLevel,
+    ChangeLifecycle,
+    LoadParameters,
+    SaveParameters,
+    ShowParameters,
+)
+from tui.graph.target import GraphAction, GraphTarget
 
 
 class FillIn(GraphAction):
@@ -176,72 +121,6 @@ class ShowMap(GraphAction):
         target.toggle_map()
 
 
-class ShowParameters(GraphAction):
-    """Show the node's parameters."""
-
-    id = "graph.calls.parameters"
-    key = "E,У"
-    title = N_("Parameters")
-    tooltip = N_("Read the parameters of the selected node, or hide them; Enter changes one.")
-    footer = True
-    from_elsewhere = True
-
-    @classmethod
-    def possible(cls, target: GraphTarget) -> bool | None:
-        """Only for a node, and not in a recording."""
-        if target.feed.replay is not None:
-            return False
-        return target.node_pane is not None and target.shows_pane
-
-    @classmethod
-    async def run(cls, target: GraphTarget) -> None:
-        """Show or hide them."""
-        if target.node_pane is not None:
-            target.node_pane.toggle_parameters()
-
-
-class ParametersAction(GraphAction):
-    """An action on the parameters that are shown."""
-
-    footer = True
-
-    @classmethod
-    def possible(cls, target: GraphTarget) -> bool | None:
-        """Only while they are shown."""
-        return target.shows_parameters
-
-
-class SaveParameters(ParametersAction):
-    """Save them to a file."""
-
-    id = "graph.save"
-    key = "W,Ц"
-    title = N_("Save")
-    means = "write to a file"
-    tooltip = N_("Save the node's parameters as YAML.")
-
-    @classmethod
-    async def run(cls, target: GraphTarget) -> None:
-        """Ask for a file."""
-        if target.node_pane is not None:
-            target.node_pane.save_parameters()
-
-
-class LoadParameters(ParametersAction):
-    """Load them from a file."""
-
-    id = "graph.load"
-    key = "O,Щ"
-    title = N_("Load")
-    tooltip = N_("Set the node's parameters from a YAML file.")
-
-    @classmethod
-    async def run(cls, target: GraphTarget) -> None:
-        """Ask for a file."""
-        if target.node_pane is not None:
-            target.node_pane.load_parameters()
-
-
 class SubmitRequest(GraphAction):
     """Send the call or the goal, wherever the focus is."""
 
@@ -350,11 +229,13 @@ class GoBack(GraphAction):
 
 GRAPH_ACTIONS = (
     FillIn,
+    ChangeLifecycle,
     FilterNames,
     ShowMap,
     ShowParameters,
     SaveParameters,
     LoadParameters,
+    ChangeLevel,
     SubmitRequest,
     CancelRequest,
     ForgetGoal,

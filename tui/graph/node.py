@@ -9,10 +9,13 @@ from textual import on
 from text import ros2_words
 from text.i18n import _
 from tui.graph import parameter_changes
+from tui.graph.components import component_rows
+from tui.graph.lifecycle import change_lifecycle, lifecycle_of, lifecycle_words
 from tui.graph.links import GraphLinks, heading, link, short
 from tui.graph.neighbours import neighbours, node_called
 from tui.graph.pane import EmptyNotice, GraphPane
 from tui.graph.parameters import GraphParameters
+from tui.log_level import change_log_level
 from tui.widgets.name_head import NameHead
 from tui.widgets.node_words import memory, percent, state_words, why
 from tui.widgets.rows import Rows
@@ -43,6 +46,9 @@ class NodePane(GraphPane):
         GraphParameters { border-top: none; }
     }
     """
+
+    _transitions: tuple[str, ...] = ()
+    """Those of its lifecycle that are possible now."""
 
     def compose(self) -> ComposeResult:
         """Head, links, parameters."""
@@ -85,6 +91,22 @@ class NodePane(GraphPane):
             self.links.focus()
         self.screen.refresh_bindings()
 
+    @property
+    def can_change(self) -> bool:
+        """Whether the node has a lifecycle in which it can make a transition now."""
+        row = lifecycle_of(self.graph_now, self.name_shown)
+        return row is not None and bool(row.transitions)
+
+    def change_lifecycle(self) -> None:
+        """Ask which transition the node is to make."""
+        row = lifecycle_of(self.graph_now, self.name_shown)
+        if row is not None and row.transitions:
+            change_lifecycle(self.app, row)
+
+    def change_level(self) -> None:
+        """Ask the node for its log level, and change it."""
+        self.run_worker(change_log_level(self.app, self.name_shown), exit_on_error=False)
+
     def ros2_command(self) -> str:
         """Return what tells of the node, or reads its parameters or the chosen one."""
         if not self.name_shown:
@@ -122,7 +144,10 @@ class NodePane(GraphPane):
         if status and not status.state.alive and self.name_shown in self.deck.feed.outside.now:
             # Somebody else's node of that name runs in its place.
             status = None
-        self.query_one(NameHead).show(self.name_shown, process_words(status))
+        lifecycle = lifecycle_of(update, self.name_shown)
+        facts = (process_words(status), lifecycle_words(lifecycle))
+        self.query_one(NameHead).show(self.name_shown, *facts)
+        self._note_transitions(() if lifecycle is None else lifecycle.transitions)
         if self.shows_parameters:
             self.parameters.see(() if node is None else node.processes)
         words = self.query_one(EmptyNotice)
@@ -130,7 +155,8 @@ class NodePane(GraphPane):
             words.show(_("this node has left the graph"), _gone_words(status is not None))
             words.display = True
             return
-        rows = node_rows(update, node, everything=self.everything)
+        rows = component_rows(update, node.name)
+        rows += node_rows(update, node, everything=self.everything)
         self.links.show_links(rows)
         words.display = not rows
         if not rows:
@@ -138,6 +164,11 @@ class NodePane(GraphPane):
                 _("it talks to nobody"),
                 _("It neither publishes nor subscribes, serves nor calls anything."),
             )
+
+    def _note_transitions(self, possible: tuple[str, ...]) -> None:
+        if possible != self._transitions:
+            self._transitions = possible
+            self.screen.refresh_bindings()
 
     def relabel(self) -> None:
         """Redraw in the current language."""

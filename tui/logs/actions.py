@@ -20,10 +20,15 @@ from tui.log_view.actions import (
 
 if TYPE_CHECKING:
     from tui.log_view.filter import LogFilter
+    from tui.session.feed import Feed
 
 
 class LogsTarget(ShowsLines, Protocol):
     """The part of the Logs screen that its actions use."""
+
+    @property
+    def feed(self) -> Feed:
+        """The session."""
 
     @property
     def chosen_node(self) -> str | None:
@@ -37,6 +42,9 @@ class LogsTarget(ShowsLines, Protocol):
 
     def toggle_nodes(self) -> None:
         """Go to the list of nodes, or back to the lines."""
+
+    def change_level(self) -> None:
+        """Ask the chosen node for its log level, and change it."""
 
 
 class LogsAction(Action[LogsTarget]):
@@ -191,6 +199,28 @@ class HearAllInLog(LogsAction):
         target.hear_all()
 
 
+class ChangeLevelInLog(LogsAction):
+    """Change how much a node logs."""
+
+    id = "logs.level"
+    key = "K,Л"
+    title = N_("Log level")
+    tooltip = N_("Read from which severity on the selected node logs, and change it.")
+    from_elsewhere = False
+
+    @classmethod
+    def possible(cls, target: LogsTarget) -> bool | None:
+        """Only with a node that can be asked."""
+        if target.feed.replay is not None:
+            return False
+        return True if target.chosen_node else None
+
+    @classmethod
+    async def run(cls, target: LogsTarget) -> None:
+        """Ask the node, then the user."""
+        target.change_level()
+
+
 class FoldLog(FoldLines[LogsTarget]):
     """Wrap long lines, or not."""
 
@@ -236,6 +266,7 @@ LOGS_ACTIONS = (
     MuteInLog,
     HearOneInLog,
     HearAllInLog,
+    ChangeLevelInLog,
     FoldLog,
     CopyLog,
     CopyWholeLog,

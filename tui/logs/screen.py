@@ -15,6 +15,7 @@ from text import ros2_words
 from text.i18n import N_
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
+from tui.log_level import change_log_level, full_name
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
 from tui.logs.actions import LOGS_ACTIONS
@@ -146,6 +147,12 @@ class LogsScreen(DeckScreen):
         """Show every node, at every severity."""
         heard = self.pane.view.log_filter.all_nodes()
         self.choose(replace(heard, minimum=Severity.DEBUG))
+
+    def change_level(self) -> None:
+        """Ask the chosen node for its log level, and change it."""
+        name = self.chosen_node
+        if name:
+            self.run_worker(change_log_level(self.app, full_name(self.feed.update, name)))
 
     def toggle_nodes(self) -> None:
         """Go to the list of nodes, or back to the lines."""

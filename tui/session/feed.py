@@ -166,6 +166,7 @@ class Feed:
         self.tell(SessionChanged)
         self._tell_status(frozenset(link.nodes))
         self.ask_for_topics()
+        graph.watch_inner_states(True)
         graph.start(self._inbox.put)
 
     async def disconnect(self, ended: str = "") -> None:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from course.judging import JudgeEvent
     from course.lessons.lesson import LessonFolder
     from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
+    from graph.inner_states import LevelResult, TransitionResult
     from graph.publishing.dead_man_switch import HeldCommand
     from graph.replay.replay import Replay
     from launcher.consent import Agents, ConsentAnswer
@@ -84,6 +85,23 @@ class SessionLink(Protocol):
         """Disconnect from the session and leave it running."""
 
 
+class InnerLink(Protocol):
+    """What single nodes are asked about themselves; the futures never fail."""
+
+    def change_state(
+        self, node: str, transition: str, timeout_s: float = ANSWER_WITHIN_S
+    ) -> Future[TransitionResult]:
+        """Have a node with a lifecycle make a transition."""
+
+    def logger_level(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
+        """Read from which severity on a node logs."""
+
+    def set_logger_level(
+        self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S
+    ) -> Future[LevelResult]:
+        """Set it."""
+
+
 class GraphLink(Protocol):
     """The ROS graph of one domain; no method blocks, and all may be called from any thread."""
 
@@ -107,6 +125,13 @@ class GraphLink(Protocol):
 
     def watch_goals(self, actions: Iterable[str]) -> None:
         """Report the goals that others have sent to exactly these actions."""
+
+    def watch_inner_states(self, wanted: bool) -> None:
+        """Report the lifecycles of nodes, and the components of containers."""
+
+    @property
+    def inner(self) -> InnerLink:
+        """Requests about lifecycles and log levels."""
 
     def prepare_publisher(
         self, topic: str, type_name: str, *, latched: bool = False
