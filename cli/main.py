@@ -26,6 +26,7 @@ HANDLERS = {
     "open": ("cli.screen", "open_command"),
     "attach": ("cli.screen", "attach_command"),
     "watch": ("cli.watch", "watch_command"),
+    "level": ("cli.level", "level_command"),
     "mcp": ("cli.mcp", "mcp_command"),
     "run": ("cli.run", "run_command"),
     "list": ("cli.listing", "list_command"),

@@ -13,6 +13,7 @@ from cli.arguments.options import (
     add_screen,
 )
 from cli.values import count, seconds
+from graph.inner_states import LOG_LEVELS
 from text.i18n import _
 
 if TYPE_CHECKING:
@@ -102,6 +103,22 @@ def add_watch(parser: Parser) -> None:
     )
     add_screen(parser)
     parser.epilog = _("Deck starts and stops nothing here.")
+
+
+def add_level(parser: Parser) -> None:
+    """Add the options of `deck level`."""
+    parser.add_argument("node", metavar=_("NODE"), help=_("a node by its name in the graph"))
+    parser.add_argument(
+        "level",
+        nargs="?",
+        choices=tuple(LOG_LEVELS),
+        help=_("from this severity on it is to log; without it, the level is only shown"),
+    )
+    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    parser.epilog = _(
+        "Exit code: 0, or 1 if the node is not there, does not answer or does not let others "
+        "change its level."
+    )
 
 
 def add_doctor(parser: Parser) -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 LIST_NODES = "_container/list_nodes"
 LIST_NODES_TYPE = "composition_interfaces/srv/ListNodes"
-SERVICES = ServiceSet({LIST_NODES: LIST_NODES_TYPE}, N_("{node} is no container of components"))
+SERVICES = ServiceSet({LIST_NODES: LIST_NODES_TYPE}, N_("{node} holds no components"))
 ASK_AGAIN_S = 10.0
 """A component that makes no node of its own is noticed after this long."""
 

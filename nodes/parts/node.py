@@ -58,7 +58,11 @@ class LessonNode(Node):
     SETTINGS: ClassVar[tuple[Setting, ...]] = ()
 
     def __init__(self) -> None:
-        super().__init__(self.NAME, automatically_declare_parameters_from_overrides=True)
+        super().__init__(
+            self.NAME,
+            automatically_declare_parameters_from_overrides=True,
+            enable_logger_service=True,
+        )
         logger = self.get_logger()  # type: ignore[no-untyped-call]
         self.say = TranslatedLogger(logger, detect())
         self._settings = {setting.name: setting for setting in self.SETTINGS}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import Future
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from graph.data import GraphUpdate, NodeRow
@@ -32,8 +32,12 @@ CONTAINERS = (
 
 def managed_update(**more: Any) -> GraphUpdate:
     """Lesson 9, where camera and sonar have a lifecycle, and a container holds the camera."""
-    nodes = (*NODE_ROWS, NodeRow("/perception"))
-    return replace(graph_update(nodes=nodes), lifecycles=LIFECYCLES, containers=CONTAINERS, **more)
+    facts: dict[str, Any] = {
+        "nodes": (*NODE_ROWS, NodeRow("/perception")),
+        "lifecycles": LIFECYCLES,
+        "containers": CONTAINERS,
+    }
+    return graph_update(**{**facts, **more})
 
 
 @dataclass

@@ -11,12 +11,16 @@ from textual.events import Key
 from textual.pilot import Pilot
 from textual.widgets import Input
 
+from graph.data import GraphUpdate, NodeRow
 from launcher.events import LogEvent
 from launcher.status import Severity
-from tests.tui.recorded import LINES, RecordedOpener, RecordedSession, line
+from tests.tui.recorded import LINES, RecordedGraph, RecordedOpener, RecordedSession, line
+from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import Look, SnapCompare, every_look, settle
 from tests.waiting import until
+from tui.dialogs.choice import ChoiceScreen
 from tui.frame.key_bar import KeyBar
+from tui.log_level import full_name
 from tui.log_view.bar import LogBar
 from tui.logs.screen import LogsScreen
 
@@ -128,6 +132,33 @@ async def test_mute_works_on_the_node_of_the_chosen_line() -> None:
         screen = screen_of(pilot)
         await pilot.press("up", "o")
         assert nodes_shown(screen) == {LINES[-1].node}
+
+
+async def test_the_level_of_the_chosen_lines_node_is_changed() -> None:
+    graph = RecordedGraph(update=graph_update())
+    app = HOME.app("logs", RecordedOpener(graph=graph))
+    async with app.run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        await pilot.press("up", "K")
+        await until(lambda: isinstance(pilot.app.screen, ChoiceScreen), "the dialog")
+        await pilot.press("down", "enter")
+        node = f"/{LINES[-1].node}"
+        await until(lambda: graph.inner.levels == {node: "warn"}, "the level")
+        await until(
+            lambda: [one.message for one in app._notifications] == [f"{node} logs from warn on"],
+            "what was done",
+        )
+
+
+def test_a_name_in_the_log_leads_to_the_node_in_its_namespace() -> None:
+    rows = (NodeRow("/arm/gripper"), NodeRow("/leg/gripper"), NodeRow("/arm/wrist"))
+    update = GraphUpdate(0.0, nodes=rows)
+    assert full_name(update, "arm/gripper") == "/arm/gripper"
+    assert full_name(update, "/leg/gripper") == "/leg/gripper"
+    assert full_name(update, "arm.wrist") == "/arm/wrist"
+    assert full_name(update, "wrist") == "/arm/wrist"
+    assert full_name(update, "gripper") == "/gripper"
+    assert full_name(None, "gripper") == "/gripper"
 
 
 async def test_each_press_leaves_out_one_severity_more() -> None:

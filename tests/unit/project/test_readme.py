@@ -65,6 +65,7 @@ def test_every_command_shown_exists(readme: str) -> None:
         "record",
         "replay",
         "watch",
+        "level",
         "model",
         "mcp",
         "doctor",
