@@ -3,13 +3,7 @@
 from __future__ import annotations
 
 from text.i18n import N_
-from tui.graph.node_actions import (
-    ChangeLevel,
-    ChangeLifecycle,
-    LoadParameters,
-    SaveParameters,
-    ShowParameters,
-)
+from tui.graph.node_actions import ChangeLevel, ChangeLifecycle
 from tui.graph.target import GraphAction, GraphTarget
 
 
@@ -119,6 +113,72 @@ class ShowMap(GraphAction):
     async def run(cls, target: GraphTarget) -> None:
         """Show the map or the list."""
         target.toggle_map()
+
+
+class ShowParameters(GraphAction):
+    """Show the node's parameters."""
+
+    id = "graph.calls.parameters"
+    key = "E,У"
+    title = N_("Parameters")
+    tooltip = N_("Read the parameters of the selected node, or hide them; Enter changes one.")
+    footer = True
+    from_elsewhere = True
+
+    @classmethod
+    def possible(cls, target: GraphTarget) -> bool | None:
+        """Only for a node, and not in a recording."""
+        if target.feed.replay is not None:
+            return False
+        return target.node_pane is not None and target.shows_pane
+
+    @classmethod
+    async def run(cls, target: GraphTarget) -> None:
+        """Show or hide them."""
+        if target.node_pane is not None:
+            target.node_pane.toggle_parameters()
+
+
+class ParametersAction(GraphAction):
+    """An action on the parameters that are shown."""
+
+    footer = True
+
+    @classmethod
+    def possible(cls, target: GraphTarget) -> bool | None:
+        """Only while they are shown."""
+        return target.shows_parameters
+
+
+class SaveParameters(ParametersAction):
+    """Save them to a file."""
+
+    id = "graph.save"
+    key = "W,Ц"
+    title = N_("Save")
+    means = "write to a file"
+    tooltip = N_("Save the node's parameters as YAML.")
+
+    @classmethod
+    async def run(cls, target: GraphTarget) -> None:
+        """Ask for a file."""
+        if target.node_pane is not None:
+            target.node_pane.save_parameters()
+
+
+class LoadParameters(ParametersAction):
+    """Load them from a file."""
+
+    id = "graph.load"
+    key = "O,Щ"
+    title = N_("Load")
+    tooltip = N_("Set the node's parameters from a YAML file.")
+
+    @classmethod
+    async def run(cls, target: GraphTarget) -> None:
+        """Ask for a file."""
+        if target.node_pane is not None:
+            target.node_pane.load_parameters()
 
 
 class SubmitRequest(GraphAction):
