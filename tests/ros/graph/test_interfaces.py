@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 from ackermann_msgs.msg import AckermannDrive, AckermannDriveStamped
+from composition_interfaces.srv import ListNodes, LoadNode, UnloadNode
 from deck_interfaces.action import DriveToPoint
 from example_interfaces.action import Fibonacci
 from example_interfaces.srv import AddTwoInts
@@ -49,6 +50,29 @@ FIELDS = {
         "header": "std_msgs/Header",
         "drive": "ackermann_msgs/AckermannDrive",
     },
+    ListNodes.Request: {},
+    ListNodes.Response: {
+        "full_node_names": "sequence<string>",
+        "unique_ids": "sequence<uint64>",
+    },
+    LoadNode.Request: {
+        "package_name": "string",
+        "plugin_name": "string",
+        "node_name": "string",
+        "node_namespace": "string",
+        "log_level": "uint8",
+        "remap_rules": "sequence<string>",
+        "parameters": "sequence<rcl_interfaces/Parameter>",
+        "extra_arguments": "sequence<rcl_interfaces/Parameter>",
+    },
+    LoadNode.Response: {
+        "success": "boolean",
+        "error_message": "string",
+        "full_node_name": "string",
+        "unique_id": "uint64",
+    },
+    UnloadNode.Request: {"unique_id": "uint64"},
+    UnloadNode.Response: {"success": "boolean", "error_message": "string"},
     AddTwoInts.Request: {"a": "int64", "b": "int64"},
     AddTwoInts.Response: {"sum": "int64"},
     Fibonacci.Goal: {"order": "int32"},
