@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from graph.housekeeping import is_hidden
-from ros2.naming import absolute
+from ros2.naming import absolute, servers
 
 if TYPE_CHECKING:
     from ros2.joining import Guest
@@ -17,13 +16,7 @@ GET_STATE_TYPE = "lifecycle_msgs/srv/GetState"
 
 def nodes(me: Guest, *, hidden: bool) -> list[str]:
     """Return the full names of the nodes that have a lifecycle, sorted."""
-    return sorted(
-        name.removesuffix(GET_STATE)
-        for name, types in me.node.get_service_names_and_types()
-        if name.endswith(GET_STATE)
-        and GET_STATE_TYPE in types
-        and (hidden or not is_hidden(name.removesuffix(GET_STATE)))
-    )
+    return servers(me.node, GET_STATE, GET_STATE_TYPE, hidden=hidden)
 
 
 def find(me: Guest, name: str, *, hidden: bool) -> str:

@@ -36,6 +36,25 @@ def nodes(node: Node, *, hidden: bool) -> list[str]:
     ]
 
 
+def servers(node: Node, service: str, type_name: str, *, hidden: bool) -> list[str]:
+    """Return the full names of the nodes that serve this, sorted: `/get_state` of each.
+
+    A list of all services would also have those that somebody only calls.
+    """
+    from rclpy.node import NodeNameNonExistentError
+
+    found = []
+    for full in nodes(node, hidden=hidden):
+        try:
+            served = dict(node.get_service_names_and_types_by_node(*split_name(full)))
+        except NodeNameNonExistentError:
+            # It left in between.
+            continue
+        if type_name in served.get(f"{full}{service}", ()):
+            found.append(full)
+    return sorted(set(found))
+
+
 def shown(
     names_and_types: list[tuple[str, list[str]]], *, hidden: bool
 ) -> list[tuple[str, list[str]]]:

@@ -250,7 +250,7 @@ class SupervisedNode:
             if process is None:
                 return False
             end, lasted, failure = await self._see_through(process)
-            why = self._end_words(end)
+            why = self._end_words(end, asked=self._down)
             if failure:
                 # Deck has ended it, which is none of the node's own success.
                 end, why = UNREADY, failure
@@ -296,7 +296,10 @@ class SupervisedNode:
         end = await process.ended
         await process.close()
         self._now, self._last = None, end
-        self._around.say(self.plan.name, self._gravity(end), self._end_words(end))
+        asked = self._down or bool(now.failure)
+        self._around.say(
+            self.plan.name, self._gravity(end, asked=asked), self._end_words(end, asked=asked)
+        )
         if self.plan.file:
             self._judge_end(end)
         return end, lasted, now.failure
@@ -375,10 +378,10 @@ class SupervisedNode:
             return end.code == USAGE and lasted < USAGE_WITHIN_S
         return end.code in (NOT_EXECUTABLE, NOT_FOUND)
 
-    def _gravity(self, end: Exit) -> Severity:
-        if end.clean or self._down:
+    def _gravity(self, end: Exit, *, asked: bool) -> Severity:
+        if end.clean or asked:
             return Severity.INFO
         return Severity.WARN if self.plan.optional else Severity.ERROR
 
-    def _end_words(self, end: Exit) -> str:
-        return end_words(end, self.plan, self._around.last_words(self.plan.name), asked=self._down)
+    def _end_words(self, end: Exit, *, asked: bool) -> str:
+        return end_words(end, self.plan, self._around.last_words(self.plan.name), asked=asked)

@@ -6,6 +6,7 @@ serves what a container of rclcpp_components serves; there is none of those on a
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import sys
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import rclpy
 from composition_interfaces.srv import ListNodes
-from rclpy.executors import MultiThreadedExecutor
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.node import Node
 
@@ -92,7 +93,9 @@ def main() -> None:
     executor = MultiThreadedExecutor(2 * len(nodes))
     for node in nodes:
         executor.add_node(node)
-    executor.spin()
+    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        executor.spin()
+    rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

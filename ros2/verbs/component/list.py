@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ros2 import options
 from ros2.joining import joined
-from ros2.naming import absolute
+from ros2.naming import absolute, servers
 
 if TYPE_CHECKING:
     import argparse
@@ -49,11 +49,7 @@ def main(args: argparse.Namespace) -> int | str | None:
 
 
 def _containers(me: Guest) -> list[str]:
-    return sorted(
-        name.removesuffix(LIST_NODES)
-        for name, types in me.node.get_service_names_and_types()
-        if name.endswith(LIST_NODES) and LIST_NODES_TYPE in types
-    )
+    return servers(me.node, LIST_NODES, LIST_NODES_TYPE, hidden=True)
 
 
 def _print_components(me: Guest, container: str, indent: str) -> None:
