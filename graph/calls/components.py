@@ -76,7 +76,7 @@ class Containers:
             else:
                 asked.row = ContainerRow(name, tuple(found))
 
-        self._exchanges.begin(name, _read(found), SERVICES, ANSWER_WITHIN_S, end)
+        self._exchanges.begin(name, read(found), SERVICES, ANSWER_WITHIN_S, end)
 
 
 def containers(services: Iterable[ServiceRow]) -> set[str]:
@@ -88,7 +88,8 @@ def containers(services: Iterable[ServiceRow]) -> set[str]:
     }
 
 
-def _read(found: list[ComponentRow]) -> Exchange:
+def read(found: list[ComponentRow]) -> Exchange:
+    """Put what a container holds into `found`, sorted by number."""
     answer: Mapping[str, Any] = yield NodeRequest(LIST_NODES, {})
     ids = [int(number) for number in answer["unique_ids"]]
     names = [str(name) for name in answer["full_node_names"]]

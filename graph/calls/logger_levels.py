@@ -42,13 +42,13 @@ class LoggerLevels:
         """Read the level of a node's own logger."""
         node = full_name(node)
         found: list[str] = []
-        self._begin(node, _read(logger_of(node), found), found, timeout_s, future)
+        self._begin(node, read(logger_of(node), found), found, timeout_s, future)
 
     def write(self, node: str, level: str, timeout_s: float, future: Future[LevelResult]) -> None:
         """Set the level of a node's own logger to one of `LOG_LEVELS`, and read it back."""
         node = full_name(node)
         found: list[str] = []
-        exchange = _write(logger_of(node), LOG_LEVELS[level], found)
+        exchange = write(logger_of(node), LOG_LEVELS[level], found)
         self._begin(node, exchange, found, timeout_s, future)
 
     def _begin(
@@ -71,7 +71,7 @@ def logger_of(node: str) -> str:
     return node.strip("/").replace("/", ".")
 
 
-def _read(logger: str, found: list[str]) -> Exchange:
+def read(logger: str, found: list[str]) -> Exchange:
     """Put the level in effect into `found`: that of the logger, or of the next one above it."""
     parts = logger.split(".")
     names = [".".join(parts[:count]) for count in range(len(parts), -1, -1)]
@@ -79,12 +79,12 @@ def _read(logger: str, found: list[str]) -> Exchange:
     found[:] = [_named(next(filter(None, map(_level, answer["levels"])), DEFAULT))]
 
 
-def _write(logger: str, level: int, found: list[str]) -> Exchange:
+def write(logger: str, level: int, found: list[str]) -> Exchange:
     """Set the level; put the one in effect then into `found`, and why it was refused after it."""
     wanted: dict[str, Value] = {"name": logger, "level": level}
     answer = yield NodeRequest("set_logger_levels", {"levels": [wanted]})
     results = answer["results"]
-    yield from _read(logger, found)
+    yield from read(logger, found)
     if not results or not results[0]["successful"]:
         reason = str(results[0]["reason"]) if results else ""
         found.append(reason or say("the node refuses it and gives no reason"))

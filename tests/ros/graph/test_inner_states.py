@@ -81,9 +81,10 @@ def test_a_node_goes_through_its_states(watcher: Watcher) -> None:
     assert change(watcher, "good", "cleanup") == ("unconfigured", "")
 
 
-def test_a_transition_by_somebody_else_is_seen_at_once(
-    watcher: Watcher, module_domain: int
+def test_a_transition_by_somebody_else_is_seen_though_nobody_asks(
+    watcher: Watcher, module_domain: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("graph.calls.lifecycle.ASK_AGAIN_S", 1000.0)
     until_it_is(watcher, "good", "unconfigured", "configure", "shutdown")
     with Peer(module_domain, "somebody") as peer:
         request = ChangeState.Request()
