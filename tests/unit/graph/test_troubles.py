@@ -177,6 +177,8 @@ def test_a_disagreement_about_the_type_is_a_remark() -> None:
         ("/_ros2cli_daemon_42", True),
         ("/sonar_front/get_parameters", True),
         ("/sonar_front/get_type_description", True),
+        ("/sonar_front/get_logger_levels", True),
+        ("/sonar_front/set_logger_levels", True),
         ("/sensor/sonar_front", False),
         ("/set_head_position", False),
         ("/ai_brain", False),
