@@ -16,9 +16,13 @@ SERVICES = frozenset(
         "set_parameters_atomically",
         "get_logger_levels",
         "set_logger_levels",
+        "get_available_states",
+        "get_available_transitions",
+        "get_transition_graph",
     }
 )
-"""Last part of the names of services that rclpy and rclcpp give every node."""
+"""Last part of the names of services that rclpy and rclcpp give every node, or every one with a
+lifecycle; not of `get_state` and `change_state`, which may be anybody's."""
 PARAMETERS = (N_("If enabled, start the ~/get_type_description service."),)
 """rclpy's descriptions of the parameters that every node has, marked for the catalogue."""
 

@@ -178,6 +178,8 @@ def test_a_disagreement_about_the_type_is_a_remark() -> None:
         ("/sonar_front/get_parameters", True),
         ("/sonar_front/get_type_description", True),
         ("/sonar_front/get_logger_levels", True),
+        ("/lidar/get_available_transitions", True),
+        ("/lidar/change_state", False),
         ("/sonar_front/set_logger_levels", True),
         ("/sensor/sonar_front", False),
         ("/set_head_position", False),
