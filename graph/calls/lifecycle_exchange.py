@@ -98,7 +98,7 @@ def why_not(node: str, transition: str, facts: ChangeFacts, *, erred: bool) -> s
     if erred or after.state != before.state:
         return say(
             "{transition} failed with an error in {node}, which is now {state}; its log may say "
-            "why",
+            "why, but rclpy itself logs no exception raised there",
             **words,
         )
     return say(

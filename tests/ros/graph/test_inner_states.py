@@ -105,7 +105,7 @@ def test_a_refusal_and_an_error_are_told_apart(watcher: Watcher) -> None:
         "unconfigured",
         (
             "configure failed with an error in /raising, which is now unconfigured; "
-            "its log may say why"
+            "its log may say why, but rclpy itself logs no exception raised there"
         ),
     )
 
