@@ -30,8 +30,11 @@ def test_all_words_of_a_fault_can_be_translated_at_the_other_end() -> None:
     told = unpack_status(json.loads(encode(pack_status(status))))
     assert told.fault == fault
     set_language("ru")
-    assert localized(told.fault.exception) == "программа дошла до конца"
-    assert localized(told.fault.meaning) == "программа дошла до конца"
+    try:
+        assert localized(told.fault.exception) == "программа дошла до конца"
+        assert localized(told.fault.meaning) == "программа дошла до конца"
+    finally:
+        set_language("en")
 
 
 def test_a_session_of_an_older_deck_has_the_rules_for_agents_by_default() -> None:
