@@ -16,6 +16,8 @@ class Interest:
     """Actions whose goals are wanted, including other clients' goals."""
     inner_states: bool = False
     """Whether nodes are asked for their lifecycle, and containers for their components."""
+    frames: bool = False
+    """Whether the frames of /tf and /tf_static are wanted."""
 
     @property
     def named(self) -> frozenset[str]:

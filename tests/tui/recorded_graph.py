@@ -80,6 +80,8 @@ class RecordedGraph:
     inner_wanted: bool = False
     goals_watched: set[str] = field(default_factory=set)
     """Actions whose goals of others are wanted."""
+    frames_watched: bool = False
+    """Whether the frames are wanted."""
     canceled_of_others: list[tuple[str, str]] = field(default_factory=list)
     """(action, id of the goal)."""
     _on_update: Callable[[GraphUpdate], None] | None = None
@@ -112,6 +114,9 @@ class RecordedGraph:
 
     def watch_goals(self, actions: Iterable[str]) -> None:
         self.goals_watched = set(actions)
+
+    def watch_frames(self, wanted: bool) -> None:
+        self.frames_watched = wanted
 
     def cancel_seen_goal(self, action: str, goal_id: str) -> None:
         self.canceled_of_others.append((action, goal_id))

@@ -74,6 +74,8 @@ class DeckScreen(Screen[None], Acting, Working):
     """Seconds between two updates of the graph while this screen is in front."""
     measure_all: bool = False
     """Whether the rates of every topic are wanted while this screen is in front."""
+    wants_frames: bool = False
+    """Whether the frames of /tf and /tf_static are wanted while this screen is in front."""
     _styled_for: tuple[str, frozenset[str], frozenset[str]] | None = None
     _focused_before: Widget | None = None
     """What had the focus when a part was enlarged."""

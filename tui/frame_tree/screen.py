@@ -13,3 +13,4 @@ class FramesScreen(DeckScreen):
 
     tab: ClassVar[str] = "frames"
     about: ClassVar[str] = N_("The tree of the frames on /tf and /tf_static.")
+    wants_frames = True

@@ -37,7 +37,8 @@ def _ended(node: NodeStatus, reason: str) -> NodeStatus:
 
 def silent_graph(update: GraphUpdate) -> GraphUpdate:
     """Return the graph with no publishers and no subscribers."""
-    return replace(update, samples={}, seen_goals=(), topics=tuple(map(_silent, update.topics)))
+    topics = tuple(map(_silent, update.topics))
+    return replace(update, samples={}, seen_goals=(), frames=(), topics=topics)
 
 
 def _silent(row: TopicRow) -> TopicRow:

@@ -51,6 +51,8 @@ class SessionScreen(Protocol):
     """Seconds between two updates of the graph while it is in front."""
     measure_all: bool
     """Whether the rates of every topic are needed while it is in front."""
+    wants_frames: bool
+    """Whether the frames of /tf and /tf_static are needed while it is in front."""
 
     def watch_topics(self) -> set[str]:
         """Return the topics whose newest message is needed while it is in front."""
@@ -311,6 +313,7 @@ class Feed:
         graph.watch(kept if front is None else kept | front.watch_topics())
         graph.follow(followed)
         graph.watch_goals(set() if front is None else front.watch_goals())
+        graph.watch_frames(front is not None and front.wants_frames)
         graph.measure(self._measures_all or (front is not None and front.measure_all))
         graph.period_s = 0.25 if front is None else front.period_s
 

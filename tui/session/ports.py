@@ -133,6 +133,9 @@ class GraphLink(Protocol):
     def inner(self) -> InnerLink:
         """Requests about lifecycles and log levels."""
 
+    def watch_frames(self, wanted: bool) -> None:
+        """Report the frames of /tf and /tf_static, or none."""
+
     def prepare_publisher(
         self, topic: str, type_name: str, *, latched: bool = False
     ) -> Future[None]:
