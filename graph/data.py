@@ -111,6 +111,8 @@ class TopicRow:
     report them."""
     count: int = 0
     """Messages taken since the subscription was made."""
+    frame_id: str = ""
+    """The frame that the header of the newest message names; empty without a header."""
     measured: bool = False
     """Whether Deck is subscribed now."""
     trouble: Trouble | None = None
@@ -215,8 +217,16 @@ class FrameRow:
     publishers: tuple[str, ...] = ()
     """Full names of the nodes that may publish it: more than one if it is not known which."""
     fault: str = ""
-    """Why the newest was not taken, a sentence: NaN, a quaternion of length 0, no name. `newest`
-    is then the one before it, or the identity."""
+    """Why one of the last seconds was not taken, a sentence: NaN, a quaternion of length 0, no
+    name. `newest` is the one before it, or the identity."""
+    faults: int = 0
+    """How many were not taken, of all that have come."""
+    slashed: bool = False
+    """Whether somebody publishes it with a leading slash."""
+    moved: bool = False
+    """Whether a static one has come with different numbers."""
+    contested: bool = False
+    """Whether the numbers of the messages show that several publishers send it by turns."""
 
     @property
     def is_static(self) -> bool:

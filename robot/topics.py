@@ -5,6 +5,8 @@ Each name is defined only here. ROS's own names (/rosout, /clock) are not the ro
 
 from __future__ import annotations
 
+from text import ros_names
+
 AI_COMMAND = "/ai_command"
 AUDIO_LEVEL = "/audio/level"
 BATTERY = "/battery"
@@ -41,8 +43,8 @@ SAY = "/say"
 SONAR_FRONT = "/sensor/sonar_front"
 SONAR_REAR = "/sensor/sonar_rear"
 SPEAKER = "/audio/speaker_raw"
-TF = "/tf"
-TF_STATIC = "/tf_static"
+TF = ros_names.TF
+TF_STATIC = ros_names.TF_STATIC
 VLM_DESCRIPTION = "/vlm/description"
 VLM_DETECTIONS = "/vlm/detections"
 WHEEL_COMMANDS = "/wheel_commands"

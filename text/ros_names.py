@@ -1,4 +1,4 @@
-"""The names of ROS: which characters they may have.
+"""The names of ROS: which characters they may have, and two that several rooms know.
 
 Source: design.ros2.org/articles/topic_and_service_names.html.
 """
@@ -12,3 +12,5 @@ ROS_NAME = re.compile(rf"[~/]?{_PART}(/{_PART})*", re.ASCII)
 """Of a topic, service or action; without a slash in front it is relative."""
 TOPIC_NAME = re.compile(rf"/{_PART}(/{_PART})*", re.ASCII)
 """The full name of a topic."""
+TF, TF_STATIC = "/tf", "/tf_static"
+"""Where tf2 listens, in whichever namespace a node is."""

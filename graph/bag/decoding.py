@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 AS_BYTES = BYTES | {"byte"}
 CDR = frozenset({b"\x00\x00", b"\x00\x01"})
 """The first bytes of big-endian and little-endian plain CDR (OMG DDS-XTypes 1.3, 7.6.3.1.2)."""
+HEADER = "std_msgs/msg/Header"
 LISTED = frozenset({"bool", "string", "wstring"})
 
 
@@ -67,6 +68,18 @@ def bag_decoder(kind: TypeText) -> Callable[[bytes], dict[str, Value]]:
         return read(message)
 
     return decode
+
+
+@lru_cache(maxsize=256)
+def begins_with_header(kind: TypeText) -> bool:
+    """Return whether messages of this type begin with a `std_msgs/Header`, as far as is known."""
+    from rosbags.interfaces import Nodetype
+
+    try:
+        fields = _store(kind).fielddefs[kind.name][1]
+    except (BagError, KeyError):
+        return False
+    return bool(fields) and fields[0][1] == (Nodetype.NAME, HEADER)
 
 
 def _store(kind: TypeText) -> Typestore:

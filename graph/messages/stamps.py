@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Literal
 
 HEADER = "std_msgs/Header"
 NANOSECONDS = 1e-9
@@ -15,6 +16,8 @@ FARTHEST_S = 600.0
 ENCAPSULATION = 4
 """Source: OMG DDS-XTypes 1.3, 7.6.3.1: two bytes give the representation, odd is little
 endian; two are options. The body follows; its first field is not padded."""
+LONGEST_NAME = 200
+"""Bytes that are read of a frame's name."""
 LITTLE, BIG = struct.Struct("<iI"), struct.Struct(">iI")
 
 
@@ -39,3 +42,12 @@ def delay_s(raw: bytes, arrived_s: float) -> float | None:
         return None
     passed_s: float = arrived_s - (seconds + nanoseconds * NANOSECONDS)
     return passed_s
+
+
+def frame_id(raw: bytes) -> str:
+    """Return the frame that the header at the beginning of a message names."""
+    order: Literal["little", "big"] = "little" if raw[1:2] == b"\x01" else "big"
+    begin = ENCAPSULATION + LITTLE.size + 4
+    length = int.from_bytes(raw[begin - 4 : begin], order)
+    name = raw[begin : begin + min(length, LONGEST_NAME)]
+    return name.removesuffix(b"\0").decode(errors="replace")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from graph.frames.book import FRAME_TOPICS
+
 
 @dataclass(frozen=True)
 class Interest:
@@ -22,4 +24,5 @@ class Interest:
     @property
     def named(self) -> frozenset[str]:
         """Topics that are wanted whether they exist or not."""
-        return self.watched | self.followed
+        named = self.watched | self.followed
+        return named | FRAME_TOPICS if self.frames else named

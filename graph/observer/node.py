@@ -14,6 +14,9 @@ from graph.calls.logger_levels import LoggerLevels
 from graph.calls.parameters import ParameterCalls
 from graph.calls.services import Calls
 from graph.data import GraphUpdate
+from graph.frames.book import FRAME_TOPICS, FrameBook
+from graph.frames.reading import TF_MESSAGE
+from graph.messages.decoding import decoder
 from graph.observer.interest import Interest
 from graph.observer.taps import Taps
 from graph.publishing.dead_man_switch import DeadManSwitch
@@ -24,7 +27,7 @@ from graph.scan.scan import Scan, Signature, is_complete, scan, signature
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from graph.data import ActionRow, NodeRow, Sample, ServiceRow
+    from graph.data import ActionRow, FrameRow, NodeRow, Sample, ServiceRow, Value
     from graph.ros import Ros
     from graph.scan.endpoints import TopicEnds
 
@@ -56,7 +59,8 @@ class ObserverNode:
         self.serve_urgent: Callable[[], object] = _nothing
         """Called repeatedly during long operations, for what cannot wait."""
         self._ros = ros
-        self._taps = Taps(ros.node)
+        self._frames = FrameBook(_decode_transforms)
+        self._taps = Taps(ros.node, self._frames)
         self._scan = Scan()
         self._signature: Signature | None = None
         self._looked_s = 0.0
@@ -98,7 +102,8 @@ class ObserverNode:
             self.containers.tune(self._scan.nodes, services)
         self.lifecycles.look()
         self.containers.look()
-        return self._update(self._taps.drain(self.serve_urgent))
+        samples = self._taps.drain(self.serve_urgent)
+        return self._update(samples, self._frame_rows() if interest.frames else ())
 
     def step(self) -> float | None:
         """Continue what is under way; return when to continue again, on the monotonic clock.
@@ -153,12 +158,22 @@ class ObserverNode:
             self._scan = seen
             self.dead_man_switch.tune(seen.topics)
 
-    def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:
+    def _frame_rows(self) -> tuple[FrameRow, ...]:
+        now_s = time.time()
+        for topic in FRAME_TOPICS:
+            ends = self._scan.topics.get(topic)
+            nodes = frozenset(end.node for end in ends.everyone_publishing) if ends else frozenset()
+            self._frames.published_by(topic, nodes, now_s)
+        return self._frames.rows(now_s)
+
+    def _update(
+        self, samples: dict[str, tuple[Sample, ...]], frames: tuple[FrameRow, ...]
+    ) -> GraphUpdate | None:
         rows = self._taps.rows()
         seen = self._scan
         doing = (self.goals.rows(), self.seen_goals.rows(), self.publications.rows())
         inner = (self.lifecycles.rows(), self.containers.rows())
-        told = (rows, seen.nodes, seen.services, seen.actions, *doing, *inner)
+        told = (rows, seen.nodes, seen.services, seen.actions, *doing, *inner, frames)
         if not samples and told == self._told:
             return None
         self._told = told
@@ -170,9 +185,15 @@ class ObserverNode:
             seen.services,
             seen.actions,
             *doing,
+            frames,
             lifecycles=inner[0],
             containers=inner[1],
         )
+
+
+def _decode_transforms(raw: bytes) -> dict[str, Value]:
+    # Raises if the type is not installed, which only bytes of a foreign representation need.
+    return decoder(TF_MESSAGE)(raw)
 
 
 def _nothing() -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from graph.data import Sample
 from graph.messages.decoding import decoder
-from graph.messages.stamps import delay_reader
+from graph.messages.stamps import delay_reader, frame_id
 from graph.messages.stand_in import stand_in
 from graph.messages.types import UnknownTypeError, load_message, not_decoded
 from graph.observer.losses import Losses
@@ -17,10 +17,14 @@ from graph.observer.timing import Arrival
 from graph.qos import Qos, profile
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rclpy.node import Node
     from rclpy.subscription import Subscription
 
 DEEP = 200
+DEEP_OF_EVERY = 2000
+"""Where no message may be missed."""
 SHALLOW = 4
 """A fragmented message occupies a slot while it is being reassembled, so 1 would starve."""
 QUEUE_BYTES = 4_000_000
@@ -48,9 +52,11 @@ class Tap:
         qos: Qos,
         depth: int,
         meter: RateMeter | None = None,
+        every: Callable[[bytes, float, int | None], None] | None = None,
     ) -> None:
         """Subscribe; `meter` continues where an earlier tap ended.
 
+        `every` is given each message, its arrival in unix time and its number at its publisher.
         A type that is not installed is measured if the middleware allows it, but not decoded.
         Raises UnknownTypeError, and what rclpy raises.
         """
@@ -69,6 +75,7 @@ class Tap:
         self._cls, self.unknown = _class_for(type_name)
         self._decode = decoder(type_name) if self.unknown is None else None
         self._delay = delay_reader(self._cls) if self.unknown is None else None
+        self.every = every
         self._node = node
         self._last: tuple[bytes, float, float] | None = None
         self._numbered = True
@@ -108,6 +115,11 @@ class Tap:
         sample = self._sample(*self._last, time.time())
         return (sample,) if sample else ()
 
+    @property
+    def frame_id(self) -> str:
+        """The frame that the header of the newest message names, empty without a header."""
+        return frame_id(self._last[0]) if self._last and self._delay else ""
+
     def better_depth(self, *, one_publisher: bool) -> int:
         """Return how deep the queue should be for messages of this size.
 
@@ -117,8 +129,9 @@ class Tap:
         size = self.meter.mean_size_bytes
         if not size:
             return self.depth
-        least = SHALLOW if one_publisher and self._numbered else 8 * SHALLOW
-        wanted = max(least, min(DEEP, int(QUEUE_BYTES / size)))
+        least = SHALLOW if one_publisher and self._numbered and not self.every else 8 * SHALLOW
+        most = DEEP_OF_EVERY if self.every else DEEP
+        wanted = max(least, min(most, int(QUEUE_BYTES / size)))
         # Sizes vary: a new subscription for every small difference would cost more than it saves.
         return wanted if not self.depth / 2 <= wanted <= self.depth * 2 else self.depth
 
@@ -141,10 +154,26 @@ class Tap:
                 stamp_s = info["received_timestamp"] * NANOSECONDS or time.time()
                 delay_s = self._delay(raw, stamp_s) if self._delay else None
                 number = info["publication_sequence_number"]
+                if self.every:
+                    self._hand_on(self.every, raw, stamp_s, number)
                 batch.append(Arrival(stamp_s, len(raw), number, delay_s))
                 self._last = (raw, stamp_s, info["source_timestamp"] * NANOSECONDS)
                 kept.append(self._last)
         return batch, kept
+
+    def _hand_on(
+        self,
+        every: Callable[[bytes, float, int | None], None],
+        raw: bytes,
+        stamp_s: float,
+        number: int | None,
+    ) -> None:
+        try:
+            every(raw, stamp_s, number)
+        except Exception as error:  # noqa: BLE001 - as in `_sample`
+            self.broken = not_decoded(self.type_name, error)
+        else:
+            self.broken = ""
 
     def _take_losses(self) -> int:
         """Return how many messages were lost since the previous poll, and add them up."""
@@ -170,8 +199,10 @@ class Tap:
         return Sample(self.topic, self.type_name, now_s, age_s, len(raw), value, sent_s or None)
 
 
-def first_depth(type_name: str) -> int:
-    """Return the depth for a topic whose messages have not been seen yet."""
+def first_depth(type_name: str, *, every: bool) -> int:
+    """Return the depth for a topic whose messages have not been seen yet; `every` one is needed."""
+    if every:
+        return DEEP_OF_EVERY // 2
     return SHALLOW if type_name in LARGE_TYPES else DEEP
 
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 import time
 from collections import Counter
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from graph.data import Sample, TopicRow, Trouble
+from graph.frames.book import FRAME_TOPICS
+from graph.frames.reading import TF_MESSAGE
 from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.observer.interest import Interest
 from graph.observer.rates import QUIET_S
@@ -22,12 +25,16 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
+    from graph.frames.book import FrameBook
+
 
 class Taps:
     """All of Deck's subscriptions, kept in step with the graph and with what the screens want."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, frames: FrameBook) -> None:
+        """While frames are wanted, `frames` takes all of their messages."""
         self._node = node
+        self._frames = frames
         self._taps: dict[str, Tap] = {}
         self._refused: dict[tuple[str, str, Qos], UnknownTypeError] = {}
         self._rows: dict[str, TopicRow] = {}
@@ -51,6 +58,8 @@ class Taps:
             if topic in self._taps and self._taps[topic].qos.durability == TRANSIENT_LOCAL
         }
         self._fresh &= interest.named
+        if not interest.frames:
+            self._frames.clear()
         self._scan, self._interest = scan, interest
         self._rows = {}
         for topic in set(self._taps) - scan.topics.keys():
@@ -116,19 +125,23 @@ class Taps:
 
     def _open(self, topic: str, ends: TopicEnds) -> UnknownTypeError | None:
         type_name, qos = _type_to_show(ends), to_hear(ends.everyone_publishing)
-        depth, meter = first_depth(type_name), None
+        every = self._interest.frames and topic in FRAME_TOPICS and type_name == TF_MESSAGE
+        depth, meter = first_depth(type_name, every=every), None
         tap = self._taps.get(topic)
         if tap and tap.type_name == type_name:
-            depth = tap.better_depth(one_publisher=self._one_publisher(topic))
-            if tap.qos == qos and tap.depth == depth:
+            as_before = every == (tap.every is not None)
+            if as_before:
+                depth = tap.better_depth(one_publisher=self._one_publisher(topic))
+            if as_before and tap.qos == qos and tap.depth == depth:
                 return tap.unknown
             meter = tap.meter
         self._close(topic)
         key = (topic, type_name, qos)
         if key not in self._refused:
             # A second attempt would make rcl print its complaint on the terminal again.
+            take = partial(self._frames.take, topic) if every else None
             try:
-                self._taps[topic] = Tap(self._node, topic, type_name, qos, depth, meter)
+                self._taps[topic] = Tap(self._node, topic, type_name, qos, depth, meter, take)
             except UnknownTypeError as error:
                 self._refused[key] = error
             except Exception as error:  # noqa: BLE001 - a second type under one name, for one
@@ -182,6 +195,7 @@ def _measured(row: TopicRow, tap: Tap, now_s: float) -> TopicRow:
         several_send=tap.meter.several_send(now_s),
         steady_hz=tap.meter.steady_hz(now_s),
         count=tap.meter.count,
+        frame_id=tap.frame_id,
         measured=True,
         trouble=finding.trouble,
         detail=finding.detail,

@@ -274,8 +274,9 @@ class Replay:
             before_s = now_s
             self._set(position_s=player.position_s, ended=player.ended, damage=player.damage or "")
             update = self._update(player)
-            if update.samples or ordered or update.topics != told:
-                told = update.topics
+            news = (update.topics, update.frames)
+            if update.samples or ordered or news != told:
+                told = news
                 on_update(update)
             self._wake.wait(self.period_s)
 
@@ -303,7 +304,8 @@ class Replay:
         samples = player.topics.samples(interest, fresh, wall_s, player.now_ns)
         now_s = player.now_ns * NANOSECONDS
         rows = player.topics.rows(interest, now_s, self._state.start_s)
-        return GraphUpdate(wall_s, rows, samples, nodes=(player.topics.node,))
+        frames = player.topics.frames(now_s) if interest.frames else ()
+        return GraphUpdate(wall_s, rows, samples, nodes=(player.topics.node,), frames=frames)
 
     def _fail(self, words: str, on_update: Callable[[GraphUpdate], None]) -> None:
         self._set(error=words, paused=True)

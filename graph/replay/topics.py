@@ -6,19 +6,24 @@ from collections import deque
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from graph.bag.decoding import bag_decoder
+from graph.bag.decoding import bag_decoder, begins_with_header
 from graph.bag.errors import BagError
 from graph.data import EndpointInfo, NodeRow, Sample, TopicRow, Trouble
+from graph.frames.book import FRAME_TOPICS, FrameBook
+from graph.frames.reading import TF_MESSAGE
+from graph.messages.stamps import frame_id
 from graph.messages.types import not_decoded
 from graph.observer.rates import QUIET_S, RateMeter
 from graph.observer.timing import Arrival
 from graph.observer.troubles import quiet
 from graph.qos import TRANSIENT_LOCAL
+from text.ros_names import TF_STATIC
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from graph.bag.reading import TopicInBag
+    from graph.data import FrameRow, Value
     from graph.observer.interest import Interest
 
 NODE = "/bag"
@@ -40,11 +45,15 @@ class Newest(NamedTuple):
 class ReplayTopic:
     """One topic: its messages up to the playhead."""
 
-    def __init__(self, kinds: Sequence[TopicInBag]) -> None:
-        """`kinds`: the topic in the bag, once for each type that it has there."""
+    def __init__(self, kinds: Sequence[TopicInBag], frames: FrameBook) -> None:
+        """`kinds`: the topic in the bag, once for each type that it has there.
+
+        `frames` takes the messages that carry them.
+        """
         self.name = kinds[0].name
         self.newest: Newest | None = None
         self._kinds = kinds
+        self._frames = frames
         self._shown = max(kinds, key=lambda each: each.messages)
         self._meter = RateMeter()
         self._waiting: deque[Newest] = deque(maxlen=FOLLOWED)
@@ -55,11 +64,13 @@ class ReplayTopic:
     @property
     def is_latched(self) -> bool:
         """Whether its last message holds until the next."""
-        return self._shown.durability == TRANSIENT_LOCAL
+        return self._shown.durability == TRANSIENT_LOCAL or self.name == TF_STATIC
 
     def take(self, topic: TopicInBag, stamp_ns: int, raw: bytes) -> None:
         """Take the next message."""
         self._meter.add([Arrival(stamp_ns * NANOSECONDS, len(raw))])
+        if self.name in FRAME_TOPICS and topic.kind.name == TF_MESSAGE:
+            self._take_frames(stamp_ns, raw)
         if topic.kind == self._shown.kind:
             self.newest = Newest(stamp_ns, raw)
             self._waiting.append(self.newest)
@@ -90,11 +101,23 @@ class ReplayTopic:
             age_s=self._age_s(now_s),
             jitter_s=meter.jitter_s(now_s),
             count=meter.count,
+            frame_id=self._frame_id(),
         )
         row = self._with_trouble(row, now_s, begun_s)
         if row != self._row:
             self._row = row
         return self._row
+
+    def _take_frames(self, stamp_ns: int, raw: bytes) -> None:
+        try:
+            self._frames.take(self.name, raw, stamp_ns * NANOSECONDS)
+        except Exception as error:  # noqa: BLE001 - as in `_sample`
+            self._broken = not_decoded(TF_MESSAGE, error)
+
+    def _frame_id(self) -> str:
+        if self.newest is None or not begins_with_header(self._shown.kind):
+            return ""
+        return frame_id(self.newest.raw)
 
     def _age_s(self, now_s: float) -> float | None:
         """Return the age of the newest message, which may be from before the last jump."""
@@ -160,7 +183,8 @@ class ReplayTopics:
         kinds: dict[str, list[TopicInBag]] = {}
         for topic in topics:
             kinds.setdefault(topic.name, []).append(topic)
-        self._topics = {name: ReplayTopic(kinds[name]) for name in sorted(kinds)}
+        self._frames = FrameBook(_tree_reader(kinds))
+        self._topics = {name: ReplayTopic(kinds[name], self._frames) for name in sorted(kinds)}
         self.node = NodeRow(NODE, publishes=tuple(self._topics))
 
     @property
@@ -174,8 +198,15 @@ class ReplayTopics:
 
     def forget(self, until_ns: int) -> None:
         """Restart the measurement at this time in the bag."""
+        self._frames.clear()
         for topic in self._topics.values():
             topic.forget(until_ns)
+
+    def frames(self, now_s: float) -> tuple[FrameRow, ...]:
+        """Return a row for each frame as of `now_s`, unix time in the bag."""
+        for topic in FRAME_TOPICS:
+            self._frames.published_by(topic, frozenset({NODE}), now_s)
+        return self._frames.rows(now_s)
 
     def samples(
         self, interest: Interest, fresh: frozenset[str], wall_s: float, now_ns: int
@@ -203,3 +234,13 @@ class ReplayTopics:
                 facts=RECORDED,
             )
         return tuple(rows[name] for name in sorted(rows))
+
+
+def _tree_reader(kinds: Mapping[str, Sequence[TopicInBag]]) -> Callable[[bytes], dict[str, Value]]:
+    """Return what decodes the messages of /tf and /tf_static in another representation."""
+    found = [each.kind for name in FRAME_TOPICS for each in kinds.get(name, ())]
+
+    def read(raw: bytes) -> dict[str, Value]:
+        return bag_decoder(next(kind for kind in found if kind.name == TF_MESSAGE))(raw)
+
+    return read

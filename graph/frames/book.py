@@ -1,0 +1,113 @@
+"""Every frame that has been heard of on /tf and /tf_static."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from graph.frames.reading import Names, TransformReader
+from graph.frames.record import FrameRecord
+from text.ros_names import TF, TF_STATIC
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from collections.abc import Set as AbstractSet
+
+    from graph.data import FrameRow, Value
+
+FRAME_TOPICS = frozenset({TF, TF_STATIC})
+MOST_FRAMES = 2000
+"""Frames that are kept; whoever comes later is not shown."""
+FORGOTTEN_S = 10.0
+"""A moving frame that has been silent for so long, as long as tf2 remembers, makes room."""
+ROOM_AGAIN_S = 1.0
+MOST_LISTS = 256
+
+
+class FrameBook:
+    """Takes the messages of both topics, and gives a row for every frame in each of its parents."""
+
+    def __init__(self, decode: Callable[[bytes], Mapping[str, Value]]) -> None:
+        """`decode` makes a tree of a message that is not in little-endian CDR."""
+        self._readers = {topic: TransformReader(decode) for topic in FRAME_TOPICS}
+        self._records: dict[tuple[str, str, bool], FrameRecord] = {}
+        self._lists: dict[tuple[bool, Names], list[FrameRecord | None]] = {}
+        """The records of a message with these names; None for those that find no room."""
+        self._present: dict[str, tuple[AbstractSet[str], float]] = {}
+        self._messages = 0
+        self._is_full = False
+        """Whether a frame has found no room since room was made."""
+        self._made_room_s = 0.0
+
+    def clear(self) -> None:
+        """Forget all frames."""
+        self._records.clear()
+        self._lists.clear()
+
+    def take(self, topic: str, raw: bytes, arrived_s: float, number: int | None = None) -> None:
+        """Take a message; `number` is what its publisher has given it, if the middleware tells.
+
+        Raises what `TransformReader.read` raises.
+        """
+        names, found = self._readers[topic].read(raw)
+        key = (topic == TF_STATIC, names)
+        records = self._lists.get(key)
+        if records is None:
+            records = self._open(names, arrived_s, static=key[0])
+        if number is None:
+            number = self._messages = self._messages + 1
+        for record, fields in zip(records, found, strict=True):
+            if record is not None:
+                record.take(fields, arrived_s, number)
+
+    def published_by(self, topic: str, nodes: AbstractSet[str], now_s: float) -> None:
+        """Say which nodes publish one of the topics now."""
+        known = self._present.get(topic)
+        if known is None or known[0] != nodes:
+            self._present[topic] = (nodes, now_s)
+
+    def rows(self, now_s: float) -> tuple[FrameRow, ...]:
+        """Return the rows at this unix time, sorted by frame and parent."""
+        if self._is_full and abs(now_s - self._made_room_s) > ROOM_AGAIN_S:
+            self._make_room(now_s)
+        nobody: tuple[AbstractSet[str], float] = (frozenset(), now_s)
+        moving, static = (self._present.get(topic, nobody) for topic in (TF, TF_STATIC))
+        return tuple(
+            record.row(now_s, *(static if record.static else moving))
+            for record in self._records.values()
+        )
+
+    def _open(self, names: Names, arrived_s: float, *, static: bool) -> list[FrameRecord | None]:
+        known = len(self._records)
+        records = [self._record(parent, child, arrived_s, static=static) for parent, child in names]
+        if len(self._records) != known:
+            in_order = sorted(self._records.items(), key=lambda each: (each[0][1], each[0]))
+            self._records = dict(in_order)
+        if len(self._lists) >= MOST_LISTS:
+            self._lists.clear()
+        self._lists[static, names] = records
+        return records
+
+    def _record(
+        self, parent: str, child: str, arrived_s: float, *, static: bool
+    ) -> FrameRecord | None:
+        bare = parent.removeprefix("/"), child.removeprefix("/")
+        made = FrameRecord(*bare, arrived_s, static=static)
+        key = (*made.names, static)
+        record = self._records.get(key)
+        if record is None:
+            if len(self._records) >= MOST_FRAMES:
+                self._is_full = True
+                return None
+            record = self._records[key] = made
+        record.slashed = record.slashed or bare != (parent, child)
+        return record
+
+    def _make_room(self, now_s: float) -> None:
+        """Forget moving frames that are long silent, and let all others try again."""
+        self._made_room_s, self._is_full = now_s, False
+        self._lists.clear()
+        self._records = {
+            key: record
+            for key, record in self._records.items()
+            if record.static or now_s - record.arrived_s <= FORGOTTEN_S
+        }

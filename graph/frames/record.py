@@ -1,0 +1,195 @@
+"""What is known of one frame in one parent: its newest transform, its rate, its publishers."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from graph.data import FrameRow
+from space.buffer import Stamped
+from space.transform import IDENTITY, Transform
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
+
+WINDOW_S = 5.0
+"""Of the rate, and how long a transform that was not taken is spoken of."""
+FEW = 3
+"""Points of the rate that are kept whatever their age, so that a slow frame has one, too."""
+REWINDS = 3
+"""So often within the window the numbers go back only if several publishers take turns."""
+SETTLED_S = 3.0
+"""Endpoints, and their names, become known a little later than the messages arrive."""
+LONGEST_NAME = 200
+"""Characters that are kept of a name."""
+TOLERANCE = 0.01
+"""How far the squared length of a quaternion may be from 1. Source: tf2, buffer_core.cpp."""
+INFINITE = math.inf
+NANOSECONDS = 1e-9
+
+
+class _Point(NamedTuple):
+    """How many transforms had come by the arrival of the newest."""
+
+    arrived_s: float
+    taken: int
+    rewinds: int
+
+
+class FrameRecord:
+    """One frame in one parent on one of the two topics."""
+
+    __slots__ = (
+        "_bad",
+        "_bad_s",
+        "_candidates",
+        "_faults",
+        "_first_s",
+        "_gone_s",
+        "_good",
+        "_moved",
+        "_number",
+        "_points",
+        "_rewinds",
+        "_wrong_name",
+        "arrived_s",
+        "count",
+        "names",
+        "slashed",
+        "static",
+    )
+
+    def __init__(self, parent: str, child: str, arrived_s: float, *, static: bool) -> None:
+        """Begin to count; the names are without a leading slash."""
+        self.names = (_kept(parent), _kept(child))
+        self.static = static
+        self.slashed = False
+        """Whether somebody publishes it with a leading slash."""
+        self.count = 0
+        self.arrived_s = arrived_s
+        """When the newest came, unix time."""
+        self._first_s = arrived_s
+        self._wrong_name = _wrong_name(parent, child)
+        self._good: tuple[Any, ...] = ()
+        """Fields of the newest that was taken, as `graph.frames.reading.Transforms` has them."""
+        self._bad: tuple[Any, ...] = ()
+        self._bad_s = -INFINITE
+        self._faults = 0
+        self._moved = False
+        self._number = -1
+        self._rewinds = 0
+        self._points: deque[_Point] = deque()
+        self._candidates: AbstractSet[str] | None = None
+        self._gone_s = INFINITE
+
+    def take(self, fields: tuple[Any, ...], arrived_s: float, number: int) -> None:
+        """Take the next transform; `number` counts the messages of its publisher."""
+        self.count += 1
+        self.arrived_s = arrived_s
+        if self.count == 1:
+            self._points.append(_Point(arrived_s, 1, 0))
+        if number <= self._number:
+            self._rewinds += 1
+        self._number = number
+        _, _, _, _, x, y, z, a, b, c, d = fields
+        # Written so that any comparison with NaN fails.
+        if (
+            -TOLERANCE < a * a + b * b + c * c + d * d - 1.0 < TOLERANCE
+            and -INFINITE < x < INFINITE
+            and -INFINITE < y < INFINITE
+            and -INFINITE < z < INFINITE
+            and not self._wrong_name
+        ):
+            if self.static and self._good and self._good[4:] != fields[4:]:
+                self._moved = True
+            self._good = fields
+        else:
+            self._bad, self._bad_s = fields, arrived_s
+            self._faults += 1
+
+    def row(self, now_s: float, present: AbstractSet[str], since_s: float) -> FrameRow:
+        """Return what is known at `now_s`; `present` are the publishers of its topic `since_s`."""
+        self._mark()
+        self._narrow_down(now_s, present, since_s)
+        good = self._good
+        stamp = good or self._bad
+        stamp_s = stamp[0] + stamp[1] * NANOSECONDS
+        transform = Transform.of(good[4:7], good[7:11]) if good else IDENTITY
+        parent, child = self.names
+        return FrameRow(
+            Stamped(parent, child, stamp_s, transform, self.static),
+            self.count,
+            None if self.static else self._hz(),
+            max(0.0, now_s - self.arrived_s),
+            self.arrived_s - stamp_s,
+            tuple(sorted(self._candidates or ())),
+            self._fault(now_s),
+            self._faults,
+            self.slashed,
+            self._moved,
+            self._points[-1].rewinds - self._points[0].rewinds >= REWINDS,
+        )
+
+    def _mark(self) -> None:
+        points = self._points
+        if points[-1].taken != self.count:
+            points.append(_Point(self.arrived_s, self.count, self._rewinds))
+        while len(points) > FEW and self.arrived_s - points[0].arrived_s > WINDOW_S:
+            points.popleft()
+
+    def _hz(self) -> float | None:
+        first, last = self._points[0], self._points[-1]
+        span_s = last.arrived_s - first.arrived_s
+        return (last.taken - first.taken) / span_s if span_s > 0 else None
+
+    def _narrow_down(self, now_s: float, present: AbstractSet[str], since_s: float) -> None:
+        """Whoever was not there while the frame came cannot be its publisher."""
+        if self.arrived_s > self._gone_s:
+            self._first_s, self._gone_s, self._candidates = self.arrived_s, INFINITE, None
+        known = self._candidates
+        if known is None or now_s - self._first_s < SETTLED_S:
+            self._candidates = present
+        elif self.arrived_s > since_s + SETTLED_S:
+            self._candidates = known & present or present
+        elif known and known.isdisjoint(present):
+            self._candidates, self._gone_s = frozenset(), now_s
+
+    def _fault(self, now_s: float) -> str:
+        if now_s - self._bad_s > WINDOW_S and self._good:
+            return ""
+        return self._wrong_name or (_wrong_numbers(self._bad) if self._bad else "")
+
+
+def _kept(name: str) -> str:
+    return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
+
+
+def _wrong_name(parent: str, child: str) -> str:
+    """Say what is wrong with the names, empty if nothing is."""
+    if not child:
+        return say("its child_frame_id is empty")
+    if not parent:
+        return say("its header.frame_id is empty")
+    if parent == child:
+        return say("it is its own parent")
+    longest = max(len(parent), len(child))
+    return say("its name has {count} characters", count=longest) if longest > LONGEST_NAME else ""
+
+
+def _wrong_numbers(fields: tuple[Any, ...]) -> str:
+    """Say why the numbers are no transform."""
+    moved, turned = fields[4:7], fields[7:11]
+    if not all(map(math.isfinite, moved)):
+        return say("its translation is not finite: {numbers}", numbers=_listed(moved))
+    if not all(map(math.isfinite, turned)):
+        return say("its quaternion is not finite: {numbers}", numbers=_listed(turned))
+    length = math.hypot(*turned)
+    if not length:
+        return say("its quaternion is all zeros, where no rotation is 0, 0, 0, 1")
+    return say("its quaternion has the length {length} in place of 1", length=f"{length:.4g}")
+
+
+def _listed(numbers: tuple[float, ...]) -> str:
+    return ", ".join(f"{number:g}" for number in numbers)
