@@ -188,7 +188,7 @@ def _wrong_numbers(fields: tuple[Any, ...]) -> str:
     length = math.hypot(*turned)
     if not length:
         return say("its quaternion is all zeros, where no rotation is 0, 0, 0, 1")
-    return say("its quaternion has the length {length} in place of 1", length=f"{length:.4g}")
+    return say("its quaternion has the length {length:.4g} in place of 1", length=length)
 
 
 def _listed(numbers: tuple[float, ...]) -> str:
