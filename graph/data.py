@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, TypeAlias, Union
 
+from text.sentences import say
+
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
@@ -76,6 +78,11 @@ class EndpointInfo:
     def is_named(self) -> bool:
         """Whether its node is known; names arrive a little later than endpoints."""
         return not self.node.endswith(NAMELESS)
+
+    @property
+    def called(self) -> str:
+        """The name of its node for a reader, or a sentence that it is unknown."""
+        return self.node if self.is_named else say("unknown node")
 
 
 @dataclass(frozen=True)

@@ -74,7 +74,7 @@ def mismatches(
     Pairs with different types are left out: no policy would connect them.
     """
     return [
-        Mismatch(policy, publisher.node, subscriber.node, offered, requested)
+        Mismatch(policy, publisher.called, subscriber.called, offered, requested)
         for publisher in publishers
         for subscriber in subscribers
         if publisher.type_name == subscriber.type_name

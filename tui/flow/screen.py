@@ -12,8 +12,7 @@ from textual.widgets import Static
 
 from robot.topics import BRAIN_STATE
 from text import ros2_words
-from text.i18n import N_, _, ngettext
-from text.plain import plain
+from text.i18n import N_, _, localized, ngettext
 from tui import clock
 from tui.actions import WRITE_COMMAND, bindings
 from tui.flow import words
@@ -139,7 +138,7 @@ class FlowScreen(DeckScreen):
         self._update = message.update
         self._note_since(message.update)
         said_by = {
-            row.name: ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
+            row.name: ", ".join(dict.fromkeys(localized(end.called) for end in row.published_by))
             for row in message.update.topics
             if row.name in TOPICS
         }

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.cells import cell_len
 
 from graph.qos_compatibility import LEASE, LIVELINESS, mismatches
-from text.i18n import _, ngettext
+from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui.widgets.drawing import Ink, Line, fit
 from tui.widgets.figures import UNKNOWN, seconds_text
@@ -197,7 +197,7 @@ def liveliness_text(end: EndpointInfo) -> str:
     return end.liveliness + lease
 
 
-NODE = EndpointColumn("node", "", 20, lambda end: plain(end.node, LONGEST_NAME))
+NODE = EndpointColumn("node", "", 20, lambda end: plain(localized(end.called), LONGEST_NAME))
 POLICIES = (
     EndpointColumn("reliability", "reliability", 11, lambda end: end.reliability or UNKNOWN),
     EndpointColumn("durability", "durability", 15, lambda end: end.durability or UNKNOWN),

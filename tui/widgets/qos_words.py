@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from graph.qos_compatibility import DEADLINE, LEASE
-from text.i18n import N_, _, ngettext
+from text.i18n import N_, _, localized, ngettext
 from text.plain import plain
 from tui.widgets.figures import seconds_text
 
@@ -45,14 +45,15 @@ _TIMES = {
 def pair_words(facts: Mapping[str, str]) -> str:
     """Who does not hear whom, and the two fixes, from the facts of a `Trouble.QOS_MISMATCH`."""
     policy, offered = facts["policy"], facts["offered"]
+    ends = {end: localized(facts[end]) for end in ("publisher", "subscriber")}
     template = _TIMES.get((policy, bool(offered)))
     if template is None:
-        return plain(_(_ANY_POLICY).format(**facts), LONGEST)
+        return plain(_(_ANY_POLICY).format(**{**facts, **ends}), LONGEST)
     times = {
         "requested": seconds_text(float(facts["requested"])),
         "offered": seconds_text(float(offered)) if offered else "",
     }
-    return plain(_(template).format(**{**facts, **times}), LONGEST)
+    return plain(_(template).format(**{**facts, **ends, **times}), LONGEST)
 
 
 def misfit_words(facts: Mapping[str, str]) -> str:

@@ -99,7 +99,7 @@ def names(endpoints: Sequence[EndpointInfo], *, counted: bool = False) -> str:
 
     `counted`: with the number of endpoints of each node that has several.
     """
-    found = Counter(plain(end.node.removeprefix("/"), LONGEST) for end in endpoints)
+    found = Counter(plain(localized(end.called).removeprefix("/"), LONGEST) for end in endpoints)
     several = {name: f" ×{count}" for name, count in found.items() if counted and count > 1}
     shown = [name + several.get(name, "") for name in found][:SHOWN_NODES]
     more = len(found) - len(shown)

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from rich.cells import cell_len
 
-from graph.data import EndpointInfo, TopicRow
+from graph.data import NAMELESS, EndpointInfo, TopicRow
 from tests.tui.recorded import TOPICS, lesson_update
 from tests.tui.snapshots import Look, settle
+from text.i18n import set_language
 from tui.topics.endpoint_lines import endpoint_lines
 from tui.topics.screen import TopicsScreen
 from tui.topics.words import ends
@@ -179,3 +180,20 @@ async def test_a_key_brings_the_endpoints_to_the_front_and_back() -> None:
         assert "Deck itself publishes here" in screen.detail.endpoints.text
         await pilot.press("I")
         assert screen.detail.echo.has_focus
+
+
+@pytest.mark.parametrize(
+    ("language", "called"), [("en", "unknown node"), ("ru", "неизвестный узел")]
+)
+def test_an_endpoint_whose_node_nobody_knows_is_shown_in_words(language: str, called: str) -> None:
+    row = a_row([replace(LIDAR, node=f"/{NAMELESS}")], [BRAIN])
+    set_language(language)
+    try:
+        shown, listed = text(row, 200), ends(row)
+    finally:
+        set_language("en")
+    assert NAMELESS not in shown + listed
+    # In the list of publishers, and in the sentence on who does not hear whom.
+    assert f"✗ {called} best_effort" in shown
+    assert shown.count(called) > 2
+    assert listed == f"{called} → brain"

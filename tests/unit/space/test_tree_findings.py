@@ -126,7 +126,7 @@ def test_a_frame_that_only_a_header_names_is_found_with_what_was_meant() -> None
         ({"delay_s": NOW_S, "stamp_s": 0.0}, "0.0 s, which cannot be the present time"),
     ],
 )
-def test_stamps_of_another_clock_are_told(changes: dict[str, float], said: str) -> None:
+def test_stamps_of_another_clock_are_told(changes: dict[str, Any], said: str) -> None:
     found = only(*ROBOT, heard("base_link", "head", **changes))
     assert (found.trouble, found.frames) == (FrameTrouble.CLOCK, ("head",))
     assert said in found.text
