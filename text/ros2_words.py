@@ -105,6 +105,23 @@ def interface(type_name: str) -> str:
     return _line("interface", "show", type_name)
 
 
+def tf2_echo(target: str, source: str) -> str:
+    """Return what prints where the frame `source` is in `target`."""
+    return _line("run", "tf2_ros", "tf2_echo", target, source)
+
+
+def static_transform(
+    target: str, source: str, translation: Iterable[float], rotation: Iterable[float]
+) -> str:
+    """Return what publishes for ever where the frame `source` is in `target`."""
+    words = ["run", "tf2_ros", "static_transform_publisher"]
+    for name, number in zip("xyz", translation, strict=True):
+        words += [f"--{name}", f"{number:.6g}"]
+    for name, number in zip("xyzw", rotation, strict=True):
+        words += [f"--q{name}", f"{number:.6g}"]
+    return _line(*words, "--frame-id", target, "--child-frame-id", source)
+
+
 def record(topics: Iterable[str] = ()) -> str:
     """Return what records these topics, or all."""
     return _line("bag", "record", *(topics or ("--all",)))

@@ -20,6 +20,7 @@ from tui.frame.actions.app import (
     ShowDeck,
     ShowDevices,
     ShowFlow,
+    ShowFrames,
     ShowGraph,
     ShowLesson,
     ShowLogs,
@@ -29,6 +30,7 @@ from tui.frame.actions.app import (
 )
 from tui.frame.actions.replay import ReplayAction
 from tui.frame.host import host_of
+from tui.frame_tree.actions import FRAMES_ACTIONS
 from tui.graph.actions import GRAPH_ACTIONS
 from tui.lesson.actions import LESSON_ACTIONS
 from tui.logs.actions import LOGS_ACTIONS
@@ -82,6 +84,7 @@ PLACES = (
     ActionPlace(ShowGraph, GRAPH_ACTIONS),
     ActionPlace(ShowFlow, FLOW_ACTIONS),
     ActionPlace(ShowDevices, DEVICES_ACTIONS),
+    ActionPlace(ShowFrames, FRAMES_ACTIONS),
     ActionPlace(ShowWall, WALL_ACTIONS),
 )
 """Every screen of a session, listed without importing any of them: that would delay keys."""

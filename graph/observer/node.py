@@ -162,7 +162,9 @@ class ObserverNode:
         now_s = time.time()
         for topic in FRAME_TOPICS:
             ends = self._scan.topics.get(topic)
-            nodes = frozenset(end.node for end in ends.everyone_publishing) if ends else frozenset()
+            nodes = (
+                frozenset(end.called for end in ends.everyone_publishing) if ends else frozenset()
+            )
             self._frames.published_by(topic, nodes, now_s)
         return self._frames.rows(now_s)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from space.tree.finding import FrameFinding, FrameTrouble, by_whom, listed
@@ -70,25 +71,25 @@ def _parents(tree: FrameTree) -> Iterator[FrameFinding]:
 
 
 def _roots(tree: FrameTree) -> Iterator[FrameFinding]:
-    if len(tree.roots) < 2:
+    if len(tree.parts) < 2:
         return
     text = say(
         "{count} trees that nothing joins, with the roots {roots}",
-        count=len(tree.roots),
-        roots=listed(tree.roots),
+        count=len(tree.parts),
+        roots=listed(tree.parts),
     )
-    main, *others = tree.roots
-    yield FrameFinding(FrameTrouble.ROOTS, tree.roots, text, _to_join(tree, main, others))
+    main, *others = tree.parts
+    yield FrameFinding(FrameTrouble.ROOTS, tree.parts, text, _to_join(tree, main, others))
 
 
 def _to_join(tree: FrameTree, main: str, others: list[str]) -> str:
     for root in others[:MOST_COMPARED]:
-        meant = near(root, sorted(tree.frames - {root, *tree.children[root]}), cutoff=ALIKE)
+        meant = _meant(root, tree.frames - {root, *tree.children[root]})
         if meant:
             return say(
                 "is {root} a slip for {meant}? Then correct the parent that {node} gives",
                 root=root,
-                meant=meant[0],
+                meant=meant,
                 node=_publishers(tree.edges[root, tree.children[root][0]]),
             )
     return say(
@@ -111,9 +112,9 @@ def _unknown(tree: FrameTree, named: Mapping[str, str]) -> Iterator[FrameFinding
             topics=listed(topics),
             frame=frame,
         )
-        meant = near(frame, sorted(tree.frames), cutoff=ALIKE) if number < MOST_COMPARED else []
+        meant = _meant(frame, tree.frames) if number < MOST_COMPARED else ""
         if meant:
-            advice = say("is it a slip for {meant}?", meant=meant[0])
+            advice = say("is it a slip for {meant}?", meant=meant)
         else:
             advice = say(
                 "publish where it is: ros2 run tf2_ros static_transform_publisher "
@@ -144,6 +145,12 @@ def _both(tree: FrameTree) -> Iterator[FrameFinding]:
             static=TF_STATIC,
         )
         yield FrameFinding(FrameTrouble.BOTH, (child, parent), text, advice)
+
+
+@lru_cache(maxsize=4 * MOST_COMPARED)
+def _meant(name: str, known: frozenset[str]) -> str:
+    """Return the frame that was probably meant, empty if none is as similar."""
+    return next(iter(near(name, sorted(known), cutoff=ALIKE)), "")
 
 
 def _publishers(heard: Iterable[HeardFrame]) -> str:

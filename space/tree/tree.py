@@ -52,6 +52,8 @@ class FrameTree:
         """Frames that are their own ancestors, each loop from parent to child."""
         self.roots = self._sorted_roots()
         """Where the drawing begins, the largest tree first; a loop without a root has one, too."""
+        self.parts = self._parts()
+        """Of each part that nothing joins to the others, the first root."""
 
     def root_of(self, frame: str) -> str:
         """Return the last of its ancestors, by the first parent of each."""
@@ -94,6 +96,22 @@ class FrameTree:
                 below[loop[0]] = self._below(loop[0])
                 reached |= below[loop[0]]
         return tuple(sorted(below, key=lambda root: (-len(below[root]), root)))
+
+    def _parts(self) -> tuple[str, ...]:
+        # A frame with two parents joins their trees, in its own bad way.
+        found, seen = [], set[str]()
+        for root in self.roots:
+            if root in seen:
+                continue
+            found.append(root)
+            seen.add(root)
+            waiting = [root]
+            while waiting:
+                frame = waiting.pop()
+                near = {*self.children.get(frame, ()), *self.parents.get(frame, ())} - seen
+                seen |= near
+                waiting += near
+        return tuple(found)
 
     def _below(self, frame: str) -> frozenset[str]:
         found, waiting = {frame}, [frame]

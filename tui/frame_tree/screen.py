@@ -2,15 +2,238 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-from text.i18n import N_
+from textual import on
+from textual.containers import Container, VerticalScroll
+from textual.content import Content
+from textual.widgets import Static
+
+from graph.frames.around import findings_in
+from space.tree.tree import FrameTree
+from text import ros2_words
+from text.i18n import N_, _
+from tui.actions import bindings
 from tui.frame.screen import DeckScreen
+from tui.frame_tree import words
+from tui.frame_tree.actions import FRAMES_ACTIONS
+from tui.frame_tree.pair import FramePair, FramePairs, pair_lines, pair_text
+from tui.frame_tree.table import FrameTable, frame_of, key_of
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+    from space.tree.finding import FrameFinding
+    from space.tree.tree import TreeLine
+    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
+
+WIDE_FROM = 160
+"""Width of the screen from which on names of nodes have more room."""
+MEANINGS = {"good": "$text-success", "bad": "$text-error", "": ""}
 
 
 class FramesScreen(DeckScreen):
-    """The tree of frames, what is wrong with it, and where one frame is in another."""
+    """The tree; beside or below it a transform, and the findings."""
 
     tab: ClassVar[str] = "frames"
-    about: ClassVar[str] = N_("The tree of the frames on /tf and /tf_static.")
+    about: ClassVar[str] = N_(
+        "The tree of the frames on /tf and /tf_static: who publishes each, how often, how old it "
+        "is. Where the frame at the cursor is, in metres and degrees, is shown relative to the "
+        "root, or to the frame that Enter marks (◎). Below is what is wrong: frames that have "
+        "fallen silent, two parents, loops, trees that nothing joins, clocks that differ; a ! "
+        "stands beside each such frame, n goes from one to the next. A ? after a publisher: there "
+        "are several, and the middleware does not say which of them it is."
+    )
     wants_frames = True
+    measure_all = True
+    BINDINGS: ClassVar = bindings(*FRAMES_ACTIONS)
+    DEFAULT_CSS = """
+    FramesScreen {
+        #frames-empty { height: 1fr; padding: 1 2; color: $text-muted; }
+        #frames-body { height: 1fr; layout: vertical; }
+        FrameTable { height: 3fr; }
+        #frames-side { height: 2fr; min-height: 9; }
+        #frames-pair { height: auto; max-height: 5; padding: 0 1; background: $panel; }
+        #frames-findings { height: 1fr; padding: 0 1; scrollbar-size-vertical: 1; }
+        #frames-findings > Static { height: auto; }
+    }
+    FramesScreen.-home, FramesScreen.-wide {
+        #frames-body { layout: horizontal; }
+        FrameTable { width: 3fr; height: 1fr; }
+        #frames-side { width: 2fr; height: 1fr; border-left: solid $panel; }
+        #frames-pair { max-height: 8; }
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._update: GraphUpdate | None = None
+        self._tree = FrameTree(())
+        self._lines: list[TreeLine] = []
+        self._findings: list[FrameFinding] = []
+        self._pairs = FramePairs()
+        self._relative_to = ""
+        """The frame that Enter has marked; empty for the root of the one at the cursor."""
+        self._turned = False
+
+    def compose_body(self) -> ComposeResult:
+        """The tree, the transform and the findings, or why there is no frame."""
+        yield Static(id="frames-empty", markup=False)
+        with Container(id="frames-body"):
+            yield FrameTable()
+            with Container(id="frames-side"):
+                yield Static(id="frames-pair", markup=False)
+                with VerticalScroll(id="frames-findings"):
+                    yield Static(markup=False)
+
+    @property
+    def table(self) -> FrameTable:
+        """The tree."""
+        return self.query_one(FrameTable)
+
+    @property
+    def chosen(self) -> str:
+        """The frame at the cursor, empty if there is none."""
+        return frame_of(self.table.chosen) if self.is_mounted and self._lines else ""
+
+    @property
+    def has_findings(self) -> bool:
+        """Whether anything is wrong."""
+        return bool(self._findings)
+
+    @property
+    def pair(self) -> FramePair | None:
+        """What is shown of the frame at the cursor."""
+        source = self.chosen
+        if not source:
+            return None
+        target = self._relative_to or self._tree.root_of(source)
+        return self._pairs.find(*((source, target) if self._turned else (target, source)))
+
+    def on_mount(self) -> None:
+        """Say why there is nothing yet."""
+        self._show()
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Begin anew with a new session."""
+        del message
+        if self.feed.session is not None:
+            self._update, self._relative_to, self._turned = None, "", False
+            self._pairs.clear()
+        self._show()
+
+    def on_status_changed(self, message: StatusChanged) -> None:
+        """Update the words for when there is no frame yet."""
+        del message
+        if not self._lines:
+            self._show()
+
+    def on_graph_changed(self, message: GraphChanged) -> None:
+        """Take in the frames."""
+        self._update = message.update
+        self._pairs.take(message.update.frames)
+        self._show()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Redraw all texts."""
+        del message
+        self._show()
+
+    def on_resize(self) -> None:
+        """Fit the columns to the new width."""
+        self.call_after_refresh(self._show)
+
+    @on(FrameTable.Highlighted)
+    def _cursor_moved(self) -> None:
+        self._show_pair()
+        self._show_findings()
+        self.refresh_bindings()
+
+    @on(FrameTable.Opened)
+    def _marked(self) -> None:
+        self.relate()
+
+    # Actions
+
+    async def ros2_command(self) -> str:
+        """Return what prints the transform that is shown."""
+        pair = self.pair
+        return ros2_words.tf2_echo(pair.target, pair.source) if pair else ""
+
+    def relate(self) -> None:
+        """Show frames relative to the one at the cursor, or to the root again."""
+        self._relative_to = "" if self._relative_to == self.chosen else self.chosen
+        self._show()
+
+    def turn_round(self) -> None:
+        """Show the one frame in the other, or the other way round."""
+        self._turned = not self._turned
+        self._show_pair()
+
+    def go_to_finding(self, step: int) -> None:
+        """Go to the next frame that something is wrong with, or to the one before."""
+        wrong = self._wrong
+        keys = [key_of(line) for line in self._lines]
+        places = [place for place, line in enumerate(self._lines) if line.frame in wrong]
+        if not places:
+            # It is about no frame of the tree, but about a topic or a header.
+            self.query_one("#frames-findings").focus()
+            return
+        at = keys.index(self.table.chosen) if self.table.chosen in keys else -1
+        beyond = [place for place in places[::step] if (place - at) * step > 0]
+        self.table.choose(keys[beyond[0] if beyond else places[::step][0]])
+
+    def copy_pair(self) -> None:
+        """Copy the transform that is shown."""
+        text = pair_text(self.pair) if self.pair else ""
+        if not text:
+            self.notify(_("There is no transform to copy."), severity="warning", markup=False)
+            return
+        self.app.copy_to_clipboard(text)
+        self.notify(text.partition("\n")[0], title=_("Copied"), markup=False)
+
+    # Display
+
+    @property
+    def _wrong(self) -> frozenset[str]:
+        return frozenset(frame for one in self._findings for frame in one.frames)
+
+    def _show(self) -> None:
+        if not self.is_mounted:
+            return
+        update = self._update
+        self._tree = FrameTree(() if update is None else update.frames)
+        self._lines = self._tree.lines()
+        self._findings = [] if update is None else findings_in(update, self._tree)
+        if self._relative_to not in self._tree.frames:
+            self._relative_to = ""
+        empty = not self._lines and not self._findings
+        self.query_one("#frames-body").display = not empty
+        note = self.query_one("#frames-empty", Static)
+        note.display = empty
+        if empty:
+            note.update("\n".join(words.why_no_frames(self.deck, update)))
+            return
+        if self.focused is None:
+            self.table.focus()
+        wide = self.size.width >= WIDE_FROM
+        self.table.show_tree(self._lines, self._wrong, self._relative_to, wide=wide)
+        self._show_pair()
+        self._show_findings()
+        self.refresh_bindings()
+
+    def _show_pair(self) -> None:
+        pair = self.pair
+        lines = [_("no frame")] if pair is None else pair_lines(pair)
+        head = Content.styled(lines[0], "bold")
+        self.query_one("#frames-pair", Static).update(Content("\n").join([head, *lines[1:]]))
+
+    def _show_findings(self) -> None:
+        pane = self.query_one("#frames-findings", VerticalScroll)
+        room = pane.scrollable_content_region.width
+        lines = [
+            Content.styled(text, MEANINGS[meaning]) if meaning else Content(text)
+            for text, meaning in words.finding_lines(self._findings, self.chosen, room)
+        ]
+        pane.query_one(Static).update(Content("\n").join(lines))

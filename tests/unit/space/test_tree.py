@@ -46,6 +46,12 @@ def test_a_frame_with_two_parents_is_drawn_below_both_and_its_children_once() ->
     both = tree("odom/base", "world/base", "base/head")
     assert drawn(both) == ["odom", "└ base", "  └ head", "world", "└ base *"]
     assert both.parents["base"] == ("odom", "world")
+    assert both.parts == ("odom",)
+    assert tree("odom/base", "world/base", "arm/gripper", "x/y", "y/x").parts == (
+        "odom",
+        "arm",
+        "x",
+    )
 
 
 def test_one_that_comes_on_both_topics_is_one_line() -> None:

@@ -1,0 +1,1 @@
+"""Tests of `tui.frame_tree`: the screen, fed by recorded data."""

@@ -1,0 +1,130 @@
+"""The actions of the Frames screen; each letter also works as the Cyrillic one on its key."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from text.i18n import N_
+from tui.actions.action import Action
+
+
+class FramesTarget(Protocol):
+    """The part of the Frames screen that its actions use."""
+
+    @property
+    def chosen(self) -> str:
+        """The frame at the cursor, empty if there is none."""
+
+    @property
+    def has_findings(self) -> bool:
+        """Whether anything is wrong."""
+
+    def relate(self) -> None:
+        """Show frames relative to the one at the cursor, or to the root again."""
+
+    def turn_round(self) -> None:
+        """Show the one frame in the other, or the other way round."""
+
+    def go_to_finding(self, step: int) -> None:
+        """Go to the next frame that something is wrong with, or to the one before."""
+
+    def copy_pair(self) -> None:
+        """Copy the transform that is shown."""
+
+
+class FramesAction(Action[FramesTarget]):
+    """An action on the frame at the cursor."""
+
+    @classmethod
+    def possible(cls, target: FramesTarget) -> bool | None:
+        """Only with a frame at the cursor."""
+        return True if target.chosen else None
+
+
+class RelativeTo(FramesAction):
+    """Show others relative to this frame."""
+
+    id = "frames.relative"
+    key = "enter"
+    title = N_("Relative to it")
+    tooltip = N_("Show the other frames relative to this one; again: relative to the root.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FramesTarget) -> None:
+        """Mark it, or unmark it."""
+        target.relate()
+
+
+class OtherWayRound(FramesAction):
+    """Show the inverse."""
+
+    id = "frames.inverse"
+    key = "v,м"
+    title = N_("Other way")
+    means = "another view"
+    tooltip = N_("Show the first frame in the second, or the second in the first.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FramesTarget) -> None:
+        """Turn it round."""
+        target.turn_round()
+
+
+class CopyTransform(FramesAction):
+    """Copy the transform as text."""
+
+    id = "frames.copy"
+    key = "y,н"
+    title = N_("Copy")
+    tooltip = N_("Copy the transform that is shown, with the command that publishes it.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FramesTarget) -> None:
+        """Copy it."""
+        target.copy_pair()
+
+
+class _Findings(FramesAction):
+    """An action on the findings."""
+
+    @classmethod
+    def possible(cls, target: FramesTarget) -> bool | None:
+        """Only if anything is wrong."""
+        return True if target.has_findings else None
+
+
+class NextFinding(_Findings):
+    """Go to the next frame with a finding."""
+
+    id = "frames.next"
+    key = "n,т"
+    title = N_("Next finding")
+    means = "next"
+    tooltip = N_("Go to the next frame that something is wrong with.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FramesTarget) -> None:
+        """Go there."""
+        target.go_to_finding(1)
+
+
+class PreviousFinding(_Findings):
+    """Go to the previous frame with a finding."""
+
+    id = "frames.previous"
+    key = "N,Т"
+    title = N_("Previous finding")
+    means = "previous"
+    tooltip = N_("Go to the frame before this one that something is wrong with.")
+
+    @classmethod
+    async def run(cls, target: FramesTarget) -> None:
+        """Go there."""
+        target.go_to_finding(-1)
+
+
+FRAMES_ACTIONS = (RelativeTo, OtherWayRound, CopyTransform, NextFinding, PreviousFinding)

@@ -1,0 +1,119 @@
+"""Where one frame is in another now, as lines of text."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from space.buffer import NoTransformError, TransformBuffer
+from text import ros2_words
+from text.i18n import _, decimal, localized
+from text.plain import plain
+from text.sentences import reason_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from graph.data import FrameRow
+    from space.transform import Transform
+
+LONGEST = 60
+
+
+@dataclass(frozen=True)
+class FramePair:
+    """A frame, the one that it is given in, and where it is."""
+
+    source: str
+    target: str
+    transform: Transform | None = None
+    """None if nothing is known of it."""
+    remark: str = ""
+    """Why it is not known, or for which time it is; a sentence."""
+
+
+class FramePairs:
+    """Answers where one frame is in another, from the newest transforms of all."""
+
+    def __init__(self) -> None:
+        self._buffer = TransformBuffer()
+        self._newest = TransformBuffer()
+
+    def clear(self) -> None:
+        """Forget all frames."""
+        self._buffer.clear()
+        self._newest.clear()
+
+    def take(self, rows: Sequence[FrameRow]) -> None:
+        """Take in the newest transform of each frame."""
+        good = [row.newest for row in rows if row.count > row.faults]
+        self._buffer.add(good)
+        self._newest.clear()
+        # As if all were of one time: what is shown while they have no time in common.
+        self._newest.add(
+            type(one)(one.parent, one.child, one.stamp_s, one.transform, static=True)
+            for one in good
+        )
+
+    def find(self, target: str, source: str) -> FramePair:
+        """Return where `source` is in `target`."""
+        try:
+            return FramePair(source, target, self._buffer.find(target, source))
+        except NoTransformError as error:
+            remark = reason_of(error)
+        try:
+            return FramePair(source, target, self._newest.find(target, source), remark)
+        except NoTransformError:
+            return FramePair(source, target, None, remark)
+
+
+def pair_lines(pair: FramePair) -> list[str]:
+    """Return what is shown of it: the two names, metres, the quaternion, degrees, a remark."""
+    head = _("{source} in {target}").format(
+        source=plain(pair.source, LONGEST), target=plain(pair.target, LONGEST)
+    )
+    if pair.transform is None:
+        return [head, localized(pair.remark)]
+    if pair.source == pair.target:
+        return [head, _("Enter on another frame shows this one, and all others, relative to it.")]
+    moved, turned, rpy = map(decimal, _numbers(pair.transform))
+    lines = [
+        head,
+        _("x, y, z, m:  {numbers}").format(numbers=moved),
+        _("quaternion:  {numbers}").format(numbers=turned),
+        _("roll, pitch, yaw, °:  {numbers}").format(numbers=rpy),
+    ]
+    if pair.remark:
+        lines.append(_("the newest of each: {reason}").format(reason=localized(pair.remark)))
+    return lines
+
+
+def pair_text(pair: FramePair) -> str:
+    """Return it as text to be pasted: with points in numbers, whatever the language."""
+    if pair.transform is None:
+        return ""
+    moved, turned, rpy = _numbers(pair.transform)
+    command = ros2_words.static_transform(
+        pair.target, pair.source, pair.transform.translation, pair.transform.rotation
+    )
+    return (
+        f"{plain(pair.source)} in {plain(pair.target)}\n"
+        f"translation x, y, z [m]: {moved}\n"
+        f"rotation x, y, z, w: {turned}\n"
+        f"roll, pitch, yaw [deg]: {rpy}\n"
+        f"{plain(command)}\n"
+    )
+
+
+def _numbers(transform: Transform) -> tuple[str, str, str]:
+    return (
+        "  ".join(f"{_positive(number, 3):.3f}" for number in transform.translation),
+        "  ".join(f"{_positive(number, 4):.4f}" for number in transform.rotation),
+        "  ".join(f"{_positive(math.degrees(angle), 1):.1f}" for angle in transform.rpy_rad),
+    )
+
+
+def _positive(number: float, digits: int) -> float:
+    """Return the number, but 0 in place of what would be written as -0."""
+    return round(number, digits) + 0.0
