@@ -32,6 +32,7 @@ MEASUREMENTS = {
     "pictures": "Topics open on a 1280x720 camera at 30 Hz",
     "slow_line": "A moving picture on a line of 64 kB/s, and keys beside it",
     "observer": "The observer alone, under the same load",
+    "frames.cost": "200 frames of /tf at 50 Hz",
     "recording": "Recording 10 MB/s",
     "log_view": "The log view alone, under 10 000 lines/s",
     "node_ends": "From a signal to the end of a node",

@@ -41,7 +41,7 @@ class Transforms(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Layout:
+class _KnownLayout:
     """Where the numbers of a message are, and its names."""
 
     form: struct.Struct
@@ -58,7 +58,7 @@ class TransformReader:
         self._decode = decode
         self._forms: dict[tuple[int, bytes], list[struct.Struct]] = {}
         """Size and number of transforms to the formats that such messages had."""
-        self._layouts: dict[tuple[str | bytes, tuple[bytes, ...]], _Layout] = {}
+        self._layouts: dict[tuple[str | bytes, tuple[bytes, ...]], _KnownLayout] = {}
         self._bytes = 0
         """Of the messages that the layouts were made from."""
 
@@ -79,7 +79,7 @@ class TransformReader:
         self._remember(raw, layout)
         return _from_fields(layout, layout.form.unpack_from(raw))
 
-    def _remember(self, raw: bytes, layout: _Layout) -> None:
+    def _remember(self, raw: bytes, layout: _KnownLayout) -> None:
         self._bytes += len(raw)
         if len(self._layouts) >= MOST_LAYOUTS or self._bytes > MOST_BYTES:
             self._layouts.clear()
@@ -98,11 +98,11 @@ def _kind(raw: bytes) -> tuple[int, bytes]:
     return len(raw), raw[ENCAPSULATION : ENCAPSULATION + 4]
 
 
-def _from_fields(layout: _Layout, fields: tuple[Any, ...]) -> Transforms:
+def _from_fields(layout: _KnownLayout, fields: tuple[Any, ...]) -> Transforms:
     return Transforms(layout.names, zip(*[iter(fields)] * FIELDS, strict=True))
 
 
-def _layout(raw: bytes) -> _Layout:
+def _layout(raw: bytes) -> _KnownLayout:
     """Find out where what is. The bytes that fill gaps may have any value."""
     form, parents, children = ["<4x4x"], [], []
     count, at = _length(raw, ENCAPSULATION)
@@ -118,7 +118,7 @@ def _layout(raw: bytes) -> _Layout:
         parents.append(parent)
         children.append(child)
     names = tuple(zip(map(_name, parents), map(_name, children), strict=True))
-    return _Layout(struct.Struct("".join(form)), (*parents, *children), names)
+    return _KnownLayout(struct.Struct("".join(form)), (*parents, *children), names)
 
 
 def _length(raw: bytes, at: int) -> tuple[int, int]:

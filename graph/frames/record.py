@@ -30,7 +30,7 @@ INFINITE = math.inf
 NANOSECONDS = 1e-9
 
 
-class _Point(NamedTuple):
+class _Counted(NamedTuple):
     """How many transforms had come by the arrival of the newest."""
 
     arrived_s: float
@@ -80,7 +80,7 @@ class FrameRecord:
         self._moved = False
         self._number = -1
         self._rewinds = 0
-        self._points: deque[_Point] = deque()
+        self._points: deque[_Counted] = deque()
         self._candidates: AbstractSet[str] | None = None
         self._gone_s = INFINITE
 
@@ -89,7 +89,7 @@ class FrameRecord:
         self.count += 1
         self.arrived_s = arrived_s
         if self.count == 1:
-            self._points.append(_Point(arrived_s, 1, 0))
+            self._points.append(_Counted(arrived_s, 1, 0))
         if number <= self._number:
             self._rewinds += 1
         self._number = number
@@ -135,7 +135,7 @@ class FrameRecord:
     def _mark(self) -> None:
         points = self._points
         if points[-1].taken != self.count:
-            points.append(_Point(self.arrived_s, self.count, self._rewinds))
+            points.append(_Counted(self.arrived_s, self.count, self._rewinds))
         while len(points) > FEW and self.arrived_s - points[0].arrived_s > WINDOW_S:
             points.popleft()
 

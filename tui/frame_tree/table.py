@@ -21,7 +21,7 @@ DEEPEST = 24
 """Cells for the lines that lead to a frame; deeper ones begin with `…`."""
 FRESH_S = 1.0
 STATE, AGE = 12, 7
-NARROW, WIDE = 20, 30
+NARROW, WIDE = 22, 30
 """Width of the publisher."""
 BETWEEN = "\0"
 """Between parent and frame in the key of a row: in no name."""

@@ -48,8 +48,8 @@ def test_a_frame_with_two_parents_is_drawn_below_both_and_its_children_once() ->
     assert both.parents["base"] == ("odom", "world")
     assert both.parts == ("odom",)
     assert tree("odom/base", "world/base", "arm/gripper", "x/y", "y/x").parts == (
-        "odom",
         "arm",
+        "odom",
         "x",
     )
 

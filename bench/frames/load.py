@@ -1,4 +1,4 @@
-"""Two hundred moving frames at 50 Hz: `python -m bench.frame_load DOMAIN one|many`.
+"""Two hundred moving frames at 50 Hz: `python -m bench.frames.load DOMAIN one|many`.
 
 It publishes until stdin is closed. `one` is one publisher with all frames in a message, `many` are
 twenty publishers with ten each. Delays are made up for, so the mean rates are exact.

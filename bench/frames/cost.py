@@ -1,4 +1,4 @@
-"""What 200 frames at 50 Hz cost: `python -m bench.frames`.
+"""What 200 frames at 50 Hz cost: `python -m bench.frames.cost`.
 
 The observer alone, and the program with the Frames screen open at 120x40, drawing included. The
 rates show whether all transforms were read. Goal: 10 % of a core.
@@ -12,7 +12,7 @@ import statistics
 import sys
 import time
 
-from bench.frame_load import FRAMES, HZ, PUBLISHERS
+from bench.frames.load import FRAMES, HZ, PUBLISHERS
 from bench.observer import program, rates
 from bench.processes import cpu_s
 from graph.data import GraphUpdate
@@ -45,7 +45,7 @@ def observe(domain: str, *, idle: bool) -> None:
 
 def measure(*args: str) -> tuple[float, float]:
     """Return CPU in percent of a core, and the worst error of the rates in percent."""
-    with program("bench.frames", DOMAIN, *args) as process:
+    with program("bench.frames.cost", DOMAIN, *args) as process:
         time.sleep(WARM_UP_S)
         cpu, begun = cpu_s([process.pid]), time.monotonic()
         time.sleep(MEASURE_S)
@@ -65,7 +65,7 @@ def main() -> None:
     print("| | CPU, % of a core | goal | worst rate error, % |")
     print("| --- | --- | --- | --- |")
     for kind, publishers in PUBLISHERS.items():
-        with program("bench.frame_load", DOMAIN, kind):
+        with program("bench.frames.load", DOMAIN, kind):
             looking = [measure() for _ in range(ROUNDS)]
             idle = statistics.median(measure("idle")[0] for _ in range(ROUNDS))
         used, worst = statistics.median(one[0] for one in looking), max(one[1] for one in looking)
