@@ -231,7 +231,7 @@ class FrameRow:
     slashed: bool = False
     """Whether somebody publishes it with a leading slash."""
     moved: bool = False
-    """Whether a static one has come with different numbers."""
+    """Whether a static one keeps changing, or comes from two nodes with different numbers."""
     contested: bool = False
     """Whether the numbers of the messages show that several publishers send it by turns."""
 

@@ -20,6 +20,10 @@ FEW = 3
 """Points of the rate that are kept whatever their age, so that a slow frame has one, too."""
 REWINDS = 3
 """So often within the window the numbers go back only if several publishers take turns."""
+CHANGES = 3
+"""So many within the window: a parameter that somebody sets makes fewer."""
+TOGETHER_S = 0.5
+"""Two latched messages that come so close together, with other numbers, are of two nodes."""
 SETTLED_S = 3.0
 """Endpoints, and their names, become known a little later than the messages arrive."""
 LONGEST_NAME = 200
@@ -45,14 +49,15 @@ class FrameRecord:
         "_bad",
         "_bad_s",
         "_candidates",
+        "_changes",
         "_faults",
         "_first_s",
         "_gone_s",
         "_good",
-        "_moved",
         "_number",
         "_points",
         "_rewinds",
+        "_rivals",
         "_wrong_name",
         "arrived_s",
         "count",
@@ -77,7 +82,9 @@ class FrameRecord:
         self._bad: tuple[Any, ...] = ()
         self._bad_s = -INFINITE
         self._faults = 0
-        self._moved = False
+        self._changes: deque[float] = deque(maxlen=CHANGES)
+        """When a static one came with other numbers."""
+        self._rivals = False
         self._number = -1
         self._rewinds = 0
         self._points: deque[_Counted] = deque()
@@ -87,12 +94,11 @@ class FrameRecord:
     def take(self, fields: tuple[Any, ...], arrived_s: float, number: int) -> None:
         """Take the next transform; `number` counts the messages of its publisher."""
         self.count += 1
-        self.arrived_s = arrived_s
         if self.count == 1:
             self._points.append(_Counted(arrived_s, 1, 0))
-        if number <= self._number:
-            self._rewinds += 1
-        self._number = number
+        rewound, passed_s = number <= self._number, arrived_s - self.arrived_s
+        self._rewinds += rewound
+        self._number, self.arrived_s = number, arrived_s
         _, _, _, _, x, y, z, a, b, c, d = fields
         # Written so that any comparison with NaN fails.
         if (
@@ -103,7 +109,9 @@ class FrameRecord:
             and not self._wrong_name
         ):
             if self.static and self._good and self._good[4:] != fields[4:]:
-                self._moved = True
+                self._changes.append(arrived_s)
+                # A node that is started anew takes longer.
+                self._rivals = self._rivals or (rewound and passed_s < TOGETHER_S)
             self._good = fields
         else:
             self._bad, self._bad_s = fields, arrived_s
@@ -128,7 +136,7 @@ class FrameRecord:
             self._fault(now_s),
             self._faults,
             self.slashed,
-            self._moved,
+            self._rivals or self._keeps_changing(now_s),
             self._points[-1].rewinds - self._points[0].rewinds >= REWINDS,
         )
 
@@ -143,6 +151,9 @@ class FrameRecord:
         first, last = self._points[0], self._points[-1]
         span_s = last.arrived_s - first.arrived_s
         return (last.taken - first.taken) / span_s if span_s > 0 else None
+
+    def _keeps_changing(self, now_s: float) -> bool:
+        return len(self._changes) == CHANGES and now_s - self._changes[0] < WINDOW_S
 
     def _narrow_down(self, now_s: float, present: AbstractSet[str], since_s: float) -> None:
         """Whoever was not there while the frame came cannot be its publisher."""

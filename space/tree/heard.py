@@ -58,7 +58,7 @@ class HeardFrame(Protocol):
 
     @property
     def moved(self) -> bool:
-        """Whether a static one has come with different numbers."""
+        """Whether a static one keeps changing, or comes from two nodes with different numbers."""
 
     @property
     def contested(self) -> bool:

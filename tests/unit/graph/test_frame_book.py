@@ -136,11 +136,34 @@ def test_a_publisher_that_is_started_anew_is_not_taken_for_two(book: FrameBook) 
     assert not row(book, "base_link").contested
 
 
-def test_a_static_frame_that_comes_with_other_numbers_has_moved(book: FrameBook) -> None:
-    send(book, Sent("a", "b"), Sent("a", "c"), topic=TF_STATIC)
-    send(book, Sent("a", "b", translation=(1.0, 0.0, 0.0)), Sent("a", "c"), topic=TF_STATIC)
-    assert row(book, "b", static=True).moved
-    assert not row(book, "c", static=True).moved
+def send_static(book: FrameBook, x: float, at_s: float, number: int) -> bool:
+    """Send it with this place, and return whether it is said to have moved."""
+    sent = Sent("a", "b", translation=(x, 0.0, 0.0))
+    send(book, sent, at_s=at_s, topic=TF_STATIC, number=number)
+    return row(book, "b", at_s, static=True).moved
+
+
+def test_a_static_frame_that_keeps_changing_has_moved(book: FrameBook) -> None:
+    moved = [send_static(book, number, BEGIN_S + number / 10, number) for number in range(1, 7)]
+    assert moved == [False, False, False, True, True, True]
+    assert not row(book, "b", BEGIN_S + 20, static=True).moved
+
+
+def test_a_parameter_that_is_set_and_a_node_that_is_restarted_move_no_static_frame(
+    book: FrameBook,
+) -> None:
+    assert not send_static(book, 1.0, BEGIN_S, number=1)
+    assert not send_static(book, 2.0, BEGIN_S + 1, number=2)
+    assert not send_static(book, 3.0, BEGIN_S + 2, number=1)
+    # What is latched comes again once Deck subscribes anew.
+    assert not send_static(book, 3.0, BEGIN_S + 2.1, number=1)
+
+
+def test_two_latched_messages_that_come_together_with_other_numbers_are_of_two_nodes(
+    book: FrameBook,
+) -> None:
+    assert not send_static(book, 1.0, BEGIN_S, number=1)
+    assert send_static(book, 2.0, BEGIN_S + 0.1, number=1)
 
 
 def publishers(book: FrameBook, child: str, now_s: float, *nodes: str) -> tuple[str, ...]:

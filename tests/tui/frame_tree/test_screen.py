@@ -1,0 +1,231 @@
+"""What the Frames screen does: it follows the frames, relates them, copies, goes to findings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from textual.widgets import Static
+
+from graph.data import EndpointInfo, TopicRow, Trouble
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
+from tests.tui.recorded_frames import (
+    FOREIGN,
+    NOW_S,
+    ROBOT,
+    TROUBLES,
+    frame,
+    frames_update,
+    topics,
+    with_frames,
+)
+from tests.tui.snapshots import Look, settle
+from tui.app import DeckApp
+from tui.frame_tree.screen import FramesScreen
+
+if TYPE_CHECKING:
+    from textual.pilot import Pilot
+
+    from graph.data import FrameRow
+
+ESCAPE = "\x1b[31m[bold red]\x00\u202e"
+
+
+class Stage:
+    """The screen with its recorded graph."""
+
+    def __init__(self, pilot: Pilot[Any], graph: RecordedGraph) -> None:
+        self.pilot, self.graph = pilot, graph
+
+    @property
+    def app(self) -> DeckApp:
+        assert isinstance(self.pilot.app, DeckApp)
+        return self.pilot.app
+
+    @property
+    def screen(self) -> FramesScreen:
+        found = self.app.get_screen("frames")
+        assert isinstance(found, FramesScreen)
+        return found
+
+    async def press(self, *keys: str) -> None:
+        await self.pilot.press(*keys)
+        await self.pilot.pause()
+
+    async def show(self, *frames: FrameRow, rows: tuple[TopicRow, ...] = topics()) -> None:
+        self.graph.show(frames_update(frames, rows))
+        for _round in range(3):
+            await self.pilot.pause()
+
+    def tree(self) -> list[str]:
+        """The rows, each without the blanks between its cells."""
+        table = self.screen.table
+        rows = (table.render_line(y).text for y in range(1, table.size.height))
+        return [" ".join(row.split()) for row in rows if row.strip()]
+
+    def row(self, name: str) -> str:
+        return next(row for row in self.tree() if f" {name} " in f" {row} ")
+
+    def text(self, where: str) -> str:
+        return " ".join(str(self.screen.query_one(where, Static).render()).split())
+
+    @property
+    def pair(self) -> str:
+        return self.text("#frames-pair")
+
+    @property
+    def findings(self) -> str:
+        return self.text("#frames-findings > Static")
+
+    @property
+    def empty(self) -> str:
+        return self.text("#frames-empty")
+
+
+@asynccontextmanager
+async def stage(of: RecordedOpener | None = None) -> AsyncIterator[Stage]:
+    opener = of or with_frames()
+    app = Look((120, 40), "en").app("frames", opener)
+    async with app.run_test(size=(120, 40)) as pilot:
+        await settle(pilot)
+        assert isinstance(opener.graph, RecordedGraph)
+        yield Stage(pilot, opener.graph)
+
+
+async def test_frames_are_asked_for_only_while_the_screen_is_in_front() -> None:
+    async with stage() as at:
+        assert at.graph.frames_watched
+        await at.press("1")
+        assert not at.graph.frames_watched
+        await at.press("8")
+        assert at.graph.frames_watched
+
+
+async def test_a_frame_is_given_in_its_root_and_stays_up_to_date() -> None:
+    async with stage() as at:
+        await at.press("down", "down")
+        # 0.15 m ahead of a robot at (2, 1) that looks to the left.
+        assert at.pair.startswith("camera_link in odom x, y, z, m: 2.000 1.150 0.250")
+        assert at.pair.endswith("roll, pitch, yaw, °: 0.0 0.0 90.0")
+        await at.show(frame("odom", "base_link", (5.0, 0.0, 0.0)), *ROBOT[1:])
+        assert "5.150 0.000 0.250" in at.pair
+
+
+async def test_enter_marks_what_the_others_are_given_in_and_takes_it_back() -> None:
+    async with stage() as at:
+        await at.press("down", "down", "enter")
+        assert "◎" in at.row("camera_link")
+        await at.press("down", "down", "down", "down")
+        assert at.pair.startswith("sonar_front in camera_link x, y, z, m: 0.050 0.000 -0.150")
+        await at.press("v")
+        assert at.pair.startswith("camera_link in sonar_front x, y, z, m: -0.050 0.000 0.150")
+        await at.press("v", "up", "up", "up", "up", "enter", "down")
+        assert "head_pan in odom" in at.pair
+        assert not any("◎" in row for row in at.tree())
+
+
+async def test_a_marked_frame_that_is_heard_of_no_more_is_forgotten() -> None:
+    async with stage() as at:
+        await at.press("down", "down", "enter", "up")
+        assert "base_link in camera_link" in at.pair
+        await at.show(ROBOT[0])
+        assert "base_link in odom" in at.pair
+
+
+async def test_the_transform_is_copied_with_what_publishes_it() -> None:
+    async with stage() as at:
+        await at.press("down", "down", "y")
+        lines = at.app.clipboard.splitlines()
+        assert lines[0] == "camera_link in odom"
+        assert lines[1] == "translation x, y, z [m]: 2.000  1.150  0.250"
+        assert lines[2] == "rotation x, y, z, w: 0.0000  0.0000  0.7071  0.7071"
+        assert lines[3] == "roll, pitch, yaw [deg]: 0.0  0.0  90.0"
+        assert lines[4].startswith("ros2 run tf2_ros static_transform_publisher --x 2 --y 1.15 ")
+        assert lines[4].endswith("--frame-id odom --child-frame-id camera_link")
+        await at.press("Y")
+        assert at.app.clipboard == "ros2 run tf2_ros tf2_echo odom camera_link"
+
+
+async def test_what_is_silent_is_said_to_be_so_and_recovers() -> None:
+    async with stage() as at:
+        await at.show(replace(ROBOT[0], age_s=6.0), *ROBOT[1:])
+        assert at.row("base_link").split()[-5:] == ["✗", "stale", "6", "s", "chassis"]
+        assert "✗ base_link: silent for 6 s" in at.findings
+        await at.show(*ROBOT)
+        assert "50 Hz < 1 s chassis" in at.row("base_link")
+        assert at.findings == "✓ nothing is wrong with the frames"
+
+
+async def test_n_goes_from_one_finding_to_the_next_and_shows_its_words_first() -> None:
+    async with stage(with_frames(TROUBLES)) as at:
+        seen = []
+        for _press in range(6):
+            await at.press("n")
+            seen.append(at.screen.chosen)
+        assert seen[:4] == ["base_link", "head_pan", "head_tilt", "sonar_front"]
+        await at.press("N", "N")
+        assert at.screen.chosen == "sonar_front"
+        assert "findings ✗ sonar_front: the node that published it on /tf_static" in at.findings
+        before = at.screen.chosen
+        await at.press("N", "n")
+        assert at.screen.chosen == before
+
+
+async def test_topics_tell_of_frames_that_are_elsewhere_or_unknown() -> None:
+    async with stage(with_frames(ROBOT, (*topics("camera_lnk"), FOREIGN))) as at:
+        assert "/camera/image: the header names camera_lnk" in at.findings
+        assert "frames come on /arm/tf too, which nobody here listens to" in at.findings
+        volatile = EndpointInfo("/camera", "tf2_msgs/msg/TFMessage", "reliable", "volatile")
+        rows = (replace(topics()[2], published_by=(volatile,)),)
+        await at.show(*ROBOT, rows=rows)
+        assert "/camera: publishes /tf_static without transient_local" in at.findings
+
+
+async def test_frames_without_a_common_time_are_shown_with_a_remark() -> None:
+    old = replace(ROBOT[3], newest=replace(ROBOT[3].newest, stamp_s=NOW_S - 60.0), age_s=60.0)
+    async with stage(with_frames((ROBOT[0], old))) as at:
+        await at.press("down", "down")
+        assert "head_pan in odom x, y, z, m: 2.000 1.050 0.200" in at.pair
+        assert "the newest of each: where base_link was is known for" in at.pair
+
+
+async def test_two_trees_have_no_transform_and_nothing_to_copy() -> None:
+    async with stage(with_frames((ROBOT[0], frame("arm_base", "gripper")))) as at:
+        await at.press("enter", "down", "down", "down")
+        assert "nothing joins" in at.pair
+        await at.press("y")
+        assert at.app.clipboard == ""
+
+
+async def test_hostile_frames_draw_nothing_but_text() -> None:
+    deep = [frame(f"joint_{number}", f"joint_{number + 1}") for number in range(300)]
+    odd = frame(ESCAPE, "x" * 200, (math.inf, 0.0, 0.0), publishers=(ESCAPE,))
+    async with stage(with_frames((*deep, frame("a", "b"), frame("b", "a"), odd))) as at:
+        await at.press("end", "enter", "home", "G", "n", "v", "y")
+        drawn = "".join((*at.tree(), at.pair, at.findings, at.app.clipboard))
+        assert not {"\x1b", "\x00", "\u202e"} & set(drawn)
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ((), "no frames Nobody publishes /tf or /tf_static. Lesson 5 shows how"),
+        (
+            (replace(topics()[1], trouble=Trouble.QUIET, publishers=1),),
+            "/tf: there is a publisher, but no message has arrived yet",
+        ),
+    ],
+)
+async def test_without_frames_it_says_what_is_missing(
+    rows: tuple[TopicRow, ...], said: str
+) -> None:
+    empty = RecordedOpener(RecordedSession(lines=()), RecordedGraph(frames_update((), rows)))
+    async with stage(empty) as at:
+        assert at.empty.startswith(said)
+        await at.press("y", "enter", "v", "n", "Y")
+        await at.show(*ROBOT)
+        assert at.row("base_link")
