@@ -27,6 +27,7 @@ HANDLERS = {
     "attach": ("cli.screen", "attach_command"),
     "watch": ("cli.watch", "watch_command"),
     "level": ("cli.level", "level_command"),
+    "frames": ("cli.frames", "frames_command"),
     "mcp": ("cli.mcp", "mcp_command"),
     "run": ("cli.run", "run_command"),
     "list": ("cli.listing", "list_command"),

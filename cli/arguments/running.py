@@ -64,6 +64,23 @@ def add_up(parser: Parser) -> None:
     add_profile_options(parser)
 
 
+def add_frames(parser: Parser) -> None:
+    """Add the options of `deck frames`."""
+    parser.add_argument(
+        "--for",
+        dest="seconds",
+        metavar="S",
+        type=seconds,
+        help=_("listen for S seconds; 3 by default"),
+    )
+    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    add_json(parser)
+    parser.epilog = _(
+        "Exit code: 0 if nothing is wrong with the frames, 1 if something is or there are none, 2 "
+        "if ROS or the command line cannot be used."
+    )
+
+
 def add_ps(parser: Parser) -> None:
     """Add the options of `deck ps`."""
     add_json(parser)

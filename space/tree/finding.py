@@ -47,15 +47,6 @@ class FrameFinding:
     advice: str
     """What to do, a sentence."""
 
-    def for_programs(self) -> dict[str, object]:
-        """Return it as it is written with `--json`."""
-        return {
-            "trouble": self.trouble.value,
-            "frames": list(self.frames),
-            "text": self.text,
-            "mend": self.advice,
-        }
-
 
 def listed(names: Sequence[str]) -> str:
     """Name the first of them, and count the others."""

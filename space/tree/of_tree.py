@@ -95,7 +95,8 @@ def _to_join(tree: FrameTree, main: str, others: list[str]) -> str:
     return say(
         "publish where {root} is in the other tree: ros2 run tf2_ros static_transform_publisher "
         "--frame-id {main} --child-frame-id {root}",
-        root=others[0],
+        # What is the root of a loop has a parent already.
+        root=min(others, key=lambda root: root in tree.parents),
         main=main,
     )
 

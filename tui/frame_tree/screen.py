@@ -55,7 +55,9 @@ class FramesScreen(DeckScreen):
         FrameTable { height: 3fr; }
         #frames-side { height: 2fr; min-height: 9; }
         #frames-pair { height: auto; max-height: 5; padding: 0 1; background: $panel; }
-        #frames-findings { height: 1fr; padding: 0 1; scrollbar-size-vertical: 1; }
+        #frames-findings {
+            height: 1fr; padding: 0 1; scrollbar-size-vertical: 1; scrollbar-gutter: stable;
+        }
         #frames-findings > Static { height: auto; }
     }
     FramesScreen.-home, FramesScreen.-wide {

@@ -4,22 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from space.tree.heard import is_stale
-from text.figures import elapsed, figure
-from text.i18n import _, localized
-from text.plain import plain
+from text.i18n import _
+from tui.frame_tree import cells
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from space.tree.heard import HeardFrame
     from space.tree.tree import TreeLine
 
-LONGEST = 120
-DEEPEST = 24
-"""Cells for the lines that lead to a frame; deeper ones begin with `…`."""
-FRESH_S = 1.0
 STATE, AGE = 12, 7
 NARROW, WIDE = 22, 30
 """Width of the publisher."""
@@ -54,58 +47,14 @@ class FrameTable(Rows):
 
 
 def _row(line: TreeLine, wrong: Collection[str], relative_to: str) -> Row:
-    # Of two topics the one that moves: what is fixed has neither rate nor age worth a look.
-    heard = line.heard[0] if line.heard else None
-    name = f"{_indented(line.branch)}{plain(line.frame, LONGEST)}"
-    if line.frame == relative_to:
-        name += " ◎"
-    if line.frame in wrong:
-        name += " !"
-    cells = (
-        Cell(name, "warn" if line.frame in wrong else ""),
-        _state(line, heard),
-        _age(heard),
-        _publisher(heard),
+    is_wrong = line.frame in wrong
+    marks = (" ◎" if line.frame == relative_to else "") + (" !" if is_wrong else "")
+    return Row(
+        key_of(line),
+        (
+            Cell(cells.name(line) + marks, "warn" if is_wrong else ""),
+            Cell(*cells.state(line)),
+            Cell(*cells.age(line)),
+            Cell(*cells.publisher(line)),
+        ),
     )
-    return Row(key_of(line), cells)
-
-
-def _indented(branch: str) -> str:
-    return branch if len(branch) <= DEEPEST else f"…{branch[-DEEPEST:]}"
-
-
-def _state(line: TreeLine, heard: HeardFrame | None) -> Cell:
-    """Return how it comes, in a word or as a rate; what is wrong stands first."""
-    if line.again:
-        return Cell(_("↑ see above"), "dim")
-    if heard is None:
-        return Cell(_("root"), "dim")
-    if heard.count == heard.faults:
-        return Cell(_("✗ refused"), "bad")
-    if is_stale(heard):
-        return Cell(_("✗ stale"), "bad")
-    return Cell(_("static") if heard.is_static else _rate(heard.hz))
-
-
-def _rate(hz: float | None) -> str:
-    return _("once") if hz is None else _("{n} Hz").format(n=figure(hz, 0 if hz >= 9.95 else 1))
-
-
-def _age(heard: HeardFrame | None) -> Cell:
-    if heard is None:
-        return Cell("")
-    # A number that changes with every look would be sent to the terminal for every frame.
-    if heard.age_s < FRESH_S:
-        return Cell(_("< 1 s"))
-    words = _("{n} s").format(n=elapsed(min(heard.age_s, 99_999.0)))
-    return Cell(words, "bad" if is_stale(heard) else "dim")
-
-
-def _publisher(heard: HeardFrame | None) -> Cell:
-    if heard is None:
-        return Cell("")
-    if not heard.publishers:
-        return Cell(_("gone"), "bad" if heard.age_s > FRESH_S else "dim")
-    first, *others = (localized(node).removeprefix("/") for node in heard.publishers)
-    # Which of several it is, nobody says.
-    return Cell(f"{first}? +{len(others)}" if others else first)

@@ -1,0 +1,121 @@
+"""`deck frames`: the tree of the frames on /tf and /tf_static, and what is wrong with it.
+
+With `--json` it writes one object with `domain`, `frames`, a row for each frame in each of its
+parents, and `findings`.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from typing import TYPE_CHECKING, Any
+
+from cli.running_domain import running_domain
+from launcher.errors import UsageError
+from launcher.processes.shared_memory_unfinished import discard_unfinished
+from text.i18n import _, localized
+from text.output import DIM, RED, Paint, json_text, keep_stdout_to_ourselves, table, write
+from tui.frame_tree import cells
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from collections.abc import Sequence
+
+    from graph.data import FrameRow, GraphUpdate
+    from space.tree.finding import FrameFinding
+    from space.tree.tree import FrameTree
+
+LOOK_S = 3.0
+"""Seconds in which nodes are found, rates measured and silence noticed."""
+
+
+def frames_command(options: Namespace) -> int:
+    """Listen for some seconds and print; return 1 if there is no frame or anything is wrong."""
+    from graph.frames.around import findings_in
+    from space.tree.tree import FrameTree
+
+    _name, domain, discovery = running_domain(options.domain)
+    keep_stdout_to_ourselves()
+    # There may be no supervisor here that does it.
+    discard_unfinished()
+    update = _listen(domain, discovery, options.seconds or LOOK_S)
+    tree = FrameTree(update.frames)
+    findings = findings_in(update, tree)
+    if options.json:
+        rows = [_for_programs(row) for row in update.frames]
+        found = [_finding_for_programs(one) for one in findings]
+        write(json_text({"domain": domain, "frames": rows, "findings": found}, indent=2))
+    else:
+        _show(tree, findings, domain)
+    return 1 if findings or not update.frames else 0
+
+
+def _listen(domain: int, discovery: str | tuple[str, ...], seconds: float) -> GraphUpdate:
+    """Return the last update; raises UsageError if ROS cannot be used."""
+    from graph.data import GraphUpdate
+    from graph.observer.observer import Observer
+
+    newest, failed = [GraphUpdate(0.0)], threading.Event()
+
+    def take(update: GraphUpdate) -> None:
+        newest[0] = update
+        if update.error:
+            failed.set()
+
+    observer = Observer(domain, discovery)
+    observer.watch_frames(True)
+    observer.measure(all_topics=True)
+    observer.start(take)
+    try:
+        failed.wait(seconds)
+    finally:
+        observer.stop()
+    if newest[0].error:
+        raise UsageError(newest[0].error)
+    return newest[0]
+
+
+def _for_programs(row: FrameRow) -> dict[str, Any]:
+    newest = row.newest
+    return {
+        "frame": newest.child,
+        "parent": newest.parent,
+        "static": row.is_static,
+        "count": row.count,
+        "refused": row.faults,
+        "hz": row.hz,
+        "age_s": row.age_s,
+        "delay_s": row.delay_s,
+        "publishers": list(row.publishers),
+        "translation": list(newest.transform.translation),
+        "rotation": list(newest.transform.rotation),
+    }
+
+
+def _finding_for_programs(one: FrameFinding) -> dict[str, Any]:
+    return {
+        "key": one.trouble.value,
+        "frames": list(one.frames),
+        "text": localized(one.text),
+        "mend": localized(one.advice),
+    }
+
+
+def _show(tree: FrameTree, findings: Sequence[FrameFinding], domain: int) -> None:
+    paint = Paint(sys.stdout)
+    lines = tree.lines()
+    if not lines:
+        write(_("no frames in domain {domain}").format(domain=domain))
+    else:
+        head = (_("FRAME"), _("RATE"), _("AGE"), _("PUBLISHER"))
+        rows = [
+            (cells.name(line), cells.state(line)[0], cells.age(line)[0], cells.publisher(line)[0])
+            for line in lines
+        ]
+        for row in table(head, rows):
+            write(row)
+    for one in findings:
+        write(f"{paint('✗', RED)} {localized(one.text)}")
+        write(f"  {paint('-> ' + localized(one.advice), DIM)}")
+    if lines and not findings:
+        write(_("✓ nothing is wrong with the frames"))
