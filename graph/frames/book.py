@@ -20,7 +20,8 @@ MOST_FRAMES = 2000
 FORGOTTEN_S = 10.0
 """A moving frame that has been silent for so long, as long as tf2 remembers, makes room."""
 ROOM_AGAIN_S = 1.0
-MOST_LISTS = 256
+MOST_LISTED = 20_000
+"""Records in all lists, so that messages with other names each time do not fill the memory."""
 
 
 class FrameBook:
@@ -32,6 +33,7 @@ class FrameBook:
         self._records: dict[tuple[str, str, bool], FrameRecord] = {}
         self._lists: dict[tuple[bool, Names], list[FrameRecord | None]] = {}
         """The records of a message with these names; None for those that find no room."""
+        self._listed = 0
         self._present: dict[str, tuple[AbstractSet[str], float]] = {}
         self._messages = 0
         self._is_full = False
@@ -82,8 +84,10 @@ class FrameBook:
         if len(self._records) != known:
             in_order = sorted(self._records.items(), key=lambda each: (each[0][1], each[0]))
             self._records = dict(in_order)
-        if len(self._lists) >= MOST_LISTS:
+        self._listed += len(records) + 1
+        if self._listed > MOST_LISTED:
             self._lists.clear()
+            self._listed = len(records) + 1
         self._lists[static, names] = records
         return records
 
