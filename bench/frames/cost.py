@@ -10,11 +10,15 @@ import json
 import os
 import statistics
 import sys
+import tempfile
 import time
+from pathlib import Path
 
 from bench.frames.load import FRAMES, HZ, PUBLISHERS
 from bench.observer import program, rates
 from bench.processes import cpu_s
+from bench.screen import screen_processes
+from bench.topics_live import open_topics
 from graph.data import GraphUpdate
 from graph.observer.observer import Observer
 
@@ -56,6 +60,24 @@ def measure(*args: str) -> tuple[float, float]:
     return used, 100.0 if missing else worst
 
 
+def measure_screen() -> tuple[float, float]:
+    """Return CPU of the program with Frames open, in percent of a core, and kB/s drawn."""
+    with tempfile.TemporaryDirectory() as name:
+        terminal = open_topics(Path(name), "/tf", DOMAIN)
+        try:
+            terminal.press("8")
+            terminal.wait_for("frame_000")
+            time.sleep(WARM_UP_S)
+            pids = screen_processes(terminal)
+            cpu, sent, begun = cpu_s(pids), terminal.received, time.monotonic()
+            time.sleep(MEASURE_S)
+            passed = time.monotonic() - begun
+            used = 100 * (cpu_s(pids) - cpu) / passed
+            return used, (terminal.received - sent) / passed / 1000
+        finally:
+            terminal.close()
+
+
 def main() -> None:
     """Measure and print, or observe for that."""
     if len(sys.argv) > 1:
@@ -67,10 +89,14 @@ def main() -> None:
     for kind, publishers in PUBLISHERS.items():
         with program("bench.frames.load", DOMAIN, kind):
             looking = [measure() for _ in range(ROUNDS)]
+            screens = [measure_screen() for _ in range(ROUNDS)]
             idle = statistics.median(measure("idle")[0] for _ in range(ROUNDS))
         used, worst = statistics.median(one[0] for one in looking), max(one[1] for one in looking)
         what = f"publishers: {publishers}"
         print(f"| {what}; the observer | {used:.1f} | 10 | {worst:.1f} |")
+        drawn, sent = (statistics.median(one[place] for one in screens) for place in (0, 1))
+        shown = f"screen and supervisor, Frames open, {sent:.1f} kB/s drawn"
+        print(f"| {what}; {shown} | {drawn:.1f} | 10 | - |")
         print(f"| {what}; nobody looks at frames | {idle:.1f} | - | - |")
 
 

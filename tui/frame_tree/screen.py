@@ -78,6 +78,9 @@ class FramesScreen(DeckScreen):
         self._relative_to = ""
         """The frame that Enter has marked; empty for the root of the one at the cursor."""
         self._turned = False
+        self._able = (False, False)
+        """Whether there is a frame, and a finding, to act on."""
+        self._said: dict[str, list[tuple[str, str]]] = {}
 
     def compose_body(self) -> ComposeResult:
         """The tree, the transform and the findings, or why there is no frame."""
@@ -223,19 +226,25 @@ class FramesScreen(DeckScreen):
         self.table.show_tree(self._lines, self._wrong, self._relative_to, wide=wide)
         self._show_pair()
         self._show_findings()
-        self.refresh_bindings()
+        able = (bool(self.chosen), self.has_findings)
+        if able != self._able:
+            self._able = able
+            self.refresh_bindings()
 
     def _show_pair(self) -> None:
         pair = self.pair
         lines = [_("no frame")] if pair is None else pair_lines(pair)
-        head = Content.styled(lines[0], "bold")
-        self.query_one("#frames-pair", Static).update(Content("\n").join([head, *lines[1:]]))
+        looks = ["bold"] + [""] * len(lines)
+        self._say("#frames-pair", list(zip(lines, looks, strict=False)))
 
     def _show_findings(self) -> None:
-        pane = self.query_one("#frames-findings", VerticalScroll)
-        room = pane.scrollable_content_region.width
-        lines = [
-            Content.styled(text, MEANINGS[meaning]) if meaning else Content(text)
-            for text, meaning in words.finding_lines(self._findings, self.chosen, room)
-        ]
-        pane.query_one(Static).update(Content("\n").join(lines))
+        room = self.query_one("#frames-findings").scrollable_content_region.width
+        lines = words.finding_lines(self._findings, self.chosen, room)
+        self._say("#frames-findings > Static", [(text, MEANINGS[look]) for text, look in lines])
+
+    def _say(self, where: str, lines: list[tuple[str, str]]) -> None:
+        """Update a text, each line with its style, only if it has changed: that costs a layout."""
+        if self._said.get(where) != lines:
+            self._said[where] = lines
+            styled = [Content.styled(text, look) if look else Content(text) for text, look in lines]
+            self.query_one(where, Static).update(Content("\n").join(styled))

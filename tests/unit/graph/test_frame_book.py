@@ -222,6 +222,7 @@ def test_names_without_end_do_not_fill_the_memory(book: FrameBook) -> None:
         cdr(Sent("odom", "base_link"))[:30],
         b"\x00\x01\x00\x00\x01\x00\x00\x00" + b"\xff" * 100,
     ],
+    ids=["nothing", "no count", "too many", "cut by a byte", "cut in a name", "endless names"],
 )
 def test_bytes_that_are_no_such_message_are_refused(raw: bytes) -> None:
     reader = TransformReader(_refuse)
