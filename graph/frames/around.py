@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from space.tree.finding import FrameFinding
     from space.tree.tree import FrameTree
 
+CLOCK = "/clock"
+
 
 def findings_in(update: GraphUpdate, tree: FrameTree) -> list[FrameFinding]:
     """Return what is wrong with the frames of an update, which this tree was made of."""
@@ -38,5 +40,6 @@ def surroundings(update: GraphUpdate) -> Surroundings:
             if TF_MESSAGE in row.type_names and row.name not in FRAME_TOPICS and row.publishers
         },
         volatile=tuple(dict.fromkeys(volatile)),
+        simulated=any(row.name == CLOCK and row.publishers for row in update.topics),
         most=MOST_FRAMES,
     )

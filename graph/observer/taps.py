@@ -19,6 +19,7 @@ from graph.observer.troubles import Diagnosis, quiet, structural
 from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
 from graph.scan.endpoints import TopicEnds
 from graph.scan.scan import Scan
+from text.ros_names import TF_STATIC
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -126,6 +127,8 @@ class Taps:
     def _open(self, topic: str, ends: TopicEnds) -> UnknownTypeError | None:
         type_name, qos = _type_to_show(ends), to_hear(ends.everyone_publishing)
         every = self._interest.frames and topic in FRAME_TOPICS and type_name == TF_MESSAGE
+        if every and topic == TF_STATIC:
+            qos = _as_tf2_hears(ends)
         depth, meter = first_depth(type_name, every=every), None
         tap = self._taps.get(topic)
         if tap and tap.type_name == type_name:
@@ -216,6 +219,13 @@ def _finding(row: TopicRow, tap: Tap, now_s: float) -> Diagnosis:
     if age_s is not None and tap.meter.is_quiet(now_s) and tap.qos.durability != TRANSIENT_LOCAL:
         return quiet(age_s, ever=True)
     return Diagnosis(row.trouble, row.detail, row.facts)
+
+
+def _as_tf2_hears(ends: TopicEnds) -> Qos:
+    """Return a request that gets what is latched, even where another publisher latches nothing."""
+    publishers = ends.everyone_publishing
+    latched = [end for end in publishers if end.durability == TRANSIENT_LOCAL]
+    return to_hear(latched or publishers)
 
 
 def _type_to_show(ends: TopicEnds) -> str:

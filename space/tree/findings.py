@@ -28,7 +28,9 @@ class Surroundings:
     elsewhere: Mapping[str, int] = field(default_factory=dict)
     """Other topics on which somebody publishes frames, to how many listen there."""
     volatile: tuple[str, ...] = ()
-    """Nodes that publish /tf_static in such a way that whoever starts later does not hear it."""
+    """Nodes that publish /tf_static and do not latch it."""
+    simulated: bool = False
+    """Whether somebody publishes /clock, so that stamps are not times of day."""
     most: int = 0
     """How many frames are kept at most; 0 without a limit."""
 
@@ -39,7 +41,7 @@ def frame_findings(
     """Return what is wrong, the worst first."""
     found = [
         *findings_of_tree(tree, around.named),
-        *findings_of_frames(heard),
+        *findings_of_frames(heard, simulated=around.simulated),
         *_full(heard, around),
         *_volatile(around),
         *_elsewhere(around),
@@ -61,8 +63,7 @@ def _full(heard: Sequence[HeardFrame], around: Surroundings) -> Iterator[FrameFi
 def _volatile(around: Surroundings) -> Iterator[FrameFinding]:
     if around.volatile:
         text = say(
-            "{nodes}: publishes {topic} without transient_local, so that whoever starts later gets "
-            "nothing",
+            "{nodes}: publishes {topic} without transient_local, so that tf2 does not hear it",
             nodes=listed(around.volatile),
             topic=TF_STATIC,
         )

@@ -15,6 +15,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from tf2_msgs.msg import TFMessage
 
 from graph.data import FrameRow
+from graph.frames.around import surroundings
 from graph.frames.book import MOST_FRAMES
 from graph.frames.reading import TransformReader
 from graph.messages.decoding import decoder
@@ -137,6 +138,19 @@ def test_a_static_frame_is_shown_also_when_its_topic_was_measured_before(
     module_watcher.observer.measure(all_topics=False)
     wait_until(lambda: not module_watcher.update.frames, "nothing once nobody looks")
     peers[0].withdraw("/tf_static")
+
+
+def test_what_is_latched_is_shown_also_beside_a_publisher_that_latches_nothing(
+    peers: tuple[Peer, Peer], watcher: Watcher
+) -> None:
+    driver, arm = peers
+    latch(driver, Sent("base_link", "gripper"))
+    arm.advertise("/tf_static", type_name=TF_MESSAGE)
+    watcher.wait_for("/tf_static", lambda row: row.publishers == 2, "both are found")
+    see(watcher, "gripper", lambda row: row.is_static, "is shown")
+    assert surroundings(watcher.update).volatile == (arm.name,)
+    driver.withdraw("/tf_static")
+    arm.withdraw("/tf_static")
 
 
 def test_hostile_frames_are_said_to_be_wrong_and_good_ones_stay(

@@ -134,6 +134,12 @@ def test_stamps_of_another_clock_are_told(changes: dict[str, Any], said: str) ->
     assert find(*ROBOT, heard("base_link", "head", static=True, **changes)) == []
 
 
+def test_stamps_in_simulated_time_are_no_trouble() -> None:
+    row = heard("odom", "base_link", stamp_s=12.5, delay_s=NOW_S)
+    assert find(row) != []
+    assert find(row, simulated=True) == []
+
+
 def test_a_recording_in_simulated_time_is_no_trouble_while_all_agree() -> None:
     assert find(heard("odom", "base_link", stamp_s=12.5, delay_s=0.01)) == []
 
