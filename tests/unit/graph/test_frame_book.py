@@ -212,6 +212,17 @@ def test_names_without_end_do_not_fill_the_memory(book: FrameBook) -> None:
     assert max(len(one.newest.child) for one in kept) <= 200
 
 
+def test_names_are_taken_apart_only_once() -> None:
+    reader = TransformReader(_never)
+    first, other, again = (
+        reader.read(cdr(Sent("odom", child, at_s), Sent("base", "b", at_s), filler=filler)).names
+        for child, at_s, filler in (("a", 1.0, b"x"), ("c", 2.0, b"y"), ("a", 3.0, b"z"))
+    )
+    assert first == (("odom", "a"), ("base", "b"))
+    assert other == (("odom", "c"), ("base", "b"))
+    assert again is first
+
+
 @pytest.mark.parametrize(
     "raw",
     [
