@@ -7,7 +7,7 @@ parents, and `findings`.
 from __future__ import annotations
 
 import sys
-import threading
+import time
 from typing import TYPE_CHECKING, Any
 
 from cli.running_domain import running_domain
@@ -25,6 +25,11 @@ if TYPE_CHECKING:
     from space.tree.finding import FrameFinding
     from space.tree.tree import FrameTree
 
+LOOK_AGAIN_S = 0.05
+STEADY_S = 2.0
+"""While nodes or frames have been found within so many seconds, there may be more."""
+PATIENCE_S = 6.0
+"""Seconds more for ROS to begin, and for what is still to come."""
 LOOK_S = 3.0
 """Seconds in which nodes are found, rates measured and silence noticed."""
 
@@ -55,24 +60,41 @@ def _listen(domain: int, discovery: str | tuple[str, ...], seconds: float) -> Gr
     from graph.data import GraphUpdate
     from graph.observer.observer import Observer
 
-    newest, failed = [GraphUpdate(0.0)], threading.Event()
+    newest = [GraphUpdate(0.0)]
 
     def take(update: GraphUpdate) -> None:
         newest[0] = update
-        if update.error:
-            failed.set()
 
     observer = Observer(domain, discovery)
     observer.watch_frames(True)
     observer.measure(all_topics=True)
     observer.start(take)
     try:
-        failed.wait(seconds)
+        _wait(newest, seconds)
     finally:
         observer.stop()
     if newest[0].error:
         raise UsageError(newest[0].error)
     return newest[0]
+
+
+def _wait(newest: Sequence[GraphUpdate], seconds: float) -> None:
+    """Wait so long from the first update on, and longer for what is still to come."""
+    from graph.frames.around import is_settling
+
+    started_s = begun_s = changed_s = time.monotonic()
+    known: tuple[int, ...] = ()
+    while not newest[0].error:
+        update, now_s = newest[0], time.monotonic()
+        if not update.time_s and now_s - started_s < PATIENCE_S:
+            begun_s = now_s
+        if known != (known := (len(update.nodes), len(update.frames))):
+            changed_s = now_s
+        passed_s = now_s - begun_s
+        coming = is_settling(update) or now_s - changed_s < STEADY_S
+        if passed_s >= seconds and not (coming and passed_s < seconds + PATIENCE_S):
+            return
+        time.sleep(LOOK_AGAIN_S)
 
 
 def _for_programs(row: FrameRow) -> dict[str, Any]:

@@ -23,6 +23,14 @@ def findings_in(update: GraphUpdate, tree: FrameTree) -> list[FrameFinding]:
     return frame_findings(tree, update.frames, surroundings(update))
 
 
+def is_settling(update: GraphUpdate) -> bool:
+    """Return whether somebody publishes /tf_static, and nothing of it has come so far."""
+    return any(
+        row.name == TF_STATIC and row.publishers and not row.count and row.trouble is None
+        for row in update.topics
+    )
+
+
 def surroundings(update: GraphUpdate) -> Surroundings:
     """Return what the topics tell: frames that headers name, frames on other topics."""
     volatile = [
@@ -41,5 +49,6 @@ def surroundings(update: GraphUpdate) -> Surroundings:
         },
         volatile=tuple(dict.fromkeys(volatile)),
         simulated=any(row.name == CLOCK and row.publishers for row in update.topics),
+        settling=is_settling(update),
         most=MOST_FRAMES,
     )

@@ -29,6 +29,8 @@ class Surroundings:
     """Other topics on which somebody publishes frames, to how many listen there."""
     volatile: tuple[str, ...] = ()
     """Nodes that publish /tf_static and do not latch it."""
+    settling: bool = False
+    """Whether static frames are still to come: what is missing now may be there in a moment."""
     simulated: bool = False
     """Whether somebody publishes /clock, so that stamps are not times of day."""
     most: int = 0
@@ -40,7 +42,7 @@ def frame_findings(
 ) -> list[FrameFinding]:
     """Return what is wrong, the worst first."""
     found = [
-        *findings_of_tree(tree, around.named),
+        *findings_of_tree(tree, around.named, settling=around.settling),
         *findings_of_frames(heard, simulated=around.simulated),
         *_full(heard, around),
         *_volatile(around),

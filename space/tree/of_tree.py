@@ -22,13 +22,19 @@ MOST_COMPARED = 20
 """Roots and names whose slips are looked for: comparing all with all takes long."""
 
 
-def findings_of_tree(tree: FrameTree, named: Mapping[str, str]) -> Iterator[FrameFinding]:
-    """Yield what is wrong; `named` is topic to the frame that the header of its messages names."""
+def findings_of_tree(
+    tree: FrameTree, named: Mapping[str, str], *, settling: bool = False
+) -> Iterator[FrameFinding]:
+    """Yield what is wrong; `named` is topic to the frame that the header of its messages names.
+
+    While it is `settling`, nothing is said to be missing.
+    """
     yield from _loops(tree)
     yield from _parents(tree)
-    yield from _roots(tree)
-    yield from _unknown(tree, named)
     yield from _both(tree)
+    if not settling:
+        yield from _roots(tree)
+        yield from _unknown(tree, named)
 
 
 def _loops(tree: FrameTree) -> Iterator[FrameFinding]:

@@ -72,8 +72,8 @@ def topics(image_frame: str = "camera_link") -> tuple[TopicRow, ...]:
     """The topics of such a robot, one with a header."""
     return (
         TopicRow("/camera/image", ("sensor_msgs/msg/Image",), 1, 0, frame_id=image_frame),
-        TopicRow("/tf", (_TF,), 2, 1),
-        TopicRow("/tf_static", (_TF,), 1, 1),
+        TopicRow("/tf", (_TF,), 2, 1, count=250),
+        TopicRow("/tf_static", (_TF,), 1, 1, count=2),
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from space.buffer import NoTransformError, TransformBuffer
+from space.tree.finding import by_whom
 from text import ros2_words
 from text.i18n import _, decimal, localized
 from text.plain import plain
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from graph.data import FrameRow
     from space.transform import Transform
+    from space.tree.heard import HeardFrame
 
 LONGEST = 60
 
@@ -66,6 +68,12 @@ class FramePairs:
             return FramePair(source, target, self._newest.find(target, source), remark)
         except NoTransformError:
             return FramePair(source, target, None, remark)
+
+
+def publisher_line(heard: Sequence[HeardFrame]) -> str:
+    """Return who publishes a frame, or may do so, with the whole names."""
+    nodes = tuple(dict.fromkeys(node for one in heard for node in one.publishers))
+    return _("published by {nodes}").format(nodes=localized(by_whom(nodes)))
 
 
 def pair_lines(pair: FramePair) -> list[str]:

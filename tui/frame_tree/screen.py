@@ -17,7 +17,7 @@ from tui.actions import bindings
 from tui.frame.screen import DeckScreen
 from tui.frame_tree import words
 from tui.frame_tree.actions import FRAMES_ACTIONS
-from tui.frame_tree.pair import FramePair, FramePairs, pair_lines, pair_text
+from tui.frame_tree.pair import FramePair, FramePairs, pair_lines, pair_text, publisher_line
 from tui.frame_tree.table import FrameTable, frame_of, key_of
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ class FramesScreen(DeckScreen):
         #frames-empty { height: 1fr; padding: 1 2; color: $text-muted; }
         #frames-body { height: 1fr; layout: vertical; }
         FrameTable { height: 3fr; }
-        #frames-side { height: 2fr; min-height: 9; }
-        #frames-pair { height: auto; max-height: 5; padding: 0 1; background: $panel; }
+        #frames-side { height: 2fr; min-height: 10; }
+        #frames-pair { height: auto; max-height: 6; padding: 0 1; background: $panel; }
         #frames-findings {
             height: 1fr; padding: 0 1; scrollbar-size-vertical: 1; scrollbar-gutter: stable;
         }
@@ -234,6 +234,9 @@ class FramesScreen(DeckScreen):
     def _show_pair(self) -> None:
         pair = self.pair
         lines = [_("no frame")] if pair is None else pair_lines(pair)
+        heard = next((line.heard for line in self._lines if key_of(line) == self.table.chosen), ())
+        if heard:
+            lines.append(publisher_line(heard))
         looks = ["bold"] + [""] * len(lines)
         self._say("#frames-pair", list(zip(lines, looks, strict=False)))
 

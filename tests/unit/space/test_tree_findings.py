@@ -100,6 +100,13 @@ def test_two_trees_are_told_with_the_command_that_joins_them() -> None:
     assert "--frame-id odom --child-frame-id arm_base" in found.advice
 
 
+def test_nothing_is_said_to_be_missing_while_static_frames_are_still_to_come() -> None:
+    rows = (heard("odom", "base_link"), heard("arm_base", "gripper"))
+    named = {"/image": "camera_link"}
+    assert len(find(*rows, named=named)) == 2
+    assert find(*rows, named=named, settling=True) == []
+
+
 def test_a_slip_in_a_parents_name_is_found() -> None:
     found = only(*ROBOT, heard("camera_lnk", "lens", publishers=("/camera",)))
     assert "is camera_lnk a slip for camera_link?" in found.advice
