@@ -46,7 +46,7 @@ class RelativeTo(FramesAction):
 
     id = "frames.relative"
     key = "enter"
-    title = N_("Relative to it")
+    title = N_("Relative")
     tooltip = N_("Show the other frames relative to this one; again: relative to the root.")
     footer = True
 

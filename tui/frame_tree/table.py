@@ -33,6 +33,10 @@ def frame_of(key: str) -> str:
 class FrameTable(Rows):
     """One row for each frame below each of its parents."""
 
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave Enter to the screen, whose footer says what it does."""
+        return False if action == "open" else super().check_action(action, parameters)
+
     def show_tree(
         self, lines: Sequence[TreeLine], wrong: Collection[str], relative_to: str, *, wide: bool
     ) -> None:
