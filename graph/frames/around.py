@@ -24,9 +24,12 @@ def findings_in(update: GraphUpdate, tree: FrameTree) -> list[FrameFinding]:
 
 
 def is_settling(update: GraphUpdate) -> bool:
-    """Return whether somebody publishes /tf_static, and nothing of it has come so far."""
-    return any(
-        row.name == TF_STATIC and row.publishers and not row.count and row.trouble is None
+    """Return whether somebody publishes /tf_static, and its frames are still to come.
+
+    What has come before comes again, because it is latched; what has not is not waited for long.
+    """
+    return not any(row.is_static for row in update.frames) and any(
+        row.name == TF_STATIC and row.publishers and (row.count or row.trouble is None)
         for row in update.topics
     )
 
