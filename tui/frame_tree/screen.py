@@ -62,8 +62,8 @@ class FramesScreen(DeckScreen):
     }
     FramesScreen.-home, FramesScreen.-wide {
         #frames-body { layout: horizontal; }
-        FrameTable { width: 3fr; height: 1fr; }
-        #frames-side { width: 2fr; height: 1fr; border-left: solid $panel; }
+        FrameTable { width: 9fr; height: 1fr; }
+        #frames-side { width: 5fr; height: 1fr; border-left: solid $panel; }
         #frames-pair { max-height: 8; }
     }
     """

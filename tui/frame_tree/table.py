@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
     from space.tree.tree import TreeLine
 
-STATE, AGE = 12, 7
-NARROW, WIDE = 22, 30
+STATE, AGE = 11, 7
+NARROW, WIDE = 18, 30
 """Width of the publisher."""
 BETWEEN = "\0"
 """Between parent and frame in the key of a row: in no name."""
