@@ -123,6 +123,7 @@ class Observer:
     def watch_inner_states(self, wanted: bool) -> None:
         """Ask nodes for their lifecycle and containers for their components, or stop asking."""
         self._look_at(inner_states=wanted)
+
     def watch_frames(self, wanted: bool) -> None:
         """Report in each update the frames that are published on /tf and /tf_static, or none."""
         self._look_at(frames=wanted)

@@ -109,6 +109,7 @@ class Replay:
     def inner(self) -> RecordedInner:
         """Requests to nodes, all of which are refused."""
         return RecordedInner()
+
     def watch_frames(self, wanted: bool) -> None:
         """Report in each update the frames that were published up to the playhead, or none."""
         self._look_at(replace(self._interest, frames=wanted))
