@@ -81,9 +81,7 @@ class Transform:
 
     def points(self, points: NDArray[np.floating]) -> NDArray[np.floating]:
         """Return points of the child in the parent: an array of shape (n, 3), of the same kind."""
-        matrix = self.matrix().astype(points.dtype)
-        moved: NDArray[np.floating] = points @ matrix[:3, :3].T + matrix[:3, 3]
-        return moved
+        return turned(points, self.matrix()[:3, :3], self.translation)
 
     def matrix(self) -> NDArray[np.float64]:
         """Return the 4x4 matrix that turns (x, y, z, 1) of the child into that of the parent."""
@@ -116,6 +114,26 @@ class Transform:
 
 
 IDENTITY = Transform()
+
+
+def turned(
+    points: NDArray[np.floating], matrix: NDArray[np.floating], shift: Vector = (0.0, 0.0, 0.0)
+) -> NDArray[np.floating]:
+    """Return `matrix @ point + shift` for points of shape (n, 3), axis by axis in memory.
+
+    numpy's own product takes ten times as long for matrices as narrow as these.
+    """
+    import numpy as np
+
+    x, y, z = points[:, 0], points[:, 1], points[:, 2]
+    whole = np.empty((3, len(points)), dtype=points.dtype)
+    for axis, (a, b, c) in enumerate(matrix.tolist()):
+        out = whole[axis]
+        np.multiply(x, points.dtype.type(a), out=out)
+        out += y * points.dtype.type(b)
+        out += z * points.dtype.type(c)
+        out += points.dtype.type(shift[axis])
+    return whole.T
 
 
 def quaternion_from_rpy(roll_rad: float, pitch_rad: float, yaw_rad: float) -> Quaternion:

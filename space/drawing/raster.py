@@ -1,0 +1,207 @@
+"""Dots with depth and paint, and the cells of a terminal that show them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from space.drawing.braille import BLANK, DOTS_ACROSS, DOTS_DOWN, characters
+from space.drawing.paints import RAMP_FROM, RAMP_STEPS, Paint, Paints
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from space.drawing.shapes import Places
+
+UPPER_HALF, FULL_BLOCK = 0x2580, 0x2588
+NEARER = 2.0**-9
+"""Strokes are drawn this share of their depth nearer, so that edges stand out from faces."""
+MOST_STEPS = 400_000
+"""Dots of all strokes of one shape; with more, their dots are farther apart."""
+DEPTH_LEVELS = 65_535
+
+
+@dataclass(frozen=True, eq=False)
+class CellPicture:
+    """Characters and paints of all cells, each of shape (rows, columns)."""
+
+    codes: NDArray[np.uint16]
+    front: Paints
+    back: Paints
+
+    def changed(self, before: CellPicture) -> NDArray[np.bool_]:
+        """Return which cells differ from another picture of the same shape."""
+        differ: NDArray[np.bool_] = self.codes != before.codes
+        differ |= self.front != before.front
+        differ |= self.back != before.back
+        return differ
+
+    def steadied(self, before: CellPicture) -> CellPicture:
+        """Return the picture, keeping earlier paints of the ramp that are one step away.
+
+        A value between two steps must not flicker with the noise of a sensor.
+        """
+        fronts = []
+        for now, then in ((self.front, before.front), (self.back, before.back)):
+            both = (now >= RAMP_FROM) & (now < RAMP_FROM + RAMP_STEPS)
+            both &= (then >= RAMP_FROM) & (then < RAMP_FROM + RAMP_STEPS)
+            near = np.abs(now.astype(np.int16) - then) <= 1
+            fronts.append(np.where(both & near, then, now))
+        return CellPicture(self.codes, fronts[0], fronts[1])
+
+
+class Raster:
+    """A picture of dots; what is nearer covers what is farther away."""
+
+    def __init__(self, columns: int, rows: int) -> None:
+        """Begin with nothing, in this many cells."""
+        self.columns, self.rows = columns, rows
+        self.width, self.height = DOTS_ACROSS * columns, DOTS_DOWN * rows
+        self._depth = np.full(self.width * self.height, np.inf, dtype=np.float32)
+        self._paint = np.zeros(self.width * self.height, dtype=np.uint8)
+        self.floor = np.zeros((2 * rows, columns), dtype=np.uint8)
+        """The paints behind all dots, in halves of cells."""
+        self._signs: list[tuple[int, int, str, int]] = []
+
+    def dots(self, spots: Places, paint: int | Paints) -> None:
+        """Set dots, given as (x, y, depth); those outside, and NaN, are ignored."""
+        x, y, depth = spots[:, 0], spots[:, 1], spots[:, 2]
+        inside = np.flatnonzero((x >= 0) & (x < self.width) & (y >= 0) & (y < self.height))
+        if not inside.size:
+            return
+        depth = depth[inside]
+        at = y[inside].astype(np.int32) * np.int32(self.width) + x[inside].astype(np.int32)
+        several = isinstance(paint, np.ndarray)
+        paints: Paints = paint[inside] if several else np.full(0, 0, dtype=np.uint8)  # type: ignore[index]
+        visible = np.flatnonzero(depth <= self._depth[at])
+        at, depth = at[visible], depth[visible]
+        if several:
+            # The nearest last: of several dots in one place, the last one stays.
+            order = np.argsort(_levels(depth), kind="stable")[::-1]
+            at, depth, paints = at[order], depth[order], paints[visible][order]
+            self._depth[at], self._paint[at] = depth, paints
+        else:
+            np.minimum.at(self._depth, at, depth)
+            self._paint[at] = paint
+
+    def strokes(self, starts: Places, ends: Places, paint: int | Paints) -> None:
+        """Draw straight lines between spots (x, y, depth); both ends must be numbers."""
+        clear = np.isfinite(starts).all(axis=1) & np.isfinite(ends).all(axis=1)
+        first, last = self._clipped(starts[clear], ends[clear])
+        shown = first <= last
+        starts, ends = starts[clear][shown], ends[clear][shown]
+        first, last = first[shown], last[shown]
+        if not len(starts):
+            return
+        way = ends - starts
+        begin, end = starts + way * first[:, None], starts + way * last[:, None]
+        steps = np.maximum(1, np.ceil(np.abs(end - begin)[:, :2].max(axis=1))).astype(np.int64)
+        total = int(steps.sum()) + len(steps)
+        if total > MOST_STEPS:
+            steps = np.maximum(1, steps * MOST_STEPS // total)
+        counts = steps + 1
+        which = np.repeat(np.arange(len(counts)), counts)
+        number = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+        share = (number / steps[which]).astype(np.float32)[:, None]
+        spots = begin[which] + (end - begin)[which] * share
+        spots[:, 2] -= np.abs(spots[:, 2]) * NEARER + NEARER
+        several = isinstance(paint, np.ndarray)
+        self.dots(spots, paint[clear][shown][which] if several else paint)  # type: ignore[index]
+
+    def _clipped(self, starts: Places, ends: Places) -> tuple[Places, Places]:
+        """Which part of each line is inside, as shares of its length (Liang-Barsky)."""
+        first = np.zeros(len(starts), dtype=np.float32)
+        last = np.ones(len(starts), dtype=np.float32)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            for axis, most in ((0, self.width), (1, self.height)):
+                begin = starts[:, axis]
+                way = ends[:, axis] - begin
+                one, other = -begin / way, (most - begin) / way
+                outside = (way == 0) & ((begin < 0) | (begin > most))
+                still = way == 0
+                near = np.where(still, 0, np.minimum(one, other))
+                far = np.where(still, np.where(outside, -1, 1), np.maximum(one, other))
+                first, last = np.maximum(first, near), np.minimum(last, far)
+        return first, last
+
+    def face(self, corners: Places, paint: int) -> None:
+        """Fill a triangle of spots (x, y, depth), of shape (3, 3)."""
+        if not np.isfinite(corners).all():
+            return
+        least = np.clip(np.floor(corners.min(axis=0)[:2]), 0, (self.width, self.height))
+        most = np.clip(np.ceil(corners.max(axis=0)[:2]), 0, (self.width, self.height))
+        (x0, y0), (x1, y1) = least.astype(int), most.astype(int)
+        a, b, c = corners.astype(np.float64)
+        area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
+        if x1 <= x0 or y1 <= y0 or not area:
+            return
+        x = np.arange(x0, x1) + 0.5
+        y = (np.arange(y0, y1) + 0.5)[:, None]
+        one = ((b[0] - x) * (c[1] - y) - (c[0] - x) * (b[1] - y)) / area
+        two = ((c[0] - x) * (a[1] - y) - (a[0] - x) * (c[1] - y)) / area
+        three = 1.0 - one - two
+        depth = one * a[2] + two * b[2] + three * c[2]
+        whole = self._depth.reshape(self.height, self.width)[y0:y1, x0:x1]
+        set_here = (one >= 0) & (two >= 0) & (three >= 0) & (depth < whole)
+        whole[set_here] = depth[set_here]
+        self._paint.reshape(self.height, self.width)[y0:y1, x0:x1][set_here] = paint
+
+    def sign(self, x: float, y: float, text: str, paint: int) -> None:
+        """Write a text over the dots, its first character at a dot; parts outside are cut."""
+        if not (0 <= x < self.width and 0 <= y < self.height):
+            return
+        self._signs.append((int(y) // DOTS_DOWN, int(x) // DOTS_ACROSS, text, paint))
+
+    def cells(self) -> CellPicture:
+        """Return the cells; a cell whose dots are all set is drawn as two halves."""
+        shape = (self.rows, DOTS_DOWN, self.columns, DOTS_ACROSS)
+        depth = self._depth.reshape(shape).transpose(0, 2, 1, 3).reshape(self.rows, self.columns, 8)
+        paint = self._paint.reshape(shape).transpose(0, 2, 1, 3).reshape(self.rows, self.columns, 8)
+        codes = characters(self._paint.reshape(self.height, self.width) > 0)
+        upper, lower = (
+            _nearest(depth[..., :4], paint[..., :4]),
+            _nearest(depth[..., 4:], paint[..., 4:]),
+        )
+        front = _nearest(depth, paint)
+        above, below = self.floor[0::2], self.floor[1::2]
+        full = (paint > 0).all(axis=2)
+        empty = codes == BLANK
+        split = (full & (upper != lower)) | (empty & (above != below))
+        codes = np.where(full, np.uint16(FULL_BLOCK), codes)
+        codes = np.where(split, np.uint16(UPPER_HALF), codes)
+        front = np.where(full & split, upper, np.where(empty & split, above, front))
+        back = np.where(below > 0, below, above)
+        back = np.where(full & split, lower, np.where(full, 0, np.where(empty, below, back)))
+        front = np.where(empty & ~split, 0, front)
+        # The background of the screen has no paint to be the front of a half.
+        swap = (codes == UPPER_HALF) & (front == 0)
+        codes = np.where(swap, np.uint16(0x2584), codes)
+        front, back = np.where(swap, back, front), np.where(swap, 0, back)
+        picture = CellPicture(codes, front.astype(np.uint8), back.astype(np.uint8))
+        self._write_signs(picture)
+        return picture
+
+    def _write_signs(self, picture: CellPicture) -> None:
+        for row, column, text, paint in self._signs:
+            shown = text[: self.columns - column]
+            for place, char in enumerate(shown, column):
+                picture.codes[row, place] = ord(char)
+                picture.front[row, place] = paint
+                if picture.back[row, place] == Paint.WALL:
+                    picture.back[row, place] = 0
+
+
+def _nearest(depth: NDArray[np.float32], paint: Paints) -> Paints:
+    """The paint of the nearest dot along the last axis; 0 if there is none."""
+    at = depth.argmin(axis=2)
+    return np.take_along_axis(paint, at[..., None], axis=2)[..., 0]
+
+
+def _levels(depth: NDArray[np.float32]) -> NDArray[np.uint16]:
+    """Depths as small whole numbers, which numpy sorts in a fraction of the time."""
+    least, most = float(depth.min()), float(depth.max())
+    if not most > least:
+        return np.zeros(len(depth), dtype=np.uint16)
+    return ((depth - least) * (DEPTH_LEVELS / (most - least))).astype(np.uint16)

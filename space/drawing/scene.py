@@ -1,0 +1,132 @@
+"""Shapes, seen by a camera, on a raster."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from space.drawing.camera import NEAREST_M
+from space.drawing.paints import Paint
+from space.drawing.shapes import Faces, Floor, Shape, Sign, Speckles, Strokes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from space.drawing.camera import Camera
+    from space.drawing.raster import Raster
+
+FAR_M = 1e6
+"""The far end of what a floor can be seen."""
+MOST_BLOCK_DOTS = 12
+"""How many dots wide a cell of an obstacle may appear; a larger one is cut to that."""
+
+
+def draw(raster: Raster, camera: Camera, shapes: Iterable[Shape]) -> None:
+    """Draw all; signs last, since they are written over the rest."""
+    signs = []
+    for shape in shapes:
+        if isinstance(shape, Sign):
+            signs.append(shape)
+        else:
+            _draw(shape, raster, camera)
+    for sign in signs:
+        _draw_sign(sign, raster, camera)
+
+
+def _draw(shape: Speckles | Strokes | Faces | Floor, raster: Raster, camera: Camera) -> None:
+    if isinstance(shape, Speckles):
+        _draw_speckles(shape, raster, camera)
+    elif isinstance(shape, Strokes):
+        _draw_strokes(shape, raster, camera)
+    elif isinstance(shape, Faces):
+        _draw_faces(shape, raster, camera)
+    else:
+        _draw_floor(shape, raster, camera)
+
+
+def _draw_speckles(shape: Speckles, raster: Raster, camera: Camera) -> None:
+    spots = camera.project(shape.places, raster.width, raster.height)
+    raster.dots(spots, shape.paint)
+    wide = int(min(MOST_BLOCK_DOTS, shape.solid_m * camera.dots_per_m))
+    if wide < 2 or camera.turns:
+        return
+    for right in range(wide):
+        for down in range(wide):
+            moved = spots + np.array([right - wide / 2, down - wide / 2, 0], dtype=np.float32)
+            raster.dots(moved, shape.paint)
+
+
+def _draw_strokes(shape: Strokes, raster: Raster, camera: Camera) -> None:
+    starts, ends = camera.seen(shape.starts, raster.height), camera.seen(shape.ends, raster.height)
+    if camera.turns:
+        starts, ends = _before_the_eye(starts, ends), _before_the_eye(ends, starts)
+    raster.strokes(
+        camera.on_picture(starts, raster.width, raster.height),
+        camera.on_picture(ends, raster.width, raster.height),
+        shape.paint,
+    )
+
+
+def _before_the_eye(ends: NDArray[np.float32], others: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return the ends, moved along their lines to where the eye begins to see.
+
+    Lines that are wholly behind it become NaN.
+    """
+    least = np.float32(2 * NEAREST_M)
+    behind = ends[:, 2] < least
+    if not behind.any():
+        return ends
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = (least - ends[:, 2]) / (others[:, 2] - ends[:, 2])
+    cut = ends + (others - ends) * share[:, None]
+    cut[others[:, 2] < least] = np.nan
+    return np.where(behind[:, None], cut, ends)
+
+
+def _draw_faces(shape: Faces, raster: Raster, camera: Camera) -> None:
+    spots = camera.project(shape.corners.reshape(-1, 3), raster.width, raster.height)
+    for number, corners in enumerate(spots.reshape(-1, 3, 3)):
+        paint = shape.paint
+        raster.face(corners, int(paint[number]) if isinstance(paint, np.ndarray) else paint)
+
+
+def _draw_floor(shape: Floor, raster: Raster, camera: Camera) -> None:
+    """Paint the floor behind everything, and what stands on it as dots, so that none is missed."""
+    columns, rows = raster.columns, 2 * raster.rows
+    x, y = np.meshgrid(2.0 * np.arange(columns) + 1, 2.0 * np.arange(rows) + 1)
+    begins, ways = camera.rays(x.ravel(), y.ravel(), raster.width, raster.height)
+    back = shape.origin.inverse().matrix()
+    begins, ways = begins @ back[:3, :3].T + back[:3, 3], ways @ back[:3, :3].T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        way = -begins[:, 2] / ways[:, 2]
+        met = begins + way[:, None] * ways
+        at = np.floor(met[:, :2] / shape.cell_m)
+    high, wide = shape.cells.shape
+    with np.errstate(invalid="ignore"):
+        inside = (at[:, 0] >= 0) & (at[:, 0] < wide) & (at[:, 1] >= 0) & (at[:, 1] < high)
+        if camera.turns:
+            inside &= (way > 0) & (way < FAR_M)
+    paints = np.zeros(len(at), dtype=np.uint8)
+    place = at[inside].astype(np.intp)
+    paints[inside] = shape.cells[place[:, 1], place[:, 0]]
+    floor = raster.floor.reshape(-1)
+    floor[:] = np.where(paints > 0, paints, floor)
+    if shape.cell_m * camera.dots_per_m < 2:
+        _draw_speckles(_standing(shape), raster, camera)
+
+
+def _standing(shape: Floor) -> Speckles:
+    """The occupied cells as points."""
+    rows, columns = np.nonzero(shape.cells == Paint.WALL)
+    middles = np.stack([columns + 0.5, rows + 0.5, np.zeros(len(rows))], axis=1) * shape.cell_m
+    return Speckles(shape.origin.points(middles).astype(np.float32), Paint.WALL)
+
+
+def _draw_sign(sign: Sign, raster: Raster, camera: Camera) -> None:
+    place = np.array([sign.place], dtype=np.float32)
+    x, y, _depth = camera.project(place, raster.width, raster.height)[0]
+    # A cell to the right, so that the place itself stays visible.
+    raster.sign(float(x) + 3, float(y), sign.text, sign.paint)

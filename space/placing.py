@@ -1,0 +1,138 @@
+"""Drawables in one fixed frame, by the transforms that are known."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from space.buffer import NoTransformError
+from space.drawing.paints import Paint
+from space.drawing.shapes import Sign, Speckles, axes, moved
+from space.drawing.thinning import FEW, thinned
+from text.plain import plain
+from text.sentences import reason_of, say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from space.buffer import TransformBuffer
+    from space.drawing.camera import Camera
+    from space.drawing.shapes import Shape
+    from space.reading.fields import Drawable
+    from space.transform import Transform
+
+ROOTS = ("map", "odom", "base_link")
+"""Frames of REP-105: the tree that has the first of them is the robot's."""
+AXIS_M, LEAST_AXIS_DOTS, MOST_AXIS_DOTS = 0.3, 6.0, 40.0
+SMALLEST_CUBE_M = 0.004
+LONGEST_NAME = 40
+MOST_SIGNS = 60
+"""With more frames their names would cover everything."""
+
+
+def robot_root(buffer: TransformBuffer, others: Iterable[str] = ()) -> str:
+    """Return the root of the robot's tree; without frames, the first of `others`, or nothing."""
+    known = buffer.frames
+    for name in ROOTS:
+        if name in known:
+            return buffer.way_up(name)[-1]
+    roots = Counter(buffer.way_up(frame)[-1] for frame in sorted(known))
+    if roots:
+        return roots.most_common(1)[0][0]
+    return next(iter(others), "")
+
+
+def cube_of(camera: Camera) -> float:
+    """Return the size to which clouds are thinned: about a dot, in steps of two."""
+    return max(SMALLEST_CUBE_M, 2.0 ** math.floor(math.log2(1.0 / camera.dots_per_m)))
+
+
+class Placer:
+    """Turns drawables into shapes of the fixed frame, and remembers thinned clouds."""
+
+    def __init__(self, mounts: Mapping[str, tuple[str, Transform]] | None = None) -> None:
+        """`mounts` says where frames are that nobody publishes: frame to (parent, place)."""
+        self._mounts = dict(mounts or {})
+        self._thinned: dict[int, tuple[Speckles, float, Speckles]] = {}
+
+    def where(
+        self, buffer: TransformBuffer, fixed: str, frame: str, stamp_s: float | None = None
+    ) -> Transform:
+        """Return where a frame is, at that time if it is known. Raises NoTransformError."""
+        if frame in self._mounts and frame not in buffer.frames:
+            parent, place = self._mounts[frame]
+            return self.where(buffer, fixed, parent, stamp_s) @ place
+        if stamp_s is not None:
+            try:
+                return buffer.find(fixed, frame, stamp_s)
+            except NoTransformError:
+                # Transforms come a little later than what was measured, or its clock differs.
+                pass
+        return buffer.find(fixed, frame)
+
+    def place(
+        self, buffer: TransformBuffer, fixed: str, drawables: Iterable[Drawable], cube_m: float
+    ) -> tuple[list[Shape], str]:
+        """Return the shapes that can be placed, and why others cannot; empty if all can."""
+        shapes: list[Shape] = []
+        why = ""
+        for one in drawables:
+            if not one.shapes:
+                continue
+            try:
+                at = self.where(buffer, fixed, one.frame, one.stamp_s)
+            except NoTransformError as error:
+                why = why or say(
+                    "not joined to {fixed}: {reason}", fixed=fixed, reason=reason_of(error)
+                )
+                continue
+            shapes += [moved(self._thin(shape, cube_m), at) for shape in one.shapes]
+        return shapes, why
+
+    def _thin(self, shape: Shape, cube_m: float) -> Shape:
+        if not isinstance(shape, Speckles) or len(shape.places) <= FEW:
+            return shape
+        known = self._thinned.get(id(shape))
+        if known is not None and known[0] is shape and known[1] == cube_m:
+            return known[2]
+        if len(self._thinned) > 16:
+            self._thinned.clear()
+        fewer = thinned(shape, cube_m)
+        self._thinned[id(shape)] = shape, cube_m, fewer
+        return fewer
+
+
+def frame_shapes(
+    buffer: TransformBuffer, fixed: str, camera: Camera, *, names: bool = True
+) -> tuple[list[Shape], list[str]]:
+    """Return axes and names of all frames, and the frames that are not joined to the fixed one.
+
+    Axes are 0.3 m long, but never too small or too large to be seen.
+    """
+    size = min(max(AXIS_M * camera.dots_per_m, LEAST_AXIS_DOTS), MOST_AXIS_DOTS)
+    length_m = size / camera.dots_per_m
+    shapes: list[Shape] = []
+    apart: list[str] = []
+    taken: dict[tuple[float, ...], int] = {}
+    frames = sorted(buffer.frames)
+    for frame in frames:
+        try:
+            at = buffer.find(fixed, frame)
+        except NoTransformError:
+            apart.append(frame)
+            continue
+        shapes += axes(at, length_m)
+        if not names or len(frames) > MOST_SIGNS:
+            continue
+        spot = tuple(round(value * camera.dots_per_m / 8) for value in at.translation)
+        if spot not in taken:
+            taken[spot] = len(shapes)
+            shapes.append(Sign(at.translation, plain(frame, LONGEST_NAME), Paint.TEXT))
+        else:
+            # Frames in one place, as map and odom at the start, share one line.
+            first = shapes[taken[spot]]
+            if isinstance(first, Sign):
+                text = plain(f"{first.text}, {frame}", 2 * LONGEST_NAME)
+                shapes[taken[spot]] = Sign(first.place, text, first.paint)
+    return shapes, apart

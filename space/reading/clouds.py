@@ -1,0 +1,176 @@
+"""sensor_msgs/PointCloud2: points in any layout of their bytes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from space.drawing.paints import Paint, cube, ramp
+from space.drawing.shapes import Speckles
+from space.reading.fields import (
+    Drawable,
+    UnreadableError,
+    field,
+    frame,
+    is_near,
+    listed,
+    stamp_s,
+    whole,
+)
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from space.drawing.paints import Paints
+    from space.drawing.shapes import Places
+
+KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+"""sensor_msgs/PointField.datatype to numpy's."""
+FLOATS = {"f4", "f8"}
+MOST_POINTS = 20_000_000
+COLOURS = ("rgb", "rgba")
+STRENGTHS = ("intensity", "intensities", "i", "reflectivity")
+SPREAD = (2, 98)
+"""Percent of the values between which the ramp goes: a few extremes must not spoil it."""
+SAMPLED = 4096
+
+
+class _Column(NamedTuple):
+    offset: int
+    kind: str
+
+
+def read_cloud(tree: Mapping[str, Any]) -> Drawable:
+    """Return the points of a cloud, coloured by rgb, intensity or height.
+
+    Raises UnreadableError.
+    """
+    columns = _columns(tree)
+    step, count = whole(tree, "point_step"), _count(tree)
+    _check_columns(columns, step)
+    rows = _points_of(tree, step, count)
+    order = ">" if field(tree, "is_bigendian") else "<"
+
+    def column(name: str) -> NDArray[np.generic]:
+        offset, kind = columns[name]
+        kinds = np.dtype(
+            {"names": ["v"], "formats": [order + kind], "offsets": [offset], "itemsize": step}
+        )
+        return rows.view(kinds)["v"].reshape(-1)
+
+    whole_cloud = np.empty((3, count), dtype=np.float32)
+    for axis, name in enumerate("xyz"):
+        whole_cloud[axis] = column(name)
+    kept = np.flatnonzero(is_near(whole_cloud.T))
+    if len(kept) < count:
+        whole_cloud = whole_cloud.take(kept, axis=1)
+    paint = _paint({name: column(name) for name in columns if name in (*COLOURS, *STRENGTHS)}, kept)
+    places: Places = whole_cloud.T
+    if paint is None and len(kept):
+        paint = _by_height(places[:, 2])
+    remark = None
+    if count and not len(kept):
+        remark = say("none of its {count} points is a place: all are NaN", count=count)
+    shape = Speckles(places, Paint.ACCENT if paint is None else paint)
+    return Drawable(frame(tree), (shape,), stamp_s(tree), remark)
+
+
+def _columns(tree: Mapping[str, Any]) -> dict[str, _Column]:
+    found = {}
+    for one in listed(tree, "fields"):
+        kind = KINDS.get(whole(one, "datatype"))
+        offset = whole(one, "offset")
+        if kind is not None and offset >= 0:
+            found[str(field(one, "name"))] = _Column(offset, kind)
+    return found
+
+
+def _check_columns(columns: Mapping[str, _Column], step: int) -> None:
+    if missing := [name for name in "xyz" if name not in columns]:
+        names = ", ".join(missing)
+        raise UnreadableError(say("the cloud has no field {names}", names=names))
+    for name, column in columns.items():
+        if name in "xyz" and column.kind not in FLOATS:
+            raise UnreadableError(
+                say("field {name} of the cloud is neither float32 nor float64", name=name)
+            )
+        if column.offset + int(column.kind[1]) > step:
+            raise UnreadableError(
+                say(
+                    "field {name} of the cloud ends behind its point_step of {step} bytes",
+                    name=name,
+                    step=step,
+                )
+            )
+
+
+def _count(tree: Mapping[str, Any]) -> int:
+    wide, high = whole(tree, "width"), whole(tree, "height")
+    count = max(0, wide) * max(0, high)
+    if count > MOST_POINTS:
+        raise UnreadableError(say("a cloud of {count} points is too large", count=count))
+    return count
+
+
+def _points_of(tree: Mapping[str, Any], step: int, count: int) -> NDArray[np.uint8]:
+    """Return the bytes of all points, one after the other, without what pads the rows."""
+    data = field(tree, "data")
+    if not isinstance(data, (bytes, bytearray, memoryview)):
+        data = bytes(np.asarray(data, dtype=np.uint8))
+    wide, high, row_step = whole(tree, "width"), whole(tree, "height"), whole(tree, "row_step")
+    # Many drivers of clouds of one row leave row_step at 0.
+    row_step = row_step if high > 1 and row_step else wide * step
+    needed = row_step * (high - 1) + wide * step if count else 0
+    if row_step < wide * step or len(data) < needed:
+        raise UnreadableError(
+            say(
+                "{count} points of {step} bytes are announced, and {size} bytes have come",
+                count=count,
+                step=step,
+                size=len(data),
+            )
+        )
+    whole_data = np.frombuffer(data, np.uint8)
+    if not count:
+        return np.zeros((0, step), dtype=np.uint8)
+    if row_step == wide * step:
+        return whole_data[: count * step].reshape(count, step)
+    rows = np.lib.stride_tricks.as_strided(
+        whole_data, (high, wide * step), (row_step, 1), writeable=False
+    )
+    return np.ascontiguousarray(rows).reshape(count, step)
+
+
+def _paint(columns: Mapping[str, NDArray[np.generic]], kept: NDArray[np.intp]) -> Paints | None:
+    for name in COLOURS:
+        packed = columns.get(name)
+        if packed is not None and packed.dtype.itemsize == 4:
+            # PCL packs 0xRRGGBB into the bits of a float32.
+            bits = np.ascontiguousarray(packed[kept])
+            bits = bits.astype(bits.dtype.newbyteorder("="))
+            whole_bits = bits.view(np.uint32)
+            rgb = np.stack([whole_bits >> 16, whole_bits >> 8, whole_bits], axis=1) & 0xFF
+            return cube(rgb.astype(np.uint8))
+    for name in STRENGTHS:
+        values = columns.get(name)
+        if values is not None and len(kept):
+            return _by_value(values[kept].astype(np.float32))
+    return None
+
+
+def _by_height(heights: NDArray[np.float32]) -> Paints:
+    """Steps of fixed heights would be few for a table and too many for a house."""
+    return _by_value(heights)
+
+
+def _by_value(values: NDArray[np.float32]) -> Paints:
+    sample = values[:: max(1, len(values) // SAMPLED)]
+    sample = sample[np.isfinite(sample)]
+    if not sample.size:
+        return ramp(np.zeros(len(values), dtype=np.float32), 0.0, 0.0)
+    least, most = np.percentile(sample, SPREAD)
+    return ramp(np.nan_to_num(values, posinf=0.0, neginf=0.0), float(least), float(most))

@@ -1,0 +1,141 @@
+"""Fields of messages, whatever somebody has put into them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from space.transform import Transform
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from space.drawing.shapes import Shape
+    from space.transform import Vector
+    from text.sentences import Words
+
+FARTHEST_M = 1e6
+"""A place farther away than this is a mistake."""
+NANOSECONDS = 1e-9
+
+
+class UnreadableError(ValueError):
+    """Why a message cannot be drawn; its text is a sentence for the user."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawable:
+    """What a message shows, in its frame."""
+
+    frame: str
+    """Without a leading slash."""
+    shapes: tuple[Shape, ...]
+    stamp_s: float | None = None
+    """When it was measured, by the publisher's clock; None if the message does not say."""
+    remark: Words | None = None
+    """What of it is not shown, and why."""
+
+
+def field(tree: Any, path: str) -> Any:  # noqa: ANN401 - a message is a tree of anything
+    """Return what is at a path such as `info.origin`. Raises UnreadableError."""
+    found = tree
+    for name in path.split("."):
+        if not isinstance(found, Mapping) or name not in found:
+            raise UnreadableError(say("the message has no field {field}", field=path))
+        found = found[name]
+    return found
+
+
+def number(tree: Any, path: str) -> float:  # noqa: ANN401
+    """Return a finite number. Raises UnreadableError."""
+    found = field(tree, path)
+    if isinstance(found, bool) or not isinstance(found, (int, float, np.number)):
+        raise UnreadableError(say("{field} is not a number", field=path))
+    if not math.isfinite(found):
+        raise UnreadableError(say("{field} is not a finite number", field=path))
+    return float(found)
+
+
+def whole(tree: Any, path: str) -> int:  # noqa: ANN401
+    """Return a whole number. Raises UnreadableError."""
+    return int(number(tree, path))
+
+
+def listed(tree: Any, path: str) -> Sequence[Any]:  # noqa: ANN401
+    """Return a list. Raises UnreadableError."""
+    found = field(tree, path)
+    if isinstance(found, (str, bytes, Mapping)) or not isinstance(found, Sequence):
+        raise UnreadableError(say("{field} is not a list", field=path))
+    return found
+
+
+def numbers(tree: Any, path: str) -> NDArray[np.float32]:  # noqa: ANN401
+    """Return an array of numbers, as they are, infinities and NaN included."""
+    found = field(tree, path)
+    try:
+        array = np.asarray(found, dtype=np.float32)
+    except (TypeError, ValueError):
+        raise UnreadableError(say("{field} is not a list of numbers", field=path)) from None
+    return array.reshape(-1)
+
+
+def vector(tree: Any, path: str) -> Vector:  # noqa: ANN401
+    """Return x, y and z. Raises UnreadableError."""
+    x, y, z = (number(tree, f"{path}.{axis}") for axis in "xyz")
+    if max(abs(x), abs(y), abs(z)) > FARTHEST_M:
+        far = f"{FARTHEST_M / 1000:g}"
+        raise UnreadableError(say("{field} is farther away than {km} km", field=path, km=far))
+    return x, y, z
+
+
+def pose(tree: Any, path: str) -> Transform:  # noqa: ANN401
+    """Return a geometry_msgs/Pose. Raises UnreadableError.
+
+    A quaternion of zeros, which is what messages have that nobody filled in, is no rotation.
+    """
+    place = vector(tree, f"{path}.position")
+    x, y, z, w = (number(tree, f"{path}.orientation.{axis}") for axis in "xyzw")
+    if not (x or y or z or w):
+        return Transform(place)
+    return Transform.of(place, (x, y, z, w))
+
+
+def frame(tree: Any, path: str = "header") -> str:  # noqa: ANN401
+    """Return the name of a frame. Raises UnreadableError."""
+    name = str(field(tree, f"{path}.frame_id")).lstrip("/")
+    if not name:
+        raise UnreadableError(
+            say("{field} is empty: the publisher names no frame", field=f"{path}.frame_id")
+        )
+    return name
+
+
+def stamp_s(tree: Any, path: str = "header") -> float | None:  # noqa: ANN401
+    """Return the stamp of a header, None for zero, which means that there is none."""
+    seconds = number(tree, f"{path}.stamp.sec")
+    seconds += number(tree, f"{path}.stamp.nanosec") * NANOSECONDS
+    return seconds or None
+
+
+def points(tree: Any, path: str) -> NDArray[np.float32]:  # noqa: ANN401
+    """Return a list of geometry_msgs/Point as (n, 3). Raises UnreadableError."""
+    found = listed(tree, path)
+    try:
+        rows = [(float(one["x"]), float(one["y"]), float(one["z"])) for one in found]
+    except (KeyError, TypeError, ValueError):
+        raise UnreadableError(say("{field} is not a list of points", field=path)) from None
+    return np.array(rows, dtype=np.float32).reshape(-1, 3)
+
+
+def is_near(array: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Return which rows are places: finite, and not farther away than can be."""
+    near = np.ones(len(array), dtype=np.bool_)
+    for axis in range(3):
+        # NaN compares as False.
+        near &= np.abs(array[:, axis]) <= FARTHEST_M
+    return near
