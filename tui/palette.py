@@ -25,6 +25,7 @@ from tui.frame.actions.app import (
     ShowLesson,
     ShowLogs,
     ShowScreen,
+    ShowSpace,
     ShowTopics,
     ShowWall,
 )
@@ -34,6 +35,7 @@ from tui.frame_tree.actions import FRAMES_ACTIONS
 from tui.graph.actions import GRAPH_ACTIONS
 from tui.lesson.actions import LESSON_ACTIONS
 from tui.logs.actions import LOGS_ACTIONS
+from tui.space.actions import SPACE_ACTIONS
 from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
 from tui.themes import CYCLE
 from tui.topics.actions import TOPICS_ACTIONS, OpenPublish
@@ -86,6 +88,7 @@ PLACES = (
     ActionPlace(ShowDevices, DEVICES_ACTIONS),
     ActionPlace(ShowFrames, FRAMES_ACTIONS),
     ActionPlace(ShowWall, WALL_ACTIONS),
+    ActionPlace(ShowSpace, SPACE_ACTIONS),
 )
 """Every screen of a session, listed without importing any of them: that would delay keys."""
 

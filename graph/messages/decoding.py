@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from graph.data import Value
 
 IMAGE = "sensor_msgs/msg/Image"
+CLOUD = "sensor_msgs/msg/PointCloud2"
 LITTLE_ENDIAN_CDR = b"\x00\x01"
 
 
@@ -30,10 +31,10 @@ def decoder(type_name: str) -> Callable[[bytes], dict[str, Value]]:
     def decode(raw: bytes) -> dict[str, Value]:
         return to_tree(deserialize_message(raw, cls))
 
-    def decode_image(raw: bytes) -> dict[str, Value]:
-        return read_image(raw) or decode(raw)
-
-    return decode_image if type_name == IMAGE else decode
+    read = {IMAGE: read_image, CLOUD: read_point_cloud}.get(type_name)
+    if read is None:
+        return decode
+    return lambda raw: read(raw) or decode(raw)
 
 
 def read_image(raw: bytes) -> dict[str, Value] | None:
@@ -48,16 +49,38 @@ def read_image(raw: bytes) -> dict[str, Value] | None:
     try:
         reader = _CdrCursor(raw)
         tree: dict[str, Value] = {
-            "header": {
-                "stamp": {"sec": reader.number("<i"), "nanosec": reader.number("<I")},
-                "frame_id": reader.text(),
-            },
+            "header": reader.header(),
             "height": reader.number("<I"),
             "width": reader.number("<I"),
             "encoding": reader.text(),
             "is_bigendian": reader.number("<B"),
             "step": reader.number("<I"),
             "data": reader.take(reader.number("<I")),
+        }
+    except (struct.error, ValueError):
+        return None
+    return tree
+
+
+def read_point_cloud(raw: bytes) -> dict[str, Value] | None:
+    """Return the tree of a `sensor_msgs/PointCloud2`, None for bytes that rclpy should decode.
+
+    As for images: a cloud of 300 000 points has 5 MB and more.
+    """
+    if raw[:2] != LITTLE_ENDIAN_CDR:
+        return None
+    try:
+        reader = _CdrCursor(raw)
+        tree: dict[str, Value] = {
+            "header": reader.header(),
+            "height": reader.number("<I"),
+            "width": reader.number("<I"),
+            "fields": [reader.point_field() for _ in range(reader.count(least_bytes=13))],
+            "is_bigendian": bool(reader.number("<B")),
+            "point_step": reader.number("<I"),
+            "row_step": reader.number("<I"),
+            "data": reader.take(reader.number("<I")),
+            "is_dense": bool(reader.number("<B")),
         }
     except (struct.error, ValueError):
         return None
@@ -78,6 +101,25 @@ class _CdrCursor:
         (number,) = struct.unpack_from(form, self._raw, self._at)
         self._at += size
         return int(number)
+
+    def header(self) -> dict[str, Value]:
+        stamp: dict[str, Value] = {"sec": self.number("<i"), "nanosec": self.number("<I")}
+        return {"stamp": stamp, "frame_id": self.text()}
+
+    def point_field(self) -> dict[str, Value]:
+        return {
+            "name": self.text(),
+            "offset": self.number("<I"),
+            "datatype": self.number("<B"),
+            "count": self.number("<I"),
+        }
+
+    def count(self, least_bytes: int) -> int:
+        """The length of a sequence of items that have at least so many bytes."""
+        number = self.number("<I")
+        if number * least_bytes > len(self._raw) - self._at:
+            raise ValueError("the message ends too early")
+        return number
 
     def text(self) -> str:
         return self.take(self.number("<I"))[:-1].decode()

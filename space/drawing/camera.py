@@ -27,6 +27,7 @@ OPENING_RAD = math.radians(50)
 """The angle between top and bottom of the picture, in perspective."""
 LEAST_DOTS_PER_M, MOST_DOTS_PER_M = 0.01, 20_000.0
 STEEPEST_RAD = math.pi / 2
+FIT_HALVINGS = 24
 
 
 class Angle(str, Enum):
@@ -170,12 +171,16 @@ class Camera:
             [[x, y, z] for x in sides[0] for y in sides[1] for z in sides[2]], dtype=np.float32
         )
         centred = replace(self, target=(middle[0], middle[1], middle[2]))
-        spread = np.abs((corners - np.array(middle, dtype=np.float32)) @ self.basis().T).max(axis=0)
-        room = (max(4, width - 4), max(4, height - 4))
-        scale = min(room[0] / 2 / max(spread[0], 1e-3), room[1] / 2 / max(spread[1], 1e-3))
-        if self.turns:
-            # The near side of the box is larger than its middle.
-            focus = self._focus(height)
-            scale = focus / (focus / scale + float(spread[2]))
-        scale = min(max(scale, LEAST_DOTS_PER_M), MOST_DOTS_PER_M)
-        return replace(centred, dots_per_m=float(scale))
+        low, high = LEAST_DOTS_PER_M, MOST_DOTS_PER_M
+        for _halving in range(FIT_HALVINGS):
+            scale = math.sqrt(low * high)
+            camera = replace(centred, dots_per_m=scale)
+            low, high = (scale, high) if camera._shows(corners, width, height) else (low, scale)
+        return replace(centred, dots_per_m=low)
+
+    def _shows(self, points: Places, width: int, height: int) -> bool:
+        """Whether all points are within the picture, a little away from its edge."""
+        spots = self.project(points, width, height)
+        inside = (spots[:, 0] >= 2) & (spots[:, 0] <= width - 2)
+        inside &= (spots[:, 1] >= 2) & (spots[:, 1] <= height - 2)
+        return bool(inside.all())

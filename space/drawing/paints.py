@@ -39,10 +39,10 @@ class Paint(IntEnum):
     Z_AXIS = 10
     FREE = 11
     """Floor of a map on which nothing stands."""
-    WALL = 12
-    """What a map shows as occupied."""
-    MAYBE = 13
+    MAYBE = 12
     """Neither free nor occupied, but measured."""
+    WALL = 13
+    """What a map shows as occupied."""
 
 
 RGB = {
@@ -61,12 +61,13 @@ def ramp(values: NDArray[np.floating], least: float, most: float) -> Paints:
     if not span > 0:
         return np.full(len(values), RAMP_FROM, dtype=np.uint8)
     steps = (values - least) * (RAMP_STEPS / span)
-    return (RAMP_FROM + np.clip(steps, 0, RAMP_STEPS - 1)).astype(np.uint8)
+    paints: Paints = (RAMP_FROM + np.clip(steps, 0, RAMP_STEPS - 1)).astype(np.uint8)
+    return paints
 
 
 def cube(rgb: NDArray[np.uint8]) -> Paints:
     """Return the nearest paint of the cube for colours of shape (n, 3)."""
-    levels = (rgb.astype(np.uint16) * (LEVELS - 1) + 127) // 255
+    levels: NDArray[np.uint16] = (rgb.astype(np.uint16) * (LEVELS - 1) + 127) // 255
     number = (levels[:, 0] * LEVELS + levels[:, 1]) * LEVELS + levels[:, 2]
     paints: Paints = (CUBE_FROM + number).astype(np.uint8)
     return paints

@@ -149,10 +149,22 @@ class Raster:
         self._paint.reshape(self.height, self.width)[y0:y1, x0:x1][set_here] = paint
 
     def sign(self, x: float, y: float, text: str, paint: int) -> None:
-        """Write a text over the dots, its first character at a dot; parts outside are cut."""
-        if not (0 <= x < self.width and 0 <= y < self.height):
+        """Write a text over the dots, its first character at a dot; parts outside are cut.
+
+        Where another text is already, it goes into a row close by, or is left out.
+        """
+        if not (0 <= x < self.width and 0 <= y < self.height) or not text:
             return
-        self._signs.append((int(y) // DOTS_DOWN, int(x) // DOTS_ACROSS, text, paint))
+        row, column = int(y) // DOTS_DOWN, int(x) // DOTS_ACROSS
+        end = column + len(text) + 1
+        for near in (row, row + 1, row - 1, row + 2, row - 2):
+            free = all(
+                other != near or end <= begin or column > begin + len(written)
+                for other, begin, written, _paint in self._signs
+            )
+            if free and 0 <= near < self.rows:
+                self._signs.append((near, column, text, paint))
+                return
 
     def cells(self) -> CellPicture:
         """Return the cells; a cell whose dots are all set is drawn as two halves."""

@@ -9,6 +9,7 @@ import numpy as np
 from space.drawing.camera import NEAREST_M
 from space.drawing.paints import Paint
 from space.drawing.shapes import Faces, Floor, Shape, Sign, Speckles, Strokes
+from space.transform import turned
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -95,26 +96,26 @@ def _draw_faces(shape: Faces, raster: Raster, camera: Camera) -> None:
 
 def _draw_floor(shape: Floor, raster: Raster, camera: Camera) -> None:
     """Paint the floor behind everything, and what stands on it as dots, so that none is missed."""
-    columns, rows = raster.columns, 2 * raster.rows
-    x, y = np.meshgrid(2.0 * np.arange(columns) + 1, 2.0 * np.arange(rows) + 1)
+    x, y = np.meshgrid(np.arange(raster.width) + 0.5, np.arange(raster.height) + 0.5)
     begins, ways = camera.rays(x.ravel(), y.ravel(), raster.width, raster.height)
-    back = shape.origin.inverse().matrix()
-    begins, ways = begins @ back[:3, :3].T + back[:3, 3], ways @ back[:3, :3].T
+    back = shape.origin.inverse()
+    matrix = back.matrix()[:3, :3]
+    begins, ways = turned(begins, matrix, back.translation), turned(ways, matrix)
     with np.errstate(divide="ignore", invalid="ignore"):
         way = -begins[:, 2] / ways[:, 2]
-        met = begins + way[:, None] * ways
-        at = np.floor(met[:, :2] / shape.cell_m)
-    high, wide = shape.cells.shape
-    with np.errstate(invalid="ignore"):
-        inside = (at[:, 0] >= 0) & (at[:, 0] < wide) & (at[:, 1] >= 0) & (at[:, 1] < high)
+        column = (begins[:, 0] + way * ways[:, 0]) / shape.cell_m
+        row = (begins[:, 1] + way * ways[:, 1]) / shape.cell_m
+        high, wide = shape.cells.shape
+        inside = (column >= 0) & (column < wide) & (row >= 0) & (row < high)
         if camera.turns:
             inside &= (way > 0) & (way < FAR_M)
-    paints = np.zeros(len(at), dtype=np.uint8)
-    place = at[inside].astype(np.intp)
-    paints[inside] = shape.cells[place[:, 1], place[:, 0]]
-    floor = raster.floor.reshape(-1)
-    floor[:] = np.where(paints > 0, paints, floor)
-    if shape.cell_m * camera.dots_per_m < 2:
+    met = np.flatnonzero(inside)
+    paints = np.zeros(len(way), dtype=np.uint8)
+    paints[met] = shape.cells[row[met].astype(np.intp), column[met].astype(np.intp)]
+    # Of the four dots of half a cell the most occupied one counts: walls are thin.
+    halves = paints.reshape(2 * raster.rows, 2, raster.columns, 2).max(axis=(1, 3))
+    np.copyto(raster.floor, halves, where=halves > 0)
+    if shape.cell_m * camera.dots_per_m < 1:
         _draw_speckles(_standing(shape), raster, camera)
 
 

@@ -122,6 +122,16 @@ def arrow(at: Transform, length_m: float, paint: int) -> Strokes:
     return Strokes(_points(at, starts), _points(at, places(*[tip] * len(starts))), paint)
 
 
+def dart(at: Transform, length_m: float, paint: int) -> Faces:
+    """Return a flat arrowhead about a place, filled, that points along x."""
+    nose, left, notch, right = (
+        (ahead * length_m / 2, aside * length_m / 2, 0.0)
+        for ahead, aside in ((1.0, 0.0), (-0.9, 0.75), (-0.45, 0.0), (-0.9, -0.75))
+    )
+    halves = _points(at, places(nose, left, notch, nose, notch, right))
+    return Faces(halves.reshape(2, 3, 3), paint)
+
+
 def box(at: Transform, size_m: Vector, paint: int) -> tuple[Faces, Strokes]:
     """Return a box about its middle: faces, and the edges, which are drawn over them."""
     size = np.array(size_m, dtype=np.float32)

@@ -70,7 +70,9 @@ class LayerKind:
 
     make: Callable[[], LayerReader]
     every: bool = False
-    """Whether every message counts, rather than only the newest."""
+    """Whether every message is needed, rather than only the newest."""
+    grows: bool = False
+    """Whether it takes all messages that are at hand."""
 
 
 KINDS: Mapping[str, LayerKind] = {
@@ -80,7 +82,7 @@ KINDS: Mapping[str, LayerKind] = {
     "sensor_msgs/msg/PointCloud2": LayerKind(lambda: NewestReader(read_cloud)),
     "nav_msgs/msg/Path": LayerKind(lambda: NewestReader(read_path)),
     "geometry_msgs/msg/PoseStamped": LayerKind(lambda: NewestReader(read_goal)),
-    "nav_msgs/msg/Odometry": LayerKind(lambda: NewestReader(DrivenTrail().read)),
+    "nav_msgs/msg/Odometry": LayerKind(lambda: NewestReader(DrivenTrail().read), grows=True),
     "visualization_msgs/msg/Marker": LayerKind(MarkerBook, every=True),
     "visualization_msgs/msg/MarkerArray": LayerKind(MarkerBook, every=True),
 }

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from space.drawing.paints import Paint
-from space.drawing.shapes import Strokes, arrow, places, polyline
+from space.drawing.shapes import Strokes, arrow, dart, places, polyline
 from space.reading.fields import (
     Drawable,
     UnreadableError,
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from space.drawing.shapes import Shape
     from space.transform import Vector
 
-ARROW_M = 0.4
+ARROW_M, DART_M = 0.4, 0.36
 LEAST_M = 0.02
 """Shorter ways are not added to a trail."""
 TORN_M = 1.0
@@ -87,7 +87,7 @@ class DrivenTrail:
         if frame_id != self._frame:
             self._frame, self._places = frame_id, []
         self._add(at.translation)
-        shapes: list[Shape] = [arrow(at, ARROW_M, Paint.SECOND)]
+        shapes: list[Shape] = [dart(at, DART_M, Paint.SECOND)]
         if len(self._places) > 1:
             shapes.append(self._line())
         return Drawable(frame_id, tuple(shapes), stamp_s(tree))

@@ -2,14 +2,406 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+import asyncio
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
 
-from text.i18n import N_
+from textual import on
+from textual.containers import Horizontal, Vertical
+from textual.content import Content
+from textual.widgets import Static
+
+from space.drawing.camera import Angle
+from text import ros2_words
+from text.i18n import N_, _, decimal
+from text.plain import plain
+from tui import clock
+from tui.actions import bindings
+from tui.dialogs.choice import ChoiceScreen
 from tui.frame.screen import DeckScreen
+from tui.space import words
+from tui.space.actions import SPACE_ACTIONS, Disarm, PublishAim
+from tui.space.aim import Aim, AimKind
+from tui.space.rows import FRAMES, LayerRows
+from tui.space.stage import Stage
+from tui.space.view import SpaceView
+from tui.widgets.trouble import names
+from tui.yaml_form.words import reason_words
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from concurrent.futures import Future
+
+    from textual.app import ComposeResult
+
+    from graph.data import TopicRow
+    from space.drawing.camera import Camera
+    from space.drawing.raster import CellPicture
+    from tui.emergency.messages import EmergencyChanged
+    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
+
+SENT_WITHIN_S = 3.0
+NO_FRAME = " "
+"""The answer for no frame, which no frame can be called."""
 
 
 class SpaceScreen(DeckScreen):
-    """What is where: frames, the robot, its map and what its sensors see."""
+    """The picture, the layers beside it, and a line about the view."""
 
     tab: ClassVar[str] = "space"
-    about: ClassVar[str] = N_("What is where: frames, the robot, its map and what its sensors see.")
+    about: ClassVar[str] = N_(
+        "What is where: frames with their axes (x red, y green, z blue), the map, scans, clouds, "
+        "paths and markers, each placed by /tf. Arrows or a drag move the picture, + and - or the "
+        "wheel zoom, Ctrl+arrows or a drag with Shift turn the perspective. Tab goes to the "
+        "layers and back; below each layer is what is wrong with it."
+    )
+    period_s = 0.1
+    wants_frames = True
+    BINDINGS: ClassVar = bindings(*SPACE_ACTIONS)
+    DEFAULT_CSS = """
+    SpaceScreen {
+        #space-body { height: 1fr; }
+        #space-picture { width: 1fr; height: 1fr; }
+        #space-status { height: 1; padding: 0 1; color: $text-muted; }
+        #space-armed {
+            height: auto; padding: 0 1; background: $warning; color: auto 90%; text-style: bold;
+        }
+        &.-wide LayerRows { width: 40; }
+        &.-tiny LayerRows { display: none; }
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.stage = Stage()
+        self._rows: dict[str, TopicRow] = {}
+
+    def compose_body(self) -> ComposeResult:
+        """The picture with its lines, and the layers."""
+        with Horizontal(id="space-body"):
+            with Vertical(id="space-picture"):
+                yield SpaceView(self._compose_picture, id="space-view")
+                yield Static(id="space-armed", markup=False)
+                yield Static(id="space-status", markup=False)
+            yield LayerRows()
+
+    @property
+    def view(self) -> SpaceView:
+        """The picture."""
+        return self.query_one(SpaceView)
+
+    @property
+    def layer_rows(self) -> LayerRows:
+        """The list of layers."""
+        return self.query_one(LayerRows)
+
+    @property
+    def armed(self) -> bool:
+        """Whether something is aimed."""
+        return self.is_mounted and self.view.aim is not None
+
+    @property
+    def has_layers(self) -> bool:
+        """Whether the list of layers can be used."""
+        return self.is_mounted
+
+    # What is watched
+
+    def watch_topics(self) -> set[str]:
+        """The topics of all layers that are shown."""
+        return self.stage.layers.watched()
+
+    def follow_topics(self) -> set[str]:
+        """Those whose messages build on each other; nothing while another screen is in front."""
+        return self.stage.layers.followed() if self.feed.front is self else set()
+
+    def on_mount(self) -> None:
+        """Put the keys to the picture."""
+        self.view.focus()
+        self._show_lines()
+
+    def on_screen_resume(self) -> None:
+        """Forget what was not heard of while another screen was in front."""
+        for layer in self.stage.layers:
+            if layer.every:
+                layer.forget()
+
+    def on_screen_suspend(self) -> None:
+        """Disarm: what is not seen must not be published."""
+        self.disarm()
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Start a new session with an empty space; keep that of a session that has ended."""
+        del message
+        self.disarm()
+        if self.feed.session is not None:
+            self.stage = Stage()
+            self.view.recorded = self.feed.replay is not None
+            self.view.fit(None, anew=True)
+            self._show()
+
+    def on_emergency_changed(self, message: EmergencyChanged) -> None:
+        """Disarm once the emergency stop is engaged."""
+        if message.emergency.engaged and self.armed:
+            self.disarm()
+            self.notify(self._refusal(), severity="warning", markup=False)
+
+    def on_graph_changed(self, message: GraphChanged) -> None:
+        """Show what is new."""
+        update = message.update
+        self._rows = {row.name: row for row in update.topics}
+        came = self.stage.take(update, clock.now())
+        if self.stage.sent is not None and update.samples.get(self.stage.sent[1].kind.topic):
+            self.stage.sent = None
+        if came:
+            self.topics_changed()
+        if self.feed.front is self:
+            self._show()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Redraw all texts."""
+        del message
+        self.view.words_changed()
+        self._show()
+
+    @on(SpaceView.CameraMoved)
+    def _camera_moved(self) -> None:
+        self._show(by_user=True)
+
+    @on(SpaceView.PointerMoved)
+    def _pointer_moved(self) -> None:
+        self._show_status()
+
+    @on(SpaceView.Aimed)
+    def _aimed(self, message: SpaceView.Aimed) -> None:
+        self.view.renew(by_user=True)
+        self._show_armed()
+        if message.done:
+            self.run_worker(self.publish_aim(), group="aim")
+
+    @on(LayerRows.Opened)
+    def _layer_opened(self) -> None:
+        self.toggle_layer()
+
+    # Actions
+
+    async def ros2_command(self) -> str:
+        """Return what prints the topic of the chosen layer."""
+        layer = self.stage.layers.get(self.layer_rows.chosen)
+        return "" if layer is None else ros2_words.echo(layer.topic)
+
+    def next_angle(self) -> None:
+        """Look from the next of the three."""
+        angles = list(Angle)
+        view = self.view
+        angle = angles[(angles.index(view.camera.angle) + 1) % len(angles)]
+        view.camera = replace(view.camera, angle=angle)
+        self.fit() if view.fits else self._show(by_user=True)
+
+    def fit(self) -> None:
+        """Show everything."""
+        self.stage.follow = ""
+        self._place()
+        self.view.fit(self.stage.extent(), anew=True)
+        self._show(by_user=True)
+
+    def choose_follow(self) -> None:
+        """Ask which frame stays in the middle."""
+
+        def take(answer: str | None) -> None:
+            if answer:
+                self.stage.follow = answer.strip()
+                self.view.fits = not self.stage.follow
+                self._show(by_user=True)
+
+        self._ask_frame(lambda: _("Follow a frame"), lambda: _("no frame"), take)
+
+    def choose_fixed(self) -> None:
+        """Ask in which frame everything is drawn."""
+
+        def take(answer: str | None) -> None:
+            if answer:
+                self.disarm()
+                self.stage.wanted_fixed = answer.strip()
+                self.fit()
+
+        self._ask_frame(lambda: _("Fixed frame"), lambda: _("the robot's root"), take)
+
+    def _ask_frame(
+        self,
+        title: Callable[[], str],
+        none: Callable[[], str],
+        take: Callable[[str | None], None],
+    ) -> None:
+        frames = sorted(self.stage.buffer.frames)
+        if not frames:
+            words_ = _("No frame is known yet: nobody publishes /tf.")
+            self.notify(words_, severity="warning", markup=False)
+            return
+        choices = {NO_FRAME: f"({none()})", **{frame: plain(frame) for frame in frames}}
+        self.app.push_screen(ChoiceScreen(title, lambda: _("Which frame?"), choices), take)
+
+    def toggle_layer(self) -> None:
+        """Show or hide the chosen layer."""
+        chosen = self.layer_rows.chosen
+        layer = self.stage.layers.get(chosen)
+        if chosen == FRAMES:
+            self.stage.show_frames = not self.stage.show_frames
+        elif layer is not None:
+            layer.on = not layer.on
+            if not layer.on:
+                layer.forget()
+        self._layers_changed()
+
+    def only_layer(self) -> None:
+        """Hide all layers but the chosen one."""
+        chosen = self.layer_rows.chosen
+        self.stage.show_frames = chosen == FRAMES
+        for layer in self.stage.layers:
+            layer.on = layer.topic == chosen
+            if not layer.on:
+                layer.forget()
+        self._layers_changed()
+
+    def all_layers(self) -> None:
+        """Show all layers."""
+        self.stage.show_frames = True
+        for layer in self.stage.layers:
+            layer.on = True
+        self._layers_changed()
+
+    def _layers_changed(self) -> None:
+        self.topics_changed()
+        self._show(by_user=True)
+
+    # Goals
+
+    def arm_goal(self) -> None:
+        """Begin to aim a goal."""
+        self._arm(AimKind.GOAL)
+
+    def arm_initial_pose(self) -> None:
+        """Begin to aim an initial pose."""
+        self._arm(AimKind.INITIAL)
+
+    def _arm(self, kind: AimKind) -> None:
+        if reason := self._refusal():
+            self.notify(reason, severity="warning", markup=False)
+            return
+        view = self.view
+        if view.camera.angle is Angle.SIDE:
+            # From the side there is no place on the floor to point at.
+            view.camera = replace(view.camera, angle=Angle.ABOVE)
+        x_m, y_m, _z_m = view.camera.target
+        view.aim = Aim(kind, x_m, y_m)
+        if self.feed.graph is not None:
+            prepared = self.feed.graph.prepare_publisher(kind.topic, kind.type_name)
+            # If it cannot be created, publishing reports that.
+            prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
+        view.focus()
+        self._show(by_user=True)
+        self.refresh_bindings()
+
+    def disarm(self) -> None:
+        """Aim at nothing any more."""
+        if self.armed:
+            self.view.aim = None
+            self._show(by_user=True)
+            self.refresh_bindings()
+
+    async def publish_aim(self) -> None:
+        """Publish what is aimed, unless that is not allowed any more; disarm in any case."""
+        aim, graph, fixed = self.view.aim, self.feed.graph, self.stage.fixed
+        reason = self._refusal()
+        self.disarm()
+        if aim is None or graph is None:
+            return
+        if reason:
+            self.notify(reason, severity="warning", markup=False)
+            return
+        sent = graph.publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed))
+        if aim.kind is AimKind.GOAL:
+            self.stage.sent = fixed, aim
+        self._show(by_user=True)
+        self.run_worker(self._confirm(sent, aim, fixed), group="sent")
+
+    async def _confirm(self, sent: Future[int], aim: Aim, fixed: str) -> None:
+        try:
+            await asyncio.wait_for(asyncio.wrap_future(sent), SENT_WITHIN_S)
+        except asyncio.TimeoutError:
+            seconds = decimal(f"{SENT_WITHIN_S:g}")
+            failure = _("ROS did not accept it within {n} s").format(n=seconds)
+        except Exception as error:  # noqa: BLE001 - any failure is reported
+            failure = reason_words(error)
+        else:
+            told = words.sent(aim, fixed, len(self._listeners(aim.kind)))
+            self.notify(told, markup=False)
+            return
+        self.stage.sent = None
+        self.notify(failure, severity="error", markup=False)
+
+    def _refusal(self) -> str:
+        return words.refusal(
+            recorded=self.feed.replay is not None,
+            engaged=self.deck.emergency.state.engaged,
+            fixed=self.stage.fixed,
+        )
+
+    def _listeners(self, kind: AimKind) -> list[str]:
+        row = self._rows.get(kind.topic)
+        if row is None or not row.subscribers:
+            return []
+        return [names(row.subscribed_by) or str(row.subscribers)]
+
+    # Display
+
+    def _compose_picture(self, camera: Camera, columns: int, rows: int) -> CellPicture:
+        return self.stage.picture(camera, columns, rows, self.view.aim)
+
+    def _place(self) -> None:
+        self.stage.place(self.view.camera, clock.now())
+
+    def _show(self, *, by_user: bool = False) -> None:
+        """Show the current state."""
+        if not self.is_mounted:
+            return
+        view = self.view
+        self._place()
+        if self.stage.follow:
+            view.camera = self.stage.followed(view.camera)
+        elif view.aim is None:
+            view.fit(self.stage.extent())
+        view.show_words(*self._why_empty())
+        view.renew(by_user=by_user)
+        self.layer_rows.show_stage(self.stage)
+        self._show_lines()
+
+    def _why_empty(self) -> tuple[str, str]:
+        if self.stage.buffer.frames or any(layer.heard for layer in self.stage.layers):
+            return "", ""
+        update = self.feed.update
+        if update is not None and update.error:
+            return self.feed.blind, plain(update.error, 400)
+        return _("nothing to see yet"), _(
+            "Nobody publishes frames (/tf), a map, a scan, a cloud, a path or markers. Lesson 6 "
+            "and the profile robot do."
+        )
+
+    def _show_lines(self) -> None:
+        self._show_armed()
+        self._show_status()
+
+    def _show_armed(self) -> None:
+        line, aim = self.query_one("#space-armed", Static), self.view.aim
+        line.display = aim is not None
+        if aim is not None:
+            keys = self.deck.keys_of(PublishAim)[0], self.deck.keys_of(Disarm)[0]
+            line.update(words.armed(aim, self.stage.fixed, self._listeners(aim.kind), keys))
+
+    def _show_status(self) -> None:
+        room = self.view.size.width - 2
+        kept: list[str] = []
+        for piece in words.status(self.stage, self.view):
+            if Content("  ".join([*kept, piece])).cell_length <= room:
+                kept.append(piece)
+        self.query_one("#space-status", Static).update("  ".join(kept))

@@ -16,11 +16,12 @@ from robot.world.room import LIVING_ROOM
 from tui.panels.map.canvas import Canvas
 from tui.panels.map.driven_path import LEAST_M, MOST, DrivenPath
 from tui.panels.map.layers import Layers
-from tui.panels.map.legend import column, entries, rows, scale_bar
+from tui.panels.map.legend import column, entries, rows
 from tui.panels.map.reading import OccupancyGrid, goal_in, occupancy_in, pose_in
 from tui.panels.map.scene import FRONT, REAR, Scene, draw_scene, robot_corners
-from tui.panels.map.viewport import Extent, Viewport, bar_length_m, fitted
+from tui.panels.map.viewport import Extent, Viewport, fitted
 from tui.widgets.drawing import Line, cells_of
+from tui.widgets.scale_bar import bar_length_m, scale_bar
 
 ROOM = Extent(-1.0, 4.0, -2.0, 2.0)
 NEST = {"position": {"x": 0.0, "y": 0.0, "z": 0.0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}
@@ -78,9 +79,9 @@ def test_a_metre_is_as_long_across_as_upwards_with_x_right_and_y_up() -> None:
 @pytest.mark.parametrize("dots_per_m", [0.001, 0.3, 2.9, 12.0, 35.0, 900.0])
 def test_the_scale_bar_is_as_long_as_it_says(dots_per_m: float) -> None:
     view = Viewport(0.0, 0.0, dots_per_m, 40, 12)
-    metres = bar_length_m(view, 12)
+    metres = bar_length_m(view.dots_per_m, 12)
     assert 12 / 2.6 <= metres * dots_per_m / 2 <= 12 + 1e-9
-    bar = scale_bar(view)
+    bar = scale_bar(view.dots_per_m)
     assert abs(len(bar[0].text.rstrip()) - metres * dots_per_m / 2) <= 0.5
     assert bar[1].text == f"{metres:g} m"
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from space.drawing.braille import BLANK, characters, clipped
 from tui.widgets.drawing import LOOKS, Ink, Line
 
 if TYPE_CHECKING:
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
     from tui.panels.dots import Point
 
-_BLANK, _BRAILLE = 0x20, 0x2800
-_WEIGHTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], dtype=np.uint16)
 _LOOKS = ("", *LOOKS)
 _NUMBER = {look: number for number, look in enumerate(_LOOKS)}
 
@@ -52,10 +51,10 @@ class Canvas:
         self, start: Point, end: Point, look: str = "", dash: tuple[int, int] = (1, 0)
     ) -> None:
         """Draw a straight line; `dash` is how many dots are set and how many left out in turn."""
-        clipped = self._clipped(start, end)
-        if clipped is None:
+        inside = clipped(start, end, self.width, self.height)
+        if inside is None:
             return
-        (x0, y0), (x1, y1) = clipped
+        (x0, y0), (x1, y1) = inside
         steps = max(1, int(np.ceil(max(abs(x1 - x0), abs(y1 - y0)))))
         shares = np.linspace(0.0, 1.0, steps + 1)
         shares = shares[np.arange(steps + 1) % sum(dash) < dash[0]]
@@ -90,34 +89,11 @@ class Canvas:
 
     def lines(self) -> list[Line]:
         """Return the canvas as lines of ink; neighbours that look alike share one."""
-        cells = self._on.reshape(self.rows, 4, self.columns, 2)
-        bits = np.einsum("rycx,yx->rc", cells, _WEIGHTS)
-        codes = np.where(bits > 0, bits + _BRAILLE, _BLANK).astype("<u2")
+        codes = characters(self._on).astype("<u2")
         for place, char in self._signs.items():
             codes[place] = ord(char)
-        looks = np.where(codes == _BLANK, 0, self._looks)
+        looks = np.where(codes == BLANK, 0, self._looks)
         return [_line(codes[row], looks[row]) for row in range(self.rows)]
-
-    def _clipped(self, start: Point, end: Point) -> tuple[Point, Point] | None:
-        """The part of a line within the canvas (Liang–Barsky); None if there is none."""
-        first, last = 0.0, 1.0
-        for begin, way, most in (
-            (start[0], end[0] - start[0], self.width),
-            (start[1], end[1] - start[1], self.height),
-        ):
-            if way == 0.0:
-                if not 0 <= begin <= most:
-                    return None
-                continue
-            near, far = sorted((-begin / way, (most - begin) / way))
-            first, last = max(first, near), min(last, far)
-        if not first <= last:
-            return None
-        x, y = end[0] - start[0], end[1] - start[1]
-        return (
-            (start[0] + x * first, start[1] + y * first),
-            (start[0] + x * last, start[1] + y * last),
-        )
 
 
 def _line(codes: NDArray[np.uint16], looks: NDArray[np.uint8]) -> Line:

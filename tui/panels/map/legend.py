@@ -20,10 +20,10 @@ from tui.panels.map.scene import (
     TRUTH,
     grid_step_m,
 )
-from tui.panels.map.viewport import bar_length_m
 from tui.panels.sonar.bar import ink_of
 from tui.panels.sonar.words import remark
 from tui.widgets.drawing import Ink, Line, beside, cells_of, fit
+from tui.widgets.scale_bar import scale_bar
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from tui.panels.map.viewport import Viewport
     from tui.panels.sonar.words import Bounds
 
-BAR_CELLS = 12
-"""Maximum length of the scale bar."""
 GAP = "  "
 
 
@@ -65,7 +63,7 @@ def entries(
         metres = scene.pose.distance_to(scene.truth)
         words = _("true pose, {metres} m off").format(metres=decimal(f"{metres:.2f}"))
         said.append(LegendEntry(5, [Ink("◇ ", TRUTH), Ink(words)]))
-    said.append(LegendEntry(2, scale_bar(view)))
+    said.append(LegendEntry(2, scale_bar(view.dots_per_m)))
     said.append(LegendEntry(8, [Ink(_("x → right, y ↑ up"), "muted")]))
     words = _("· every {metres} m").format(metres=decimal(f"{grid_step_m(view):g}"))
     said.append(LegendEntry(9, [Ink(words, "muted")]))
@@ -87,14 +85,6 @@ def _ray(place: str, metres: float, bounds: Bounds) -> Line:
     words = remark(metres) or _("{metres} m").format(metres=figure(metres, 1))
     sign = BLIND_SIGN if math.isnan(metres) else FREE_SIGN if metres == math.inf else HIT_SIGN
     return [Ink(f"{sign} ", ink_of(metres, bounds)), Ink(f"{name} {words}")]
-
-
-def scale_bar(view: Viewport) -> Line:
-    """A bar for a round number of metres, as long as that is on the map."""
-    metres = bar_length_m(view, BAR_CELLS)
-    cells = max(1, round(metres * view.dots_per_m / 2))
-    bar = "├" + "─" * (cells - 2) + "┤" if cells > 1 else "│"
-    return [Ink(f"{bar} "), Ink(_("{metres} m").format(metres=decimal(f"{metres:g}")), "strong")]
 
 
 def column(said: Sequence[LegendEntry], width: int, height: int) -> list[Line]:

@@ -13,9 +13,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from tui.panels.dots import Point
 
-BAR_M = (1, 2, 5)
-"""First digits of the length of a scale bar."""
-
 
 @dataclass(frozen=True)
 class Extent:
@@ -91,10 +88,3 @@ def fitted(extent: Extent, columns: int, rows: int) -> Viewport:
         columns,
         rows,
     )
-
-
-def bar_length_m(field: Viewport, cells: int) -> float:
-    """The longest of 1, 2, 5, 10, ... metres, or fractions, that fits into this many cells."""
-    most_m = max(1, cells) * 2 / field.dots_per_m
-    power = 10.0 ** math.floor(math.log10(most_m))
-    return max(digit * power for digit in BAR_M if digit * power <= most_m * (1 + 1e-9))

@@ -1,0 +1,199 @@
+"""A robot in a room, as the Space screen is told of it: map, scan, cloud, path, markers, frames."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from graph.data import FrameRow, GraphUpdate, Sample, TopicRow
+from robot.motion.odometry import Pose
+from space.buffer import Stamped
+from space.transform import Transform
+from tests.tui.recorded_lesson import lesson_update, sample, topic
+from tests.tui.recorded_map import driven, odometry, reading, room, stamped
+
+CLOUD, SCAN = "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/LaserScan"
+PATH, MARKERS = "nav_msgs/msg/Path", "visualization_msgs/msg/MarkerArray"
+RANGE, GRID = "sensor_msgs/msg/Range", "nav_msgs/msg/OccupancyGrid"
+ODOMETRY, POSE, FLOAT = (
+    "nav_msgs/msg/Odometry",
+    "geometry_msgs/msg/PoseStamped",
+    "std_msgs/msg/Float32",
+)
+SPACE_TOPICS: tuple[TopicRow, ...] = (
+    topic("/cliff", RANGE, 10.0, 40),
+    topic("/depth/points", CLOUD, 10.0, 4_800_000),
+    topic("/goal_pose", POSE, None, age_s=7.0, count=1),
+    topic("/map", GRID, None, age_s=80.0, count=1),
+    topic("/markers", MARKERS, 1.0, 900),
+    topic("/odom", ODOMETRY, 50.0, 720),
+    topic("/plan", PATH, 1.0, 2000),
+    topic("/scan", SCAN, 10.0, 1500),
+    topic("/sensor/sonar_front", FLOAT, 100.0, 8),
+    topic("/sensor/sonar_rear", FLOAT, 100.0, 8),
+)
+
+
+def header(frame: str) -> dict[str, Any]:
+    """A header without a stamp."""
+    return {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
+
+
+def pose_tree(transform: Transform) -> dict[str, Any]:
+    """A geometry_msgs/Pose."""
+    return {
+        "position": dict(zip("xyz", transform.translation, strict=True)),
+        "orientation": dict(zip("xyzw", transform.rotation, strict=True)),
+    }
+
+
+def flat(pose: Pose, z_m: float = 0.0) -> Transform:
+    """A pose on the floor as a transform."""
+    return Transform.from_rpy((pose.x_m, pose.y_m, z_m), (0.0, 0.0, pose.heading_rad))
+
+
+def frame_row(parent: str, child: str, at: Transform, *, static: bool = True) -> FrameRow:
+    """A frame as the updates have it."""
+    return FrameRow(Stamped(parent, child, 10.0, at, static), 1, None if static else 20.0)
+
+
+def scan(turned: float = 0.0, rays: int = 240) -> Sample:
+    """A scan of the room from the lidar."""
+    world, _path = driven()
+    at = flat(world.pose) @ Transform((0.15, 0.0, 0.2))
+    angles = np.linspace(-math.pi, math.pi, rays, endpoint=False)
+    ranges = [
+        world.room.distance(at.translation[0], at.translation[1], world.pose.heading_rad + angle)
+        for angle in angles
+    ]
+    value = {
+        "header": header("laser"),
+        "angle_min": -math.pi + turned,
+        "angle_increment": 2 * math.pi / rays,
+        "range_min": 0.05,
+        "range_max": 12.0,
+        "ranges": np.array(ranges, dtype=np.float32),
+    }
+    return sample("/scan", SCAN, value)
+
+
+def cloud_tree(places: np.ndarray[Any, Any], frame: str, **more: Any) -> dict[str, Any]:
+    """A cloud of float32 x, y, z."""
+    fields = [
+        {"name": name, "offset": 4 * at, "datatype": 7, "count": 1} for at, name in enumerate("xyz")
+    ]
+    tree = {
+        "header": header(frame),
+        "height": 1,
+        "width": len(places),
+        "fields": fields,
+        "is_bigendian": False,
+        "point_step": 12,
+        "row_step": 12 * len(places),
+        "data": places.astype("<f4").tobytes(),
+        "is_dense": False,
+    }
+    return {**tree, **more}
+
+
+@lru_cache
+def boxes() -> np.ndarray[Any, Any]:
+    """Points of a box and a ball in front of the camera, seen in its frame (x ahead)."""
+    rng = np.random.default_rng(3)
+    faces = rng.uniform(-0.25, 0.25, (6000, 3))
+    faces[np.arange(6000), rng.integers(0, 3, 6000)] = rng.choice([-0.25, 0.25], 6000)
+    ball = rng.normal(size=(4000, 3))
+    ball *= 0.3 / np.linalg.norm(ball, axis=1)[:, None]
+    return np.concatenate([faces + np.array([1.2, 0.5, 0.0]), ball + np.array([1.5, -0.5, 0.05])])
+
+
+def marker(
+    number: int, kind: int, at: Transform, size: Sequence[float], **more: Any
+) -> dict[str, Any]:
+    """A visualization_msgs/Marker."""
+    colour = {"r": 1.0, "g": 0.5, "b": 0.0, "a": 1.0}
+    tree = {
+        "header": header("map"),
+        "ns": "things",
+        "id": number,
+        "type": kind,
+        "action": 0,
+        "pose": pose_tree(at),
+        "scale": dict(zip("xyz", size, strict=True)),
+        "color": colour,
+        "lifetime": {"sec": 0, "nanosec": 0},
+        "points": [],
+        "colors": [],
+        "text": "",
+    }
+    return {**tree, **more}
+
+
+def path(frame: str = "map") -> Sample:
+    """A plan from the robot to the goal."""
+    world, _path = driven()
+    goal = Pose(3.2, 1.4)
+    steps = [
+        Pose(
+            world.pose.x_m + (goal.x_m - world.pose.x_m) * share,
+            world.pose.y_m + (goal.y_m - world.pose.y_m) * share + 0.3 * math.sin(share * math.pi),
+        )
+        for share in np.linspace(0, 1, 20).tolist()
+    ]
+    poses = [{"header": header(frame), "pose": pose_tree(flat(pose))} for pose in steps]
+    return sample("/plan", PATH, {"header": header(frame), "poses": poses})
+
+
+def frames() -> tuple[FrameRow, ...]:
+    """The frames of the robot where it has driven to."""
+    world, _path = driven()
+    return (
+        frame_row("odom", "base_link", flat(world.pose), static=False),
+        frame_row("base_link", "camera_link", Transform((0.2, 0.0, 0.3))),
+        frame_row("base_link", "laser", Transform((0.15, 0.0, 0.2))),
+        frame_row("map", "odom", Transform(), static=False),
+    )
+
+
+def floor() -> Sample:
+    """The room of the simulated robot, with a stamp."""
+    found = room("map")
+    return replace(found, value={**found.value, "header": header("map")})
+
+
+def space_update(
+    rows: Mapping[str, Mapping[str, Any]] | None = None,
+    frame_rows: tuple[FrameRow, ...] | None = None,
+    **samples: tuple[Sample, ...],
+) -> GraphUpdate:
+    """The graph with all of it; by topic, without slashes, what it says instead."""
+    _world, way = driven()
+    markers = [
+        marker(1, 1, Transform((3.6, 0.4, 0.3)), (0.4, 0.4, 0.6)),
+        marker(2, 9, Transform((3.6, 0.4, 0.9)), (0.1, 0.1, 0.1), text="charger"),
+    ]
+    cliff = {"header": header("base_link"), "field_of_view": 0.4, "range": 0.8, "range_max": 2.0}
+    said = {
+        "cliff": (sample("/cliff", RANGE, cliff),),
+        "depth_points": (sample("/depth/points", CLOUD, cloud_tree(boxes(), "camera_link")),),
+        "goal_pose": (stamped("/goal_pose", Pose(3.2, 1.4), "map"),),
+        "map": (floor(),),
+        "markers": (sample("/markers", MARKERS, {"markers": markers}),),
+        "odom": tuple(odometry(pose, at / 10) for at, pose in enumerate(way)),
+        "plan": (path(),),
+        "scan": (scan(),),
+        "sensor_sonar_front": (reading("front", 1.1),),
+        "sensor_sonar_rear": (reading("rear", math.inf),),
+        **samples,
+    }
+    changed = rows or {}
+    update = lesson_update(
+        topics=tuple(replace(row, **changed.get(row.name, {})) for row in SPACE_TOPICS),
+        samples={group[0].topic: group for group in said.values() if group},
+    )
+    return replace(update, frames=frames() if frame_rows is None else frame_rows)

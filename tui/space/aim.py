@@ -1,0 +1,89 @@
+"""A goal or an initial pose that is about to be published: where, and with what heading."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from robot.topics import GOAL_POSE, INITIAL_POSE
+from space.drawing.paints import Paint
+from space.drawing.shapes import Strokes, arrow, places
+from space.transform import Transform, quaternion_from_rpy
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from graph.data import Value
+    from space.drawing.shapes import Shape
+
+COVARIANCE = {0: 0.25, 7: 0.25, 35: (math.pi / 12) ** 2}
+"""What RViz sends: half a metre and 15 degrees, as variances in a 6x6 matrix."""
+ARROW_DOTS, CROSS_DOTS = 26.0, 7.0
+HEADING_STEP_RAD = math.radians(15)
+
+
+class AimKind(Enum):
+    """What can be aimed: topic and type."""
+
+    GOAL = (GOAL_POSE, "geometry_msgs/msg/PoseStamped")
+    INITIAL = (INITIAL_POSE, "geometry_msgs/msg/PoseWithCovarianceStamped")
+
+    @property
+    def topic(self) -> str:
+        """Where it is published."""
+        return self.value[0]
+
+    @property
+    def type_name(self) -> str:
+        """The type of its message."""
+        return self.value[1]
+
+
+@dataclass(frozen=True)
+class Aim:
+    """Something to be published, in the fixed frame."""
+
+    kind: AimKind
+    x_m: float
+    y_m: float
+    heading_rad: float = 0.0
+
+    def shifted(self, right_m: float, up_m: float) -> Aim:
+        """Return it at another place."""
+        return replace(self, x_m=self.x_m + right_m, y_m=self.y_m + up_m)
+
+    def turned(self, steps: int) -> Aim:
+        """Return it with the heading this many steps to the left."""
+        heading = math.remainder(self.heading_rad + steps * HEADING_STEP_RAD, math.tau)
+        return replace(self, heading_rad=heading)
+
+    def towards(self, x_m: float, y_m: float) -> Aim:
+        """Return it with the heading to another place."""
+        return replace(self, heading_rad=math.atan2(y_m - self.y_m, x_m - self.x_m))
+
+    def shapes(self, dots_per_m: float) -> list[Shape]:
+        """Return an arrow with a cross-hair, of a size that is seen whatever the scale."""
+        at = Transform.from_rpy((self.x_m, self.y_m, 0.0), (0.0, 0.0, self.heading_rad))
+        arm = CROSS_DOTS / dots_per_m
+        x, y = self.x_m, self.y_m
+        cross = Strokes(
+            places((x - arm, y, 0.0), (x, y - arm, 0.0)),
+            places((x + arm, y, 0.0), (x, y + arm, 0.0)),
+            Paint.WARN,
+        )
+        return [cross, arrow(at, ARROW_DOTS / dots_per_m, Paint.WARN)]
+
+    def message(self, frame: str) -> Mapping[str, Value]:
+        """Return the message, with the stamp 0: the newest transform is meant, by any clock."""
+        x, y, z, w = quaternion_from_rpy(0.0, 0.0, self.heading_rad)
+        pose: dict[str, Value] = {
+            "position": {"x": self.x_m, "y": self.y_m, "z": 0.0},
+            "orientation": {"x": x, "y": y, "z": z, "w": w},
+        }
+        header: dict[str, Value] = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
+        if self.kind is AimKind.GOAL:
+            return {"header": header, "pose": pose}
+        covariance = [COVARIANCE.get(place, 0.0) for place in range(36)]
+        return {"header": header, "pose": {"pose": pose, "covariance": covariance}}

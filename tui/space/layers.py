@@ -1,0 +1,144 @@
+"""The layers of the picture: one for each topic of a type that can be drawn."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from graph.data import Trouble
+from robot.topics import SONAR_FRONT, SONAR_REAR
+from space.reading.fields import UnreadableError
+from space.reading.kinds import KINDS, LayerKind, NewestReader
+from space.reading.scans import read_sonar
+from text.sentences import reason_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from graph.data import GraphUpdate, TopicRow
+    from space.reading.kinds import LayerReader
+
+FLOAT = "std_msgs/msg/Float32"
+SONARS = {SONAR_FRONT: "sonar_front_link", SONAR_REAR: "sonar_rear_link"}
+"""Topics of the course with bare distances, and the frames in which they are measured."""
+FLEETING = frozenset(
+    {
+        FLOAT,
+        "sensor_msgs/msg/LaserScan",
+        "sensor_msgs/msg/PointCloud2",
+        "sensor_msgs/msg/Range",
+    }
+)
+"""Measurements: once nothing more arrives, what came last is no longer so."""
+
+
+class SpaceLayer:
+    """What one topic shows."""
+
+    def __init__(self, topic: str, type_name: str, kind: LayerKind) -> None:
+        """Begin without a message, shown as soon as there is one."""
+        self.topic = topic
+        self.type_name = type_name
+        self.on = True
+        self.every = kind.every
+        self._takes_all = kind.every or kind.grows
+        self.reader: LayerReader = kind.make()
+        self.row: TopicRow | None = None
+        self.refused = ""
+        """Why the newest message cannot be drawn."""
+        self.apart = ""
+        """Why what it shows cannot be placed."""
+        self.frame = ""
+        """The frame of what came last."""
+        self.heard = False
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether it belongs into the picture."""
+        if not self.on:
+            return False
+        return self.type_name not in FLEETING or self.row is None or self.row.trouble is None
+
+    def read(self, update: GraphUpdate, now_s: float) -> bool:
+        """Take the messages of this update; return whether there were any."""
+        samples = update.samples.get(self.topic, ())
+        for sample in samples if self._takes_all else samples[-1:]:
+            self.heard = True
+            if sample.type_name != self.type_name:
+                continue
+            try:
+                self.reader.read(sample.value, now_s)
+                self.refused = ""
+            except UnreadableError as error:
+                self.refused = reason_of(error)
+        return bool(samples)
+
+    def forget(self) -> None:
+        """Discard what has come."""
+        self.reader.clear()
+        self.refused = self.apart = self.frame = ""
+
+
+class SpaceLayers:
+    """All layers, by topic."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self._layers: dict[str, SpaceLayer] = {}
+
+    def __iter__(self) -> Iterator[SpaceLayer]:
+        """Yield them, sorted by topic."""
+        return iter(self._layers.values())
+
+    def get(self, topic: str) -> SpaceLayer | None:
+        """Return the layer of a topic."""
+        return self._layers.get(topic)
+
+    def see(self, update: GraphUpdate) -> bool:
+        """Add and drop layers by the topics there are; return whether any came or went."""
+        before = self._layers
+        found: dict[str, SpaceLayer] = {}
+        for row in update.topics:
+            there = row.publishers or row.own_publishers
+            known = before.get(row.name)
+            if known is not None and (there or known.heard):
+                known.row = row
+                found[row.name] = known
+            elif there and (kind := _kind_of(row.name, row.type_names)):
+                found[row.name] = SpaceLayer(row.name, *kind)
+                found[row.name].row = row
+        for topic, layer in before.items():
+            if layer.heard and topic not in found:
+                # Its publisher has gone, and with it the topic.
+                layer.row = None if layer.row is None else _deserted(layer.row)
+                found[topic] = layer
+        self._layers = dict(sorted(found.items()))
+        return self._layers.keys() != before.keys()
+
+    def clear(self) -> None:
+        """Forget all layers."""
+        self._layers.clear()
+
+    def watched(self) -> set[str]:
+        """Return the topics of which the newest message is needed."""
+        return {layer.topic for layer in self if layer.on and not layer.every}
+
+    def followed(self) -> set[str]:
+        """Return the topics of which every message is needed."""
+        return {layer.topic for layer in self if layer.on and layer.every}
+
+
+def _kind_of(topic: str, type_names: Iterable[str]) -> tuple[str, LayerKind] | None:
+    for name in type_names:
+        if name in KINDS:
+            return name, KINDS[name]
+        if name == FLOAT and topic in SONARS:
+            read = partial(read_sonar, frame_id=SONARS[topic])
+            return name, LayerKind(lambda read=read: NewestReader(read))  # type: ignore[misc]
+    return None
+
+
+def _deserted(row: TopicRow) -> TopicRow:
+    from dataclasses import replace
+
+    return replace(row, publishers=0, trouble=Trouble.NO_PUBLISHER, hz=None)

@@ -1,0 +1,88 @@
+"""The list of layers beside the picture: what is shown, how often it comes, and what is wrong."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING
+
+from graph.data import Trouble
+from text.figures import figure
+from text.i18n import _, localized
+from text.plain import plain
+from tui.widgets.rows import MARK, Cell, Column, Row, Rows
+from tui.widgets.trouble import advice
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from textual.events import Click
+
+    from tui.space.layers import SpaceLayer
+    from tui.space.stage import Stage
+
+FRAMES = "frames"
+"""Key of the layer of frames; those of topics begin with a slash."""
+ON, OFF = "●", "○"
+RATE = 6
+LONGEST = 300
+
+
+class LayerRows(Rows):
+    """Layers, below each what is wrong with it; a click on its mark shows or hides it."""
+
+    DEFAULT_CSS = """
+    LayerRows { width: 29; padding-right: 1; border-left: solid $panel; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__(header=False, id="space-layers")
+
+    def on_click(self, event: Click) -> None:
+        """Choose a layer; on its mark, show or hide it."""
+        super().on_click(event)
+        if event.x <= MARK + 2 and event.chain == 1:
+            self.action_open()
+
+    def show_stage(self, stage: Stage) -> None:
+        """Show the layers of a stage."""
+        width = max(8, self.size.width - MARK - 3)
+        frames = len(stage.buffer.frames)
+        rows = [_head(FRAMES, _("frames"), str(frames or "–"), on=stage.show_frames)]
+        if stage.show_frames:
+            words = localized(stage.frames_why) if frames else _("nobody publishes /tf")
+            rows += _words(words, width)
+        for layer in stage.layers:
+            rate = "–" if layer.row is None or layer.row.hz is None else figure(layer.row.hz, 1)
+            rows.append(_head(layer.topic, layer.topic, rate if layer.on else "", on=layer.on))
+            if layer.on:
+                trouble = trouble_of_layer(layer)
+                rows += _words(trouble, width)
+                if not trouble and layer.frame:
+                    rows.append(Row("", (Cell(""), Cell(plain(layer.frame, width), "dim"))))
+        columns = [Column("", 1), Column(""), Column("", RATE, right=True)]
+        self.show(columns, rows)
+
+
+def _head(key: str, name: str, rate: str, *, on: bool) -> Row:
+    mark = Cell(ON, "good") if on else Cell(OFF, "dim")
+    return Row(key, (mark, Cell(plain(name), "" if on else "dim"), Cell(rate, "dim")))
+
+
+def _words(words: str, width: int) -> Iterator[Row]:
+    for line in textwrap.wrap(plain(words, LONGEST), max(8, width)):
+        yield Row("", (Cell(""), Cell(line, "warn")))
+
+
+def trouble_of_layer(layer: SpaceLayer) -> str:
+    """Return why a layer is not in the picture, or not all of it; empty if it is."""
+    row = layer.row
+    if row is not None and row.trouble is not None:
+        headline, detail = advice(row)
+        explained = row.trouble in {Trouble.QOS_MISMATCH, Trouble.UNKNOWN_TYPE}
+        return f"{headline}: {detail}" if explained and detail else headline
+    if row is not None and layer.type_name not in row.type_names:
+        return _("its type is no longer {type}").format(type=layer.type_name)
+    for words in (layer.refused, layer.apart, layer.reader.remark):
+        if words:
+            return localized(words)
+    return ""

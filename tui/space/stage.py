@@ -1,0 +1,162 @@
+"""The picture of all layers: placed in the fixed frame, seen by the camera."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robot.world.world import Body
+from space.buffer import NoTransformError, TransformBuffer
+from space.drawing.extent import SpaceBox, extent_of
+from space.drawing.paints import Paint
+from space.drawing.raster import Raster
+from space.drawing.scene import draw
+from space.drawing.shapes import Strokes
+from space.placing import Placer, cube_of, frame_shapes, robot_root
+from space.transform import Transform
+from text.sentences import say
+from tui.space.layers import SONARS, SpaceLayers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from graph.data import FrameRow, GraphUpdate
+    from space.drawing.camera import Camera
+    from space.drawing.raster import CellPicture
+    from space.drawing.shapes import Shape
+    from space.reading.fields import Drawable
+    from tui.space.aim import Aim
+
+BODY = Body()
+BASE = "base_link"
+AROUND = 0.05
+"""Share of the picture that is left free around everything when it is fitted."""
+LEAST_M = 2.0
+"""Less than this is never made to fill the picture."""
+MESH_DOTS = 16.0
+"""The least width of the meshes of the floor."""
+MOST_MESHES = 20
+
+
+def _mounts() -> dict[str, tuple[str, Transform]]:
+    """Where the sonars of the course are, for robots that do not publish it."""
+    front, rear = SONARS.values()
+    ahead, behind = BODY.length_m - BODY.behind_m, -BODY.behind_m
+    return {
+        front: (BASE, Transform((ahead, 0.0, 0.0))),
+        rear: (BASE, Transform.from_rpy((behind, 0.0, 0.0), (0.0, 0.0, math.pi))),
+    }
+
+
+class Stage:
+    """What is known of space, and how it is to be seen."""
+
+    def __init__(self) -> None:
+        """Begin with an empty space."""
+        self.buffer = TransformBuffer()
+        self.layers = SpaceLayers()
+        self.show_frames = True
+        self.frames_why = ""
+        """Which frames are not joined to the fixed one."""
+        self.wanted_fixed = ""
+        """The fixed frame that the user has chosen; empty for the robot's root."""
+        self.follow = ""
+        """The frame that stays in the middle; empty for none."""
+        self.sent: tuple[str, Aim] | None = None
+        """The goal published last, and its frame, until the graph shows it."""
+        self._placer = Placer(_mounts())
+        self._shapes: list[Shape] = []
+
+    @property
+    def fixed(self) -> str:
+        """The frame in which everything is drawn; empty while there is none."""
+        if self.wanted_fixed in self.buffer.frames:
+            return self.wanted_fixed
+        return robot_root(self.buffer, (layer.frame for layer in self.layers if layer.frame))
+
+    def take(self, update: GraphUpdate, now_s: float) -> bool:
+        """Take in an update; return whether layers came or went."""
+        self.buffer.add(row.newest for row in update.frames if not row.fault)
+        self._drop_frames(update.frames)
+        changed = self.layers.see(update)
+        for layer in self.layers:
+            if layer.on:
+                layer.read(update, now_s)
+        return changed
+
+    def _drop_frames(self, rows: Iterable[FrameRow]) -> None:
+        """Begin anew once frames have gone: the buffer keeps what it knows for ever."""
+        there = {row.newest.child for row in rows}
+        known = {frame for frame in self.buffer.frames if self.buffer.newest(frame)}
+        if there and known - there:
+            newest = [row.newest for row in rows if not row.fault]
+            self.buffer.clear()
+            self.buffer.add(newest)
+
+    def place(self, camera: Camera, now_s: float) -> None:
+        """Place all layers, and note at each what cannot be placed."""
+        shown = {layer.topic: layer.reader.shown(now_s) for layer in self.layers if layer.is_drawn}
+        for layer in self.layers:
+            if found := next((one.frame for one in shown.get(layer.topic, ()) if one.frame), ""):
+                layer.frame = found
+        fixed, cube_m = self.fixed, cube_of(camera)
+        self._shapes = []
+        for layer in self.layers:
+            drawables: Iterable[Drawable] = shown.get(layer.topic, ())
+            shapes, layer.apart = self._placer.place(self.buffer, fixed, drawables, cube_m)
+            self._shapes += shapes
+        self.frames_why = ""
+        if self.show_frames and fixed in self.buffer.frames:
+            shapes, apart = frame_shapes(self.buffer, fixed, camera)
+            self._shapes += shapes
+            if apart:
+                names = ", ".join(apart[:3]) + (", …" if len(apart) > 3 else "")
+                self.frames_why = say("not joined to {fixed}: {frames}", fixed=fixed, frames=names)
+
+    def extent(self) -> SpaceBox | None:
+        """Return the box that holds everything placed, with a margin."""
+        found = extent_of(self._shapes)
+        return None if found is None else found.widened(AROUND, LEAST_M)
+
+    def followed(self, camera: Camera) -> Camera:
+        """Return the camera moved to the frame that is followed, if that is known."""
+        if not self.follow:
+            return camera
+        try:
+            at = self.buffer.find(self.fixed, self.follow)
+        except NoTransformError:
+            return camera
+        return replace(camera, target=at.translation)
+
+    def picture(self, camera: Camera, columns: int, rows: int, aim: Aim | None) -> CellPicture:
+        """Return the picture of what was placed last."""
+        raster = Raster(columns, rows)
+        shapes = [*_ground(camera, raster), *self._shapes]
+        if self.sent is not None and self.sent[0] == self.fixed:
+            shapes += self.sent[1].shapes(camera.dots_per_m)
+        if aim is not None:
+            shapes += aim.shapes(camera.dots_per_m)
+        draw(raster, camera, shapes)
+        return raster.cells()
+
+
+def _ground(camera: Camera, raster: Raster) -> list[Shape]:
+    """The meshes of the floor about the target: without them a perspective has no depth."""
+    if not camera.turns:
+        return []
+    step = 1.0
+    while step * camera.dots_per_m < MESH_DOTS:
+        step *= 2
+    reach = min(raster.width / 2 / camera.dots_per_m / step, MOST_MESHES)
+    lines = np.arange(-math.ceil(reach), math.ceil(reach) + 1)
+    middle = [round(value / step) for value in camera.target[:2]]
+    ends = []
+    for side in (lines[0], lines[-1]):
+        along = np.full_like(lines, side)
+        one = np.stack([lines + middle[0], along + middle[1], 0 * lines], axis=1)
+        other = np.stack([along + middle[0], lines + middle[1], 0 * lines], axis=1)
+        ends.append((np.concatenate([one, other]) * step).astype(np.float32))
+    return [Strokes(ends[0], ends[1], Paint.MUTED)]

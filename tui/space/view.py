@@ -1,0 +1,378 @@
+"""The picture of space: it holds the camera, and what mouse and keys do to it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, cast
+
+import numpy as np
+from rich.color import Color
+from rich.segment import Segment
+from rich.style import Style
+from textual.binding import Binding, BindingType
+from textual.geometry import Region
+from textual.message import Message
+from textual.strip import Strip
+from textual.widget import Widget
+
+from space.drawing.camera import Angle, Camera
+from space.drawing.paints import Paint, rgb_of
+from tui.widgets.one_style import OneStyle
+from tui.widgets.words import word_strips
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from textual.events import (
+        MouseDown,
+        MouseMove,
+        MouseScrollDown,
+        MouseScrollUp,
+        MouseUp,
+        Resize,
+    )
+    from textual.timer import Timer
+
+    from space.drawing.extent import SpaceBox
+    from space.drawing.raster import CellPicture
+    from tui.space.aim import Aim
+    from tui.terminal.bandwidth import HasBandwidth
+
+PAINTED = ("text", "muted", "accent", "second", "good", "warn", "bad", "free", "wall", "maybe")
+ZOOM = 1.25
+"""The factor of one step."""
+PAN_CELLS = 4
+TURN_RAD = math.radians(7.5)
+DRAG_RAD = math.radians(2.0)
+"""By a drag of one dot."""
+LEAST_DRAG_DOTS = 6.0
+"""A shorter way of the mouse is a click, and gives no heading."""
+JUMP = 3
+"""A run of unchanged cells this short is cheaper to redraw than to skip."""
+RIGHT_BUTTON = 3
+
+
+class _Drag(NamedTuple):
+    x: float
+    y: float
+    begun: tuple[float, float]
+    turns: bool
+    aims: bool
+
+
+class SpaceView(OneStyle, Widget, can_focus=True):
+    """Shows a picture that `compose_picture` makes for a camera and a size in cells."""
+
+    class CameraMoved(Message):
+        """The user has moved the camera."""
+
+    class PointerMoved(Message):
+        """The mouse is over another place."""
+
+    class Aimed(Message):
+        """What is aimed was moved; `done` if the mouse was let go after a drag."""
+
+        def __init__(self, *, done: bool) -> None:
+            super().__init__()
+            self.done = done
+
+    ALLOW_SELECT = False
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("left", "pan(-1, 0)", show=False),
+        Binding("right", "pan(1, 0)", show=False),
+        Binding("up", "pan(0, -1)", show=False),
+        Binding("down", "pan(0, 1)", show=False),
+        Binding("ctrl+left", "turn(1, 0)", show=False),
+        Binding("ctrl+right", "turn(-1, 0)", show=False),
+        Binding("ctrl+up", "turn(0, 1)", show=False),
+        Binding("ctrl+down", "turn(0, -1)", show=False),
+        Binding("plus,equals_sign", "closer(1)", show=False),
+        Binding("minus,underscore", "closer(-1)", show=False),
+        Binding("pageup", "zoom(1)", show=False),
+        Binding("pagedown", "zoom(-1)", show=False),
+    ]
+    COMPONENT_CLASSES: ClassVar[set[str]] = {f"space--{name}" for name in PAINTED}
+    DEFAULT_CSS = """
+    SpaceView {
+        width: 1fr; height: 1fr; min-height: 3;
+        .space--text { color: $foreground; }
+        .space--muted { color: $foreground 35%; }
+        .space--accent { color: $text-accent; }
+        .space--second { color: $text-primary; text-style: bold; }
+        .space--good { color: $text-success; text-style: bold; }
+        .space--warn { color: $text-warning; text-style: bold; }
+        .space--bad { color: $text-error; }
+        .space--free { color: $foreground 12%; }
+        .space--wall { color: $foreground 80%; }
+        .space--maybe { color: $foreground 40%; }
+    }
+    """
+
+    def __init__(
+        self, compose_picture: Callable[[Camera, int, int], CellPicture], *, id: str | None = None
+    ) -> None:
+        super().__init__(id=id)
+        self.camera = Camera()
+        self.aim: Aim | None = None
+        """What is aimed; None while nothing is armed."""
+        self.fits = True
+        """Whether the camera shows everything, until the user moves it."""
+        self.recorded = False
+        """Whether a recording is played, which has the keys + and - for its speed."""
+        self._make_picture = compose_picture
+        self._picture: CellPicture | None = None
+        self._words = ("", "")
+        self._fitted: SpaceBox | None = None
+        self._drag: _Drag | None = None
+        self._pointer: tuple[float, float] | None = None
+        self._timer: Timer | None = None
+        self._styles: dict[tuple[int, int], Style] = {}
+        self._colours: dict[int, Color | None] = {}
+        self._theme: object = None
+
+    # The picture
+
+    @property
+    def dots(self) -> tuple[int, int]:
+        """Width and height of the picture in dots."""
+        return 2 * self.size.width, 4 * self.size.height
+
+    @property
+    def pointer_place(self) -> tuple[float, float, float] | None:
+        """Where the mouse points, in the fixed frame; None if it is elsewhere."""
+        if self._pointer is None:
+            return None
+        width, height = self.dots
+        if self.camera.angle is Angle.SIDE:
+            x, y = (np.array([value]) for value in self._pointer)
+            begins, _ways = self.camera.rays(x, y, width, height)
+            return float(begins[0, 0]), self.camera.target[1], float(begins[0, 2])
+        place = self.camera.floor_at(*self._pointer, width, height)
+        return None if place is None else (*place, 0.0)
+
+    def show_words(self, headline: str, detail: str = "") -> None:
+        """Show why there is nothing to see, in place of the picture; empty to show it again."""
+        if (headline, detail) != self._words:
+            self._words = headline, detail
+            self.refresh()
+
+    def fit(self, box: SpaceBox | None, *, anew: bool = False) -> None:
+        """Show all of a box, if the camera is to show everything and does not do so already."""
+        if anew:
+            self.fits, self._fitted = True, None
+        width, height = self.dots
+        if not self.fits or box is None or not width or not height:
+            return
+        if self._fitted is None or not self._fitted.holds(box):
+            self._fitted = box if self._fitted is None else box.widened(0.08, 0.0)
+            box = self._fitted
+            self.camera = self.camera.fitting(box.least, box.most, width, height)
+
+    def renew(self, *, by_user: bool = False) -> None:
+        """Draw the picture anew; one that the user has not asked for waits for the terminal."""
+        if not self.is_mounted or not self.size.width or not self.size.height:
+            return
+        if not by_user and (wait_s := cast("HasBandwidth", self.app).bandwidth.wait_s()):
+            if self._timer is None:
+                self._timer = self.set_timer(wait_s, self._look_again)
+            return
+        had, now = self._picture, self._make_picture(self.camera, *self.size)
+        if had is None or had.codes.shape != now.codes.shape:
+            self._picture = now
+            self.refresh()
+            return
+        if not by_user:
+            now = now.steadied(had)
+        self._picture = now
+        if not self._words[0] and (regions := _regions(now.changed(had))):
+            self.refresh(*regions)
+
+    def _look_again(self) -> None:
+        self._timer = None
+        self.renew()
+
+    def on_resize(self, event: Resize) -> None:
+        """Draw at the new size."""
+        del event
+        self._fitted = None
+        self.post_message(self.CameraMoved())
+
+    def words_changed(self) -> None:
+        """Draw in the current theme and language."""
+        self._theme = None
+        self.refresh()
+
+    def render_line(self, y: int) -> Strip:
+        """One line of the picture, or of the words in place of it."""
+        width, base = self.size.width, self.rich_style
+        if self._words[0]:
+            strips = word_strips(self._words, width, base, self.app.console, centred=True)
+            line = y - max(0, (self.size.height - len(strips)) // 2)
+            return strips[line] if 0 <= line < len(strips) else Strip.blank(width, base)
+        picture = self._picture
+        if picture is None or y >= len(picture.codes) or picture.codes.shape[1] != width:
+            return Strip.blank(width, base)
+        self._check_theme()
+        looks = picture.front[y].astype(np.uint16) << 8 | picture.back[y]
+        text = picture.codes[y].astype("<u2").tobytes().decode("utf-16-le", "replace")
+        starts = [0, *(np.flatnonzero(np.diff(looks)) + 1).tolist()]
+        ends = (*starts[1:], len(text))
+        segments = [
+            Segment(text[start:end], self._style(int(looks[start]) >> 8, int(looks[start]) & 255))
+            for start, end in zip(starts, ends, strict=True)
+        ]
+        return Strip(segments, width)
+
+    def _check_theme(self) -> None:
+        theme = (self.app.theme, self.rich_style.bgcolor)
+        if theme != self._theme:
+            self._theme = theme
+            self._styles.clear()
+            self._colours.clear()
+
+    def _style(self, front: int, back: int) -> Style:
+        style = self._styles.get((front, back))
+        if style is None:
+            style = self.rich_style + Style.from_color(
+                self._colour(front) if front else None, self._colour(back) if back else None
+            )
+            if front in {Paint.SECOND, Paint.GOOD, Paint.WARN}:
+                style += Style(bold=True)
+            self._styles[front, back] = style
+        return style
+
+    def _colour(self, paint: int) -> Color | None:
+        if paint not in self._colours:
+            rgb = rgb_of(paint)
+            if rgb is None:
+                name = f"space--{Paint(paint).name.lower()}"
+                self._colours[paint] = self.get_component_rich_style(name).color
+            else:
+                self._colours[paint] = Color.from_rgb(*rgb)
+        return self._colours[paint]
+
+    # Keys
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave + and - to a recording, which has its speed on them."""
+        del parameters
+        return not (action == "closer" and self.recorded)
+
+    def action_pan(self, right: int, down: int) -> None:
+        """Move what is seen by some cells, or what is aimed by one."""
+        if self.aim is None:
+            step_x, step_y = right * PAN_CELLS * 2, down * PAN_CELLS * 4
+            self._move(self.camera.panned(-step_x, -step_y))
+            return
+        metres = 2 / self.camera.dots_per_m
+        yaw = self.camera.yaw_rad - math.pi / 2 if self.camera.turns else 0.0
+        along, up = right * metres, -down * metres
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        self.aim = self.aim.shifted(along * cos - up * sin, along * sin + up * cos)
+        self.post_message(self.Aimed(done=False))
+
+    def action_turn(self, left: int, up: int) -> None:
+        """Turn the camera about what is in the middle, or what is aimed."""
+        if self.aim is None:
+            self._move(self.camera.turned(-left * TURN_RAD, up * TURN_RAD))
+        else:
+            self.aim = self.aim.turned(left)
+            self.post_message(self.Aimed(done=False))
+
+    def action_closer(self, steps: int) -> None:
+        """Zoom about the middle."""
+        self._move(self.camera.zoomed(ZOOM**steps))
+
+    def action_zoom(self, steps: int) -> None:
+        """Zoom about the middle."""
+        self._move(self.camera.zoomed(ZOOM**steps))
+
+    def _move(self, camera: Camera) -> None:
+        self.camera, self.fits = camera, False
+        self.post_message(self.CameraMoved())
+
+    # Mouse
+
+    def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
+        """Zoom in about the pointer."""
+        event.stop()
+        self._zoom_about(ZOOM, event.x, event.y)
+
+    def on_mouse_scroll_down(self, event: MouseScrollDown) -> None:
+        """Zoom out about the pointer."""
+        event.stop()
+        self._zoom_about(1 / ZOOM, event.x, event.y)
+
+    def _zoom_about(self, factor: float, x: float, y: float) -> None:
+        width, height = self.dots
+        spot = _middle_of(x, y)
+        self._move(self.camera.zoomed(factor, spot[0] - width / 2, spot[1] - height / 2))
+
+    def on_mouse_down(self, event: MouseDown) -> None:
+        """Begin to pan, to turn, or to aim."""
+        self.focus()
+        spot = _middle_of(event.x, event.y)
+        turns = event.button == RIGHT_BUTTON or event.shift or event.ctrl
+        aims = self.aim is not None and not turns
+        if aims and (place := self.camera.floor_at(*spot, *self.dots)) and self.aim is not None:
+            self.aim = self.aim.shifted(place[0] - self.aim.x_m, place[1] - self.aim.y_m)
+            self.post_message(self.Aimed(done=False))
+        self._drag = _Drag(*spot, spot, turns, aims)
+        self.capture_mouse()
+
+    def on_mouse_move(self, event: MouseMove) -> None:
+        """Pan, turn or aim while a button is held, and say where the pointer is."""
+        spot = _middle_of(event.x, event.y)
+        drag = self._drag
+        if spot != self._pointer:
+            self._pointer = spot
+            self.post_message(self.PointerMoved())
+        if drag is None:
+            return
+        right, down = spot[0] - drag.x, spot[1] - drag.y
+        if not right and not down:
+            return
+        self._drag = drag._replace(x=spot[0], y=spot[1])
+        if drag.aims:
+            self._aim_at(spot, drag)
+        elif drag.turns:
+            self._move(self.camera.turned(-right * DRAG_RAD, down * DRAG_RAD))
+        else:
+            self._move(self.camera.panned(right, down))
+
+    def _aim_at(self, spot: tuple[float, float], drag: _Drag) -> None:
+        place = self.camera.floor_at(*spot, *self.dots)
+        if self.aim is not None and place is not None and math.dist(spot, drag.begun) > 0:
+            self.aim = self.aim.towards(*place)
+            self.post_message(self.Aimed(done=False))
+
+    def on_mouse_up(self, event: MouseUp) -> None:
+        """End the drag; one that was long enough to give a heading ends the aiming as well."""
+        drag, self._drag = self._drag, None
+        self.release_mouse()
+        if drag is None or not drag.aims or self.aim is None:
+            return
+        if math.dist(_middle_of(event.x, event.y), drag.begun) >= LEAST_DRAG_DOTS:
+            self.post_message(self.Aimed(done=True))
+
+    def on_leave(self) -> None:
+        """Forget where the pointer was."""
+        self._pointer = None
+        self.post_message(self.PointerMoved())
+
+
+def _middle_of(x: float, y: float) -> tuple[float, float]:
+    """Return the middle of a cell, in dots."""
+    return 2 * math.floor(x) + 1.0, 4 * math.floor(y) + 2.0
+
+
+def _regions(changed: np.ndarray[tuple[int, int], np.dtype[np.bool_]]) -> list[Region]:
+    """Return the cells that changed as spans; those close together are one."""
+    regions = []
+    for row in np.flatnonzero(changed.any(axis=1)).tolist():
+        columns = np.flatnonzero(changed[row])
+        breaks = np.flatnonzero(np.diff(columns) > JUMP)
+        starts = columns[np.concatenate(([0], breaks + 1))].tolist()
+        ends = columns[np.concatenate((breaks, [len(columns) - 1]))].tolist()
+        regions += [Region(a, row, b - a + 1, 1) for a, b in zip(starts, ends, strict=True)]
+    return regions
