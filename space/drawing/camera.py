@@ -175,11 +175,11 @@ class Camera:
         for _halving in range(FIT_HALVINGS):
             scale = math.sqrt(low * high)
             camera = replace(centred, dots_per_m=scale)
-            low, high = (scale, high) if camera._shows(corners, width, height) else (low, scale)
+            low, high = (scale, high) if camera.shows(corners, width, height) else (low, scale)
         return replace(centred, dots_per_m=low)
 
-    def _shows(self, points: Places, width: int, height: int) -> bool:
-        """Whether all points are within the picture, a little away from its edge."""
+    def shows(self, points: Places, width: int, height: int) -> bool:
+        """Return whether all points are within the picture, a little away from its edge."""
         spots = self.project(points, width, height)
         inside = (spots[:, 0] >= 2) & (spots[:, 0] <= width - 2)
         inside &= (spots[:, 1] >= 2) & (spots[:, 1] <= height - 2)

@@ -66,12 +66,7 @@ def extent_of(shapes: Iterable[Shape]) -> SpaceBox | None:
 
 def _corners(shape: Shape) -> NDArray[np.float32]:
     if isinstance(shape, Speckles):
-        points = shape.places[:: max(1, len(shape.places) // SAMPLED)]
-        if not len(points):
-            return points
-        ends = [OUTLIERS, 100 - OUTLIERS] if len(points) > SAMPLED // 10 else [0, 100]
-        corners: NDArray[np.float32] = np.percentile(points, ends, axis=0).astype(np.float32)
-        return corners
+        return _cloud_corners(shape)
     if isinstance(shape, Strokes):
         if not isinstance(shape.paint, np.ndarray) and shape.paint == Paint.MUTED:
             return shape.starts[:0]
@@ -81,6 +76,15 @@ def _corners(shape: Shape) -> NDArray[np.float32]:
     if isinstance(shape, Sign):
         return np.array([shape.place], dtype=np.float32)
     return _floor_corners(shape)
+
+
+def _cloud_corners(shape: Speckles) -> NDArray[np.float32]:
+    points = shape.places[:: max(1, len(shape.places) // SAMPLED)]
+    if not len(points):
+        return points
+    ends = [OUTLIERS, 100 - OUTLIERS] if len(points) > SAMPLED // 10 else [0, 100]
+    corners: NDArray[np.float32] = np.percentile(points, ends, axis=0).astype(np.float32)
+    return corners
 
 
 def _floor_corners(shape: Floor) -> NDArray[np.float32]:

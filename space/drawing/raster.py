@@ -114,7 +114,7 @@ class Raster:
         """Which part of each line is inside, as shares of its length (Liang-Barsky)."""
         first = np.zeros(len(starts), dtype=np.float32)
         last = np.ones(len(starts), dtype=np.float32)
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             for axis, most in ((0, self.width), (1, self.height)):
                 begin = starts[:, axis]
                 way = ends[:, axis] - begin

@@ -97,14 +97,14 @@ def _draw_faces(shape: Faces, raster: Raster, camera: Camera) -> None:
 def _draw_floor(shape: Floor, raster: Raster, camera: Camera) -> None:
     """Paint the floor behind everything, and what stands on it as dots, so that none is missed."""
     x, y = np.meshgrid(np.arange(raster.width) + 0.5, np.arange(raster.height) + 0.5)
-    begins, ways = camera.rays(x.ravel(), y.ravel(), raster.width, raster.height)
+    begins, directions = camera.rays(x.ravel(), y.ravel(), raster.width, raster.height)
     back = shape.origin.inverse()
     matrix = back.matrix()[:3, :3]
-    begins, ways = turned(begins, matrix, back.translation), turned(ways, matrix)
+    starts, ways = turned(begins, matrix, back.translation), turned(directions, matrix)
     with np.errstate(divide="ignore", invalid="ignore"):
-        way = -begins[:, 2] / ways[:, 2]
-        column = (begins[:, 0] + way * ways[:, 0]) / shape.cell_m
-        row = (begins[:, 1] + way * ways[:, 1]) / shape.cell_m
+        way = -starts[:, 2] / ways[:, 2]
+        column = (starts[:, 0] + way * ways[:, 0]) / shape.cell_m
+        row = (starts[:, 1] + way * ways[:, 1]) / shape.cell_m
         high, wide = shape.cells.shape
         inside = (column >= 0) & (column < wide) & (row >= 0) & (row < high)
         if camera.turns:

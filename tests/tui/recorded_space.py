@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -16,6 +16,7 @@ from space.buffer import Stamped
 from space.transform import Transform
 from tests.tui.recorded_lesson import lesson_update, sample, topic
 from tests.tui.recorded_map import driven, odometry, reading, room, stamped
+from tests.unit.space.trees import cloud_tree, header, marker, pose_tree
 
 CLOUD, SCAN = "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/LaserScan"
 PATH, MARKERS = "nav_msgs/msg/Path", "visualization_msgs/msg/MarkerArray"
@@ -37,19 +38,6 @@ SPACE_TOPICS: tuple[TopicRow, ...] = (
     topic("/sensor/sonar_front", FLOAT, 100.0, 8),
     topic("/sensor/sonar_rear", FLOAT, 100.0, 8),
 )
-
-
-def header(frame: str) -> dict[str, Any]:
-    """A header without a stamp."""
-    return {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
-
-
-def pose_tree(transform: Transform) -> dict[str, Any]:
-    """A geometry_msgs/Pose."""
-    return {
-        "position": dict(zip("xyz", transform.translation, strict=True)),
-        "orientation": dict(zip("xyzw", transform.rotation, strict=True)),
-    }
 
 
 def flat(pose: Pose, z_m: float = 0.0) -> Transform:
@@ -82,25 +70,6 @@ def scan(turned: float = 0.0, rays: int = 240) -> Sample:
     return sample("/scan", SCAN, value)
 
 
-def cloud_tree(places: np.ndarray[Any, Any], frame: str, **more: Any) -> dict[str, Any]:
-    """A cloud of float32 x, y, z."""
-    fields = [
-        {"name": name, "offset": 4 * at, "datatype": 7, "count": 1} for at, name in enumerate("xyz")
-    ]
-    tree = {
-        "header": header(frame),
-        "height": 1,
-        "width": len(places),
-        "fields": fields,
-        "is_bigendian": False,
-        "point_step": 12,
-        "row_step": 12 * len(places),
-        "data": places.astype("<f4").tobytes(),
-        "is_dense": False,
-    }
-    return {**tree, **more}
-
-
 @lru_cache
 def boxes() -> np.ndarray[Any, Any]:
     """Points of a box and a ball in front of the camera, seen in its frame (x ahead)."""
@@ -110,28 +79,6 @@ def boxes() -> np.ndarray[Any, Any]:
     ball = rng.normal(size=(4000, 3))
     ball *= 0.3 / np.linalg.norm(ball, axis=1)[:, None]
     return np.concatenate([faces + np.array([1.2, 0.5, 0.0]), ball + np.array([1.5, -0.5, 0.05])])
-
-
-def marker(
-    number: int, kind: int, at: Transform, size: Sequence[float], **more: Any
-) -> dict[str, Any]:
-    """A visualization_msgs/Marker."""
-    colour = {"r": 1.0, "g": 0.5, "b": 0.0, "a": 1.0}
-    tree = {
-        "header": header("map"),
-        "ns": "things",
-        "id": number,
-        "type": kind,
-        "action": 0,
-        "pose": pose_tree(at),
-        "scale": dict(zip("xyz", size, strict=True)),
-        "color": colour,
-        "lifetime": {"sec": 0, "nanosec": 0},
-        "points": [],
-        "colors": [],
-        "text": "",
-    }
-    return {**tree, **more}
 
 
 def path(frame: str = "map") -> Sample:

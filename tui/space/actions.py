@@ -60,6 +60,46 @@ class SpaceAction(Action[SpaceTarget]):
     """An action on the picture of space."""
 
 
+class _ArmedAction(SpaceAction):
+    """An action on what is aimed."""
+
+    palette = False
+    footer = True
+
+    @classmethod
+    def possible(cls, target: SpaceTarget) -> bool | None:
+        """Only while something is aimed."""
+        return target.armed
+
+
+class PublishAim(_ArmedAction):
+    """Publish what is aimed."""
+
+    id = "space.publish"
+    key = "enter"
+    title = N_("Publish")
+    tooltip = N_("Publish the goal or the initial pose where the cross-hair is.")
+
+    @classmethod
+    async def run(cls, target: SpaceTarget) -> None:
+        """Publish it."""
+        await target.publish_aim()
+
+
+class Disarm(_ArmedAction):
+    """Aim at nothing any more."""
+
+    id = "space.disarm"
+    key = "escape"
+    title = N_("Disarm")
+    tooltip = N_("Stop aiming, and publish nothing.")
+
+    @classmethod
+    async def run(cls, target: SpaceTarget) -> None:
+        """Disarm."""
+        target.disarm()
+
+
 class NextAngle(SpaceAction):
     """Look from elsewhere."""
 
@@ -205,46 +245,6 @@ class ArmInitialPose(SpaceAction):
     async def run(cls, target: SpaceTarget) -> None:
         """Arm it."""
         target.arm_initial_pose()
-
-
-class _ArmedAction(SpaceAction):
-    """An action on what is aimed."""
-
-    palette = False
-    footer = True
-
-    @classmethod
-    def possible(cls, target: SpaceTarget) -> bool | None:
-        """Only while something is aimed."""
-        return target.armed
-
-
-class PublishAim(_ArmedAction):
-    """Publish what is aimed."""
-
-    id = "space.publish"
-    key = "enter"
-    title = N_("Publish")
-    tooltip = N_("Publish the goal or the initial pose where the cross-hair is.")
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        """Publish it."""
-        await target.publish_aim()
-
-
-class Disarm(_ArmedAction):
-    """Aim at nothing any more."""
-
-    id = "space.disarm"
-    key = "escape"
-    title = N_("Disarm")
-    tooltip = N_("Stop aiming, and publish nothing.")
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        """Disarm."""
-        target.disarm()
 
 
 SPACE_ACTIONS = (

@@ -64,7 +64,7 @@ class SpaceScreen(DeckScreen):
         #space-picture { width: 1fr; height: 1fr; }
         #space-status { height: 1; padding: 0 1; color: $text-muted; }
         #space-armed {
-            height: auto; padding: 0 1; background: $warning; color: auto 90%; text-style: bold;
+            height: 2; padding: 0 1; background: $warning; color: auto 90%; text-style: bold;
         }
         &.-wide LayerRows { width: 40; }
         &.-tiny LayerRows { display: none; }
@@ -81,9 +81,9 @@ class SpaceScreen(DeckScreen):
         with Horizontal(id="space-body"):
             with Vertical(id="space-picture"):
                 yield SpaceView(self._compose_picture, id="space-view")
-                yield Static(id="space-armed", markup=False)
                 yield Static(id="space-status", markup=False)
             yield LayerRows()
+        yield Static(id="space-armed", markup=False)
 
     @property
     def view(self) -> SpaceView:

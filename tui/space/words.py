@@ -51,8 +51,7 @@ def armed(aim: Aim, frame: str, listeners: Sequence[str], keys: tuple[str, str])
     where = place_words(aim, frame)
     heard = ", ".join(listeners) if listeners else _("nobody listens")
     how = _(
-        "Press where it is to be and drag where it looks: it is published when you let go. Or "
-        "arrows, Ctrl+arrows, {enter}; {escape} leaves."
+        "Press, drag, let go: published. Or arrows, Ctrl+arrows, {enter}. {escape} leaves."
     ).format(enter=keys[0], escape=keys[1])
     return f"{what} → {aim.kind.topic} ({heard}) · {where}\n{how}"
 
