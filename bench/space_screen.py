@@ -1,0 +1,121 @@
+"""The Space screen at work, at 120x40: `python -m bench.space_screen`.
+
+A cloud of 300 000 points at 10 Hz, from above and in perspective, on any line and over SSH; then
+the simulated robot, which stands. Goals: 10 pictures a second within 40 % of a core and 40 kB/s;
+the robot's screen within 20 % of a core.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from bench.observer import program
+from bench.processes import cpu_s, pss_mb
+from bench.screen import screen_processes
+from bench.space_load import TOPIC
+from tests.e2e.terminal import Terminal
+
+DOMAIN = os.environ.get("BENCH_DOMAIN", "83")
+WARM_UP_S = 8.0
+MEASURE_S = 12.0
+LOOK_S = 0.02
+SSH = {"SSH_CONNECTION": "192.0.2.1 50000 192.0.2.2 22"}
+
+
+class Cost(NamedTuple):
+    """What one case costs."""
+
+    pictures_hz: float
+    cpu_percent: float
+    kb_per_s: float
+    pss_mb: float
+
+
+def open_space(folder: Path, profile: str, shown: str, env: Mapping[str, str]) -> Terminal:
+    """Return the program with the Space screen open, once these words are on it."""
+    own = {
+        "DECK_RUN_DIR": str(folder / "run"),
+        "DECK_LOG_DIR": str(folder / "logs"),
+        "XDG_CONFIG_HOME": str(folder / "config"),
+        "XDG_STATE_HOME": str(folder / "state"),
+        "SSH_CONNECTION": "",
+        "LANG": "C.UTF-8",
+    }
+    argv = [sys.executable, "-m", "tui", profile, "--domain", DOMAIN, "--lang", "en"]
+    terminal = Terminal(argv, 120, 40, {**own, **env})
+    terminal.wait_for("domain")
+    terminal.press("9")
+    terminal.wait_for(shown, 60)
+    return terminal
+
+
+def picture(terminal: Terminal) -> list[str]:
+    """Return the text of the picture, without the list and the lines around it."""
+    return [row[:85] for row in terminal.text().splitlines()[2:36]]
+
+
+def cost(terminal: Terminal) -> Cost:
+    """Measure for some seconds; pictures are counted by looking for changes."""
+    pids = screen_processes(terminal)
+    cpu, sent, begun = cpu_s(pids), terminal.received, time.monotonic()
+    before, changes = picture(terminal), 0
+    while time.monotonic() - begun < MEASURE_S:
+        time.sleep(LOOK_S)
+        now = picture(terminal)
+        changes += now != before
+        before = now
+    passed = time.monotonic() - begun
+    return Cost(
+        changes / passed,
+        100 * (cpu_s(pids) - cpu) / passed,
+        (terminal.received - sent) / passed / 1000,
+        pss_mb(pids),
+    )
+
+
+def measured(profile: str, shown: str, keys: str, env: Mapping[str, str]) -> Cost:
+    """Open the screen, press keys, and measure."""
+    with tempfile.TemporaryDirectory() as name:
+        terminal = open_space(Path(name), profile, shown, env)
+        try:
+            for key in keys:
+                terminal.press(key)
+            time.sleep(WARM_UP_S)
+            return cost(terminal)
+        finally:
+            terminal.close()
+
+
+def main() -> None:
+    """Measure all cases and print a table."""
+    rows: list[tuple[str, Cost, str]] = []
+    with program("bench.space_load", DOMAIN), tempfile.TemporaryDirectory() as name:
+        nothing = Path(name) / "nothing.yaml"
+        nothing.write_text("title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n")
+        for what, keys, env in (
+            ("from above", "", {}),
+            ("from above, over SSH", "", SSH),
+            ("in perspective", "AA", {}),
+            ("in perspective, over SSH", "AA", SSH),
+        ):
+            found = measured(str(nothing), TOPIC, keys, env)
+            rows.append((f"cloud {what}", found, "10 | 40 % | 40"))
+    robot = measured("robot", "/odom", "", {})
+    rows.append(("the robot's profile", robot, "- | 20 % | -"))
+    print("| what | pictures/s | CPU of a core | kB/s | PSS, MB | goals: pictures, CPU, kB/s |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for what, found, goals in rows:
+        print(
+            f"| {what} | {found.pictures_hz:.1f} | {found.cpu_percent:.0f} %"
+            f" | {found.kb_per_s:.0f} | {found.pss_mb:.0f} | {goals.replace(' | ', ', ')} |"
+        )
+
+
+if __name__ == "__main__":
+    main()
