@@ -31,7 +31,7 @@ MEASUREMENTS = {
     "large_messages": "Topics open on a PointCloud2 of 5 MB at 10 Hz",
     "pictures": "Topics open on a 1280x720 camera at 30 Hz",
     "slow_line": "A moving picture on a line of 64 kB/s, and keys beside it",
-    "space_screen": "Space open on a cloud of 300 000 points, and on the robot",
+    "space.screen": "Space open on a cloud of 300 000 points, and on the robot",
     "observer": "The observer alone, under the same load",
     "frames.cost": "200 frames of /tf at 50 Hz",
     "recording": "Recording 10 MB/s",

@@ -7,7 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from space.buffer import NoTransformError
-from space.drawing.paints import Paint
+from space.drawing.paints import Tint
 from space.drawing.shapes import Sign, Speckles, axes, moved
 from space.drawing.thinning import FEW, thinned
 from text.plain import plain
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from space.buffer import TransformBuffer
-    from space.drawing.camera import Camera
+    from space.drawing.camera import SpaceCamera
     from space.drawing.shapes import Shape
     from space.reading.fields import Drawable
     from space.transform import Transform
@@ -43,7 +43,7 @@ def robot_root(buffer: TransformBuffer, others: Iterable[str] = ()) -> str:
     return next(iter(others), "")
 
 
-def cube_of(camera: Camera) -> float:
+def cube_of(camera: SpaceCamera) -> float:
     """Return the size to which clouds are thinned: about a dot, in steps of two."""
     return max(SMALLEST_CUBE_M, 2.0 ** math.floor(math.log2(1.0 / camera.dots_per_m)))
 
@@ -104,7 +104,7 @@ class Placer:
 
 
 def frame_shapes(
-    buffer: TransformBuffer, fixed: str, camera: Camera, *, names: bool = True
+    buffer: TransformBuffer, fixed: str, camera: SpaceCamera, *, names: bool = True
 ) -> tuple[list[Shape], list[str]]:
     """Return axes and names of all frames, and the frames that are not joined to the fixed one.
 
@@ -128,7 +128,7 @@ def frame_shapes(
         spot = tuple(round(value * camera.dots_per_m / 8) for value in at.translation)
         if spot not in taken:
             taken[spot] = len(shapes)
-            shapes.append(Sign(at.translation, plain(frame, LONGEST_NAME), Paint.TEXT))
+            shapes.append(Sign(at.translation, plain(frame, LONGEST_NAME), Tint.TEXT))
         else:
             # Frames in one place, as map and odom at the start, share one line.
             first = shapes[taken[spot]]

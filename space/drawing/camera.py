@@ -41,7 +41,7 @@ class Angle(str, Enum):
 
 
 @dataclass(frozen=True)
-class Camera:
+class SpaceCamera:
     """A way to look at the scene, in a picture of `width` by `height` dots."""
 
     angle: Angle = Angle.ABOVE
@@ -133,7 +133,7 @@ class Camera:
         place = begins[0] + way * ways[0]
         return float(place[0]), float(place[1])
 
-    def panned(self, right: float, down: float) -> Camera:
+    def panned(self, right: float, down: float) -> SpaceCamera:
         """Return the camera after the picture was moved by this many dots."""
         across, up, away = self.basis()
         if self.turns:
@@ -144,7 +144,7 @@ class Camera:
         place = np.array(self.target) + (down * up - right * across) / self.dots_per_m
         return replace(self, target=(float(place[0]), float(place[1]), float(place[2])))
 
-    def zoomed(self, factor: float, right: float = 0.0, down: float = 0.0) -> Camera:
+    def zoomed(self, factor: float, right: float = 0.0, down: float = 0.0) -> SpaceCamera:
         """Return the camera `factor` times closer.
 
         What is `right` and `down` of the middle, in dots, stays there.
@@ -154,7 +154,7 @@ class Camera:
         moved = self.panned(-right * (1 - 1 / factor), -down * (1 - 1 / factor))
         return replace(moved, dots_per_m=scale)
 
-    def turned(self, yaw_rad: float, pitch_rad: float) -> Camera:
+    def turned(self, yaw_rad: float, pitch_rad: float) -> SpaceCamera:
         """Return the camera after it went round the target; the other angles cannot turn."""
         if not self.turns:
             return self
@@ -163,7 +163,7 @@ class Camera:
             self, yaw_rad=math.remainder(self.yaw_rad + yaw_rad, math.tau), pitch_rad=pitch
         )
 
-    def fitting(self, least: Vector, most: Vector, width: int, height: int) -> Camera:
+    def fitting(self, least: Vector, most: Vector, width: int, height: int) -> SpaceCamera:
         """Return the camera that shows all of a box, as large as possible."""
         middle = tuple((a + b) / 2 for a, b in zip(least, most, strict=True))
         sides = [(a, b) for a, b in zip(least, most, strict=True)]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from space.drawing.paints import Paint
+from space.drawing.paints import Tint
 from space.drawing.shapes import Faces, Floor, Sign, Speckles, Strokes
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def _corners(shape: Shape) -> NDArray[np.float32]:
     if isinstance(shape, Speckles):
         return _cloud_corners(shape)
     if isinstance(shape, Strokes):
-        if not isinstance(shape.paint, np.ndarray) and shape.paint == Paint.MUTED:
+        if not isinstance(shape.paint, np.ndarray) and shape.paint == Tint.MUTED:
             return shape.starts[:0]
         return np.concatenate([shape.starts, shape.ends])
     if isinstance(shape, Faces):

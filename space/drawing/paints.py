@@ -22,7 +22,7 @@ RAMP_FROM, RAMP_STEPS = 16, 10
 CUBE_FROM = 32
 
 
-class Paint(IntEnum):
+class Tint(IntEnum):
     """Colours with a meaning."""
 
     NOTHING = 0
@@ -46,9 +46,9 @@ class Paint(IntEnum):
 
 
 RGB = {
-    Paint.X_AXIS: (235, 80, 70),
-    Paint.Y_AXIS: (90, 200, 90),
-    Paint.Z_AXIS: (90, 140, 255),
+    Tint.X_AXIS: (235, 80, 70),
+    Tint.Y_AXIS: (90, 200, 90),
+    Tint.Z_AXIS: (90, 140, 255),
 }
 """The colours that REP-103 and every viewer give to axes."""
 _STOPS = ((70, 90, 230), (40, 180, 220), (70, 200, 90), (235, 200, 60), (235, 80, 60))
@@ -92,4 +92,4 @@ def rgb_of(paint: int) -> tuple[int, int, int] | None:
         low, high, share = _STOPS[first], _STOPS[first + 1], at - first
         mixed = [round(a + (b - a) * share) for a, b in zip(low, high, strict=True)]
         return mixed[0], mixed[1], mixed[2]
-    return RGB.get(Paint(paint))
+    return RGB.get(Tint(paint))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from space.drawing.braille import BLANK, DOTS_ACROSS, DOTS_DOWN, characters
-from space.drawing.paints import RAMP_FROM, RAMP_STEPS, Paint, Paints
+from space.drawing.paints import RAMP_FROM, RAMP_STEPS, Paints, Tint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -201,7 +201,7 @@ class Raster:
             for place, char in enumerate(shown, column):
                 picture.codes[row, place] = ord(char)
                 picture.front[row, place] = paint
-                if picture.back[row, place] == Paint.WALL:
+                if picture.back[row, place] == Tint.WALL:
                     picture.back[row, place] = 0
 
 

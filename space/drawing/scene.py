@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from space.drawing.camera import NEAREST_M
-from space.drawing.paints import Paint
+from space.drawing.paints import Tint
 from space.drawing.shapes import Faces, Floor, Shape, Sign, Speckles, Strokes
 from space.transform import turned
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from space.drawing.camera import Camera
+    from space.drawing.camera import SpaceCamera
     from space.drawing.raster import Raster
 
 FAR_M = 1e6
@@ -25,7 +25,7 @@ MOST_BLOCK_DOTS = 12
 """How many dots wide a cell of an obstacle may appear; a larger one is cut to that."""
 
 
-def draw(raster: Raster, camera: Camera, shapes: Iterable[Shape]) -> None:
+def draw(raster: Raster, camera: SpaceCamera, shapes: Iterable[Shape]) -> None:
     """Draw all; signs last, since they are written over the rest."""
     signs = []
     for shape in shapes:
@@ -37,7 +37,7 @@ def draw(raster: Raster, camera: Camera, shapes: Iterable[Shape]) -> None:
         _draw_sign(sign, raster, camera)
 
 
-def _draw(shape: Speckles | Strokes | Faces | Floor, raster: Raster, camera: Camera) -> None:
+def _draw(shape: Speckles | Strokes | Faces | Floor, raster: Raster, camera: SpaceCamera) -> None:
     if isinstance(shape, Speckles):
         _draw_speckles(shape, raster, camera)
     elif isinstance(shape, Strokes):
@@ -48,7 +48,7 @@ def _draw(shape: Speckles | Strokes | Faces | Floor, raster: Raster, camera: Cam
         _draw_floor(shape, raster, camera)
 
 
-def _draw_speckles(shape: Speckles, raster: Raster, camera: Camera) -> None:
+def _draw_speckles(shape: Speckles, raster: Raster, camera: SpaceCamera) -> None:
     spots = camera.project(shape.places, raster.width, raster.height)
     raster.dots(spots, shape.paint)
     wide = int(min(MOST_BLOCK_DOTS, shape.solid_m * camera.dots_per_m))
@@ -60,7 +60,7 @@ def _draw_speckles(shape: Speckles, raster: Raster, camera: Camera) -> None:
             raster.dots(moved, shape.paint)
 
 
-def _draw_strokes(shape: Strokes, raster: Raster, camera: Camera) -> None:
+def _draw_strokes(shape: Strokes, raster: Raster, camera: SpaceCamera) -> None:
     starts, ends = camera.seen(shape.starts, raster.height), camera.seen(shape.ends, raster.height)
     if camera.turns:
         starts, ends = _before_the_eye(starts, ends), _before_the_eye(ends, starts)
@@ -87,15 +87,15 @@ def _before_the_eye(ends: NDArray[np.float32], others: NDArray[np.float32]) -> N
     return np.where(behind[:, None], cut, ends)
 
 
-def _draw_faces(shape: Faces, raster: Raster, camera: Camera) -> None:
+def _draw_faces(shape: Faces, raster: Raster, camera: SpaceCamera) -> None:
     spots = camera.project(shape.corners.reshape(-1, 3), raster.width, raster.height)
     for number, corners in enumerate(spots.reshape(-1, 3, 3)):
         paint = shape.paint
         raster.face(corners, int(paint[number]) if isinstance(paint, np.ndarray) else paint)
 
 
-def _draw_floor(shape: Floor, raster: Raster, camera: Camera) -> None:
-    """Paint the floor behind everything, and what stands on it as dots, so that none is missed."""
+def _draw_floor(shape: Floor, raster: Raster, camera: SpaceCamera) -> None:
+    """Tint the floor behind everything, and what stands on it as dots, so that none is missed."""
     x, y = np.meshgrid(np.arange(raster.width) + 0.5, np.arange(raster.height) + 0.5)
     begins, directions = camera.rays(x.ravel(), y.ravel(), raster.width, raster.height)
     back = shape.origin.inverse()
@@ -121,12 +121,12 @@ def _draw_floor(shape: Floor, raster: Raster, camera: Camera) -> None:
 
 def _standing(shape: Floor) -> Speckles:
     """The occupied cells as points."""
-    rows, columns = np.nonzero(shape.cells == Paint.WALL)
+    rows, columns = np.nonzero(shape.cells == Tint.WALL)
     middles = np.stack([columns + 0.5, rows + 0.5, np.zeros(len(rows))], axis=1) * shape.cell_m
-    return Speckles(shape.origin.points(middles).astype(np.float32), Paint.WALL)
+    return Speckles(shape.origin.points(middles).astype(np.float32), Tint.WALL)
 
 
-def _draw_sign(sign: Sign, raster: Raster, camera: Camera) -> None:
+def _draw_sign(sign: Sign, raster: Raster, camera: SpaceCamera) -> None:
     place = np.array([sign.place], dtype=np.float32)
     x, y, _depth = camera.project(place, raster.width, raster.height)[0]
     # A cell to the right, so that the place itself stays visible.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from space.drawing.paints import Paint, Paints
+from space.drawing.paints import Paints, Tint
 from space.transform import IDENTITY, Transform
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ class Speckles:
     """Points, each as small as can be drawn."""
 
     places: Places
-    paint: int | Paints = Paint.TEXT
+    paint: int | Paints = Tint.TEXT
     solid_m: float = 0.0
     """The edge of the cubes that the points stand for; 0 for mere points."""
 
@@ -39,7 +39,7 @@ class Strokes:
 
     starts: Places
     ends: Places
-    paint: int | Paints = Paint.TEXT
+    paint: int | Paints = Tint.TEXT
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class Faces:
     """Filled triangles, of shape (n, 3, 3): triangle, corner, axis."""
 
     corners: Places
-    paint: int | Paints = Paint.TEXT
+    paint: int | Paints = Tint.TEXT
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Sign:
 
     place: Vector
     text: str
-    paint: int = Paint.TEXT
+    paint: int = Tint.TEXT
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +95,7 @@ def _points(by: Transform, points: NDArray[np.floating]) -> Places:
     return by.points(points).astype(np.float32, copy=False)
 
 
-def polyline(points: Places, paint: int | Paints = Paint.TEXT) -> Strokes:
+def polyline(points: Places, paint: int | Paints = Tint.TEXT) -> Strokes:
     """Return the line from point to point."""
     return Strokes(points[:-1], points[1:], paint)
 
@@ -106,9 +106,9 @@ def axes(at: Transform, length_m: float) -> tuple[Strokes, ...]:
     return tuple(
         Strokes(origin, places(at.point(tip)), paint)
         for tip, paint in (
-            ((length_m, 0.0, 0.0), Paint.X_AXIS),
-            ((0.0, length_m, 0.0), Paint.Y_AXIS),
-            ((0.0, 0.0, length_m), Paint.Z_AXIS),
+            ((length_m, 0.0, 0.0), Tint.X_AXIS),
+            ((0.0, length_m, 0.0), Tint.Y_AXIS),
+            ((0.0, 0.0, length_m), Tint.Z_AXIS),
         )
     )
 

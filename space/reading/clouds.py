@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from space.drawing.paints import Paint, cube, ramp
+from space.drawing.paints import Tint, cube, ramp
 from space.drawing.shapes import Speckles
 from space.reading.fields import (
     Drawable,
-    UnreadableError,
+    NotDrawnError,
     field,
     frame,
     is_near,
@@ -39,7 +39,7 @@ SPREAD = (2, 98)
 SAMPLED = 4096
 
 
-class _Column(NamedTuple):
+class _CloudColumn(NamedTuple):
     offset: int
     kind: str
 
@@ -47,7 +47,7 @@ class _Column(NamedTuple):
 def read_cloud(tree: Mapping[str, Any]) -> Drawable:
     """Return the points of a cloud, coloured by rgb, intensity or height.
 
-    Raises UnreadableError.
+    Raises NotDrawnError.
     """
     columns = _columns(tree)
     step, count = whole(tree, "point_step"), _count(tree)
@@ -74,32 +74,32 @@ def read_cloud(tree: Mapping[str, Any]) -> Drawable:
         paint = _by_height(places[:, 2])
     remark = None
     if count and not len(kept):
-        remark = say("none of its {count} points is a place: all are NaN", count=count)
-    shape = Speckles(places, Paint.ACCENT if paint is None else paint)
+        remark = say("no point is a place: NaN or too far away, all {count}", count=count)
+    shape = Speckles(places, Tint.ACCENT if paint is None else paint)
     return Drawable(frame(tree), (shape,), stamp_s(tree), remark)
 
 
-def _columns(tree: Mapping[str, Any]) -> dict[str, _Column]:
+def _columns(tree: Mapping[str, Any]) -> dict[str, _CloudColumn]:
     found = {}
     for one in listed(tree, "fields"):
         kind = KINDS.get(whole(one, "datatype"))
         offset = whole(one, "offset")
         if kind is not None and offset >= 0:
-            found[str(field(one, "name"))] = _Column(offset, kind)
+            found[str(field(one, "name"))] = _CloudColumn(offset, kind)
     return found
 
 
-def _check_columns(columns: Mapping[str, _Column], step: int) -> None:
+def _check_columns(columns: Mapping[str, _CloudColumn], step: int) -> None:
     if missing := [name for name in "xyz" if name not in columns]:
         names = ", ".join(missing)
-        raise UnreadableError(say("the cloud has no field {names}", names=names))
+        raise NotDrawnError(say("the cloud has no field {names}", names=names))
     for name, column in columns.items():
         if name in "xyz" and column.kind not in FLOATS:
-            raise UnreadableError(
+            raise NotDrawnError(
                 say("field {name} of the cloud is neither float32 nor float64", name=name)
             )
         if column.offset + int(column.kind[1]) > step:
-            raise UnreadableError(
+            raise NotDrawnError(
                 say(
                     "field {name} of the cloud ends behind its point_step of {step} bytes",
                     name=name,
@@ -112,7 +112,7 @@ def _count(tree: Mapping[str, Any]) -> int:
     wide, high = whole(tree, "width"), whole(tree, "height")
     count = max(0, wide) * max(0, high)
     if count > MOST_POINTS:
-        raise UnreadableError(say("a cloud of {count} points is too large", count=count))
+        raise NotDrawnError(say("a cloud of {count} points is too large", count=count))
     return count
 
 
@@ -126,7 +126,7 @@ def _points_of(tree: Mapping[str, Any], step: int, count: int) -> NDArray[np.uin
     row_step = row_step if high > 1 and row_step else wide * step
     needed = row_step * (high - 1) + wide * step if count else 0
     if row_step < wide * step or len(data) < needed:
-        raise UnreadableError(
+        raise NotDrawnError(
             say(
                 "{count} points of {step} bytes are announced, and {size} bytes have come",
                 count=count,

@@ -24,7 +24,7 @@ FARTHEST_M = 1e6
 NANOSECONDS = 1e-9
 
 
-class UnreadableError(ValueError):
+class NotDrawnError(ValueError):
     """Why a message cannot be drawn; its text is a sentence for the user."""
 
 
@@ -42,35 +42,35 @@ class Drawable:
 
 
 def field(tree: Any, path: str) -> Any:  # noqa: ANN401 - a message is a tree of anything
-    """Return what is at a path such as `info.origin`. Raises UnreadableError."""
+    """Return what is at a path such as `info.origin`. Raises NotDrawnError."""
     found = tree
     for name in path.split("."):
         if not isinstance(found, Mapping) or name not in found:
-            raise UnreadableError(say("the message has no field {field}", field=path))
+            raise NotDrawnError(say("the message has no field {field}", field=path))
         found = found[name]
     return found
 
 
 def number(tree: Any, path: str) -> float:  # noqa: ANN401
-    """Return a finite number. Raises UnreadableError."""
+    """Return a finite number. Raises NotDrawnError."""
     found = field(tree, path)
     if isinstance(found, bool) or not isinstance(found, (int, float, np.number)):
-        raise UnreadableError(say("{field} is not a number", field=path))
+        raise NotDrawnError(say("{field} is not a number", field=path))
     if not math.isfinite(found):
-        raise UnreadableError(say("{field} is not a finite number", field=path))
+        raise NotDrawnError(say("{field} is not a finite number", field=path))
     return float(found)
 
 
 def whole(tree: Any, path: str) -> int:  # noqa: ANN401
-    """Return a whole number. Raises UnreadableError."""
+    """Return a whole number. Raises NotDrawnError."""
     return int(number(tree, path))
 
 
 def listed(tree: Any, path: str) -> Sequence[Any]:  # noqa: ANN401
-    """Return a list. Raises UnreadableError."""
+    """Return a list. Raises NotDrawnError."""
     found = field(tree, path)
     if isinstance(found, (str, bytes, Mapping)) or not isinstance(found, Sequence):
-        raise UnreadableError(say("{field} is not a list", field=path))
+        raise NotDrawnError(say("{field} is not a list", field=path))
     return found
 
 
@@ -80,21 +80,21 @@ def numbers(tree: Any, path: str) -> NDArray[np.float32]:  # noqa: ANN401
     try:
         array = np.asarray(found, dtype=np.float32)
     except (TypeError, ValueError):
-        raise UnreadableError(say("{field} is not a list of numbers", field=path)) from None
+        raise NotDrawnError(say("{field} is not a list of numbers", field=path)) from None
     return array.reshape(-1)
 
 
 def vector(tree: Any, path: str) -> Vector:  # noqa: ANN401
-    """Return x, y and z. Raises UnreadableError."""
+    """Return x, y and z. Raises NotDrawnError."""
     x, y, z = (number(tree, f"{path}.{axis}") for axis in "xyz")
     if max(abs(x), abs(y), abs(z)) > FARTHEST_M:
         far = f"{FARTHEST_M / 1000:g}"
-        raise UnreadableError(say("{field} is farther away than {km} km", field=path, km=far))
+        raise NotDrawnError(say("{field} is farther away than {km} km", field=path, km=far))
     return x, y, z
 
 
 def pose(tree: Any, path: str) -> Transform:  # noqa: ANN401
-    """Return a geometry_msgs/Pose. Raises UnreadableError.
+    """Return a geometry_msgs/Pose. Raises NotDrawnError.
 
     A quaternion of zeros, which is what messages have that nobody filled in, is no rotation.
     """
@@ -106,10 +106,10 @@ def pose(tree: Any, path: str) -> Transform:  # noqa: ANN401
 
 
 def frame(tree: Any, path: str = "header") -> str:  # noqa: ANN401
-    """Return the name of a frame. Raises UnreadableError."""
+    """Return the name of a frame. Raises NotDrawnError."""
     name = str(field(tree, f"{path}.frame_id")).lstrip("/")
     if not name:
-        raise UnreadableError(
+        raise NotDrawnError(
             say("{field} is empty: the publisher names no frame", field=f"{path}.frame_id")
         )
     return name
@@ -123,12 +123,12 @@ def stamp_s(tree: Any, path: str = "header") -> float | None:  # noqa: ANN401
 
 
 def points(tree: Any, path: str) -> NDArray[np.float32]:  # noqa: ANN401
-    """Return a list of geometry_msgs/Point as (n, 3). Raises UnreadableError."""
+    """Return a list of geometry_msgs/Point as (n, 3). Raises NotDrawnError."""
     found = listed(tree, path)
     try:
         rows = [(float(one["x"]), float(one["y"]), float(one["z"])) for one in found]
     except (KeyError, TypeError, ValueError):
-        raise UnreadableError(say("{field} is not a list of points", field=path)) from None
+        raise NotDrawnError(say("{field} is not a list of points", field=path)) from None
     return np.array(rows, dtype=np.float32).reshape(-1, 3)
 
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from space.drawing.paints import Paint
+from space.drawing.paints import Tint
 from space.drawing.shapes import Floor
 from space.reading.fields import (
     FARTHEST_M,
     Drawable,
-    UnreadableError,
+    NotDrawnError,
     field,
     frame,
     number,
@@ -36,19 +36,19 @@ MOST_CELLS = 4_000_000
 
 
 def read_grid(tree: Mapping[str, Any]) -> Drawable:
-    """Return a map. Raises UnreadableError."""
+    """Return a map. Raises NotDrawnError."""
     rows, columns = whole(tree, "info.height"), whole(tree, "info.width")
     cell_m = number(tree, "info.resolution")
     if rows < 1 or columns < 1:
-        raise UnreadableError(
+        raise NotDrawnError(
             say("a map of {columns} by {rows} cells has none", columns=columns, rows=rows)
         )
     if not 0.0 < cell_m <= FARTHEST_M:
-        raise UnreadableError(say("info.resolution is {metres} m a cell", metres=f"{cell_m:g}"))
+        raise NotDrawnError(say("info.resolution is {metres} m a cell", metres=f"{cell_m:g}"))
     data = field(tree, "data")
     cells = np.frombuffer(data, np.int8) if isinstance(data, bytes) else _small(data)
     if cells.size != rows * columns:
-        raise UnreadableError(
+        raise NotDrawnError(
             say(
                 "{columns} by {rows} cells are announced, and {count} have come",
                 columns=columns,
@@ -66,7 +66,7 @@ def _small(data: object) -> NDArray[np.int8]:
     try:
         return np.asarray(data).astype(np.int8).reshape(-1)
     except (TypeError, ValueError):
-        raise UnreadableError(say("{field} is not a list of numbers", field="data")) from None
+        raise NotDrawnError(say("{field} is not a list of numbers", field="data")) from None
 
 
 def _fewer(cells: NDArray[np.int8]) -> NDArray[np.int8]:
@@ -82,8 +82,8 @@ def _fewer(cells: NDArray[np.int8]) -> NDArray[np.int8]:
 
 
 def _painted(cells: NDArray[np.int8]) -> Paints:
-    paints = np.full(cells.shape, Paint.MAYBE, dtype=np.uint8)
-    paints[cells < 0] = Paint.NOTHING
-    paints[(cells >= 0) & (cells < FREE_BELOW)] = Paint.FREE
-    paints[cells >= OCCUPIED_FROM] = Paint.WALL
+    paints = np.full(cells.shape, Tint.MAYBE, dtype=np.uint8)
+    paints[cells < 0] = Tint.NOTHING
+    paints[(cells >= 0) & (cells < FREE_BELOW)] = Tint.FREE
+    paints[cells >= OCCUPIED_FROM] = Tint.WALL
     return paints

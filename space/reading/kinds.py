@@ -22,7 +22,7 @@ class LayerReader(Protocol):
     """Takes messages of one topic, and says what they show."""
 
     def read(self, tree: Mapping[str, Any], now_s: float) -> None:
-        """Take a message that has come now. Raises UnreadableError."""
+        """Take a message that has come now. Raises NotDrawnError."""
 
     def shown(self, now_s: float) -> Sequence[Drawable]:
         """Return what is to be seen now."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from space.drawing.paints import Paint, cube, nearest
+from space.drawing.paints import Tint, cube, nearest
 from space.drawing.shapes import (
     Shape,
     Sign,
@@ -27,7 +27,7 @@ from space.drawing.shapes import (
 )
 from space.reading.fields import (
     Drawable,
-    UnreadableError,
+    NotDrawnError,
     field,
     frame,
     is_near,
@@ -95,7 +95,7 @@ class MarkerBook:
     def read(self, tree: Mapping[str, Any], now_s: float) -> None:
         """Take in a Marker or a MarkerArray that has come at this time.
 
-        Raises UnreadableError; the markers before the one that cannot be read are kept.
+        Raises NotDrawnError; the markers before the one that cannot be read are kept.
         """
         for one in listed(tree, "markers") if "markers" in tree else (tree,):
             self._take(one, now_s)
@@ -126,7 +126,7 @@ class MarkerBook:
         elif action == ADD:
             self._add(key, tree, now_s)
         else:
-            raise UnreadableError(say("a marker has the unknown action {action}", action=action))
+            raise NotDrawnError(say("a marker has the unknown action {action}", action=action))
 
     def _add(self, key: tuple[str, int], tree: Mapping[str, Any], now_s: float) -> None:
         kind = whole(tree, "type")
@@ -138,14 +138,14 @@ class MarkerBook:
                 self._refused[key] = NAMES[kind] if 0 <= kind < len(NAMES) else str(kind)
             return
         if key not in self._kept and len(self._kept) >= MOST_MARKERS:
-            raise UnreadableError(say("more than {count} markers are not kept", count=MOST_MARKERS))
+            raise NotDrawnError(say("more than {count} markers are not kept", count=MOST_MARKERS))
         try:
             at, size = pose(tree, "pose"), vector(tree, "scale")
             shapes = make(tree, Transform(), size)
             drawable = Drawable(frame(tree), tuple(moved(shape, at) for shape in shapes))
-        except UnreadableError as error:
+        except NotDrawnError as error:
             name = plain(f"{key[0]}/{key[1]}" if key[0] else str(key[1]), LONGEST_TEXT)
-            raise UnreadableError(
+            raise NotDrawnError(
                 say("marker {name}: {reason}", name=name, reason=reason_of(error))
             ) from None
         lifetime_s = number(tree, "lifetime.sec") + 1e-9 * number(tree, "lifetime.nanosec")
@@ -209,7 +209,7 @@ def _make_lines(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -
     del at, size
     found = points(tree, "points")
     if len(found) % 2:
-        raise UnreadableError(say("a LINE_LIST has an odd number of points"))
+        raise NotDrawnError(say("a LINE_LIST has an odd number of points"))
     paint = _colours(tree, len(found))
     both = is_near(found) if len(found) else np.zeros(0, dtype=np.bool_)
     both = both[0::2] & both[1::2]
@@ -242,7 +242,7 @@ def _make_solids(
 def _make_text(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
     del size
     text = plain(str(field(tree, "text")), LONGEST_TEXT)
-    return [Sign(at.translation, text, _colour(tree) if text else Paint.TEXT)]
+    return [Sign(at.translation, text, _colour(tree) if text else Tint.TEXT)]
 
 
 _MAKERS: dict[int, Callable[[Mapping[str, Any], Transform, Sequence[float]], list[Shape]]] = {

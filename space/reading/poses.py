@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from space.drawing.paints import Paint
+from space.drawing.paints import Tint
 from space.drawing.shapes import Strokes, arrow, dart, places, polyline
 from space.reading.fields import (
     Drawable,
-    UnreadableError,
+    NotDrawnError,
     field,
     frame,
     listed,
@@ -34,8 +34,8 @@ TORN_M = 1.0
 MOST_PLACES = 4000
 
 
-def read_pose(tree: Mapping[str, Any], paint: int = Paint.SECOND) -> Drawable:
-    """Return an arrow. Raises UnreadableError."""
+def read_pose(tree: Mapping[str, Any], paint: int = Tint.SECOND) -> Drawable:
+    """Return an arrow. Raises NotDrawnError."""
     return Drawable(frame(tree), (arrow(pose(tree, "pose"), ARROW_M, paint),), stamp_s(tree))
 
 
@@ -43,11 +43,11 @@ def read_goal(tree: Mapping[str, Any]) -> Drawable:
     """Return an arrow, or nothing: a goal without a frame says that there is none."""
     if not str(field(tree, "header.frame_id")):
         return Drawable("", (), None, say("there is no goal now"))
-    return read_pose(tree, Paint.GOOD)
+    return read_pose(tree, Tint.GOOD)
 
 
 def read_path(tree: Mapping[str, Any]) -> Drawable:
-    """Return the line of a path. Raises UnreadableError.
+    """Return the line of a path. Raises NotDrawnError.
 
     Its poses are taken to be in the frame of the path, as planners publish them.
     """
@@ -61,14 +61,14 @@ def read_path(tree: Mapping[str, Any]) -> Drawable:
             continue
         try:
             found.append(pose(one, "pose").translation)
-        except UnreadableError as error:
-            raise UnreadableError(
+        except NotDrawnError as error:
+            raise NotDrawnError(
                 say("pose {number} of the path: {reason}", number=number, reason=error.args[0])
             ) from None
     remark = None
     if others:
-        remark = say("{count} poses are in other frames, and not drawn", count=others)
-    shapes = (polyline(places(*found), Paint.GOOD),) if len(found) > 1 else ()
+        remark = say("poses in other frames are not drawn: {count}", count=others)
+    shapes = (polyline(places(*found), Tint.GOOD),) if len(found) > 1 else ()
     return Drawable(frame_id, shapes, stamp_s(tree), remark)
 
 
@@ -82,12 +82,12 @@ class DrivenTrail:
         self._least_m = LEAST_M
 
     def read(self, tree: Mapping[str, Any]) -> Drawable:
-        """Return an arrow, and the trail up to it. Raises UnreadableError."""
+        """Return an arrow, and the trail up to it. Raises NotDrawnError."""
         frame_id, at = frame(tree), pose(tree, "pose.pose")
         if frame_id != self._frame:
             self._frame, self._places = frame_id, []
         self._add(at.translation)
-        shapes: list[Shape] = [dart(at, DART_M, Paint.SECOND)]
+        shapes: list[Shape] = [dart(at, DART_M, Tint.SECOND)]
         if len(self._places) > 1:
             shapes.append(self._line())
         return Drawable(frame_id, tuple(shapes), stamp_s(tree))
@@ -101,7 +101,7 @@ class DrivenTrail:
         ways = points[1:] - points[:-1]
         torn = max(TORN_M, 2 * self._least_m)
         whole = np.hypot(np.hypot(ways[:, 0], ways[:, 1]), ways[:, 2]) <= torn
-        return Strokes(points[:-1][whole], points[1:][whole], Paint.ACCENT)
+        return Strokes(points[:-1][whole], points[1:][whole], Tint.ACCENT)
 
     def _add(self, place: Vector) -> None:
         if self._places and math.dist(self._places[-1], place) < self._least_m:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from space.drawing.paints import Paint
+from space.drawing.paints import Tint
 from space.drawing.shapes import Sign, Speckles, Strokes, places, polyline
-from space.reading.fields import Drawable, UnreadableError, field, frame, number, numbers, stamp_s
+from space.reading.fields import Drawable, NotDrawnError, field, frame, number, numbers, stamp_s
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -29,14 +29,14 @@ CLEAR_M = 4.0
 
 
 def read_scan(tree: Mapping[str, Any]) -> Drawable:
-    """Return the points where rays ended. Raises UnreadableError."""
+    """Return the points where rays ended. Raises NotDrawnError."""
     ranges = numbers(tree, "ranges")
     first, step = number(tree, "angle_min"), number(tree, "angle_increment")
     least, most = number(tree, "range_min"), _farthest(tree)
     if not ranges.size:
-        raise UnreadableError(say("the scan has no ranges"))
+        raise NotDrawnError(say("the scan has no ranges"))
     if ranges.size > MOST_RAYS:
-        raise UnreadableError(say("a scan of {count} rays is too large", count=ranges.size))
+        raise NotDrawnError(say("a scan of {count} rays is too large", count=ranges.size))
     with np.errstate(invalid="ignore"):
         valid = np.isfinite(ranges) & (ranges >= least) & (ranges <= most)
     angles = (first + step * np.flatnonzero(valid)).astype(np.float32)
@@ -44,8 +44,8 @@ def read_scan(tree: Mapping[str, Any]) -> Drawable:
     ends = np.stack([far * np.cos(angles), far * np.sin(angles), np.zeros_like(far)], axis=1)
     remark = None
     if not valid.any():
-        remark = say("none of its {count} ranges is valid", count=ranges.size)
-    return Drawable(frame(tree), (Speckles(ends, Paint.BAD),), stamp_s(tree), remark)
+        remark = say("no range is valid, of {count}", count=ranges.size)
+    return Drawable(frame(tree), (Speckles(ends, Tint.BAD),), stamp_s(tree), remark)
 
 
 def _farthest(tree: Mapping[str, Any]) -> float:
@@ -54,7 +54,7 @@ def _farthest(tree: Mapping[str, Any]) -> float:
 
 
 def read_range(tree: Mapping[str, Any]) -> Drawable:
-    """Return a cone along x, as long as the distance. Raises UnreadableError."""
+    """Return a cone along x, as long as the distance. Raises NotDrawnError."""
     opening = abs(number(tree, "field_of_view"))
     half = min(max(opening / 2, NARROWEST_RAD), WIDEST_RAD * 0.95)
     shapes = ray(_distance(tree, "range"), half, _farthest(tree))
@@ -62,14 +62,14 @@ def read_range(tree: Mapping[str, Any]) -> Drawable:
 
 
 def read_sonar(tree: Mapping[str, Any], frame_id: str) -> Drawable:
-    """Return the ray of a std_msgs/Float32 in metres (REP-117). Raises UnreadableError."""
+    """Return the ray of a std_msgs/Float32 in metres (REP-117). Raises NotDrawnError."""
     return Drawable(frame_id, ray(_distance(tree, "data"), NARROWEST_RAD, CLEAR_M))
 
 
 def _distance(tree: Mapping[str, Any], path: str) -> float:
     found = field(tree, path)
     if isinstance(found, bool) or not isinstance(found, (int, float, np.number)):
-        raise UnreadableError(say("{field} is not a number", field=path))
+        raise NotDrawnError(say("{field} is not a number", field=path))
     return float(found)
 
 
@@ -77,14 +77,12 @@ def ray(distance_m: float, half_rad: float, farthest_m: float) -> tuple[Shape, .
     """Return a cone along x; what REP-117 says of infinity and NaN is shown as well."""
     if math.isnan(distance_m):
         end = (BLIND_M, 0.0, 0.0)
-        return Strokes(places((0.0, 0.0, 0.0)), places(end), Paint.MUTED), Sign(
-            end, "?", Paint.WARN
-        )
+        return Strokes(places((0.0, 0.0, 0.0)), places(end), Tint.MUTED), Sign(end, "?", Tint.WARN)
     clear = math.isinf(distance_m)
     length = min(max(0.0, farthest_m if clear else distance_m), 1e4)
     if math.isinf(length):
         length = CLEAR_M
-    paint = Paint.MUTED if clear or distance_m > farthest_m else Paint.WARN
+    paint = Tint.MUTED if clear or distance_m > farthest_m else Tint.WARN
     rim = _rim(length, half_rad)
     sides = rim[:: CONE_SIDES // 4]
     cone = Strokes(np.zeros_like(sides), sides, paint)

@@ -8,7 +8,7 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 from robot.topics import GOAL_POSE, INITIAL_POSE
-from space.drawing.paints import Paint
+from space.drawing.paints import Tint
 from space.drawing.shapes import Strokes, arrow, places
 from space.transform import Transform, quaternion_from_rpy
 
@@ -71,9 +71,9 @@ class Aim:
         cross = Strokes(
             places((x - arm, y, 0.0), (x, y - arm, 0.0)),
             places((x + arm, y, 0.0), (x, y + arm, 0.0)),
-            Paint.WARN,
+            Tint.WARN,
         )
-        return [cross, arrow(at, ARROW_DOTS / dots_per_m, Paint.WARN)]
+        return [cross, arrow(at, ARROW_DOTS / dots_per_m, Tint.WARN)]
 
     def message(self, frame: str) -> Mapping[str, Value]:
         """Return the message, with the stamp 0: the newest transform is meant, by any clock."""

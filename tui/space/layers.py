@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from graph.data import Trouble
 from robot.topics import SONAR_FRONT, SONAR_REAR
-from space.reading.fields import UnreadableError
+from space.reading.fields import NotDrawnError
 from space.reading.kinds import KINDS, LayerKind, NewestReader
 from space.reading.scans import read_sonar
 from text.sentences import reason_of
@@ -69,7 +69,7 @@ class SpaceLayer:
             try:
                 self.reader.read(sample.value, now_s)
                 self.refused = ""
-            except UnreadableError as error:
+            except NotDrawnError as error:
                 self.refused = reason_of(error)
         return bool(samples)
 

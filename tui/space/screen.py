@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import TopicRow
-    from space.drawing.camera import Camera
+    from space.drawing.camera import SpaceCamera
     from space.drawing.raster import CellPicture
     from tui.emergency.messages import EmergencyChanged
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
@@ -55,7 +55,7 @@ class SpaceScreen(DeckScreen):
         "wheel zoom, Ctrl+arrows or a drag with Shift turn the perspective. Tab goes to the "
         "layers and back; below each layer is what is wrong with it."
     )
-    period_s = 0.1
+    period_s = 0.08
     wants_frames = True
     BINDINGS: ClassVar = bindings(*SPACE_ACTIONS)
     DEFAULT_CSS = """
@@ -355,7 +355,7 @@ class SpaceScreen(DeckScreen):
 
     # Display
 
-    def _compose_picture(self, camera: Camera, columns: int, rows: int) -> CellPicture:
+    def _compose_picture(self, camera: SpaceCamera, columns: int, rows: int) -> CellPicture:
         return self.stage.picture(camera, columns, rows, self.view.aim)
 
     def _place(self) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from robot.world.world import Body
 from space.buffer import NoTransformError, TransformBuffer
 from space.drawing.extent import SpaceBox, extent_of
-from space.drawing.paints import Paint
+from space.drawing.paints import Tint
 from space.drawing.raster import Raster
 from space.drawing.scene import draw
 from space.drawing.shapes import Strokes
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from graph.data import FrameRow, GraphUpdate
-    from space.drawing.camera import Camera
+    from space.drawing.camera import SpaceCamera
     from space.drawing.raster import CellPicture
     from space.drawing.shapes import Shape
     from space.reading.fields import Drawable
@@ -96,7 +96,7 @@ class Stage:
             self.buffer.clear()
             self.buffer.add(newest)
 
-    def place(self, camera: Camera, now_s: float) -> None:
+    def place(self, camera: SpaceCamera, now_s: float) -> None:
         """Place all layers, and note at each what cannot be placed."""
         shown = {layer.topic: layer.reader.shown(now_s) for layer in self.layers if layer.is_drawn}
         for layer in self.layers:
@@ -121,7 +121,7 @@ class Stage:
         found = extent_of(self._shapes)
         return None if found is None else found.widened(AROUND, LEAST_M)
 
-    def followed(self, camera: Camera) -> Camera:
+    def followed(self, camera: SpaceCamera) -> SpaceCamera:
         """Return the camera moved to the frame that is followed, if that is known."""
         if not self.follow:
             return camera
@@ -131,7 +131,7 @@ class Stage:
             return camera
         return replace(camera, target=at.translation)
 
-    def picture(self, camera: Camera, columns: int, rows: int, aim: Aim | None) -> CellPicture:
+    def picture(self, camera: SpaceCamera, columns: int, rows: int, aim: Aim | None) -> CellPicture:
         """Return the picture of what was placed last."""
         raster = Raster(columns, rows)
         shapes = [*_ground(camera, raster), *self._shapes]
@@ -143,7 +143,7 @@ class Stage:
         return raster.cells()
 
 
-def _ground(camera: Camera, raster: Raster) -> list[Shape]:
+def _ground(camera: SpaceCamera, raster: Raster) -> list[Shape]:
     """The meshes of the floor about the target: without them a perspective has no depth."""
     if not camera.turns:
         return []
@@ -159,4 +159,4 @@ def _ground(camera: Camera, raster: Raster) -> list[Shape]:
         one = np.stack([lines + middle[0], along + middle[1], 0 * lines], axis=1)
         other = np.stack([along + middle[0], lines + middle[1], 0 * lines], axis=1)
         ends.append((np.concatenate([one, other]) * step).astype(np.float32))
-    return [Strokes(ends[0], ends[1], Paint.MUTED)]
+    return [Strokes(ends[0], ends[1], Tint.MUTED)]

@@ -15,8 +15,8 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
-from space.drawing.camera import Angle, Camera
-from space.drawing.paints import Paint, rgb_of
+from space.drawing.camera import Angle, SpaceCamera
+from space.drawing.paints import Tint, rgb_of
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import word_strips
 
@@ -109,10 +109,13 @@ class SpaceView(OneStyle, Widget, can_focus=True):
     """
 
     def __init__(
-        self, compose_picture: Callable[[Camera, int, int], CellPicture], *, id: str | None = None
+        self,
+        compose_picture: Callable[[SpaceCamera, int, int], CellPicture],
+        *,
+        id: str | None = None,
     ) -> None:
         super().__init__(id=id)
-        self.camera = Camera()
+        self.camera = SpaceCamera()
         self.aim: Aim | None = None
         """What is aimed; None while nothing is armed."""
         self.fits = True
@@ -236,7 +239,7 @@ class SpaceView(OneStyle, Widget, can_focus=True):
             style = self.rich_style + Style.from_color(
                 self._colour(front) if front else None, self._colour(back) if back else None
             )
-            if front in {Paint.SECOND, Paint.GOOD, Paint.WARN}:
+            if front in {Tint.SECOND, Tint.GOOD, Tint.WARN}:
                 style += Style(bold=True)
             self._styles[front, back] = style
         return style
@@ -245,7 +248,7 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         if paint not in self._colours:
             rgb = rgb_of(paint)
             if rgb is None:
-                name = f"space--{Paint(paint).name.lower()}"
+                name = f"space--{Tint(paint).name.lower()}"
                 self._colours[paint] = self.get_component_rich_style(name).color
             else:
                 self._colours[paint] = Color.from_rgb(*rgb)
@@ -287,7 +290,7 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         """Zoom about the middle."""
         self._move(self.camera.zoomed(ZOOM**steps))
 
-    def _move(self, camera: Camera) -> None:
+    def _move(self, camera: SpaceCamera) -> None:
         self.camera, self.fits = camera, False
         self.post_message(self.CameraMoved())
 

@@ -9,12 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from space.drawing.camera import Angle, Camera
+from space.drawing.camera import Angle, SpaceCamera
 from space.drawing.paints import (
     CUBE_FROM,
     RAMP_FROM,
     RAMP_STEPS,
-    Paint,
+    Tint,
     cube,
     nearest,
     ramp,
@@ -40,35 +40,35 @@ def lines(picture: CellPicture) -> list[str]:
 
 def test_a_dot_is_where_braille_has_it() -> None:
     raster = Raster(2, 1)
-    raster.dots(spots((0, 0, 1), (3, 3, 1)), Paint.TEXT)
+    raster.dots(spots((0, 0, 1), (3, 3, 1)), Tint.TEXT)
     assert lines(raster.cells()) == ["⠁⢀"]
 
 
 def test_the_nearer_dot_gives_the_paint_in_whatever_order() -> None:
     for order in (1, -1):
         raster = Raster(1, 1)
-        for depth, paint in ((5.0, Paint.GOOD), (2.0, Paint.BAD))[::order]:
+        for depth, paint in ((5.0, Tint.GOOD), (2.0, Tint.BAD))[::order]:
             raster.dots(spots((0, 0, depth)), paint)
-        assert raster.cells().front[0, 0] == Paint.BAD
+        assert raster.cells().front[0, 0] == Tint.BAD
 
 
 def test_of_many_dots_at_once_the_nearest_is_on_top() -> None:
     raster = Raster(1, 1)
-    paints = np.array([Paint.GOOD, Paint.BAD, Paint.WARN], dtype=np.uint8)
+    paints = np.array([Tint.GOOD, Tint.BAD, Tint.WARN], dtype=np.uint8)
     raster.dots(spots((0, 0, 3), (0, 0, 1), (0, 0, 2)), paints)
-    assert raster.cells().front[0, 0] == Paint.BAD
+    assert raster.cells().front[0, 0] == Tint.BAD
 
 
 def test_dots_outside_and_nan_are_ignored() -> None:
     raster = Raster(1, 1)
     outside = spots((-1, 0, 1), (2, 0, 1), (0, 4, 1), (math.nan, 0, 1), (0, math.nan, 1))
-    raster.dots(outside, Paint.TEXT)
+    raster.dots(outside, Tint.TEXT)
     assert lines(raster.cells()) == [" "]
 
 
 def test_a_stroke_reaches_from_end_to_end() -> None:
     raster = Raster(5, 1)
-    raster.strokes(spots((0, 1, 1)), spots((9, 1, 1)), Paint.TEXT)
+    raster.strokes(spots((0, 1, 1)), spots((9, 1, 1)), Tint.TEXT)
     assert lines(raster.cells()) == ["⠒⠒⠒⠒⠒"]
 
 
@@ -81,7 +81,7 @@ def test_strokes_of_any_length_stay_inside(
     ends: np.ndarray[tuple[int, int], np.dtype[np.float32]],
 ) -> None:
     raster = Raster(7, 3)
-    raster.strokes(starts, ends, Paint.TEXT)
+    raster.strokes(starts, ends, Tint.TEXT)
     assert raster.cells().codes.shape == (3, 7)
 
 
@@ -89,74 +89,74 @@ def test_a_whole_cell_has_two_halves_of_their_own_colours() -> None:
     raster = Raster(1, 1)
     upper = spots(*[(x, y, 1) for x in (0, 1) for y in (0, 1)])
     lower = spots(*[(x, y, 1) for x in (0, 1) for y in (2, 3)])
-    raster.dots(upper, Paint.GOOD)
-    raster.dots(lower, Paint.BAD)
+    raster.dots(upper, Tint.GOOD)
+    raster.dots(lower, Tint.BAD)
     picture = raster.cells()
     assert (lines(picture), picture.front[0, 0], picture.back[0, 0]) == (
         ["▀"],
-        Paint.GOOD,
-        Paint.BAD,
+        Tint.GOOD,
+        Tint.BAD,
     )
 
 
 def test_a_face_covers_what_is_behind_it_and_not_what_is_before() -> None:
     raster = Raster(4, 2)
-    raster.dots(spots((2, 2, 5)), Paint.BAD)
-    raster.dots(spots((3, 2, 1)), Paint.GOOD)
-    raster.face(spots((0, 0, 3), (8, 0, 3), (0, 8, 3)), Paint.TEXT)
-    raster.face(spots((0, 0, 3), (0, 0, 3), (0, 0, 3)), Paint.WARN)
+    raster.dots(spots((2, 2, 5)), Tint.BAD)
+    raster.dots(spots((3, 2, 1)), Tint.GOOD)
+    raster.face(spots((0, 0, 3), (8, 0, 3), (0, 8, 3)), Tint.TEXT)
+    raster.face(spots((0, 0, 3), (0, 0, 3), (0, 0, 3)), Tint.WARN)
     picture = raster.cells()
-    assert picture.back[0, 1] == Paint.GOOD
-    assert {*picture.front.ravel().tolist()} == {Paint.NOTHING, Paint.TEXT}
+    assert picture.back[0, 1] == Tint.GOOD
+    assert {*picture.front.ravel().tolist()} == {Tint.NOTHING, Tint.TEXT}
 
 
 def test_a_box_shows_its_near_faces_and_its_edges() -> None:
     raster = Raster(30, 15)
-    camera = Camera(Angle.PERSPECTIVE, dots_per_m=20.0)
-    draw(raster, camera, box(IDENTITY, (1.0, 1.0, 1.0), Paint.GOOD))
+    camera = SpaceCamera(Angle.PERSPECTIVE, dots_per_m=20.0)
+    draw(raster, camera, box(IDENTITY, (1.0, 1.0, 1.0), Tint.GOOD))
     front = raster.cells().front
-    assert (front == Paint.GOOD).sum() > 20
-    assert (front == Paint.TEXT).sum() > 10
+    assert (front == Tint.GOOD).sum() > 20
+    assert (front == Tint.TEXT).sum() > 10
 
 
 def test_signs_do_not_overlap() -> None:
     raster = Raster(12, 4)
     for text in ("base_link", "laser"):
-        raster.sign(2, 5, text, Paint.TEXT)
+        raster.sign(2, 5, text, Tint.TEXT)
     assert [line.strip() for line in lines(raster.cells())] == ["", "base_link", "laser", ""]
 
 
 def test_a_sign_is_cut_at_the_edge() -> None:
     raster = Raster(5, 1)
-    raster.sign(6, 0, "base_link", Paint.TEXT)
+    raster.sign(6, 0, "base_link", Tint.TEXT)
     assert lines(raster.cells()) == ["   ba"]
 
 
 def test_a_floor_is_seen_where_it_is() -> None:
-    cells = np.full((10, 10), Paint.FREE, dtype=np.uint8)
-    cells[:, 5] = Paint.WALL
+    cells = np.full((10, 10), Tint.FREE, dtype=np.uint8)
+    cells[:, 5] = Tint.WALL
     raster = Raster(10, 5)
     floor = Floor(cells, 1.0, Transform((-5.0, -5.0, 0.0)))
-    draw(raster, Camera(Angle.ABOVE, dots_per_m=2.0), [floor])
+    draw(raster, SpaceCamera(Angle.ABOVE, dots_per_m=2.0), [floor])
     picture = raster.cells()
-    assert picture.back[2].tolist() == [Paint.FREE] * 5 + [Paint.WALL] + [Paint.FREE] * 4
+    assert picture.back[2].tolist() == [Tint.FREE] * 5 + [Tint.WALL] + [Tint.FREE] * 4
 
 
 def test_a_wall_thinner_than_a_dot_is_not_lost() -> None:
-    cells = np.full((400, 400), Paint.FREE, dtype=np.uint8)
-    cells[:, 200] = Paint.WALL
+    cells = np.full((400, 400), Tint.FREE, dtype=np.uint8)
+    cells[:, 200] = Tint.WALL
     raster = Raster(10, 5)
     floor = Floor(cells, 0.05, Transform((-10.0, -10.0, 0.0)))
-    draw(raster, Camera(Angle.ABOVE, dots_per_m=0.5), [floor])
-    assert (raster.cells().front == Paint.WALL).any()
+    draw(raster, SpaceCamera(Angle.ABOVE, dots_per_m=0.5), [floor])
+    assert (raster.cells().front == Tint.WALL).any()
 
 
 def test_a_line_that_begins_behind_the_eye_is_seen_from_where_it_comes_into_sight() -> None:
     raster = Raster(10, 5)
-    camera = Camera(Angle.PERSPECTIVE, dots_per_m=20.0, yaw_rad=0.0, pitch_rad=0.5)
-    line = Strokes(places((-50.0, 0.0, 0.0)), places((3.0, 0.0, 0.0)), Paint.BAD)
+    camera = SpaceCamera(Angle.PERSPECTIVE, dots_per_m=20.0, yaw_rad=0.0, pitch_rad=0.5)
+    line = Strokes(places((-50.0, 0.0, 0.0)), places((3.0, 0.0, 0.0)), Tint.BAD)
     draw(raster, camera, [line])
-    assert (raster.cells().front == Paint.BAD).any()
+    assert (raster.cells().front == Tint.BAD).any()
 
 
 @given(st.sampled_from(list(Angle)), st.floats(0.01, 1e4))
@@ -170,13 +170,13 @@ def test_anything_may_be_empty(angle: Angle, scale: float) -> None:
         Sign((0.0, 0.0, 0.0), ""),
         Floor(np.zeros((1, 1), dtype=np.uint8), 1.0),
     ]
-    draw(raster, Camera(angle, dots_per_m=scale), shapes)
+    draw(raster, SpaceCamera(angle, dots_per_m=scale), shapes)
     assert lines(raster.cells()) == ["    "] * 2
 
 
 def test_only_changed_cells_differ() -> None:
     raster, other = Raster(3, 1), Raster(3, 1)
-    other.dots(spots((4, 0, 1)), Paint.TEXT)
+    other.dots(spots((4, 0, 1)), Tint.TEXT)
     assert other.cells().changed(raster.cells()).tolist() == [[False, False, True]]
 
 
@@ -204,7 +204,7 @@ def test_the_ramp_goes_from_the_least_to_the_most() -> None:
 def test_every_paint_has_a_colour_or_a_name() -> None:
     assert cube(np.array([[255, 0, 0]], dtype=np.uint8))[0] == nearest(1.0, 0.0, 0.0)
     assert rgb_of(nearest(1.0, 0.0, 0.0)) == (252, 0, 0)
-    for paint in (*Paint, *range(RAMP_FROM, RAMP_FROM + RAMP_STEPS), CUBE_FROM, CUBE_FROM + 124):
+    for paint in (*Tint, *range(RAMP_FROM, RAMP_FROM + RAMP_STEPS), CUBE_FROM, CUBE_FROM + 124):
         rgb = rgb_of(paint)
         assert rgb is None or all(0 <= channel <= 255 for channel in rgb)
     assert rgb_of(nearest(math.nan, 5.0, -1.0)) == (0, 252, 0)

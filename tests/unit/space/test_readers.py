@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from space.drawing.paints import RAMP_FROM, RAMP_STEPS, Paint, nearest
+from space.drawing.paints import RAMP_FROM, RAMP_STEPS, Tint, nearest
 from space.drawing.shapes import Faces, Floor, Sign, Speckles, Strokes
 from space.reading.clouds import read_cloud
-from space.reading.fields import Drawable, UnreadableError
+from space.reading.fields import Drawable, NotDrawnError
 from space.reading.grids import read_grid
 from space.reading.markers import MarkerBook
 from space.reading.poses import DrivenTrail, read_goal, read_path, read_pose
@@ -61,8 +61,8 @@ def test_a_map_is_a_floor_of_free_occupied_and_doubtful_cells() -> None:
     (floor,) = drawable.shapes
     assert isinstance(floor, Floor)
     assert floor.cells.tolist() == [
-        [Paint.FREE, Paint.NOTHING, Paint.WALL],
-        [Paint.MAYBE, Paint.MAYBE, Paint.MAYBE],
+        [Tint.FREE, Tint.NOTHING, Tint.WALL],
+        [Tint.MAYBE, Tint.MAYBE, Tint.MAYBE],
     ]
     assert (floor.cell_m, floor.origin.translation) == (0.5, (1.0, 2.0, 0.0))
     assert drawable.frame == "map"
@@ -74,7 +74,7 @@ def test_a_very_large_map_keeps_its_walls() -> None:
     (floor,) = read_grid({**grid(3000, 3000), "data": cells.ravel()}).shapes
     assert isinstance(floor, Floor)
     assert floor.cells.size < 4_000_000
-    assert (floor.cells == Paint.WALL).any(axis=0).all()
+    assert (floor.cells == Tint.WALL).any(axis=0).all()
     assert floor.cells.shape[0] * floor.cell_m == pytest.approx(1500)
 
 
@@ -88,7 +88,7 @@ def test_ranges_that_are_not_valid_are_left_out() -> None:
     assert len(speckles(found).places) == 1
     assert found.remark is None
     nothing = read_scan(scan(math.nan, math.inf))
-    assert nothing.remark == "none of its 2 ranges is valid"
+    assert nothing.remark == "no range is valid, of 2"
 
 
 def test_a_range_is_a_cone_as_long_as_it_measures() -> None:
@@ -98,13 +98,13 @@ def test_a_range_is_a_cone_as_long_as_it_measures() -> None:
     assert isinstance(rim, Strokes)
     assert np.linalg.norm(cone.ends, axis=1) == pytest.approx(2.0)
     assert cone.ends[:, 1].max() == pytest.approx(2.0 * math.sin(0.25))
-    assert cone.paint == Paint.WARN
+    assert cone.paint == Tint.WARN
 
 
 @pytest.mark.parametrize(
-    ("metres", "paint"), [(1.0, Paint.WARN), (math.inf, Paint.MUTED), (math.nan, Paint.MUTED)]
+    ("metres", "paint"), [(1.0, Tint.WARN), (math.inf, Tint.MUTED), (math.nan, Tint.MUTED)]
 )
-def test_a_bare_sonar_shows_what_rep_117_says(metres: float, paint: Paint) -> None:
+def test_a_bare_sonar_shows_what_rep_117_says(metres: float, paint: Tint) -> None:
     drawable = read_sonar({"data": metres}, "sonar_front_link")
     first = drawable.shapes[0]
     assert isinstance(first, Strokes)
@@ -183,7 +183,7 @@ def test_nan_and_infinity_are_dropped() -> None:
     broken = np.array([[math.nan, 0, 0], [1, 2, 3], [0, math.inf, 0], [0, 0, 1e30]])
     assert speckles(read_cloud(cloud_tree(broken, "lidar"))).places.tolist() == [[1, 2, 3]]
     nothing = read_cloud(cloud_tree(broken[:1], "lidar"))
-    assert nothing.remark == "none of its 1 points is a place: all are NaN"
+    assert nothing.remark == "no point is a place: NaN or too far away, all 1"
 
 
 def test_an_empty_cloud_is_no_mistake() -> None:
@@ -212,7 +212,7 @@ def test_a_path_goes_from_pose_to_pose_in_one_frame() -> None:
     (shape,) = found.shapes
     assert isinstance(shape, Strokes)
     assert shape.ends[:, 0].tolist() == [1.0, 3.0]
-    assert found.remark == "1 poses are in other frames, and not drawn"
+    assert found.remark == "poses in other frames are not drawn: 1"
 
 
 def odometry(x: float, frame: str = "odom") -> Tree:
@@ -378,7 +378,7 @@ def path_with_a_bad_pose() -> Tree:
 def test_what_cannot_be_read_is_a_sentence(
     read: Callable[[Mapping[str, Any]], Drawable], tree: Tree, words: str
 ) -> None:
-    with pytest.raises(UnreadableError) as caught:
+    with pytest.raises(NotDrawnError) as caught:
         read(tree)
     assert str(caught.value) == words
 
@@ -386,6 +386,6 @@ def test_what_cannot_be_read_is_a_sentence(
 def test_a_bad_marker_is_named_and_the_ones_before_it_are_kept() -> None:
     book = MarkerBook()
     good = marker(1, 1, Transform(), (1.0, 1.0, 1.0))
-    with pytest.raises(UnreadableError, match=r"marker things/7: a LINE_LIST has an odd number"):
+    with pytest.raises(NotDrawnError, match=r"marker things/7: a LINE_LIST has an odd number"):
         book.read({"markers": [good, {**good, "id": 7, "type": 5, "points": POINTS[:1]}]}, 0.0)
     assert len(book.shown(0.0)) == 1

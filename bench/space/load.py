@@ -1,4 +1,4 @@
-"""A lidar in a room: `python -m bench.space_load DOMAIN`.
+"""A lidar in a room: `python -m bench.space.load DOMAIN`.
 
 It publishes a PointCloud2 of 300 000 points at 10 Hz until stdin is closed: floor, walls and
 furniture with the noise of a sensor, and somebody who walks about. Messages are serialized in

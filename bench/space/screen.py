@@ -1,4 +1,4 @@
-"""The Space screen at work, at 120x40: `python -m bench.space_screen`.
+"""The Space screen at work, at 120x40: `python -m bench.space.screen`.
 
 A cloud of 300 000 points at 10 Hz, from above and in perspective, on any line and over SSH; then
 the simulated robot, which stands. Goals: 10 pictures a second within 40 % of a core and 40 kB/s;
@@ -18,7 +18,7 @@ from typing import NamedTuple
 from bench.observer import program
 from bench.processes import cpu_s, pss_mb
 from bench.screen import screen_processes
-from bench.space_load import TOPIC
+from bench.space.load import TOPIC
 from tests.e2e.terminal import Terminal
 
 DOMAIN = os.environ.get("BENCH_DOMAIN", "83")
@@ -95,7 +95,7 @@ def measured(profile: str, shown: str, keys: str, env: Mapping[str, str]) -> Cos
 def main() -> None:
     """Measure all cases and print a table."""
     rows: list[tuple[str, Cost, str]] = []
-    with program("bench.space_load", DOMAIN), tempfile.TemporaryDirectory() as name:
+    with program("bench.space.load", DOMAIN), tempfile.TemporaryDirectory() as name:
         nothing = Path(name) / "nothing.yaml"
         nothing.write_text("title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n")
         for what, keys, env in (
