@@ -113,6 +113,15 @@ def floor() -> Sample:
     return replace(found, value={**found.value, "header": header("map")})
 
 
+def marker_sample(**more: Any) -> Sample:
+    """A charger: a box with its name over it."""
+    markers = [
+        marker(1, 1, Transform((3.6, 0.4, 0.3)), (0.4, 0.4, 0.6), **more),
+        marker(2, 9, Transform((3.6, 0.4, 0.9)), (0.1, 0.1, 0.1), text="charger", **more),
+    ]
+    return sample("/markers", MARKERS, {"markers": markers})
+
+
 def space_update(
     rows: Mapping[str, Mapping[str, Any]] | None = None,
     frame_rows: tuple[FrameRow, ...] | None = None,
@@ -120,17 +129,13 @@ def space_update(
 ) -> GraphUpdate:
     """The graph with all of it; by topic, without slashes, what it says instead."""
     _world, way = driven()
-    markers = [
-        marker(1, 1, Transform((3.6, 0.4, 0.3)), (0.4, 0.4, 0.6)),
-        marker(2, 9, Transform((3.6, 0.4, 0.9)), (0.1, 0.1, 0.1), text="charger"),
-    ]
     cliff = {"header": header("base_link"), "field_of_view": 0.4, "range": 0.8, "range_max": 2.0}
     said = {
         "cliff": (sample("/cliff", RANGE, cliff),),
         "depth_points": (sample("/depth/points", CLOUD, cloud_tree(boxes(), "camera_link")),),
         "goal_pose": (stamped("/goal_pose", Pose(3.2, 1.4), "map"),),
         "map": (floor(),),
-        "markers": (sample("/markers", MARKERS, {"markers": markers}),),
+        "markers": (marker_sample(),),
         "odom": tuple(odometry(pose, at / 10) for at, pose in enumerate(way)),
         "plan": (path(),),
         "scan": (scan(),),

@@ -1,0 +1,229 @@
+"""Goals and initial poses: published where they are aimed, and never by accident."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.tui.recorded import RecordedOpener
+from tests.tui.recorded_space import space_update
+from tests.tui.replayed import replayed
+from tests.tui.space.stage_runs import at_work, robot_in_a_room, shown
+from tests.tui.space.test_screen import drag, show
+from tests.unit.bags import write_bag
+from tui.space.screen import SpaceScreen
+from tui.space.view import SpaceView
+
+GOAL, POSE = "/goal_pose", "geometry_msgs/msg/PoseStamped"
+INITIAL, WITH_COVARIANCE = "/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped"
+START, END = (30, 12), (40, 12)
+
+
+def goals(opener: RecordedOpener) -> list[tuple[str, str, Any]]:
+    """What was published about places."""
+    return [sent[:3] for sent in opener.graph.published if sent[0] in {GOAL, INITIAL}]
+
+
+def place_at(screen: SpaceScreen, cell: tuple[int, int]) -> tuple[float, float]:
+    """The place on the floor below the middle of a cell."""
+    view = screen.view
+    found = view.camera.floor_at(2 * cell[0] + 1, 4 * cell[1] + 2, *view.dots)
+    assert found is not None
+    return found
+
+
+def heading_of(pose: Any) -> float:
+    """The yaw of a pose."""
+    turn = pose["orientation"]
+    assert turn["x"] == turn["y"] == 0.0
+    return 2 * math.atan2(turn["z"], turn["w"])
+
+
+def banner(screen: SpaceScreen) -> str:
+    """The band that says what is armed; empty if it is not there."""
+    band = screen.query_one("#space-armed")
+    return str(band.render()) if band.display else ""
+
+
+def told(pilot: Pilot[Any]) -> str:
+    """All notifications."""
+    return " ".join(note.message for note in pilot.app._notifications)
+
+
+async def test_a_goal_is_published_by_press_and_drag() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        place = place_at(screen, START)
+        await pilot.press("alt+g")
+        await pilot.pause()
+        place = place_at(screen, START)
+        await drag(pilot, START, (START[0], START[1] - 5))
+        ((topic, kind, message),) = goals(opener)
+        assert (topic, kind, message["header"]["frame_id"]) == (GOAL, POSE, "map")
+        found = message["pose"]["position"]
+        assert (found["x"], found["y"], found["z"]) == pytest.approx((*place, 0.0))
+        assert heading_of(message["pose"]) == pytest.approx(math.pi / 2)
+        assert not screen.armed
+        assert "Published on /goal_pose" in told(pilot)
+
+
+async def test_the_arrow_is_shown_while_dragging() -> None:
+    async with at_work() as (screen, pilot):
+        await pilot.press("alt+g")
+        await pilot.mouse_down(SpaceView, offset=START)
+        await pilot.hover(SpaceView, offset=END)
+        await pilot.pause()
+        assert screen.view.aim is not None
+        assert screen.view.aim.heading_rad == pytest.approx(0.0)
+        assert "heading 0°" in banner(screen)
+        await pilot.press("escape")
+        await pilot.mouse_up(SpaceView, offset=END)
+
+
+async def test_an_initial_pose_is_published_with_the_covariance_of_rviz() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (_screen, pilot):
+        await pilot.press("alt+i")
+        await pilot.pause()
+        await drag(pilot, START, (START[0] - 8, START[1]))
+        ((topic, kind, message),) = goals(opener)
+        assert (topic, kind) == (INITIAL, WITH_COVARIANCE)
+        inner = message["pose"]
+        assert abs(heading_of(inner["pose"])) == pytest.approx(math.pi)
+        assert len(inner["covariance"]) == 36
+        assert {0, 7, 35} == {at for at, value in enumerate(inner["covariance"]) if value}
+
+
+async def test_a_goal_is_published_by_keys_alone() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        x, y, _z = screen.view.camera.target
+        await pilot.press("alt+g")
+        await pilot.pause()
+        step = 2 / screen.view.camera.dots_per_m
+        await pilot.press("right", "right", "right", "down", *["ctrl+left"] * 3, "enter")
+        await pilot.pause()
+        ((_topic, _kind, message),) = goals(opener)
+        found = message["pose"]["position"]
+        assert (found["x"], found["y"]) == pytest.approx((x + 3 * step, y - step))
+        assert heading_of(message["pose"]) == pytest.approx(math.pi / 4)
+
+
+async def test_nothing_is_published_unless_armed() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        assert banner(screen) == ""
+        await drag(pilot, START, END)
+        await pilot.press("enter")
+        await pilot.click(SpaceView, offset=START)
+        await pilot.pause()
+        assert goals(opener) == []
+
+
+async def test_a_stray_click_moves_the_cross_hair_and_publishes_nothing() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        await pilot.press("alt+g")
+        await pilot.pause()
+        place = place_at(screen, START)
+        await pilot.click(SpaceView, offset=START)
+        await pilot.pause()
+        assert goals(opener) == []
+        assert screen.view.aim is not None
+        assert (screen.view.aim.x_m, screen.view.aim.y_m) == pytest.approx(place)
+        assert banner(screen).startswith("GOAL → /goal_pose")
+
+
+async def test_escape_and_another_screen_disarm() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        for leave in ("escape", "5"):
+            await pilot.press("9", "alt+g")
+            await pilot.pause()
+            assert screen.armed
+            await pilot.press(leave)
+            await pilot.pause()
+            assert not screen.armed
+        assert goals(opener) == []
+
+
+async def test_the_emergency_stop_disarms_and_refuses() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        await pilot.press("alt+g", "space")
+        await pilot.pause()
+        assert not screen.armed
+        await pilot.press("alt+g", "enter")
+        await pilot.pause()
+        assert not screen.armed
+        assert "The emergency stop is engaged" in told(pilot)
+        assert goals(opener) == []
+
+
+async def test_the_emergency_stop_between_drag_and_publishing_wins() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        await pilot.press("alt+g")
+        await pilot.mouse_down(SpaceView, offset=START)
+        await pilot.hover(SpaceView, offset=END)
+        await pilot.press("space")
+        await pilot.mouse_up(SpaceView, offset=END)
+        await pilot.pause()
+        assert goals(opener) == []
+        assert not screen.armed
+
+
+async def test_there_is_no_goal_in_a_recording(tmp_path: Path) -> None:
+    async with replayed(write_bag(tmp_path / "walk"), "space") as (app, pilot, _replay):
+        await pilot.press("9")
+        await pilot.pause()
+        screen = shown(app)
+        assert screen.view.recorded
+        await pilot.press("alt+g")
+        await pilot.pause()
+        assert not screen.armed
+        assert "This is a recording" in told(pilot)
+
+
+async def test_there_is_no_goal_without_a_frame() -> None:
+    empty = replace(space_update(None, ()), topics=(), samples={})
+    opener = robot_in_a_room(empty)
+    async with at_work(opener) as (screen, pilot):
+        await pilot.press("alt+g")
+        await pilot.pause()
+        assert not screen.armed
+        assert "No frame is known yet" in told(pilot)
+
+
+async def test_what_cannot_be_published_is_reported() -> None:
+    opener = robot_in_a_room()
+    opener.graph.publish_error = RuntimeError("no such type")
+    async with at_work(opener) as (screen, pilot):
+        await pilot.press("alt+g", "enter")
+        await pilot.pause()
+        await pilot.pause()
+        assert "no such type" in told(pilot)
+        assert screen.stage.sent is None
+
+
+async def test_the_goal_is_drawn_until_the_graph_shows_it() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        await pilot.press("alt+g", "enter")
+        await pilot.pause()
+        assert screen.stage.sent is not None
+        await show(pilot, opener.graph, space_update())
+        assert screen.stage.sent is None
+
+
+async def test_from_the_side_arming_looks_from_above() -> None:
+    async with at_work() as (screen, pilot):
+        await pilot.press("A", "alt+g")
+        await pilot.pause()
+        assert screen.view.camera.angle.value == "above"
+        assert screen.armed
