@@ -27,7 +27,7 @@ OPENING_RAD = math.radians(50)
 """The angle between top and bottom of the picture, in perspective."""
 LEAST_DOTS_PER_M, MOST_DOTS_PER_M = 0.01, 20_000.0
 STEEPEST_RAD = math.pi / 2
-FIT_HALVINGS = 24
+FIT_HALVINGS, CENTRE_ROUNDS = 24, 3
 
 
 class Angle(str, Enum):
@@ -170,13 +170,18 @@ class SpaceCamera:
         corners = np.array(
             [[x, y, z] for x in sides[0] for y in sides[1] for z in sides[2]], dtype=np.float32
         )
-        centred = replace(self, target=(middle[0], middle[1], middle[2]))
-        low, high = LEAST_DOTS_PER_M, MOST_DOTS_PER_M
-        for _halving in range(FIT_HALVINGS):
-            scale = math.sqrt(low * high)
-            camera = replace(centred, dots_per_m=scale)
-            low, high = (scale, high) if camera.shows(corners, width, height) else (low, scale)
-        return replace(centred, dots_per_m=low)
+        camera = replace(self, target=(middle[0], middle[1], middle[2]))
+        camera = _largest(camera, corners, width, height)
+        for _round in range(CENTRE_ROUNDS if self.turns else 0):
+            # In perspective the middle of a box is not in the middle of what it covers.
+            spots = camera.project(corners, width, height)
+            right, down = (spots.min(axis=0) + spots.max(axis=0))[:2] / 2
+            across, up, _away = self.basis()
+            way = (right - width / 2) * across - (down - height / 2) * up
+            place = np.array(camera.target) + way / camera.dots_per_m
+            moved = replace(camera, target=(float(place[0]), float(place[1]), float(place[2])))
+            camera = _largest(moved, corners, width, height)
+        return camera
 
     def shows(self, points: Places, width: int, height: int) -> bool:
         """Return whether all points are within the picture, a little away from its edge."""
@@ -184,3 +189,13 @@ class SpaceCamera:
         inside = (spots[:, 0] >= 2) & (spots[:, 0] <= width - 2)
         inside &= (spots[:, 1] >= 2) & (spots[:, 1] <= height - 2)
         return bool(inside.all())
+
+
+def _largest(camera: SpaceCamera, points: Places, width: int, height: int) -> SpaceCamera:
+    """Return the camera as close as it can be with all points in the picture."""
+    low, high = LEAST_DOTS_PER_M, MOST_DOTS_PER_M
+    for _halving in range(FIT_HALVINGS):
+        scale = math.sqrt(low * high)
+        shown = replace(camera, dots_per_m=scale).shows(points, width, height)
+        low, high = (scale, high) if shown else (low, scale)
+    return replace(camera, dots_per_m=low)

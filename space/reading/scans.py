@@ -32,7 +32,7 @@ def read_scan(tree: Mapping[str, Any]) -> Drawable:
     """Return the points where rays ended. Raises NotDrawnError."""
     ranges = numbers(tree, "ranges")
     first, step = number(tree, "angle_min"), number(tree, "angle_increment")
-    least, most = number(tree, "range_min"), _farthest(tree)
+    least, most = number(tree, "range_min"), _farthest(tree, "range_max")
     if not ranges.size:
         raise NotDrawnError(say("the scan has no ranges"))
     if ranges.size > MOST_RAYS:
@@ -48,16 +48,16 @@ def read_scan(tree: Mapping[str, Any]) -> Drawable:
     return Drawable(frame(tree), (Speckles(ends, Tint.BAD),), stamp_s(tree), remark)
 
 
-def _farthest(tree: Mapping[str, Any]) -> float:
-    """Return range_max, which some drivers set to infinity."""
-    return math.inf if field(tree, "range_max") == math.inf else number(tree, "range_max")
+def _farthest(tree: Mapping[str, Any], path: str) -> float:
+    """Return the longest range, which some drivers set to infinity."""
+    return math.inf if field(tree, path) == math.inf else number(tree, path)
 
 
 def read_range(tree: Mapping[str, Any]) -> Drawable:
     """Return a cone along x, as long as the distance. Raises NotDrawnError."""
     opening = abs(number(tree, "field_of_view"))
     half = min(max(opening / 2, NARROWEST_RAD), WIDEST_RAD * 0.95)
-    shapes = ray(_distance(tree, "range"), half, _farthest(tree))
+    shapes = ray(_distance(tree, "range"), half, _farthest(tree, "max_range"))
     return Drawable(frame(tree), shapes, stamp_s(tree))
 
 

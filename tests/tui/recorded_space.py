@@ -129,7 +129,7 @@ def space_update(
 ) -> GraphUpdate:
     """The graph with all of it; by topic, without slashes, what it says instead."""
     _world, way = driven()
-    cliff = {"header": header("base_link"), "field_of_view": 0.4, "range": 0.8, "range_max": 2.0}
+    cliff = {"header": header("base_link"), "field_of_view": 0.4, "range": 0.8, "max_range": 2.0}
     said = {
         "cliff": (sample("/cliff", RANGE, cliff),),
         "depth_points": (sample("/depth/points", CLOUD, cloud_tree(boxes(), "camera_link")),),

@@ -64,8 +64,7 @@ def test_a_goal_is_armed(look: Look, dump_compare: SnapCompare) -> None:
 
 @both_languages
 def test_every_trouble_is_said_below_its_layer(look: Look, dump_compare: SnapCompare) -> None:
-    """A cloud that is too short, a scan that is not joined,
-    and a silent sonar."""
+    """A cloud that is too short, a scan that is not joined, and a silent sonar."""
     app = look.app("space", robot_in_a_room(in_trouble()))
     assert dump_compare(app, terminal_size=look.size, run_before=pressed())
 

@@ -92,7 +92,7 @@ def test_ranges_that_are_not_valid_are_left_out() -> None:
 
 
 def test_a_range_is_a_cone_as_long_as_it_measures() -> None:
-    tree = {"header": header("sonar"), "field_of_view": 0.5, "range": 2.0, "range_max": 4.0}
+    tree = {"header": header("sonar"), "field_of_view": 0.5, "range": 2.0, "max_range": 4.0}
     cone, rim = read_range(tree).shapes
     assert isinstance(cone, Strokes)
     assert isinstance(rim, Strokes)

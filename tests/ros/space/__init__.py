@@ -1,0 +1,1 @@
+"""Tests of `space` with real messages, and of the Space screen's layers with real publishers."""
