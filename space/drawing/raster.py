@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,8 @@ NEARER = 2.0**-9
 MOST_STEPS = 400_000
 """Dots of all strokes of one shape; with more, their dots are farther apart."""
 DEPTH_LEVELS = 65_535
+SMALL_FACES = (2, 5, 12)
+"""Longest edges, in dots, up to which triangles are filled by dots."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,10 +129,26 @@ class Raster:
                 first, last = np.maximum(first, near), np.minimum(last, far)
         return first, last
 
-    def face(self, corners: Places, paint: int) -> None:
-        """Fill a triangle of spots (x, y, depth), of shape (3, 3)."""
-        if not np.isfinite(corners).all():
-            return
+    def faces(self, corners: Places, paint: int | Paints) -> None:
+        """Fill triangles of spots (x, y, depth), of shape (n, 3, 3); those with NaN are ignored.
+
+        Small ones are filled by dots, many at a time; there are hundreds in a robot.
+        """
+        clear = np.isfinite(corners).all(axis=(1, 2))
+        edges = np.abs(corners - np.roll(corners, 1, axis=1))[..., :2].max(axis=(1, 2))
+        paints = np.broadcast_to(np.asarray(paint, dtype=np.uint8), len(corners))
+        least = 0.0
+        for size in SMALL_FACES:
+            chosen = np.flatnonzero(clear & (edges > least) & (edges <= size))
+            if chosen.size:
+                shares = _lattice(size)
+                spots = np.einsum("sc,nca->nsa", shares, corners[chosen])
+                self.dots(spots.reshape(-1, 3), np.repeat(paints[chosen], len(shares)))
+            least = size
+        for number in np.flatnonzero(clear & (edges > least)).tolist():
+            self._large_face(corners[number], int(paints[number]))
+
+    def _large_face(self, corners: Places, paint: int) -> None:
         least = np.clip(np.floor(corners.min(axis=0)[:2]), 0, (self.width, self.height))
         most = np.clip(np.ceil(corners.max(axis=0)[:2]), 0, (self.width, self.height))
         (x0, y0), (x1, y1) = least.astype(int), most.astype(int)
@@ -203,6 +222,16 @@ class Raster:
                 picture.front[row, place] = paint
                 if picture.back[row, place] == Tint.WALL:
                     picture.back[row, place] = 0
+
+
+@lru_cache(maxsize=len(SMALL_FACES))
+def _lattice(size: int) -> NDArray[np.float32]:
+    """Shares of the three corners, of shape (m, 3), for dots all over a triangle of this size."""
+    steps = size + 1
+    rows = [
+        (one, two, steps - one - two) for one in range(steps + 1) for two in range(steps + 1 - one)
+    ]
+    return np.array(rows, dtype=np.float32) / np.float32(steps)
 
 
 def _nearest(depth: NDArray[np.float32], paint: Paints) -> Paints:

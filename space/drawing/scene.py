@@ -89,9 +89,7 @@ def _before_the_eye(ends: NDArray[np.float32], others: NDArray[np.float32]) -> N
 
 def _draw_faces(shape: Faces, raster: Raster, camera: SpaceCamera) -> None:
     spots = camera.project(shape.corners.reshape(-1, 3), raster.width, raster.height)
-    for number, corners in enumerate(spots.reshape(-1, 3, 3)):
-        paint = shape.paint
-        raster.face(corners, int(paint[number]) if isinstance(paint, np.ndarray) else paint)
+    raster.faces(spots.reshape(-1, 3, 3), shape.paint)
 
 
 def _draw_floor(shape: Floor, raster: Raster, camera: SpaceCamera) -> None:

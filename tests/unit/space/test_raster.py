@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from space.drawing.braille import BLANK, BRAILLE
 from space.drawing.camera import Angle, SpaceCamera
 from space.drawing.paints import (
     CUBE_FROM,
@@ -20,7 +22,7 @@ from space.drawing.paints import (
     ramp,
     rgb_of,
 )
-from space.drawing.raster import CellPicture, Raster
+from space.drawing.raster import FULL_BLOCK, CellPicture, Raster
 from space.drawing.scene import draw
 from space.drawing.shapes import Faces, Floor, Shape, Sign, Speckles, Strokes, box, places
 from space.transform import IDENTITY, Transform
@@ -103,11 +105,23 @@ def test_a_face_covers_what_is_behind_it_and_not_what_is_before() -> None:
     raster = Raster(4, 2)
     raster.dots(spots((2, 2, 5)), Tint.BAD)
     raster.dots(spots((3, 2, 1)), Tint.GOOD)
-    raster.face(spots((0, 0, 3), (8, 0, 3), (0, 8, 3)), Tint.TEXT)
-    raster.face(spots((0, 0, 3), (0, 0, 3), (0, 0, 3)), Tint.WARN)
+    raster.faces(spots((0, 0, 3), (8, 0, 3), (0, 8, 3))[None], Tint.TEXT)
+    raster.faces(spots((0, 0, 3), (0, 0, 3), (0, 0, 3))[None], Tint.WARN)
+    raster.faces(spots((0, 0, 3), (5, 0, math.nan), (0, 5, 3))[None], Tint.WARN)
     picture = raster.cells()
     assert picture.back[0, 1] == Tint.GOOD
     assert {*picture.front.ravel().tolist()} == {Tint.NOTHING, Tint.TEXT}
+
+
+@pytest.mark.parametrize("size", [1.5, 4.0, 11.0, 30.0])
+def test_small_and_large_faces_are_filled_without_gaps(size: float) -> None:
+    raster = Raster(20, 10)
+    raster.faces(spots((1, 1, 1), (1 + size, 1, 1), (1, 1 + size, 1))[None], Tint.GOOD)
+    codes = raster.cells().codes.ravel().tolist()
+    dots = sum(
+        8 if code == FULL_BLOCK else (code - BRAILLE).bit_count() for code in codes if code != BLANK
+    )
+    assert dots == pytest.approx(size * size / 2, abs=2 * size + 3)
 
 
 def test_a_box_shows_its_near_faces_and_its_edges() -> None:
