@@ -79,6 +79,8 @@ class Raster:
         several = isinstance(paint, np.ndarray)
         paints: Paints = paint[inside] if several else np.full(0, 0, dtype=np.uint8)  # type: ignore[index]
         visible = np.flatnonzero(depth <= self._depth[at])
+        if not visible.size:
+            return
         at, depth = at[visible], depth[visible]
         if several:
             # The nearest last: of several dots in one place, the last one stays.

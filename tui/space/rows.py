@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import textwrap
+from functools import lru_cache
 from typing import TYPE_CHECKING
+
+from rich.cells import cell_len
 
 from graph.data import Trouble
 from text.figures import figure
 from text.i18n import _, localized
 from text.plain import plain
+from tui import clock
 from tui.widgets.rows import MARK, Cell, Column, Row, Rows
 from tui.widgets.trouble import advice
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from textual.events import Click
 
     from tui.space.layers import SpaceLayer
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 FRAMES = "frames"
 """Key of the layer of frames; those of topics begin with a slash."""
 ON, OFF = "●", "○"
-RATE = 6
+RATE, RATE_HELD_S = 6, 1.0
 LONGEST = 300
 
 
@@ -36,6 +38,8 @@ class LayerRows(Rows):
 
     def __init__(self) -> None:
         super().__init__(header=False, id="space-layers")
+        self._rates: dict[str, tuple[float, str]] = {}
+        """Topic to when its rate was shown first, and what was shown."""
 
     def on_click(self, event: Click) -> None:
         """Choose a layer; on its mark, show or hide it."""
@@ -52,8 +56,15 @@ class LayerRows(Rows):
             words = localized(stage.frames_why) if frames else _("nobody publishes /tf")
             rows += _words(words, width)
         for layer in stage.layers:
-            rate = "–" if layer.row is None or layer.row.hz is None else figure(layer.row.hz, 1)
-            rows.append(_head(layer.topic, layer.topic, rate if layer.on else "", on=layer.on))
+            rate = self._rate(layer)
+            rows.append(
+                _head(
+                    layer.topic,
+                    _short(layer.topic, width - RATE - 2),
+                    rate if layer.on else "",
+                    on=layer.on,
+                )
+            )
             if layer.on:
                 trouble = trouble_of_layer(layer)
                 rows += _words(trouble, width)
@@ -62,15 +73,34 @@ class LayerRows(Rows):
         columns = [Column("", 1), Column(""), Column("", RATE, right=True)]
         self.show(columns, rows)
 
+    def _rate(self, layer: SpaceLayer) -> str:
+        """Return how often it comes; it changes all the time, and need not be read so often."""
+        if layer.row is None or layer.row.hz is None:
+            self._rates.pop(layer.topic, None)
+            return "–"
+        now_s = clock.steady()
+        since_s, shown = self._rates.get(layer.topic, (-RATE_HELD_S, ""))
+        if now_s - since_s >= RATE_HELD_S:
+            shown = figure(layer.row.hz, 1)
+            self._rates[layer.topic] = now_s, shown
+        return shown
+
 
 def _head(key: str, name: str, rate: str, *, on: bool) -> Row:
     mark = Cell(ON, "good") if on else Cell(OFF, "dim")
-    return Row(key, (mark, Cell(plain(name), "" if on else "dim"), Cell(rate, "dim")))
+    return Row(key, (mark, Cell(name, "" if on else "dim"), Cell(rate, "dim")))
 
 
-def _words(words: str, width: int) -> Iterator[Row]:
-    for line in textwrap.wrap(plain(words, LONGEST), max(8, width)):
-        yield Row("", (Cell(""), Cell(line, "warn")))
+def _short(name: str, width: int) -> str:
+    """Return a name of at most this many cells; ends differ more than beginnings."""
+    name = plain(name)
+    return name if cell_len(name) <= width else "…" + name[1 - max(2, width) :]
+
+
+@lru_cache(maxsize=256)
+def _words(words: str, width: int) -> tuple[Row, ...]:
+    lines = textwrap.wrap(plain(words, LONGEST), max(8, width))
+    return tuple(Row("", (Cell(""), Cell(line, "warn"))) for line in lines)
 
 
 def trouble_of_layer(layer: SpaceLayer) -> str:

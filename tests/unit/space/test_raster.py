@@ -58,6 +58,7 @@ def test_of_many_dots_at_once_the_nearest_is_on_top() -> None:
     raster = Raster(1, 1)
     paints = np.array([Tint.GOOD, Tint.BAD, Tint.WARN], dtype=np.uint8)
     raster.dots(spots((0, 0, 3), (0, 0, 1), (0, 0, 2)), paints)
+    raster.dots(spots((0, 0, 3), (0, 0, 5), (0, 0, 2)), paints)
     assert raster.cells().front[0, 0] == Tint.BAD
 
 
