@@ -20,15 +20,16 @@ if TYPE_CHECKING:
     from space.drawing.camera import SpaceCamera
     from space.drawing.shapes import Shape
     from space.reading.fields import Drawable
-    from space.transform import Transform
+    from space.transform import Transform, Vector
 
 ROOTS = ("map", "odom", "base_link")
 """Frames of REP-105: the tree that has the first of them is the robot's."""
-AXIS_M, LEAST_AXIS_DOTS, MOST_AXIS_DOTS = 0.3, 6.0, 40.0
+AXIS_M, LEAST_AXIS_DOTS, MOST_AXIS_DOTS = 0.15, 5.0, 30.0
 SMALLEST_CUBE_M = 0.004
 LONGEST_NAME = 40
-MOST_SIGNS = 60
-"""With more frames their names would cover everything."""
+CLOSE_DOTS = 12.0
+"""Frames as close as this in the picture share one line for their names."""
+NAMED_TOGETHER = 2
 
 
 def robot_root(buffer: TransformBuffer, others: Iterable[str] = ()) -> str:
@@ -104,18 +105,19 @@ class Placer:
 
 
 def frame_shapes(
-    buffer: TransformBuffer, fixed: str, camera: SpaceCamera, *, names: bool = True
+    buffer: TransformBuffer, fixed: str, camera: SpaceCamera
 ) -> tuple[list[Shape], list[str]]:
     """Return axes and names of all frames, and the frames that are not joined to the fixed one.
 
-    Axes are 0.3 m long, but never too small or too large to be seen.
+    Axes are 0.15 m long, but never too small or too large to be seen.
     """
     size = min(max(AXIS_M * camera.dots_per_m, LEAST_AXIS_DOTS), MOST_AXIS_DOTS)
     length_m = size / camera.dots_per_m
     shapes: list[Shape] = []
     apart: list[str] = []
-    taken: dict[tuple[float, ...], int] = {}
-    frames = sorted(buffer.frames)
+    named: dict[tuple[float, ...], tuple[Vector, list[str]]] = {}
+    # Parents first: of frames close together the first one gives its name.
+    frames = sorted(buffer.frames, key=lambda frame: (len(buffer.way_up(frame)), frame))
     for frame in frames:
         try:
             at = buffer.find(fixed, frame)
@@ -123,16 +125,10 @@ def frame_shapes(
             apart.append(frame)
             continue
         shapes += axes(at, length_m)
-        if not names or len(frames) > MOST_SIGNS:
-            continue
-        spot = tuple(round(value * camera.dots_per_m / 8) for value in at.translation)
-        if spot not in taken:
-            taken[spot] = len(shapes)
-            shapes.append(Sign(at.translation, plain(frame, LONGEST_NAME), Tint.TEXT))
-        else:
-            # Frames in one place, as map and odom at the start, share one line.
-            first = shapes[taken[spot]]
-            if isinstance(first, Sign):
-                text = plain(f"{first.text}, {frame}", 2 * LONGEST_NAME)
-                shapes[taken[spot]] = Sign(first.place, text, first.paint)
-    return shapes, apart
+        spot = tuple(round(value * camera.dots_per_m / CLOSE_DOTS) for value in at.translation)
+        named.setdefault(spot, (at.translation, []))[1].append(frame)
+    for place, found in named.values():
+        text = ", ".join(plain(frame, LONGEST_NAME) for frame in found[:NAMED_TOGETHER])
+        more = len(found) - NAMED_TOGETHER
+        shapes.append(Sign(place, f"{text} +{more}" if more > 0 else text, Tint.TEXT))
+    return shapes, sorted(apart)

@@ -22,6 +22,8 @@ NEARER = 2.0**-9
 MOST_STEPS = 400_000
 """Dots of all strokes of one shape; with more, their dots are farther apart."""
 DEPTH_LEVELS = 65_535
+FLOORS = (Tint.FREE, Tint.MAYBE)
+"""Behind a text these are readable."""
 SMALL_FACES = (2, 5, 12)
 """Longest edges, in dots, up to which triangles are filled by dots."""
 
@@ -222,8 +224,8 @@ class Raster:
             for place, char in enumerate(shown, column):
                 picture.codes[row, place] = ord(char)
                 picture.front[row, place] = paint
-                if picture.back[row, place] == Tint.WALL:
-                    picture.back[row, place] = 0
+                if picture.back[row, place] not in FLOORS:
+                    picture.back[row, place] = Tint.NOTHING
 
 
 @lru_cache(maxsize=len(SMALL_FACES))

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from space.drawing.camera import SpaceCamera
+    from space.drawing.paints import Paints
     from space.drawing.raster import Raster
 
 FAR_M = 1e6
@@ -26,26 +27,36 @@ MOST_BLOCK_DOTS = 12
 
 
 def draw(raster: Raster, camera: SpaceCamera, shapes: Iterable[Shape]) -> None:
-    """Draw all; signs last, since they are written over the rest."""
-    signs = []
+    """Draw all; all strokes at once, as all faces: a robot has dozens, and each costs a little."""
+    shapes = list(shapes)
+    for shape in shapes:
+        if isinstance(shape, Floor):
+            _draw_floor(shape, raster, camera)
+        elif isinstance(shape, Speckles):
+            _draw_speckles(shape, raster, camera)
+    faces = [shape for shape in shapes if isinstance(shape, Faces) and len(shape.corners)]
+    if faces:
+        corners = np.concatenate([one.corners for one in faces])
+        _draw_faces(
+            Faces(corners, _paints([(len(f.corners), f.paint) for f in faces])), raster, camera
+        )
+    strokes = [shape for shape in shapes if isinstance(shape, Strokes) and len(shape.starts)]
+    if strokes:
+        starts = np.concatenate([one.starts for one in strokes])
+        ends = np.concatenate([one.ends for one in strokes])
+        paints = _paints([(len(one.starts), one.paint) for one in strokes])
+        _draw_strokes(Strokes(starts, ends, paints), raster, camera)
     for shape in shapes:
         if isinstance(shape, Sign):
-            signs.append(shape)
-        else:
-            _draw(shape, raster, camera)
-    for sign in signs:
-        _draw_sign(sign, raster, camera)
+            # Last, since it is written over the rest.
+            _draw_sign(shape, raster, camera)
 
 
-def _draw(shape: Speckles | Strokes | Faces | Floor, raster: Raster, camera: SpaceCamera) -> None:
-    if isinstance(shape, Speckles):
-        _draw_speckles(shape, raster, camera)
-    elif isinstance(shape, Strokes):
-        _draw_strokes(shape, raster, camera)
-    elif isinstance(shape, Faces):
-        _draw_faces(shape, raster, camera)
-    else:
-        _draw_floor(shape, raster, camera)
+def _paints(counted: list[tuple[int, int | Paints]]) -> Paints:
+    """The paint of each of several shapes' parts."""
+    parts = [np.broadcast_to(np.asarray(paint, dtype=np.uint8), count) for count, paint in counted]
+    paints: Paints = np.concatenate(parts)
+    return paints
 
 
 def _draw_speckles(shape: Speckles, raster: Raster, camera: SpaceCamera) -> None:

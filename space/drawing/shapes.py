@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from space.drawing.paints import Paints, Tint
+from space.drawing.paints import Paints, Tint, cube, rgb_of
 from space.transform import IDENTITY, Transform
 
 if TYPE_CHECKING:
@@ -21,6 +21,12 @@ if TYPE_CHECKING:
     from space.transform import Vector
 
 Places: TypeAlias = "NDArray[np.float32]"
+
+
+LIGHT = np.array([0.05, -0.45, 0.89], dtype=np.float32)
+"""From where it comes: from above, and a little from the right of what looks along x."""
+SHADE = 0.35
+"""How bright a face is that it does not reach."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,28 +138,35 @@ def dart(at: Transform, length_m: float, paint: int) -> Faces:
     return Faces(halves.reshape(2, 3, 3), paint)
 
 
-def box(at: Transform, size_m: Vector, paint: int) -> tuple[Faces, Strokes]:
-    """Return a box about its middle: faces, and the edges, which are drawn over them."""
+def box(at: Transform, size_m: Vector, paint: int) -> tuple[Shape, ...]:
+    """Return a box about its middle."""
     size = np.array(size_m, dtype=np.float32)
-    corners = _points(at, _CORNERS * size / 2)
-    return Faces(corners[_SIDES], paint), Strokes(corners[_EDGES[:, 0]], corners[_EDGES[:, 1]])
+    return (_solid(at, (_CORNERS * size / 2)[_SIDES], paint),)
 
 
 def ellipsoid(at: Transform, size_m: Vector, paint: int) -> tuple[Shape, ...]:
     """Return a sphere, or what becomes of it if its three diameters differ."""
-    unit = _unit_sphere()
-    corners = unit * (np.array(size_m, dtype=np.float32) / 2)
-    faces = _points(at, corners.reshape(-1, 3)).reshape(-1, 3, 3)
-    return (Faces(faces, paint),)
+    return (_solid(at, _unit_sphere() * (np.array(size_m, dtype=np.float32) / 2), paint),)
 
 
 def cylinder(at: Transform, size_m: Vector, paint: int) -> tuple[Shape, ...]:
     """Return a cylinder about z: x and y of its size are the diameters, z the height."""
-    faces, rims = _unit_cylinder()
-    scale = np.array(size_m, dtype=np.float32) / 2
-    placed = _points(at, (faces * scale).reshape(-1, 3)).reshape(-1, 3, 3)
-    starts, ends = (_points(at, rim * scale) for rim in rims)
-    return Faces(placed, paint), Strokes(starts, ends)
+    return (_solid(at, _unit_cylinder() * (np.array(size_m, dtype=np.float32) / 2), paint),)
+
+
+def _solid(at: Transform, corners: NDArray[np.floating], paint: int) -> Faces:
+    """Place the faces of a convex shape about the origin, each as bright as the light makes it."""
+    placed = _points(at, corners.reshape(-1, 3)).reshape(-1, 3, 3)
+    rgb = rgb_of(paint)
+    if rgb is None:
+        return Faces(placed, paint)
+    normals = np.cross(placed[:, 1] - placed[:, 0], placed[:, 2] - placed[:, 0])
+    outwards = placed.mean(axis=1) - np.array(at.translation, dtype=np.float32)
+    normals *= np.sign((normals * outwards).sum(axis=1))[:, None]
+    lengths = np.linalg.norm(normals, axis=1)
+    lit = (normals @ LIGHT) / np.where(lengths > 0, lengths, 1.0)
+    bright = SHADE + (1 - SHADE) * np.clip(lit, 0.0, 1.0)
+    return Faces(placed, cube((np.array(rgb) * bright[:, None]).astype(np.uint8)))
 
 
 _CORNERS = np.array(
@@ -173,23 +186,20 @@ _SIDES = np.array(
         for a, b, c in ((quad[0], quad[1], quad[2]), (quad[0], quad[2], quad[3]))
     ]
 )
-_EDGES = np.array([(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b).bit_count() == 1])
 _ROUND = 16
 """Corners of a circle."""
 
 
 @lru_cache(maxsize=1)
-def _unit_cylinder() -> tuple[Places, tuple[Places, Places]]:
-    """Faces, and starts and ends of both rims, of a cylinder of radius 1 and height 2."""
+def _unit_cylinder() -> Places:
+    """Faces of a cylinder of radius 1 and height 2."""
     turn = np.linspace(0, 2 * np.pi, _ROUND + 1)
     ring = np.stack([np.cos(turn), np.sin(turn), np.ones_like(turn)], axis=1)
     low = ring * (1, 1, -1)
     faces = []
     for a, b, c, d in zip(ring[:-1], ring[1:], low[:-1], low[1:], strict=True):
         faces += [(a, b, c), (b, d, c), (a, b, (0, 0, 1)), (c, d, (0, 0, -1))]
-    starts = np.concatenate([ring[:-1], low[:-1]]).astype(np.float32)
-    ends = np.concatenate([ring[1:], low[1:]]).astype(np.float32)
-    return np.array(faces, dtype=np.float32), (starts, ends)
+    return np.array(faces, dtype=np.float32)
 
 
 @lru_cache(maxsize=1)
