@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Paints: TypeAlias = "NDArray[np.uint8]"
 
-LEVELS = 5
+LEVELS = 6
 """Of each channel of the cube."""
 RAMP_FROM, RAMP_STEPS = 16, 10
 CUBE_FROM = 32

@@ -25,8 +25,12 @@ Places: TypeAlias = "NDArray[np.float32]"
 
 LIGHT = np.array([0.05, -0.45, 0.89], dtype=np.float32)
 """From where it comes: from above, and a little from the right of what looks along x."""
-SHADE = 0.35
+SHADE = 0.45
 """How bright a face is that it does not reach."""
+
+
+DARKEST = 60
+"""How bright what is black is drawn, of 255: the background is black as well."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +170,8 @@ def _solid(at: Transform, corners: NDArray[np.floating], paint: int) -> Faces:
     lengths = np.linalg.norm(normals, axis=1)
     lit = (normals @ LIGHT) / np.where(lengths > 0, lengths, 1.0)
     bright = SHADE + (1 - SHADE) * np.clip(lit, 0.0, 1.0)
-    return Faces(placed, cube((np.array(rgb) * bright[:, None]).astype(np.uint8)))
+    lifted = DARKEST + np.array(rgb) * (1 - DARKEST / 255)
+    return Faces(placed, cube((lifted * bright[:, None]).astype(np.uint8)))
 
 
 _CORNERS = np.array(

@@ -219,8 +219,8 @@ def test_the_ramp_goes_from_the_least_to_the_most() -> None:
 
 def test_every_paint_has_a_colour_or_a_name() -> None:
     assert cube(np.array([[255, 0, 0]], dtype=np.uint8))[0] == nearest(1.0, 0.0, 0.0)
-    assert rgb_of(nearest(1.0, 0.0, 0.0)) == (252, 0, 0)
-    for paint in (*Tint, *range(RAMP_FROM, RAMP_FROM + RAMP_STEPS), CUBE_FROM, CUBE_FROM + 124):
+    assert rgb_of(nearest(1.0, 0.0, 0.0)) == (255, 0, 0)
+    for paint in (*Tint, *range(RAMP_FROM, RAMP_FROM + RAMP_STEPS), CUBE_FROM, CUBE_FROM + 215):
         rgb = rgb_of(paint)
         assert rgb is None or all(0 <= channel <= 255 for channel in rgb)
-    assert rgb_of(nearest(math.nan, 5.0, -1.0)) == (0, 252, 0)
+    assert rgb_of(nearest(math.nan, 5.0, -1.0)) == (0, 255, 0)
