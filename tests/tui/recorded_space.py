@@ -18,6 +18,7 @@ from tests.tui.recorded_lesson import lesson_update, sample, topic
 from tests.tui.recorded_map import driven, odometry, reading, room, stamped
 from tests.unit.space.trees import cloud_tree, header, marker, pose_tree
 
+STRING = "std_msgs/msg/String"
 CLOUD, SCAN = "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/LaserScan"
 PATH, MARKERS = "nav_msgs/msg/Path", "visualization_msgs/msg/MarkerArray"
 RANGE, GRID = "sensor_msgs/msg/Range", "nav_msgs/msg/OccupancyGrid"
@@ -26,6 +27,28 @@ ODOMETRY, POSE, FLOAT = (
     "geometry_msgs/msg/PoseStamped",
     "std_msgs/msg/Float32",
 )
+URDF = """
+<robot name="cart">
+  <link name="base_link">
+    <visual>
+      <origin xyz="0.12 0 0.12"/><geometry><box size="0.5 0.36 0.12"/></geometry>
+      <material name="blue"><color rgba="0.3 0.5 1 1"/></material>
+    </visual>
+    <visual>
+      <origin xyz="-0.05 0.2 0.1" rpy="1.5708 0 0"/>
+      <geometry><cylinder radius="0.1" length="0.06"/></geometry>
+    </visual>
+    <visual>
+      <origin xyz="-0.05 -0.2 0.1" rpy="1.5708 0 0"/>
+      <geometry><cylinder radius="0.1" length="0.06"/></geometry>
+    </visual>
+  </link>
+  <link name="camera_link">
+    <visual><geometry><sphere radius="0.06"/></geometry></visual>
+  </link>
+  <joint name="mast" type="fixed"><parent link="base_link"/><child link="camera_link"/></joint>
+</robot>
+"""
 SPACE_TOPICS: tuple[TopicRow, ...] = (
     topic("/cliff", RANGE, 10.0, 40),
     topic("/depth/points", CLOUD, 10.0, 4_800_000),
@@ -34,6 +57,7 @@ SPACE_TOPICS: tuple[TopicRow, ...] = (
     topic("/markers", MARKERS, 1.0, 900),
     topic("/odom", ODOMETRY, 50.0, 720),
     topic("/plan", PATH, 1.0, 2000),
+    topic("/robot_description", STRING, None, age_s=80.0, count=1),
     topic("/scan", SCAN, 10.0, 1500),
     topic("/sensor/sonar_front", FLOAT, 100.0, 8),
     topic("/sensor/sonar_rear", FLOAT, 100.0, 8),
@@ -138,6 +162,7 @@ def space_update(
         "markers": (marker_sample(),),
         "odom": tuple(odometry(pose, at / 10) for at, pose in enumerate(way)),
         "plan": (path(),),
+        "robot_description": (sample("/robot_description", STRING, {"data": URDF}),),
         "scan": (scan(),),
         "sensor_sonar_front": (reading("front", 1.1),),
         "sensor_sonar_rear": (reading("rear", math.inf),),

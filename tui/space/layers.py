@@ -6,9 +6,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from graph.data import Trouble
-from robot.topics import SONAR_FRONT, SONAR_REAR
+from robot.topics import ROBOT_DESCRIPTION, SONAR_FRONT, SONAR_REAR
 from space.reading.fields import NotDrawnError
 from space.reading.kinds import KINDS, LayerKind, NewestReader
+from space.reading.robot import ModelReader
 from space.reading.scans import read_sonar
 from text.sentences import reason_of
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate, TopicRow
     from space.reading.kinds import LayerReader
 
-FLOAT = "std_msgs/msg/Float32"
+FLOAT, TEXT = "std_msgs/msg/Float32", "std_msgs/msg/String"
 SONARS = {SONAR_FRONT: "sonar_front_link", SONAR_REAR: "sonar_rear_link"}
 """Topics of the course with bare distances, and the frames in which they are measured."""
 FLEETING = frozenset(
@@ -132,6 +133,8 @@ def _kind_of(topic: str, type_names: Iterable[str]) -> tuple[str, LayerKind] | N
     for name in type_names:
         if name in KINDS:
             return name, KINDS[name]
+        if name == TEXT and topic == ROBOT_DESCRIPTION:
+            return name, LayerKind(ModelReader)
         if name == FLOAT and topic in SONARS:
             read = partial(read_sonar, frame_id=SONARS[topic])
             return name, LayerKind(lambda read=read: NewestReader(read))  # type: ignore[misc]

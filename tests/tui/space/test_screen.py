@@ -31,6 +31,7 @@ WATCHED = {
     "/map",
     "/odom",
     "/plan",
+    "/robot_description",
     "/scan",
     "/sensor/sonar_front",
     "/sensor/sonar_rear",

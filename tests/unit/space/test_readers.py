@@ -16,6 +16,7 @@ from space.reading.fields import Drawable, NotDrawnError
 from space.reading.grids import read_grid
 from space.reading.markers import MarkerBook
 from space.reading.poses import DrivenTrail, read_goal, read_path, read_pose
+from space.reading.robot import ModelReader
 from space.reading.scans import read_range, read_scan, read_sonar
 from space.transform import Transform
 from tests.unit.space.trees import cloud_tree, header, marker, pose_tree
@@ -389,3 +390,45 @@ def test_a_bad_marker_is_named_and_the_ones_before_it_are_kept() -> None:
     with pytest.raises(NotDrawnError, match=r"marker things/7: a LINE_LIST has an odd number"):
         book.read({"markers": [good, {**good, "id": 7, "type": 5, "points": POINTS[:1]}]}, 0.0)
     assert len(book.shown(0.0)) == 1
+
+
+CART = """
+<robot name="cart">
+  <link name="base_link">
+    <visual><origin xyz="1 0 0"/><geometry><box size="2 1 1"/></geometry></visual>
+    <visual><geometry><cylinder radius="0.5" length="2"/></geometry></visual>
+  </link>
+  <link name="head">
+    <visual><geometry><sphere radius="0.25"/></geometry></visual>
+    <visual><geometry><mesh filename="package://cart/head.stl"/></geometry></visual>
+  </link>
+  <joint name="neck" type="fixed"><parent link="base_link"/><child link="head"/></joint>
+</robot>
+"""
+
+
+def test_a_robot_is_the_shapes_of_its_links_in_their_frames() -> None:
+    reader = ModelReader()
+    reader.read({"data": CART}, 0.0)
+    base, head = reader.shown(0.0)
+    assert (base.frame, head.frame) == ("base_link", "head")
+    block, wheel = base.shapes
+    assert isinstance(block, Faces)
+    assert isinstance(wheel, Faces)
+    assert block.corners[..., 0].min() == pytest.approx(0.0)
+    assert block.corners[..., 0].max() == pytest.approx(2.0)
+    assert np.abs(wheel.corners[..., 2]).max() == pytest.approx(1.0)
+    (ball,) = head.shapes
+    assert isinstance(ball, Faces)
+    assert np.linalg.norm(ball.corners, axis=2).max() == pytest.approx(0.25)
+    assert reader.remark == "shapes in files (mesh) are not drawn: 1"
+
+
+def test_what_describes_no_robot_is_a_sentence_and_shows_none() -> None:
+    reader = ModelReader()
+    reader.read({"data": CART}, 0.0)
+    with pytest.raises(NotDrawnError, match="line 1"):
+        reader.read({"data": "<robot"}, 0.0)
+    assert not reader.shown(0.0)
+    with pytest.raises(NotDrawnError, match="data is not a text"):
+        reader.read({"data": 5}, 0.0)
