@@ -1,0 +1,34 @@
+"""The Space screen in a real terminal: a map is seen, and a goal aimed at it is heard."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from tests.e2e.conftest import Deck
+from tests.unit.profile_files import written
+
+ROOT = Path(__file__).parents[2]
+PROFILE = f"""
+    title: {{en: A map}}
+    nodes:
+      room:
+        exec: [{sys.executable}, -m, tests.e2e.room_with_a_goal]
+        cwd: {ROOT}
+        ready: {{topic: /map}}
+"""
+ALT_G = "\x1bg"
+
+
+def test_a_goal_is_aimed_at_a_map(deck: Deck, tmp_path: Path) -> None:
+    terminal = deck.open(str(written(tmp_path, PROFILE)), "--lang", "en")
+    terminal.wait_for("1/1")
+    terminal.press("9")
+    terminal.wait_until(lambda text: "/map" in text and "in hall" in text, "the map")
+    terminal.type(ALT_G)
+    terminal.wait_for("GOAL → /goal_pose (room)")
+    terminal.press("right")
+    terminal.press("enter")
+    terminal.wait_for("Published on /goal_pose")
+    terminal.press("4")
+    terminal.wait_for("goal in hall, facing 0 degrees")
