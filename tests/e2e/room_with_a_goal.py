@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 
 import rclpy
 from geometry_msgs.msg import PoseStamped
@@ -35,8 +36,8 @@ class Room(Node):
     def _hear(self, goal: PoseStamped) -> None:
         turn = goal.pose.orientation
         degrees = math.degrees(2 * math.atan2(turn.z, turn.w))
-        said = f"goal in {goal.header.frame_id}, facing {degrees:.0f} degrees"
-        self.get_logger().info(said)
+        sys.stdout.write(f"goal in {goal.header.frame_id}, facing {degrees:.0f} degrees\n")
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -200,7 +200,7 @@ class SpaceScreen(DeckScreen):
 
     def fit(self) -> None:
         """Show everything."""
-        self.stage.follow = ""
+        self.stage.follow_frame("")
         self._place()
         self.view.fit(self.stage.extent(), anew=True)
         self._show(by_user=True)
@@ -210,7 +210,7 @@ class SpaceScreen(DeckScreen):
 
         def take(answer: str | None) -> None:
             if answer:
-                self.stage.follow = answer.strip()
+                self.stage.follow_frame(answer.strip())
                 self.view.fits = not self.stage.follow
                 self._show(by_user=True)
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from space.drawing.raster import CellPicture
     from space.drawing.shapes import Shape
     from space.reading.fields import Drawable
+    from space.transform import Vector
     from tui.space.aim import Aim
 
 BODY = Body()
@@ -64,7 +65,9 @@ class Stage:
         self.wanted_fixed = ""
         """The fixed frame that the user has chosen; empty for the robot's root."""
         self.follow = ""
-        """The frame that stays in the middle; empty for none."""
+        """The frame that the camera moves with; empty for none."""
+        self._followed: Vector | None = None
+        """Where it was when the camera was moved last."""
         self.sent: tuple[str, Aim] | None = None
         """The goal published last, and its frame, until the graph shows it."""
         self._placer = Placer(_mounts())
@@ -121,15 +124,26 @@ class Stage:
         found = extent_of(self._shapes)
         return None if found is None else found.widened(AROUND, LEAST_M)
 
+    def follow_frame(self, frame: str) -> None:
+        """Keep this frame in the middle from now on; none if it is empty."""
+        self.follow, self._followed = frame, None
+
     def followed(self, camera: SpaceCamera) -> SpaceCamera:
-        """Return the camera moved to the frame that is followed, if that is known."""
-        if not self.follow:
-            return camera
+        """Return the camera moved as the frame that is followed has moved, if that is known.
+
+        At first the frame gets into the middle; what the user moves afterwards stays so.
+        """
         try:
-            at = self.buffer.find(self.fixed, self.follow)
+            at = self.buffer.find(self.fixed, self.follow).translation
         except NoTransformError:
             return camera
-        return replace(camera, target=at.translation)
+        before, self._followed = self._followed, at
+        if before is None:
+            return replace(camera, target=at)
+        x, y, z = (
+            middle + now - then for middle, now, then in zip(camera.target, at, before, strict=True)
+        )
+        return replace(camera, target=(x, y, z))
 
     def picture(self, camera: SpaceCamera, columns: int, rows: int, aim: Aim | None) -> CellPicture:
         """Return the picture of what was placed last."""

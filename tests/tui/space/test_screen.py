@@ -259,6 +259,10 @@ async def test_a_frame_is_followed() -> None:
         late = tuple(replace(row, newest=replace(row.newest, stamp_s=11.0)) for row in rows)
         await show(pilot, opener.graph, space_update(None, late))
         assert screen.view.camera.target == pytest.approx((3.0, -2.0, 0.0))
+        await pilot.press("right")
+        moved = screen.view.camera.target
+        await show(pilot, opener.graph, space_update(None, late))
+        assert screen.view.camera.target == pytest.approx(moved)
         assert "follows base_link" in str(screen.query_one("#space-status").render())
 
 
