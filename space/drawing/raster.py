@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from space.drawing.braille import BLANK, DOTS_ACROSS, DOTS_DOWN, characters
+from space.drawing.braille import BLANK, BRAILLE, DOTS_ACROSS, DOTS_DOWN, characters
 from space.drawing.paints import RAMP_FROM, RAMP_STEPS, Paints, Tint
 
 if TYPE_CHECKING:
@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
     from space.drawing.shapes import Places
 
-UPPER_HALF, FULL_BLOCK = 0x2580, 0x2588
+UPPER_HALF, LOWER_HALF, FULL_BLOCK = 0x2580, 0x2584, 0x2588
+FEW_DOTS, MANY_DOTS = 3, 6
+"""Of a cell: from where one dot more or less is not seen, and from where it is nearly solid."""
+_DOTS = np.array([bits.bit_count() for bits in range(256)], dtype=np.int8)
 NEARER = 2.0**-9
 """Strokes are drawn this share of their depth nearer, so that edges stand out from faces."""
 MOST_STEPS = 400_000
@@ -44,17 +47,39 @@ class CellPicture:
         return differ
 
     def steadied(self, before: CellPicture) -> CellPicture:
-        """Return the picture, keeping earlier paints of the ramp that are one step away.
+        """Return the picture with the earlier cells where hardly anything differs.
 
-        A value between two steps must not flicker with the noise of a sensor.
+        The noise of a sensor moves values to the next step of the ramp, and dots at the edges of
+        surfaces; neither must flicker. Cells with few dots are always exact.
         """
-        fronts = []
-        for now, then in ((self.front, before.front), (self.back, before.back)):
-            both = (now >= RAMP_FROM) & (now < RAMP_FROM + RAMP_STEPS)
-            both &= (then >= RAMP_FROM) & (then < RAMP_FROM + RAMP_STEPS)
-            near = np.abs(now.astype(np.int16) - then) <= 1
-            fronts.append(np.where(both & near, then, now))
-        return CellPicture(self.codes, fronts[0], fronts[1])
+        near = _near(self.front, before.front) & _near(self.back, before.back)
+        dots, dots_before = _DOTS[self.codes & 0xFF], _DOTS[before.codes & 0xFF]
+        surface = np.minimum(dots, dots_before) >= FEW_DOTS
+        braille = (self.codes > BRAILLE) & (before.codes > BRAILLE)
+        alike = np.abs(dots - dots_before) <= 1
+        same = self.codes == before.codes
+        drift = _DOTS[(self.codes ^ before.codes) & 0xFF] <= 1
+        solid = np.minimum(_solid(self.codes, dots), _solid(before.codes, dots_before)) >= MANY_DOTS
+        kept = near & (same | (braille & surface & alike & drift) | solid)
+        return CellPicture(
+            np.where(kept, before.codes, self.codes),
+            np.where(kept, before.front, self.front),
+            np.where(kept, before.back, self.back),
+        )
+
+
+def _near(now: Paints, then: Paints) -> NDArray[np.bool_]:
+    """Whether tints are the same, or next to each other on the ramp."""
+    ramps = (now >= RAMP_FROM) & (now < RAMP_FROM + RAMP_STEPS)
+    ramps &= (then >= RAMP_FROM) & (then < RAMP_FROM + RAMP_STEPS)
+    near: NDArray[np.bool_] = np.abs(now.astype(np.int16) - then) <= np.where(ramps, 1, 0)
+    return near
+
+
+def _solid(codes: NDArray[np.uint16], dots: NDArray[np.int8]) -> NDArray[np.int8]:
+    """How many dots are set, all of them in a block; none in a text."""
+    block = (codes == UPPER_HALF) | (codes == LOWER_HALF) | (codes == FULL_BLOCK)
+    return np.where(codes > BRAILLE, dots, np.where(block, 8, 0)).astype(np.int8)
 
 
 class Raster:
@@ -203,7 +228,7 @@ class Raster:
         above, below = self.floor[0::2], self.floor[1::2]
         full = (paint > 0).all(axis=2)
         empty = codes == BLANK
-        split = (full & (upper != lower)) | (empty & (above != below))
+        split = (full & ~_near(upper, lower)) | (empty & (above != below))
         codes = np.where(full, np.uint16(FULL_BLOCK), codes)
         codes = np.where(split, np.uint16(UPPER_HALF), codes)
         front = np.where(full & split, upper, np.where(empty & split, above, front))
@@ -212,7 +237,7 @@ class Raster:
         front = np.where(empty & ~split, 0, front)
         # The background of the screen has no paint to be the front of a half.
         swap = (codes == UPPER_HALF) & (front == 0)
-        codes = np.where(swap, np.uint16(0x2584), codes)
+        codes = np.where(swap, np.uint16(LOWER_HALF), codes)
         front, back = np.where(swap, back, front), np.where(swap, 0, back)
         picture = CellPicture(codes, front.astype(np.uint8), back.astype(np.uint8))
         self._write_signs(picture)

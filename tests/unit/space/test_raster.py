@@ -224,3 +224,29 @@ def test_every_paint_has_a_colour_or_a_name() -> None:
         rgb = rgb_of(paint)
         assert rgb is None or all(0 <= channel <= 255 for channel in rgb)
     assert rgb_of(nearest(math.nan, 5.0, -1.0)) == (0, 255, 0)
+
+
+def cell_of(*dots: tuple[int, int]) -> CellPicture:
+    """One cell with these dots."""
+    raster = Raster(1, 1)
+    raster.dots(spots(*[(x, y, 1) for x, y in dots]), Tint.TEXT)
+    return raster.cells()
+
+
+DENSE = ((0, 0), (1, 0), (0, 1), (1, 1), (0, 2))
+
+
+def test_one_dot_of_noise_is_not_seen_in_a_surface_but_in_a_line() -> None:
+    before, noisy = cell_of(*DENSE), cell_of(*DENSE, (1, 2))
+    assert not noisy.steadied(before).changed(before).any()
+    moved = cell_of(*DENSE[:-2], (0, 3), (1, 3))
+    assert moved.steadied(before).changed(before).all()
+    thin, thinner = cell_of(*DENSE[:2]), cell_of(*DENSE[:1])
+    assert thinner.steadied(thin).changed(thin).all()
+
+
+def test_a_block_stays_one_while_a_dot_or_two_are_missing() -> None:
+    every = [(x, y) for x in (0, 1) for y in range(4)]
+    block = cell_of(*every)
+    assert not cell_of(*every[:-1]).steadied(block).changed(block).any()
+    assert cell_of(*every[:-3]).steadied(block).changed(block).all()
