@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -13,7 +12,7 @@ from textual.widgets import Static
 
 from space.drawing.camera import Angle
 from text import ros2_words
-from text.i18n import N_, _, decimal
+from text.i18n import N_, _
 from text.plain import plain
 from tui import clock
 from tui.actions import bindings
@@ -21,26 +20,22 @@ from tui.dialogs.choice import ChoiceScreen
 from tui.frame.screen import DeckScreen
 from tui.space import words
 from tui.space.actions import SPACE_ACTIONS, Disarm, PublishAim
-from tui.space.aim import Aim, AimKind
+from tui.space.aim import AimKind
+from tui.space.aiming import Aiming
 from tui.space.rows import FRAMES, LayerRows
 from tui.space.stage import Stage
 from tui.space.view import SpaceView
-from tui.widgets.trouble import names
-from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from concurrent.futures import Future
 
     from textual.app import ComposeResult
 
-    from graph.data import TopicRow
     from space.drawing.camera import SpaceCamera
     from space.drawing.raster import CellPicture
     from tui.emergency.messages import EmergencyChanged
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
-SENT_WITHIN_S = 3.0
 NO_FRAME = " "
 """The answer for no frame, which no frame can be called."""
 
@@ -74,7 +69,7 @@ class SpaceScreen(DeckScreen):
     def __init__(self) -> None:
         super().__init__()
         self.stage = Stage()
-        self._rows: dict[str, TopicRow] = {}
+        self.aiming = Aiming(self)
 
     def compose_body(self) -> ComposeResult:
         """The picture with its lines, and the layers."""
@@ -144,12 +139,11 @@ class SpaceScreen(DeckScreen):
         """Disarm once the emergency stop is engaged."""
         if message.emergency.engaged and self.armed:
             self.disarm()
-            self.notify(self._refusal(), severity="warning", markup=False)
+            self.notify(self.aiming.refusal, severity="warning", markup=False)
 
     def on_graph_changed(self, message: GraphChanged) -> None:
         """Show what is new."""
         update = message.update
-        self._rows = {row.name: row for row in update.topics}
         came = self.stage.take(update, clock.now())
         if self.stage.sent is not None and update.samples.get(self.stage.sent[1].kind.topic):
             self.stage.sent = None
@@ -177,7 +171,7 @@ class SpaceScreen(DeckScreen):
         self.view.renew(by_user=True)
         self._show_armed()
         if message.done:
-            self.run_worker(self.publish_aim(), group="aim")
+            self.aiming.publish()
 
     @on(LayerRows.Opened)
     def _layer_opened(self) -> None:
@@ -278,80 +272,24 @@ class SpaceScreen(DeckScreen):
 
     def arm_goal(self) -> None:
         """Begin to aim a goal."""
-        self._arm(AimKind.GOAL)
+        self.aiming.arm(AimKind.GOAL)
 
     def arm_initial_pose(self) -> None:
         """Begin to aim an initial pose."""
-        self._arm(AimKind.INITIAL)
-
-    def _arm(self, kind: AimKind) -> None:
-        if reason := self._refusal():
-            self.notify(reason, severity="warning", markup=False)
-            return
-        view = self.view
-        if view.camera.angle is Angle.SIDE:
-            # From the side there is no place on the floor to point at.
-            view.camera = replace(view.camera, angle=Angle.ABOVE)
-        x_m, y_m, _z_m = view.camera.target
-        view.aim = Aim(kind, x_m, y_m)
-        if self.feed.graph is not None:
-            prepared = self.feed.graph.prepare_publisher(kind.topic, kind.type_name)
-            # If it cannot be created, publishing reports that.
-            prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
-        view.focus()
-        self._show(by_user=True)
-        self.refresh_bindings()
+        self.aiming.arm(AimKind.INITIAL)
 
     def disarm(self) -> None:
         """Aim at nothing any more."""
-        if self.armed:
-            self.view.aim = None
-            self._show(by_user=True)
-            self.refresh_bindings()
+        self.aiming.disarm()
 
     async def publish_aim(self) -> None:
-        """Publish what is aimed, unless that is not allowed any more; disarm in any case."""
-        aim, graph, fixed = self.view.aim, self.feed.graph, self.stage.fixed
-        reason = self._refusal()
-        self.disarm()
-        if aim is None or graph is None:
-            return
-        if reason:
-            self.notify(reason, severity="warning", markup=False)
-            return
-        sent = graph.publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed))
-        if aim.kind is AimKind.GOAL:
-            self.stage.sent = fixed, aim
+        """Publish what is aimed."""
+        self.aiming.publish()
+
+    def aim_changed(self) -> None:
+        """Show what is aimed now."""
         self._show(by_user=True)
-        self.run_worker(self._confirm(sent, aim, fixed), group="sent")
-
-    async def _confirm(self, sent: Future[int], aim: Aim, fixed: str) -> None:
-        try:
-            await asyncio.wait_for(asyncio.wrap_future(sent), SENT_WITHIN_S)
-        except asyncio.TimeoutError:
-            seconds = decimal(f"{SENT_WITHIN_S:g}")
-            failure = _("ROS did not accept it within {n} s").format(n=seconds)
-        except Exception as error:  # noqa: BLE001 - any failure is reported
-            failure = reason_words(error)
-        else:
-            told = words.sent(aim, fixed, len(self._listeners(aim.kind)))
-            self.notify(told, markup=False)
-            return
-        self.stage.sent = None
-        self.notify(failure, severity="error", markup=False)
-
-    def _refusal(self) -> str:
-        return words.refusal(
-            recorded=self.feed.replay is not None,
-            engaged=self.deck.emergency.state.engaged,
-            fixed=self.stage.fixed,
-        )
-
-    def _listeners(self, kind: AimKind) -> list[str]:
-        row = self._rows.get(kind.topic)
-        if row is None or not row.subscribers:
-            return []
-        return [names(row.subscribed_by) or str(row.subscribers)]
+        self.refresh_bindings()
 
     # Display
 
@@ -396,7 +334,7 @@ class SpaceScreen(DeckScreen):
         line.display = aim is not None
         if aim is not None:
             keys = self.deck.keys_of(PublishAim)[0], self.deck.keys_of(Disarm)[0]
-            line.update(words.armed(aim, self.stage.fixed, self._listeners(aim.kind), keys))
+            line.update(words.armed(aim, self.stage.fixed, self.aiming.listeners(aim.kind), keys))
 
     def _show_status(self) -> None:
         room = self.view.size.width - 2
