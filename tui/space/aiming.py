@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 from space.drawing.camera import Angle
 from text.i18n import _, decimal
@@ -19,17 +19,56 @@ from tui.widgets.trouble import names
 from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:
+    from collections.abc import Coroutine
     from concurrent.futures import Future
 
-    from tui.space.screen import SpaceScreen
+    from textual.notifications import SeverityLevel
+
+    from tui.frame.host import Host
+    from tui.session.feed import Feed
+    from tui.space.stage import Stage
+    from tui.space.view import SpaceView
 
 SENT_WITHIN_S = 3.0
+
+
+class AimingTarget(Protocol):
+    """The part of the Space screen in which is aimed."""
+
+    stage: Stage
+
+    @property
+    def view(self) -> SpaceView:
+        """The picture."""
+
+    @property
+    def feed(self) -> Feed:
+        """The session and its graph."""
+
+    @property
+    def deck(self) -> Host:
+        """The app."""
+
+    @property
+    def armed(self) -> bool:
+        """Whether something is aimed."""
+
+    def aim_changed(self) -> None:
+        """Show what is aimed now."""
+
+    def notify(
+        self, message: str, *, severity: SeverityLevel = "information", markup: bool = True
+    ) -> None:
+        """Show a notification."""
+
+    def run_worker(self, work: Coroutine[Any, Any, None], *, group: str) -> object:
+        """Do something that takes a while."""
 
 
 class Aiming:
     """What the Space screen does about goals."""
 
-    def __init__(self, screen: SpaceScreen) -> None:
+    def __init__(self, screen: AimingTarget) -> None:
         """Aim in the picture of this screen."""
         self._screen = screen
 
