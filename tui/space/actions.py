@@ -104,7 +104,7 @@ class NextAngle(SpaceAction):
     """Look from elsewhere."""
 
     id = "space.angle"
-    key = "A,Ф"
+    key = "alt+v,alt+м"
     title = N_("Angle")
     tooltip = N_("Look from above, from the side, or in perspective, which Ctrl+arrows turn.")
     footer = True
@@ -120,7 +120,7 @@ class FitAll(SpaceAction):
     """Show everything."""
 
     id = "space.fit"
-    key = "0"
+    key = "home"
     title = N_("Fit")
     tooltip = N_("Move the camera so that everything is seen, and follow no frame.")
     footer = True
@@ -136,7 +136,7 @@ class FollowFrame(SpaceAction):
     """Keep a frame in the middle."""
 
     id = "space.follow"
-    key = "K,Л"
+    key = "alt+f,alt+а"
     title = N_("Follow")
     tooltip = N_("Choose a frame that stays in the middle of the picture.")
     footer = True
@@ -151,7 +151,7 @@ class FixedFrame(SpaceAction):
     """Choose the fixed frame."""
 
     id = "space.fixed"
-    key = "J,О"
+    key = "alt+r,alt+к"
     title = N_("Fixed frame")
     tooltip = N_("Choose the frame in which everything is drawn, and goals are given.")
 

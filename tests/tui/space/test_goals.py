@@ -225,7 +225,7 @@ async def test_the_goal_is_drawn_until_the_graph_shows_it() -> None:
 
 async def test_from_the_side_arming_looks_from_above() -> None:
     async with at_work() as (screen, pilot):
-        await pilot.press("A", "alt+g")
+        await pilot.press("alt+v", "alt+g")
         await pilot.pause()
         assert screen.view.camera.angle.value == "above"
         assert screen.armed

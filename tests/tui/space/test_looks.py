@@ -37,7 +37,7 @@ def pressed(*keys: str) -> Before:
 def test_a_robot_in_a_room_in_perspective(look: Look, snap_compare: SnapCompare) -> None:
     """The room with its walls, the robot and its trail, a cloud, a plan, names of the frames."""
     app = look.app("space", robot_in_a_room())
-    assert snap_compare(app, terminal_size=look.size, run_before=pressed("A", "A"))
+    assert snap_compare(app, terminal_size=look.size, run_before=pressed("alt+v", "alt+v"))
 
 
 @every_look
@@ -51,7 +51,7 @@ def test_the_same_from_above(look: Look, dump_compare: SnapCompare) -> None:
 def test_the_same_from_the_side(look: Look, dump_compare: SnapCompare) -> None:
     """The floor is a line, above it what stands there."""
     app = look.app("space", robot_in_a_room())
-    assert dump_compare(app, terminal_size=look.size, run_before=pressed("A"))
+    assert dump_compare(app, terminal_size=look.size, run_before=pressed("alt+v"))
 
 
 @both_languages

@@ -162,7 +162,7 @@ async def test_arrows_zoom_and_fit_move_the_camera() -> None:
         assert camera.target[0] > fitted.target[0]
         assert camera.target[1] > fitted.target[1]
         assert camera.dots_per_m > fitted.dots_per_m
-        await pilot.press("0")
+        await pilot.press("home")
         await pilot.pause()
         assert screen.view.camera == fitted
 
@@ -180,10 +180,10 @@ async def test_the_angle_goes_round_and_ctrl_arrows_turn_the_perspective() -> No
     async with at_work() as (screen, pilot):
         angles = []
         for _press in range(3):
-            await pilot.press("A")
+            await pilot.press("alt+v")
             angles.append(screen.view.camera.angle)
         assert angles == [Angle.SIDE, Angle.PERSPECTIVE, Angle.ABOVE]
-        await pilot.press("A", "A")
+        await pilot.press("alt+v", "alt+v")
         before = screen.view.camera
         await pilot.press("ctrl+left", "ctrl+up")
         after = screen.view.camera
@@ -207,7 +207,7 @@ async def test_the_wheel_zooms_about_the_pointer() -> None:
 async def test_a_drag_pans_and_with_shift_turns() -> None:
     async with at_work() as (screen, pilot):
         view = screen.view
-        await pilot.press("A", "A")
+        await pilot.press("alt+v", "alt+v")
         before = view.camera
         await drag(pilot, (20, 10), (24, 10))
         moved = view.camera
@@ -243,7 +243,7 @@ async def test_the_line_below_says_where_the_pointer_is() -> None:
 async def test_a_frame_is_followed() -> None:
     opener = robot_in_a_room()
     async with at_work(opener) as (screen, pilot):
-        await pilot.press("K")
+        await pilot.press("alt+f")
         await pilot.pause()
         assert isinstance(pilot.app.screen, ChoiceScreen)
         await pilot.press("down", "enter")
@@ -268,7 +268,7 @@ async def test_a_frame_is_followed() -> None:
 
 async def test_the_fixed_frame_is_chosen() -> None:
     async with at_work() as (screen, pilot):
-        await pilot.press("J")
+        await pilot.press("alt+r")
         await pilot.pause()
         await pilot.press("down", "enter")
         await pilot.pause()
