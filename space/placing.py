@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from space.buffer import NoTransformError
 from space.drawing.paints import Tint
 from space.drawing.shapes import Sign, Speckles, axes, moved
 from space.drawing.thinning import FEW, thinned
+from space.reading.fields import Drawable
 from text.plain import plain
 from text.sentences import reason_of, say
 
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from space.buffer import TransformBuffer
     from space.drawing.camera import SpaceCamera
     from space.drawing.shapes import Shape
-    from space.reading.fields import Drawable
     from space.transform import Transform, Vector
 
 ROOTS = ("map", "odom", "base_link")
@@ -49,12 +49,25 @@ def cube_of(camera: SpaceCamera) -> float:
     return max(SMALLEST_CUBE_M, 2.0 ** math.floor(math.log2(1.0 / camera.dots_per_m)))
 
 
+class Located(NamedTuple):
+    """A drawable, and where it is in the fixed frame."""
+
+    drawable: Drawable
+    at: Transform
+
+    def looks_like(self, other: Located, metres: float) -> bool:
+        """Return whether it is the same drawable in the same place."""
+        return self.drawable is other.drawable and self.at.is_near(other.at, metres)
+
+
 class Placer:
     """Turns drawables into shapes of the fixed frame, and remembers thinned clouds."""
 
     def __init__(self, mounts: Mapping[str, tuple[str, Transform]] | None = None) -> None:
         """`mounts` says where frames are that nobody publishes: frame to (parent, place)."""
         self._mounts = dict(mounts or {})
+        self._marks: dict[str, Drawable] = {}
+        """What stands for each frame itself."""
         self._thinned: dict[int, tuple[Speckles, float, Speckles]] = {}
 
     def where(
@@ -72,24 +85,45 @@ class Placer:
                 pass
         return buffer.find(fixed, frame)
 
-    def place(
-        self, buffer: TransformBuffer, fixed: str, drawables: Iterable[Drawable], cube_m: float
-    ) -> tuple[list[Shape], str]:
-        """Return the shapes that can be placed, and why others cannot; empty if all can."""
-        shapes: list[Shape] = []
+    def find(
+        self, buffer: TransformBuffer, fixed: str, drawables: Iterable[Drawable]
+    ) -> tuple[list[Located], str]:
+        """Return where each drawable is, and why others are not found; empty if all are."""
+        found: list[Located] = []
         why = ""
         for one in drawables:
             if not one.shapes:
                 continue
             try:
-                at = self.where(buffer, fixed, one.frame, one.stamp_s)
+                found.append(Located(one, self.where(buffer, fixed, one.frame, one.stamp_s)))
             except NoTransformError as error:
                 why = why or say(
                     "not joined to {fixed}: {reason}", fixed=fixed, reason=reason_of(error)
                 )
-                continue
-            shapes += [moved(self._thin(shape, cube_m), at) for shape in one.shapes]
-        return shapes, why
+        return found, why
+
+    def frames(self, buffer: TransformBuffer, fixed: str) -> tuple[list[Located], list[str]]:
+        """Return where all frames are, and those that are not joined to the fixed one.
+
+        Parents come first: of frames close together the first one gives its name.
+        """
+        found: list[Located] = []
+        apart: list[str] = []
+        for frame in sorted(buffer.frames, key=lambda one: (len(buffer.way_up(one)), one)):
+            mark = self._marks.setdefault(frame, Drawable(frame, ()))
+            try:
+                found.append(Located(mark, buffer.find(fixed, frame)))
+            except NoTransformError:
+                apart.append(frame)
+        return found, sorted(apart)
+
+    def place(self, found: Iterable[Located], cube_m: float) -> list[Shape]:
+        """Return the shapes of drawables in the fixed frame."""
+        return [
+            moved(self._thin(shape, cube_m), one.at)
+            for one in found
+            for shape in one.drawable.shapes
+        ]
 
     def _thin(self, shape: Shape, cube_m: float) -> Shape:
         if not isinstance(shape, Speckles) or len(shape.places) <= FEW:
@@ -104,26 +138,16 @@ class Placer:
         return fewer
 
 
-def frame_shapes(
-    buffer: TransformBuffer, fixed: str, camera: SpaceCamera
-) -> tuple[list[Shape], list[str]]:
-    """Return axes and names of all frames, and the frames that are not joined to the fixed one.
+def frame_shapes(frames: Iterable[Located], camera: SpaceCamera) -> list[Shape]:
+    """Return axes and names of frames.
 
     Axes are 0.15 m long, but never too small or too large to be seen.
     """
     size = min(max(AXIS_M * camera.dots_per_m, LEAST_AXIS_DOTS), MOST_AXIS_DOTS)
     length_m = size / camera.dots_per_m
     shapes: list[Shape] = []
-    apart: list[str] = []
     named: dict[tuple[float, ...], tuple[Vector, list[str]]] = {}
-    # Parents first: of frames close together the first one gives its name.
-    frames = sorted(buffer.frames, key=lambda frame: (len(buffer.way_up(frame)), frame))
-    for frame in frames:
-        try:
-            at = buffer.find(fixed, frame)
-        except NoTransformError:
-            apart.append(frame)
-            continue
+    for frame, at in ((one.drawable.frame, one.at) for one in frames):
         shapes += axes(at, length_m)
         spot = tuple(round(value * camera.dots_per_m / CLOSE_DOTS) for value in at.translation)
         named.setdefault(spot, (at.translation, []))[1].append(frame)
@@ -131,4 +155,4 @@ def frame_shapes(
         text = ", ".join(plain(frame, LONGEST_NAME) for frame in found[:NAMED_TOGETHER])
         more = len(found) - NAMED_TOGETHER
         shapes.append(Sign(place, f"{text} +{more}" if more > 0 else text, Tint.TEXT))
-    return shapes, sorted(apart)
+    return shapes

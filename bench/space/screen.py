@@ -39,8 +39,10 @@ class Cost(NamedTuple):
     pss_mb: float
 
 
-def open_space(folder: Path, profile: str, shown: str, env: Mapping[str, str]) -> Terminal:
-    """Return the program with the Space screen open, once these words are on it."""
+def open_space(
+    folder: Path, profile: str, ready: str, shown: str, env: Mapping[str, str]
+) -> Terminal:
+    """Return the program with the Space screen open, once it is ready and these words are on it."""
     own = {
         "DECK_RUN_DIR": str(folder / "run"),
         "DECK_LOG_DIR": str(folder / "logs"),
@@ -51,7 +53,7 @@ def open_space(folder: Path, profile: str, shown: str, env: Mapping[str, str]) -
     }
     argv = [sys.executable, "-m", "tui", profile, "--domain", DOMAIN, "--lang", "en"]
     terminal = Terminal(argv, 120, 40, {**own, **env})
-    terminal.wait_for("domain")
+    terminal.wait_for(ready, 60)
     terminal.press("9")
     terminal.wait_for(shown, 60)
     return terminal
@@ -81,10 +83,12 @@ def cost(terminal: Terminal) -> Cost:
     )
 
 
-def measured(profile: str, shown: str, keys: tuple[str, ...], env: Mapping[str, str]) -> Cost:
+def measured(
+    profile: str, ready: str, shown: str, keys: tuple[str, ...], env: Mapping[str, str]
+) -> Cost:
     """Open the screen, press keys, and measure."""
     with tempfile.TemporaryDirectory() as name:
-        terminal = open_space(Path(name), profile, shown, env)
+        terminal = open_space(Path(name), profile, ready, shown, env)
         try:
             for key in keys:
                 terminal.type(key)
@@ -106,9 +110,9 @@ def main() -> None:
             ("in perspective", TWICE, {}),
             ("in perspective, over SSH", TWICE, SSH),
         ):
-            found = measured(str(nothing), TOPIC, keys, env)
+            found = measured(str(nothing), "1/1", TOPIC, keys, env)
             rows.append((f"cloud {what}", found, "10 | 40 % | 40"))
-    robot = measured("robot", "/odom", (), {})
+    robot = measured("robot", "16/16", "/odom", (), {})
     rows.append(("the robot's profile", robot, "- | 20 % | -"))
     print("| what | pictures/s | CPU of a core | kB/s | PSS, MB | goals: pictures, CPU, kB/s |")
     print("| --- | --- | --- | --- | --- | --- |")

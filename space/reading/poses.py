@@ -24,9 +24,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from space.drawing.shapes import Shape
-    from space.transform import Vector
+    from space.transform import Transform, Vector
 
 ARROW_M, DART_M = 0.4, 0.36
+STANDING_M = 0.002
+"""Closer poses are drawn as one: the robot stands."""
 LEAST_M = 0.02
 """Shorter ways are not added to a trail."""
 TORN_M = 1.0
@@ -80,21 +82,27 @@ class DrivenTrail:
         self._frame = ""
         self._places: list[Vector] = []
         self._least_m = LEAST_M
+        self._held: tuple[Drawable, Transform] | None = None
 
     def read(self, tree: Mapping[str, Any]) -> Drawable:
         """Return an arrow, and the trail up to it. Raises NotDrawnError."""
         frame_id, at = frame(tree), pose(tree, "pose.pose")
+        held = self._held
+        if held is not None and held[0].frame == frame_id and held[1].is_near(at, STANDING_M):
+            return held[0]
         if frame_id != self._frame:
             self._frame, self._places = frame_id, []
         self._add(at.translation)
         shapes: list[Shape] = [dart(at, DART_M, Tint.SECOND)]
         if len(self._places) > 1:
             shapes.append(self._line())
-        return Drawable(frame_id, tuple(shapes), stamp_s(tree))
+        drawable = Drawable(frame_id, tuple(shapes), stamp_s(tree))
+        self._held = drawable, at
+        return drawable
 
     def clear(self) -> None:
         """Forget the trail."""
-        self._places, self._least_m = [], LEAST_M
+        self._places, self._least_m, self._held = [], LEAST_M, None
 
     def _line(self) -> Strokes:
         points = places(*self._places)

@@ -10,7 +10,7 @@ from robot.topics import ROBOT_DESCRIPTION, SONAR_FRONT, SONAR_REAR
 from space.reading.fields import NotDrawnError
 from space.reading.kinds import KINDS, LayerKind, NewestReader
 from space.reading.robot import ModelReader
-from space.reading.scans import read_sonar
+from space.reading.scans import SteadyRay
 from text.sentences import reason_of
 
 if TYPE_CHECKING:
@@ -129,6 +129,10 @@ class SpaceLayers:
         return {layer.topic for layer in self if layer.on and layer.every}
 
 
+def _sonar_reader(frame_id: str) -> LayerReader:
+    return NewestReader(partial(SteadyRay().read_sonar, frame_id=frame_id))
+
+
 def _kind_of(topic: str, type_names: Iterable[str]) -> tuple[str, LayerKind] | None:
     for name in type_names:
         if name in KINDS:
@@ -136,8 +140,7 @@ def _kind_of(topic: str, type_names: Iterable[str]) -> tuple[str, LayerKind] | N
         if name == TEXT and topic == ROBOT_DESCRIPTION:
             return name, LayerKind(ModelReader)
         if name == FLOAT and topic in SONARS:
-            read = partial(read_sonar, frame_id=SONARS[topic])
-            return name, LayerKind(lambda read=read: NewestReader(read))  # type: ignore[misc]
+            return name, LayerKind(partial(_sonar_reader, SONARS[topic]))
     return None
 
 

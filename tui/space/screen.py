@@ -50,6 +50,7 @@ class SpaceScreen(DeckScreen):
         "wheel zoom, Ctrl+arrows or a drag with Shift turn the perspective. Tab goes to the "
         "layers and back; below each layer is what is wrong with it."
     )
+    parts: ClassVar[tuple[str, ...]] = ("#space-picture", "LayerRows")
     period_s = 0.08
     wants_frames = True
     BINDINGS: ClassVar = bindings(*SPACE_ACTIONS)
@@ -296,21 +297,23 @@ class SpaceScreen(DeckScreen):
     def _compose_picture(self, camera: SpaceCamera, columns: int, rows: int) -> CellPicture:
         return self.stage.picture(camera, columns, rows, self.view.aim)
 
-    def _place(self) -> None:
-        self.stage.place(self.view.camera, clock.now())
+    def _place(self) -> bool:
+        return self.stage.place(self.view.camera, clock.now())
 
     def _show(self, *, by_user: bool = False) -> None:
         """Show the current state."""
         if not self.is_mounted:
             return
         view = self.view
-        self._place()
         if self.stage.follow:
             view.camera = self.stage.followed(view.camera)
-        elif view.aim is None:
-            view.fit(self.stage.extent())
+        if self._place() or by_user:
+            if not self.stage.follow and view.aim is None:
+                view.fit(self.stage.extent())
+                # Axes and clouds are as fine as the camera shows them.
+                self._place()
+            view.renew(by_user=by_user)
         view.show_words(*self._why_empty())
-        view.renew(by_user=by_user)
         self.layer_rows.show_stage(self.stage)
         self._show_lines()
 

@@ -15,7 +15,7 @@ from space.drawing.paints import Tint
 from space.drawing.raster import Raster
 from space.drawing.scene import draw
 from space.drawing.shapes import Strokes
-from space.placing import Placer, cube_of, frame_shapes, robot_root
+from space.placing import Located, Placer, cube_of, frame_shapes, robot_root
 from space.transform import Transform
 from text.sentences import say
 from tui.space.layers import SONARS, SpaceLayers
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from space.drawing.camera import SpaceCamera
     from space.drawing.raster import CellPicture
     from space.drawing.shapes import Shape
-    from space.reading.fields import Drawable
     from space.transform import Vector
     from tui.space.aim import Aim
 
@@ -40,6 +39,8 @@ LEAST_M = 2.0
 MESH_DOTS = 16.0
 """The least width of the meshes of the floor."""
 MOST_MESHES = 20
+SEEN_M = 0.002
+"""A smaller move is not drawn."""
 
 
 def _mounts() -> dict[str, tuple[str, Transform]]:
@@ -72,6 +73,9 @@ class Stage:
         """The goal published last, and its frame, until the graph shows it."""
         self._placer = Placer(_mounts())
         self._shapes: list[Shape] = []
+        self._placed_for: SpaceCamera | None = None
+        self._found: list[Located] = []
+        self._frames: list[Located] = []
 
     @property
     def fixed(self) -> str:
@@ -99,25 +103,34 @@ class Stage:
             self.buffer.clear()
             self.buffer.add(newest)
 
-    def place(self, camera: SpaceCamera, now_s: float) -> None:
-        """Place all layers, and note at each what cannot be placed."""
-        shown = {layer.topic: layer.reader.shown(now_s) for layer in self.layers if layer.is_drawn}
+    def place(self, camera: SpaceCamera, now_s: float) -> bool:
+        """Place all layers, and note at each what cannot be placed.
+
+        Return whether anything is to be seen elsewhere than before.
+        """
+        fixed, found = self.fixed, list[Located]()
         for layer in self.layers:
-            if found := next((one.frame for one in shown.get(layer.topic, ()) if one.frame), ""):
-                layer.frame = found
-        fixed, cube_m = self.fixed, cube_of(camera)
-        self._shapes = []
-        for layer in self.layers:
-            drawables: Iterable[Drawable] = shown.get(layer.topic, ())
-            shapes, layer.apart = self._placer.place(self.buffer, fixed, drawables, cube_m)
-            self._shapes += shapes
+            drawables = layer.reader.shown(now_s) if layer.is_drawn else ()
+            layer.frame = next((one.frame for one in drawables if one.frame), layer.frame)
+            located, layer.apart = self._placer.find(self.buffer, fixed, drawables)
+            found += located
+        frames: list[Located] = []
         self.frames_why = ""
         if self.show_frames and fixed in self.buffer.frames:
-            shapes, apart = frame_shapes(self.buffer, fixed, camera)
-            self._shapes += shapes
+            frames, apart = self._placer.frames(self.buffer, fixed)
             if apart:
                 names = ", ".join(apart[:3]) + (", …" if len(apart) > 3 else "")
                 self.frames_why = say("not joined to {fixed}: {frames}", fixed=fixed, frames=names)
+        if (
+            camera == self._placed_for
+            and _look_alike(found, self._found)
+            and _look_alike(frames, self._frames)
+        ):
+            return False
+        self._placed_for, self._found, self._frames = camera, found, frames
+        self._shapes = self._placer.place(found, cube_of(camera))
+        self._shapes += frame_shapes(frames, camera)
+        return True
 
     def extent(self) -> SpaceBox | None:
         """Return the box that holds everything placed, with a margin."""
@@ -155,6 +168,12 @@ class Stage:
             shapes += aim.shapes(camera.dots_per_m)
         draw(raster, camera, shapes)
         return raster.cells()
+
+
+def _look_alike(now: list[Located], before: list[Located]) -> bool:
+    return len(now) == len(before) and all(
+        one.looks_like(other, SEEN_M) for one, other in zip(now, before, strict=True)
+    )
 
 
 def _ground(camera: SpaceCamera, raster: Raster) -> list[Shape]:

@@ -11,12 +11,25 @@ from space.buffer import NoTransformError, Stamped, TransformBuffer
 from space.drawing.camera import Angle, SpaceCamera
 from space.drawing.extent import extent_of
 from space.drawing.paints import Tint
-from space.drawing.shapes import Floor, Sign, Speckles, Strokes, places
+from space.drawing.shapes import Floor, Shape, Sign, Speckles, Strokes, places
 from space.placing import Placer, cube_of, frame_shapes, robot_root
 from space.reading.fields import Drawable
 from space.transform import Transform
 
 NOW_S = 10.0
+
+
+def placed(
+    placer: Placer, known: TransformBuffer, drawables: list[Drawable], cube_m: float = 0.1
+) -> tuple[list[Shape], str]:
+    """The shapes in the map, and why some are missing."""
+    found, why = placer.find(known, "map", drawables)
+    return placer.place(found, cube_m), why
+
+
+def with_names(known: TransformBuffer, fixed: str, camera: SpaceCamera) -> list[Shape]:
+    """Axes and names of all frames."""
+    return frame_shapes(Placer().frames(known, fixed)[0], camera)
 
 
 def buffer(*edges: tuple[str, str, float], stamp_s: float = NOW_S) -> TransformBuffer:
@@ -54,7 +67,7 @@ def test_without_frames_the_frame_of_what_is_seen_is_the_fixed_one() -> None:
 
 def test_what_is_seen_is_placed_in_the_fixed_frame() -> None:
     known = buffer(("map", "odom", 1.0), ("odom", "base_link", 2.0))
-    (shape,), why = Placer().place(known, "map", [dot("base_link")], 0.1)
+    (shape,), why = placed(Placer(), known, [dot("base_link")])
     assert isinstance(shape, Speckles)
     assert shape.places.tolist() == [[3.0, 0.0, 0.0]]
     assert why == ""
@@ -72,7 +85,7 @@ def test_it_is_placed_as_it_was_when_it_was_measured() -> None:
 
 def test_what_cannot_be_placed_says_why_and_the_rest_is_placed() -> None:
     known = buffer(("map", "odom", 1.0), ("world", "lidar", 0.0))
-    shapes, why = Placer().place(known, "map", [dot("lidar"), dot("odom"), dot("nowhere")], 0.1)
+    shapes, why = placed(Placer(), known, [dot("lidar"), dot("odom"), dot("nowhere")])
     assert len(shapes) == 1
     assert why == ("not joined to map: lidar and map are in two trees: nothing joins world and map")
 
@@ -91,8 +104,8 @@ def test_a_cloud_is_thinned_once_for_each_size() -> None:
     rng = np.random.default_rng(1)
     cloud = Drawable("map", (Speckles(rng.uniform(0, 1, (9000, 3)).astype(np.float32)),))
     placer, known = Placer(), buffer(("map", "odom", 0.0))
-    (coarse,), _why = placer.place(known, "map", [cloud], 0.25)
-    (fine,), _why = placer.place(known, "map", [cloud], 0.0625)
+    (coarse,), _why = placed(placer, known, [cloud], 0.25)
+    (fine,), _why = placed(placer, known, [cloud], 0.0625)
     assert isinstance(coarse, Speckles)
     assert isinstance(fine, Speckles)
     assert len(coarse.places) == 64
@@ -107,32 +120,31 @@ def test_the_cubes_are_about_as_large_as_a_dot() -> None:
 
 def test_each_frame_has_three_axes_and_a_name() -> None:
     known = buffer(("map", "base_link", 3.0))
-    shapes, apart = frame_shapes(known, "map", SpaceCamera(Angle.ABOVE, dots_per_m=40.0))
+    shapes = with_names(known, "map", SpaceCamera(Angle.ABOVE, dots_per_m=40.0))
     signs = {shape.text: shape.place for shape in shapes if isinstance(shape, Sign)}
     assert signs == {"map": (0.0, 0.0, 0.0), "base_link": (3.0, 0.0, 0.0)}
     strokes = [shape for shape in shapes if isinstance(shape, Strokes)]
     assert [stroke.paint for stroke in strokes] == [Tint.X_AXIS, Tint.Y_AXIS, Tint.Z_AXIS] * 2
     assert strokes[3].ends[0].tolist() == pytest.approx([3.15, 0.0, 0.0])
-    assert apart == []
 
 
 def test_frames_in_one_place_share_a_line_the_parents_first() -> None:
     edges = [("map", "odom", 0.0), ("odom", "base", 0.0), ("base", "a", 0.0), ("base", "b", 0.001)]
-    shapes, _apart = frame_shapes(buffer(*edges), "map", SpaceCamera())
+    shapes = with_names(buffer(*edges), "map", SpaceCamera())
     assert [shape.text for shape in shapes if isinstance(shape, Sign)] == ["map, odom +3"]
 
 
 def test_axes_are_seen_from_afar() -> None:
     camera = SpaceCamera(dots_per_m=1.0)
-    shapes, _apart = frame_shapes(buffer(("map", "odom", 0.0)), "map", camera)
+    shapes = with_names(buffer(("map", "odom", 0.0)), "map", camera)
     (first, *_rest) = (shape for shape in shapes if isinstance(shape, Strokes))
     assert np.linalg.norm(first.ends - first.starts) == pytest.approx(5.0)
 
 
 def test_a_loop_of_frames_ends() -> None:
     known = buffer(("a", "b", 1.0), ("b", "a", 1.0))
-    shapes, apart = frame_shapes(known, robot_root(known), SpaceCamera())
-    assert {*apart} | {shape.text for shape in shapes if isinstance(shape, Sign)} == {"a", "b"}
+    found, apart = Placer().frames(known, robot_root(known))
+    assert {*apart} | {one.drawable.frame for one in found} == {"a", "b"}
 
 
 def test_the_extent_holds_all_but_outliers_and_rays_that_met_nothing() -> None:
@@ -156,3 +168,14 @@ def test_the_extent_holds_all_but_outliers_and_rays_that_met_nothing() -> None:
     assert not box.holds(box.widened(0.1, 0.0))
     assert box.widened(0.0, 100.0).size_m == pytest.approx(100.0)
     assert math.isfinite(box.size_m)
+
+
+def test_what_stands_looks_the_same_and_what_moves_does_not() -> None:
+    placer, drawable = Placer(), dot("odom")
+    ((first,), _why), ((near,), _), ((far,), _) = (
+        placer.find(buffer(("map", "odom", x)), "map", [drawable]) for x in (1.0, 1.001, 1.1)
+    )
+    assert first.looks_like(near, 0.002)
+    assert not first.looks_like(far, 0.002)
+    turned = first._replace(at=Transform.from_rpy((1.0, 0.0, 0.0), (0.0, 0.0, 0.01)))
+    assert not first.looks_like(turned, 0.002)

@@ -16,7 +16,7 @@ from space.reading.fields import Drawable, NotDrawnError
 from space.reading.grids import read_grid
 from space.reading.poses import DrivenTrail, read_goal, read_path, read_pose
 from space.reading.robot import ModelReader
-from space.reading.scans import read_range, read_scan, read_sonar
+from space.reading.scans import SteadyRay, read_scan
 from space.transform import Transform
 from tests.unit.space.trees import cloud_tree, header, pose_tree
 
@@ -93,7 +93,7 @@ def test_ranges_that_are_not_valid_are_left_out() -> None:
 
 def test_a_range_is_a_cone_as_long_as_it_measures() -> None:
     tree = {"header": header("sonar"), "field_of_view": 0.5, "range": 2.0, "max_range": 4.0}
-    cone, rim = read_range(tree).shapes
+    cone, rim = SteadyRay().read_range(tree).shapes
     assert isinstance(cone, Strokes)
     assert isinstance(rim, Strokes)
     assert np.linalg.norm(cone.ends, axis=1) == pytest.approx(2.0)
@@ -105,12 +105,27 @@ def test_a_range_is_a_cone_as_long_as_it_measures() -> None:
     ("metres", "paint"), [(1.0, Tint.WARN), (math.inf, Tint.MUTED), (math.nan, Tint.MUTED)]
 )
 def test_a_bare_sonar_shows_what_rep_117_says(metres: float, paint: Tint) -> None:
-    drawable = read_sonar({"data": metres}, "sonar_front_link")
+    drawable = SteadyRay().read_sonar({"data": metres}, "sonar_front_link")
     first = drawable.shapes[0]
     assert isinstance(first, Strokes)
     assert first.paint == paint
     assert drawable.frame == "sonar_front_link"
     assert any(isinstance(shape, Sign) for shape in drawable.shapes) == math.isnan(metres)
+
+
+def test_a_distance_that_only_fluctuates_stays_the_same_drawing() -> None:
+    ray = SteadyRay()
+    first = ray.read_sonar({"data": 1.0}, "sonar")
+    assert ray.read_sonar({"data": 1.02}, "sonar") is first
+    assert ray.read_sonar({"data": 1.04}, "sonar") is not first
+    assert ray.read_sonar({"data": math.inf}, "sonar") is not ray.read_sonar({"data": 1.0}, "other")
+
+
+def test_a_robot_that_stands_stays_the_same_drawing() -> None:
+    trail = DrivenTrail()
+    first = trail.read(odometry(1.0))
+    assert trail.read(odometry(1.0005)) is first
+    assert trail.read(odometry(1.01)) is not first
 
 
 def test_a_cloud_is_its_points_coloured_by_height() -> None:
@@ -302,7 +317,7 @@ def path_with_a_bad_pose() -> Tree:
             "pose.position is farther away than 1000 km",
         ),
         (
-            read_range,
+            SteadyRay().read_range,
             {"header": header("s"), "field_of_view": "wide"},
             "field_of_view is not a number",
         ),
