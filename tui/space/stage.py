@@ -108,10 +108,15 @@ class Stage:
 
         Return whether anything is to be seen elsewhere than before.
         """
-        fixed, found = self.fixed, list[Located]()
-        for layer in self.layers:
-            drawables = layer.reader.shown(now_s) if layer.is_drawn else ()
+        found: list[Located] = []
+        shown = {
+            layer: layer.reader.shown(now_s) if layer.is_drawn else () for layer in self.layers
+        }
+        for layer, drawables in shown.items():
             layer.frame = next((one.frame for one in drawables if one.frame), layer.frame)
+        # Without /tf the frames of the layers say what the fixed frame is.
+        fixed = self.fixed
+        for layer, drawables in shown.items():
             located, layer.apart = self._placer.find(self.buffer, fixed, drawables)
             found += located
         frames: list[Located] = []
