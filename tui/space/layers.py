@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate, TopicRow
     from space.reading.kinds import LayerReader
 
+CLOUD = "sensor_msgs/msg/PointCloud2"
 FLOAT, TEXT = "std_msgs/msg/Float32", "std_msgs/msg/String"
 SONARS = {SONAR_FRONT: "sonar_front_link", SONAR_REAR: "sonar_rear_link"}
 """Topics of the course with bare distances, and the frames in which they are measured."""
@@ -26,7 +27,7 @@ FLEETING = frozenset(
     {
         FLOAT,
         "sensor_msgs/msg/LaserScan",
-        "sensor_msgs/msg/PointCloud2",
+        CLOUD,
         "sensor_msgs/msg/Range",
     }
 )

@@ -22,6 +22,7 @@ from tui.space import words
 from tui.space.actions import SPACE_ACTIONS, Disarm, PublishAim
 from tui.space.aim import AimKind
 from tui.space.aiming import Aiming
+from tui.space.layers import CLOUD
 from tui.space.rows import FRAMES, LayerRows
 from tui.space.stage import Stage
 from tui.space.view import SpaceView
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     from tui.emergency.messages import EmergencyChanged
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
+PERIOD_S, CLOUD_PERIOD_S = 0.1, 0.08
+"""Clouds come ten times a second: looking as often as that would miss some of them."""
 NO_FRAME = " "
 """The answer for no frame, which no frame can be called."""
 
@@ -51,7 +54,7 @@ class SpaceScreen(DeckScreen):
         "layers and back; below each layer is what is wrong with it."
     )
     parts: ClassVar[tuple[str, ...]] = ("#space-picture", "LayerRows")
-    period_s = 0.08
+    period_s = PERIOD_S
     wants_frames = True
     BINDINGS: ClassVar = bindings(*SPACE_ACTIONS)
     DEFAULT_CSS = """
@@ -264,6 +267,12 @@ class SpaceScreen(DeckScreen):
         for layer in self.stage.layers:
             layer.on = True
         self._layers_changed()
+
+    def topics_changed(self) -> None:
+        """Ask for the topics of the layers, and look more often if there is a cloud."""
+        clouds = any(layer.on and layer.type_name == CLOUD for layer in self.stage.layers)
+        self.period_s = CLOUD_PERIOD_S if clouds else PERIOD_S
+        super().topics_changed()
 
     def _layers_changed(self) -> None:
         self.topics_changed()
