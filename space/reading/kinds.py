@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from space.reading.clouds import read_cloud
 from space.reading.grids import read_grid
 from space.reading.markers import MarkerBook
-from space.reading.poses import DrivenTrail, read_goal, read_path
+from space.reading.poses import DrivenTrail, SteadyGoal, read_path
 from space.reading.scans import SteadyRay, read_scan
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ KINDS: Mapping[str, LayerKind] = {
     "sensor_msgs/msg/Range": LayerKind(lambda: NewestReader(SteadyRay().read_range)),
     "sensor_msgs/msg/PointCloud2": LayerKind(lambda: NewestReader(read_cloud)),
     "nav_msgs/msg/Path": LayerKind(lambda: NewestReader(read_path)),
-    "geometry_msgs/msg/PoseStamped": LayerKind(lambda: NewestReader(read_goal)),
+    "geometry_msgs/msg/PoseStamped": LayerKind(lambda: NewestReader(SteadyGoal().read)),
     "nav_msgs/msg/Odometry": LayerKind(lambda: NewestReader(DrivenTrail().read), grows=True),
     "visualization_msgs/msg/Marker": LayerKind(MarkerBook, every=True),
     "visualization_msgs/msg/MarkerArray": LayerKind(MarkerBook, every=True),

@@ -41,11 +41,24 @@ def read_pose(tree: Mapping[str, Any], paint: int = Tint.SECOND) -> Drawable:
     return Drawable(frame(tree), (arrow(pose(tree, "pose"), ARROW_M, paint),), stamp_s(tree))
 
 
-def read_goal(tree: Mapping[str, Any]) -> Drawable:
-    """Return an arrow, or nothing: a goal without a frame says that there is none."""
-    if not str(field(tree, "header.frame_id")):
-        return Drawable("", (), None, say("there is no goal now"))
-    return read_pose(tree, Tint.GOOD)
+class SteadyGoal:
+    """The arrow of a pose, which stays as it is while the pose hardly moves."""
+
+    def __init__(self) -> None:
+        """Begin without a pose."""
+        self._held: tuple[Drawable, Transform] | None = None
+
+    def read(self, tree: Mapping[str, Any]) -> Drawable:
+        """Return an arrow, or nothing: a goal without a frame says that there is none.
+
+        Raises NotDrawnError.
+        """
+        if not str(field(tree, "header.frame_id")):
+            return Drawable("", (), None, say("there is no goal now"))
+        drawable, at, held = read_pose(tree, Tint.GOOD), pose(tree, "pose"), self._held
+        if held is None or held[0].frame != drawable.frame or not held[1].is_near(at, STANDING_M):
+            held = self._held = drawable, at
+        return held[0]
 
 
 def read_path(tree: Mapping[str, Any]) -> Drawable:

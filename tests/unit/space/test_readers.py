@@ -14,7 +14,7 @@ from space.drawing.shapes import Faces, Floor, Sign, Speckles, Strokes
 from space.reading.clouds import read_cloud
 from space.reading.fields import Drawable, NotDrawnError
 from space.reading.grids import read_grid
-from space.reading.poses import DrivenTrail, read_goal, read_path, read_pose
+from space.reading.poses import DrivenTrail, SteadyGoal, read_path, read_pose
 from space.reading.robot import ModelReader
 from space.reading.scans import SteadyRay, read_scan
 from space.transform import Transform
@@ -121,6 +121,16 @@ def test_a_distance_that_only_fluctuates_stays_the_same_drawing() -> None:
     assert ray.read_sonar({"data": math.inf}, "sonar") is not ray.read_sonar({"data": 1.0}, "other")
 
 
+def test_a_pose_that_stands_stays_the_same_drawing() -> None:
+    steady = SteadyGoal()
+    first, near, far = (
+        steady.read({"header": header("map"), "pose": pose_tree(Transform((x, 0.0, 0.0)))})
+        for x in (1.0, 1.0005, 1.1)
+    )
+    assert near is first
+    assert far is not first
+
+
 def test_a_robot_that_stands_stays_the_same_drawing() -> None:
     trail = DrivenTrail()
     first = trail.read(odometry(1.0))
@@ -214,7 +224,7 @@ def test_a_pose_is_an_arrow_along_its_x() -> None:
 
 
 def test_a_goal_without_a_frame_says_that_there_is_none() -> None:
-    found = read_goal({"header": header(""), "pose": pose_tree(Transform())})
+    found = SteadyGoal().read({"header": header(""), "pose": pose_tree(Transform())})
     assert (found.shapes, found.remark) == ((), "there is no goal now")
 
 
