@@ -70,6 +70,7 @@ def test_every_command_shown_exists(readme: str) -> None:
         "mcp",
         "doctor",
         "diagnostics",
+        "frames",
     }
     assert shown | {"ps", "logs", "attach", "down"} <= set(COMMANDS)
 
