@@ -20,7 +20,7 @@ ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
 .PHONY: .venv/.ready
 endif
 
-ROOMS := agents bench brain bridges cli course deck graph launcher nodes robot ros2 scripts space tests text tui
+ROOMS := agents bench brain bridges cli course deck graph launcher nodes robot ros2 scripts space tests text tui view
 
 .PHONY: help setup run test lint lock architecture clean
 .DEFAULT_GOAL := help

@@ -20,7 +20,7 @@ LOCALE = ROOT / "text" / "locale"
 DOMAIN = "deck"
 ROOMS = (
     *("agents", "brain", "cli", "course", "graph", "launcher", "nodes", "robot", "space", "text"),
-    "tui",
+    *("tui", "view"),
 )
 KEYWORDS = (
     *("_", "N_", "ngettext:1,2", "refused", "say"),

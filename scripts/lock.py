@@ -8,15 +8,20 @@ each line says which Pythons it is for.
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import venv
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib  # pytest depends on it there
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parent.parent
 LOCKED = ROOT / "locked"
@@ -24,6 +29,8 @@ OLDEST = "3.10"
 UV = "uv>=0.9,<1"
 BACKENDS = {"deck": ("editables",), "interfaces": ("cmake", "ninja")}
 """Requirements that build backends only state when they are run."""
+VIEW = "view"
+"""An extra with a file of its own, to be installed after `deck.txt`: it is too large for most."""
 
 
 def main() -> int:
@@ -31,9 +38,11 @@ def main() -> int:
     uv = resolver()
     wanted = requirements()
     LOCKED.mkdir(exist_ok=True)
-    for name, lines in wanted.items():
+    found = {name: resolved(uv, lines) for name, lines in wanted.items()}
+    found[VIEW] = beyond(found["deck"], found[VIEW])
+    for name, text in found.items():
         path = LOCKED / f"{name}.txt"
-        path.write_text(f"# Written by `make lock`.\n{resolved(uv, lines)}")
+        path.write_text(f"# Written by `make lock`.\n{text}")
         print(path.relative_to(ROOT))
     return 0
 
@@ -54,12 +63,33 @@ def requirements() -> dict[str, list[str]]:
     wanted = {
         "deck": [
             *deck["project"]["dependencies"],
-            *(line for extra in extras.values() for line in extra),
+            *(line for name, extra in extras.items() if name != VIEW for line in extra),
             *deck["build-system"]["requires"],
+            *BACKENDS["deck"],
         ],
-        "interfaces": interfaces["build-system"]["requires"],
+        "interfaces": [*interfaces["build-system"]["requires"], *BACKENDS["interfaces"]],
     }
-    return {name: [*lines, *BACKENDS[name]] for name, lines in wanted.items()}
+    # Together, so that what both need has one version.
+    return {**wanted, VIEW: [*wanted["deck"], *extras[VIEW]]}
+
+
+def beyond(base: str, whole: str) -> str:
+    """Return the pinned packages of `whole` that `base` does not have.
+
+    Raises ValueError if `base` has one of them in another version.
+    """
+    already = dict(_pinned(base))
+    more = {line: text for line, text in _pinned(whole) if line not in already}
+    names = {line.partition("==")[0] for line in already}
+    if clashes := [line for line in more if line.partition("==")[0] in names]:
+        raise ValueError(f"not as in deck.txt: {', '.join(clashes)}")
+    return "".join(more.values())
+
+
+def _pinned(text: str) -> Iterator[tuple[str, str]]:
+    """Yield each requirement, `name==version ; marker`, and its lines with the hashes."""
+    for entry in re.findall(r"^\S.*\n(?:[ ].*\n)*", text, re.MULTILINE):
+        yield entry.partition("\\")[0].strip(), entry
 
 
 def resolved(uv: Path, lines: list[str]) -> str:

@@ -1,0 +1,94 @@
+"""Where a viewer opens: a window of this machine, or a page for a browser, maybe far away."""
+
+from __future__ import annotations
+
+import errno
+import getpass
+import socket
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from view.faults import PortTakenError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+HERE = "127.0.0.1"
+"""Everything is bound to it: nobody on the network can look."""
+DATA_PORT, PAGE_PORT = 9876, 9090
+"""Rerun's own: what the viewer reads from, and the page."""
+FOXGLOVE_PORT = 8765
+SCREENS = ("WAYLAND_DISPLAY", "DISPLAY")
+TRIED = 50
+"""Ports after the usual one, before the kernel chooses."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """The ports of a page, and how to get to it."""
+
+    data_port: int
+    page_port: int
+
+    @property
+    def source(self) -> str:
+        """Where a viewer reads from, in Rerun's own notation."""
+        return f"rerun+http://{HERE}:{self.data_port}/proxy"
+
+    @property
+    def url(self) -> str:
+        """The page that shows it."""
+        source = quote(self.source, safe="")
+        return f"http://{HERE}:{self.page_port}/?url={source}&hide_welcome_screen&persist=false"
+
+
+def has_window(environ: Mapping[str, str]) -> bool:
+    """Return whether a window would open before the user's eyes."""
+    return not environ.get("SSH_CONNECTION") and any(environ.get(name) for name in SCREENS)
+
+
+def ssh_command(ports: tuple[int, ...], environ: Mapping[str, str]) -> str:
+    """Return what to run on the user's own machine to reach these ports; empty without SSH.
+
+    The address is the one by which the user has reached this machine. Source: sshd(8), ENVIRONMENT.
+    """
+    words = environ.get("SSH_CONNECTION", "").split()
+    if len(words) != 4:
+        return ""
+    address, port = words[2:]
+    forwarded = " ".join(f"-L {each}:{HERE}:{each}" for each in ports)
+    other_port = "" if port == "22" else f" -p {port}"
+    return f"ssh -N {forwarded}{other_port} {getpass.getuser()}@{address}"
+
+
+def free_port(usual: int, asked: int | None = None) -> int:
+    """Return a port of this machine at which nobody listens: `asked`, or one near the usual.
+
+    Raises PortTakenError if `asked` is taken.
+    """
+    if asked:
+        if not _is_free(asked):
+            raise PortTakenError(asked)
+        return asked
+    near = (port for port in range(usual, usual + TRIED) if _is_free(port))
+    return next(near, None) or _any_port()
+
+
+def _is_free(port: int) -> bool:
+    with socket.socket() as one:
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            one.bind((HERE, port))
+        except OSError as error:
+            if error.errno in (errno.EADDRINUSE, errno.EACCES):
+                return False
+            raise
+        return True
+
+
+def _any_port() -> int:
+    with socket.socket() as one:
+        one.bind((HERE, 0))
+        port: int = one.getsockname()[1]
+        return port

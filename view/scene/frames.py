@@ -1,0 +1,117 @@
+"""The tree of frames: every transform as the place of a frame, with its axes and its name.
+
+Rerun takes the place of a frame from one entity only, so that of a root, which nobody publishes, is
+told at the entity that a transform of it would be told at.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from text.sentences import reason_of, say
+from view.scene.drawn import WORLD, Drawn, UnusableMessageError, frame_name
+from view.scene.geometry import transform
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from view.scene.drawn import Message
+
+FRAMES = "frames"
+"""The root of all frames in the tree of entities."""
+AXIS_M = 0.15
+
+
+class Frames:
+    """All frames that have been heard of."""
+
+    def __init__(self) -> None:
+        self._parents: dict[str, str] = {}
+        self._shown: set[str] = set()
+
+    def moved(self, topic: str, message: Message) -> list[Drawn]:
+        """Return the transforms of a message of /tf. Raises UnusableMessageError."""
+        del topic
+        return self._read(message, static=False)
+
+    def fixed(self, topic: str, message: Message) -> list[Drawn]:
+        """Return those of /tf_static, which hold for all times. Raises UnusableMessageError."""
+        del topic
+        return self._read(message, static=True)
+
+    def need(self, frame: str) -> list[Drawn]:
+        """Return what puts a frame into the view that no transform has named so far."""
+        return [*self._axes(frame), _root(frame)] if frame not in self._shown else []
+
+    def roots(self) -> list[Drawn]:
+        """Return what keeps the roots in the view: told again, as a viewer forgets what is old."""
+        return [_root(frame) for frame in sorted(self._shown - self._parents.keys())]
+
+    def _read(self, message: Message, *, static: bool) -> list[Drawn]:
+        drawn: list[Drawn] = []
+        fault = ""
+        for one in message["transforms"]:
+            try:
+                drawn += self._joined(one, static=static)
+            except UnusableMessageError as error:  # noqa: PERF203
+                fault = reason_of(error)
+        if fault:
+            raise UnusableMessageError(fault, drawn)
+        return drawn
+
+    def _joined(self, value: Message, *, static: bool) -> list[Drawn]:
+        import rerun
+
+        parent = frame_name(value["header"]["frame_id"])
+        child = frame_name(value["child_frame_id"])
+        self._check(parent, child)
+        moved = value["transform"]
+        at = transform(moved["translation"], moved["rotation"])
+        self._parents[child] = parent
+        place = rerun.Transform3D(
+            translation=at.translation,
+            quaternion=at.rotation,
+            parent_frame=parent,
+            child_frame=child,
+        )
+        joined = Drawn((FRAMES, child), (place,), static=static)
+        return [*self.need(parent), *self._axes(child), joined]
+
+    def _check(self, parent: str, child: str) -> None:
+        if not parent or not child or parent == child:
+            raise UnusableMessageError(
+                say(
+                    "a transform from '{parent}' to '{child}' joins no two frames",
+                    parent=parent,
+                    child=child,
+                )
+            )
+        if self._would_close_a_loop(parent, child):
+            raise UnusableMessageError(
+                say(
+                    "{child} in {parent} closes a loop of frames: nobody knows where they are",
+                    child=child,
+                    parent=parent,
+                )
+            )
+
+    def _would_close_a_loop(self, parent: str, child: str) -> bool:
+        above: str | None = parent
+        while above is not None and above != child:
+            above = self._parents.get(above)
+        return above == child
+
+    def _axes(self, frame: str) -> Iterator[Drawn]:
+        import rerun
+
+        if frame not in self._shown:
+            self._shown.add(frame)
+            axes = rerun.TransformAxes3D(AXIS_M, show_frame=True)
+            yield Drawn((FRAMES, frame), (axes,), frame=frame, static=True)
+
+
+def _root(frame: str) -> Drawn:
+    import rerun
+
+    place = rerun.Transform3D(parent_frame=WORLD, child_frame=frame)
+    return Drawn((FRAMES, frame), (place,))

@@ -1,0 +1,64 @@
+"""Pictures of cameras, colours and depth."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from graph.pictures.jpeg import to_jpeg
+from graph.pictures.picture import COMPRESSED, IMAGE, METRES
+from graph.pictures.pixels import DEPTHS, image_fields, pixel_rows
+from graph.pictures.reading import read_picture
+from view.scene.drawn import Drawn, topic_path
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from view.scene.drawn import Message
+
+PICTURES = "pictures"
+"""The root of all pictures in the tree of entities."""
+AS_IT_IS = {b"\xff\xd8\xff": "image/jpeg", b"\x89PNG": "image/png"}
+"""The first bytes of what the viewer decodes itself."""
+
+
+def image(topic: str, message: Message) -> list[Drawn]:
+    """Return a `sensor_msgs/Image`; colours as JPEG, of a tenth of the size. Raises ImageError."""
+    import rerun
+
+    if message["encoding"] in METRES:
+        metre = 1 / METRES[message["encoding"]]
+        depth = rerun.DepthImage(_numbers(message), meter=metre)
+        return [Drawn(topic_path(PICTURES, topic), (depth,))]
+    return [_jpeg(topic, IMAGE, message)]
+
+
+def compressed(topic: str, message: Message) -> list[Drawn]:
+    """Return a `sensor_msgs/CompressedImage`. Raises ImageError."""
+    import rerun
+
+    data = bytes(message["data"])
+    for first, kind in AS_IT_IS.items():
+        if data.startswith(first):
+            picture = rerun.EncodedImage(contents=data, media_type=kind)
+            return [Drawn(topic_path(PICTURES, topic), (picture,))]
+    return [_jpeg(topic, COMPRESSED, message)]
+
+
+def _jpeg(topic: str, type_name: str, message: Message) -> Drawn:
+    import rerun
+
+    picture = read_picture(type_name, message, lambda width, height: (width, height))
+    encoded = rerun.EncodedImage(contents=to_jpeg(picture.rgb), media_type="image/jpeg")
+    return Drawn(topic_path(PICTURES, topic), (encoded,))
+
+
+def _numbers(message: Message) -> NDArray[np.generic]:
+    """Return the pixels of a depth image, shape (height, width)."""
+    (width, height, step), encoding, data = image_fields(message)
+    kind = (">" if message.get("is_bigendian") else "<") + DEPTHS[encoding]
+    size = int(kind[-1])
+    rows = pixel_rows(data, width, height, step, size)
+    numbers = rows.reshape(height, width * size).copy().view(kind)
+    # Rerun reads the machine's own order of bytes.
+    return numbers.astype(kind[1:])

@@ -1,0 +1,107 @@
+"""The robot in Rerun: an observer of its own feeds a viewer, until one of them ends."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import TYPE_CHECKING
+
+from graph.observer.observer import Observer
+from view.arranged import arranged
+from view.faults import ViewError
+from view.installed import rerun_program
+from view.page import Page
+from view.place import DATA_PORT, PAGE_PORT, Place, free_port
+from view.scene.recorded import Stream
+from view.scene.scene import PICTURE_TYPES, Scene
+from view.viewer import Viewer
+
+if TYPE_CHECKING:
+    import threading
+
+    from typing_extensions import Self
+
+    from graph.data import GraphUpdate
+
+ROLE = "view"
+PERIOD_S = 0.05
+"""Seconds between two looks at the queues: a camera's stay short, and its pictures come evenly."""
+LOOK_S = 0.1
+
+
+class Showing:
+    """A viewer and what feeds it; open it, wait, close it."""
+
+    def __init__(
+        self, domain: int, discovery: str | tuple[str, ...], *, window: bool, port: int | None
+    ) -> None:
+        """Open a window of its own, or a page at `port`, near the usual one if there is none.
+
+        Raises ViewError if nothing can be opened.
+        """
+        program = rerun_program()
+        self.error = ""
+        """Why nothing is shown any more."""
+        self._scene = Scene()
+        self._pictures: frozenset[str] = frozenset()
+        self._open = ExitStack()
+        page_port = 0 if window else free_port(PAGE_PORT, port)
+        self.place = Place(free_port(DATA_PORT), page_port)
+        """Where the page is; a window's page port is 0."""
+        inner_port = None if window else free_port(page_port + 1)
+        with ExitStack() as opening:
+            self._viewer = Viewer(program, self.place.data_port, inner_port)
+            opening.enter_context(self._viewer)
+            if inner_port is not None:
+                opening.enter_context(Page(page_port, inner_port, self.place.data_port))
+            self._stream = Stream(self.place.source)
+            opening.callback(self._stream.close)
+            self._stream.arrange(arranged(self._pictures))
+            self._observer = Observer(domain, discovery, PERIOD_S, role=ROLE)
+            opening.callback(self._observer.stop)
+            self._observer.start(self._take)
+            self._open = opening.pop_all()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._open.close()
+
+    @property
+    def url(self) -> str:
+        """The page that shows it, empty for a window."""
+        return self.place.url if self.place.page_port else ""
+
+    @property
+    def ports(self) -> tuple[int, ...]:
+        """The ports that a browser needs: the page's and the data's; none for a window."""
+        return (self.place.page_port, self.place.data_port) if self.place.page_port else ()
+
+    def wait(self, stop: threading.Event) -> None:
+        """Wait until it is stopped or its window is closed. Raises ViewError if it broke."""
+        while not stop.wait(LOOK_S):
+            if self.error:
+                raise ViewError(self.error)
+            if self._viewer.ended:
+                if fault := self._viewer.fault:
+                    raise ViewError(fault)
+                return
+
+    def _take(self, update: GraphUpdate) -> None:
+        """Draw what has come; called by the observer's thread."""
+        if update.error:
+            self.error = update.error
+            return
+        wanted = self._scene.wanted(update.topics)
+        self._observer.follow(wanted)
+        pictures = frozenset(
+            row.name
+            for row in update.topics
+            if row.name in wanted and not PICTURE_TYPES.isdisjoint(row.type_names)
+        )
+        if pictures - self._pictures:
+            self._pictures |= pictures
+            self._stream.arrange(arranged(self._pictures))
+        found = [sample for samples in update.samples.values() for sample in samples]
+        for time_s, drawn in self._scene.draw(found):
+            self._stream.put(time_s, drawn)
