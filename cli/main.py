@@ -38,6 +38,8 @@ HANDLERS = {
     "down": ("cli.background", "down_command"),
     "record": ("cli.record", "record_command"),
     "replay": ("cli.replay", "replay_command"),
+    "view": ("cli.view", "view_command"),
+    "foxglove": ("cli.view", "foxglove_command"),
     "new": ("cli.new", "new_command"),
     "lesson": ("cli.lesson", "lesson_command"),
     "grade": ("cli.grade", "grade_command"),

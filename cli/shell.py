@@ -61,7 +61,7 @@ PS1="($DECK_SHELL) ${PS1-$ }"
 def shell_command(options: Namespace) -> int:
     """Become the shell; return only if that is impossible."""
     name, domain, discovery = _place(options)
-    environ = _environment(domain, discovery)
+    environ = environment_in(domain, discovery)
     if options.lang:
         environ["DECK_LANG"] = options.lang
     label = f"domain {domain}" if name == f"domain-{domain}" else f"{name}, domain {domain}"
@@ -100,8 +100,8 @@ def _place(options: Namespace) -> tuple[str, int, str | tuple[str, ...]]:
     return session.name, session.domain, session.discovery
 
 
-def _environment(domain: int, discovery: str | tuple[str, ...]) -> dict[str, str]:
-    """Return the variables of the shell: those of this process, those of ROS, and ours."""
+def environment_in(domain: int, discovery: str | tuple[str, ...]) -> dict[str, str]:
+    """Return the variables for programs of another ROS: of this process, of ROS, and ours."""
     environ = ros_environment(os.environ, domain, discovery)
     changes: dict[str, str | None] = {
         **without_wheels(environ),

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
 NAME_PREFIX = "_deck_"
 """The underscore keeps it out of `ros2 node list`."""
-ONLY_LISTENING = tuple(f"/{NAME_PREFIX}{role}_" for role in ("observer", "recorder", "agents", "view"))
+ONLY_LISTENING = tuple(
+    f"/{NAME_PREFIX}{role}_" for role in ("observer", "recorder", "agents", "view")
+)
 """Prefixes of the full names of observing nodes, in this or in another process of Deck."""
 DOMAINS = range(233)
 """Fast DDS ends the whole process at a greater domain: its port numbers would be out of range."""

@@ -32,16 +32,24 @@ class Showing:
     """A viewer and what feeds it; open it, wait, close it."""
 
     def __init__(
-        self, domain: int, discovery: str | tuple[str, ...], *, window: bool, port: int | None
+        self,
+        domain: int,
+        discovery: str | tuple[str, ...],
+        *,
+        window: bool = False,
+        port: int | None = None,
+        compact: bool = False,
     ) -> None:
         """Open a window of its own, or a page at `port`, near the usual one if there is none.
+
+        With `compact`, pictures are compressed, for a browser behind a slow line.
 
         Raises ViewError if nothing can be opened.
         """
         program = rerun_program()
         self.error = ""
         """Why nothing is shown any more."""
-        self._scene = Scene()
+        self._scene = Scene(compact=compact)
         self._pictures: frozenset[str] = frozenset()
         self._open = ExitStack()
         page_port = 0 if window else free_port(PAGE_PORT, port)

@@ -63,7 +63,7 @@ class Viewer:
                 env=silent_environment(folder),
                 # Ctrl-C is meant for us, who end it.
                 start_new_session=True,
-                preexec_fn=_die_with_parent,
+                preexec_fn=_die_with_parent,  # noqa: PLW1509 - no thread of ours runs yet
             )
         try:
             self._wait_until_it_listens()

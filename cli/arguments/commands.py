@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from cli.arguments import learning, recording, running, thinking
+from cli.arguments import learning, recording, running, thinking, viewing
 from cli.arguments.options import add_language, add_profile_options, add_running, add_screen
 from cli.arguments.parser import Parser
 from text.i18n import N_, _
@@ -34,6 +34,8 @@ COMMANDS = {
     "mcp": N_("let agents look at the robot, propose, and drive only with consent (MCP)"),
     "record": N_("record topics of running nodes into a folder that `ros2 bag` can read"),
     "replay": N_("open the screen on a recording, without a robot"),
+    "view": N_("show the running robot in 3D: a window, or a page for a browser"),
+    "foxglove": N_("let Foxglove look at the running robot"),
     "new": N_("make a folder of one's own for a lesson, to write its nodes in"),
     "lesson": N_("prove a lesson of one's own, or begin one"),
     "grade": N_("grade the files of folders by the steps of a lesson, whatever they do"),
@@ -63,6 +65,8 @@ _ADD = {
     "mcp": thinking.add_mcp,
     "record": recording.add_record,
     "replay": recording.add_replay,
+    "view": viewing.add_view,
+    "foxglove": viewing.add_foxglove,
     "new": learning.add_new,
     "lesson": learning.add_lesson,
     "grade": learning.add_grade,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from graph.bag.metadata import BagTopic, qos_offer
 from graph.bag.types import definition, hash_of
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-    from graph.recording.writer import Message, RecordingWriter
+    from graph.recording.writer import Message
 
 
 class TopicChoice(NamedTuple):
@@ -44,10 +44,20 @@ class TopicChoice(NamedTuple):
         return (self.hidden or not is_hidden(name)) and self.without.isdisjoint(types)
 
 
+class Sink(Protocol):
+    """Where the messages go."""
+
+    def add_topic(self, topic: BagTopic, text: str) -> None:
+        """Take a topic before its first message; `text` is the definition of its type."""
+
+    def put(self, messages: Sequence[Message]) -> None:
+        """Take messages in the order of their arrival, without waiting."""
+
+
 class RecordingTopics:
     """All subscriptions of a recording; used by the recorder's thread alone."""
 
-    def __init__(self, node: Node, choice: TopicChoice, writer: RecordingWriter) -> None:
+    def __init__(self, node: Node, choice: TopicChoice, writer: Sink) -> None:
         self.skipped: dict[str, str] = {}
         """Topic to why it cannot be recorded."""
         self._node = node

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from graph.pictures.jpeg import to_jpeg
 from graph.pictures.picture import COMPRESSED, IMAGE, METRES
@@ -22,35 +22,42 @@ AS_IT_IS = {b"\xff\xd8\xff": "image/jpeg", b"\x89PNG": "image/png"}
 """The first bytes of what the viewer decodes itself."""
 
 
-def image(topic: str, message: Message) -> list[Drawn]:
-    """Return a `sensor_msgs/Image`; colours as JPEG, of a tenth of the size. Raises ImageError."""
+def image(topic: str, message: Message, *, compact: bool) -> list[Drawn]:
+    """Return a `sensor_msgs/Image`, as JPEG if it is to be `compact`. Raises ImageError."""
     import rerun
 
     if message["encoding"] in METRES:
         metre = 1 / METRES[message["encoding"]]
-        depth = rerun.DepthImage(_numbers(message), meter=metre)
-        return [Drawn(topic_path(PICTURES, topic), (depth,))]
-    return [_jpeg(topic, IMAGE, message)]
+        shape = rerun.DepthImage(_numbers(message), meter=metre)
+    else:
+        shape = _picture(IMAGE, message, compact=compact)
+    return [Drawn(topic_path(PICTURES, topic), (shape,))]
 
 
-def compressed(topic: str, message: Message) -> list[Drawn]:
-    """Return a `sensor_msgs/CompressedImage`. Raises ImageError."""
+def compressed(topic: str, message: Message, *, compact: bool) -> list[Drawn]:
+    """Return a `sensor_msgs/CompressedImage`, still compressed if that will do.
+
+    Raises ImageError.
+    """
     import rerun
 
     data = bytes(message["data"])
-    for first, kind in AS_IT_IS.items():
-        if data.startswith(first):
-            picture = rerun.EncodedImage(contents=data, media_type=kind)
-            return [Drawn(topic_path(PICTURES, topic), (picture,))]
-    return [_jpeg(topic, COMPRESSED, message)]
+    kind = next((kind for first, kind in AS_IT_IS.items() if data.startswith(first)), "")
+    if kind and compact:
+        shape = rerun.EncodedImage(contents=data, media_type=kind)
+    else:
+        shape = _picture(COMPRESSED, message, compact=compact)
+    return [Drawn(topic_path(PICTURES, topic), (shape,))]
 
 
-def _jpeg(topic: str, type_name: str, message: Message) -> Drawn:
+def _picture(type_name: str, message: Message, *, compact: bool) -> Any:  # noqa: ANN401
     import rerun
 
-    picture = read_picture(type_name, message, lambda width, height: (width, height))
-    encoded = rerun.EncodedImage(contents=to_jpeg(picture.rgb), media_type="image/jpeg")
-    return Drawn(topic_path(PICTURES, topic), (encoded,))
+    rgb = read_picture(type_name, message, lambda width, height: (width, height)).rgb
+    if compact:
+        return rerun.EncodedImage(contents=to_jpeg(rgb), media_type="image/jpeg")
+    # A viewer on this machine shows them at once, and would take longer to decode them.
+    return rerun.Image(rgb)
 
 
 def _numbers(message: Message) -> NDArray[np.generic]:

@@ -40,7 +40,8 @@ ROOTS_EVERY_S = 5.0
 class Scene:
     """From samples to what is drawn; it remembers frames, trails, and what it has complained of."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, compact: bool = False) -> None:
+        """With `compact`, pictures are compressed, for a viewer behind a slow line."""
         self._frames = Frames()
         self._trails = Trails()
         self._roots_at_s = 0.0
@@ -59,8 +60,8 @@ class Scene:
             "std_msgs/msg/Float32": (ray,),
             "visualization_msgs/msg/Marker": (marker,),
             "visualization_msgs/msg/MarkerArray": (several,),
-            IMAGE: (image,),
-            COMPRESSED: (compressed,),
+            IMAGE: (partial(image, compact=compact),),
+            COMPRESSED: (partial(compressed, compact=compact),),
         }
         for type_name in PLOTTED:
             known = self._readers.get(type_name, ())

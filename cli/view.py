@@ -1,0 +1,155 @@
+"""`deck view` and `deck foxglove`: the running robot in 3D, in a process of its own.
+
+With `--json` it writes one object when it is open, and ends with its standard input:
+
+    view    kind: window, page or foxglove; url, empty for a window; ports that a browser or
+            Foxglove needs; ssh, what forwards them to the user's own machine, empty without SSH
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, Protocol
+
+from cli.running_domain import running_domain
+from launcher.errors import LauncherError, UsageError
+from launcher.processes.shared_memory_unfinished import discard_unfinished
+from text.i18n import _
+from text.output import json_text, keep_stdout_to_ourselves, write
+from text.sentences import reason_of
+from view.faults import ViewError
+from view.place import has_window, ssh_command
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+RVIZ = Path("rviz") / "robot.rviz"
+"""Among the profiles."""
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Opened(NamedTuple):
+    """What is open."""
+
+    kind: str
+    url: str
+    ports: tuple[int, ...]
+    domain: int
+
+
+class Waiting(Protocol):
+    """A viewer that is open."""
+
+    def wait(self, stop: threading.Event) -> None:
+        """Wait until it ends or `stop` is set. Raises ViewError if it broke."""
+
+
+def view_command(options: Namespace) -> int:
+    """Show the robot in 3D until the viewer is closed."""
+    _name, domain, discovery = running_domain(options.domain)
+    if options.rviz:
+        _rviz(domain, discovery)
+    from view.showing import Showing
+
+    window = has_window(os.environ) and not options.web
+    compact = bool(os.environ.get("SSH_CONNECTION"))
+    stop = _stopping(options)
+    try:
+        showing = Showing(domain, discovery, window=window, port=options.port, compact=compact)
+    except ViewError as error:
+        raise UsageError(reason_of(error)) from error
+    with showing:
+        kind = "window" if window else "page"
+        _tell(Opened(kind, showing.url, showing.ports, domain), as_json=options.json)
+        if showing.url and options.open and has_window(os.environ):
+            webbrowser.open(showing.url)
+        return _wait(showing, stop)
+
+
+def foxglove_command(options: Namespace) -> int:
+    """Serve what is published to Foxglove until it is stopped."""
+    _name, domain, discovery = running_domain(options.domain)
+    from view.sharing import Sharing
+
+    stop = _stopping(options)
+    try:
+        sharing = Sharing(domain, discovery, options.port)
+    except ViewError as error:
+        raise UsageError(reason_of(error)) from error
+    with sharing:
+        _tell(Opened("foxglove", sharing.url, (sharing.port,), domain), as_json=options.json)
+        return _wait(sharing, stop)
+
+
+def _wait(viewer: Waiting, stop: threading.Event) -> int:
+    try:
+        viewer.wait(stop)
+    except ViewError as error:
+        raise LauncherError(reason_of(error)) from error
+    return 0
+
+
+def _stopping(options: Namespace) -> threading.Event:
+    """Return what is set when it is to end: by a signal, or by the end of standard input."""
+    stop = threading.Event()
+    for number in SIGNALS:
+        signal.signal(number, lambda *_: stop.set())
+    keep_stdout_to_ourselves()
+    # There may be no supervisor here that does it.
+    discard_unfinished()
+    if options.json:
+        threading.Thread(target=_until_input_ends, args=(stop,), daemon=True).start()
+    return stop
+
+
+def _until_input_ends(stop: threading.Event) -> None:
+    # Not by sys.stdin, whose lock would be held when the interpreter ends.
+    while os.read(0, 4096):
+        pass
+    stop.set()
+
+
+def _tell(opened: Opened, *, as_json: bool) -> None:
+    ssh = ssh_command(opened.ports, os.environ)
+    if as_json:
+        told = {"event": "view", **opened._asdict(), "ssh": ssh}
+        write(json_text(told))
+        sys.stdout.flush()
+        return
+    for line in _lines(opened, ssh):
+        write(line)
+    sys.stdout.flush()
+
+
+def _lines(opened: Opened, ssh: str) -> list[str]:
+    domain = opened.domain
+    if opened.kind == "window":
+        words = _("domain {domain} in a window of Rerun; close it or press Ctrl-C")
+        return [words.format(domain=domain)]
+    if opened.kind == "foxglove":
+        words = _("domain {domain} for Foxglove: {url}; Ctrl-C ends it")
+    else:
+        words = _("domain {domain} in a browser: {url}; Ctrl-C ends it")
+    lines = [words.format(domain=domain, url=opened.url)]
+    if ssh:
+        lines += [_("first, on the machine in front of you: {command}").format(command=ssh)]
+    return lines
+
+
+def _rviz(domain: int, discovery: str | tuple[str, ...]) -> NoReturn:
+    """Become RViz2."""
+    from cli.shell import environment_in
+    from launcher.profile.text import SHIPPED
+    from view.installed import rviz_program
+
+    try:
+        program = rviz_program()
+    except ViewError as error:
+        raise UsageError(reason_of(error)) from error
+    sys.stdout.flush()
+    os.execve(program, [program, "-d", str(SHIPPED / RVIZ)], environment_in(domain, discovery))

@@ -1,0 +1,143 @@
+"""What is published, for Foxglove: a WebSocket server on this machine, which hands on raw messages.
+
+Clients only look. The server has none of the capabilities by which they could publish, call a
+service or set parameters, so nobody who reaches it can drive the robot.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+from graph.housekeeping import is_hidden
+from graph.recording.relay import Relay
+from text.sentences import reason_of, say
+from view.faults import ViewError
+from view.installed import need_foxglove
+from view.place import FOXGLOVE_PORT, HERE, free_port
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from typing_extensions import Self
+
+    from graph.bag.metadata import BagTopic
+    from graph.recording.writer import Message
+
+NAME = "Deck"
+LOOK_S = 0.1
+BACKLOG = 256
+"""Messages that wait for a slow client; the oldest are dropped."""
+LATCHED = 50
+"""Messages kept of a latched topic, for clients that come later."""
+
+
+class _Channels:
+    """A channel of the server for every topic; messages come from one thread."""
+
+    def __init__(self) -> None:
+        self._channels: dict[str, Any] = {}
+        self._kept: dict[str, deque[Message]] = {}
+        self._lock = threading.Lock()
+
+    def add_topic(self, topic: BagTopic, text: str) -> None:
+        """Announce a topic."""
+        import foxglove
+
+        schema = foxglove.Schema(name=topic.type_name, encoding="ros2msg", data=text.encode())
+        channel = foxglove.Channel(topic.name, schema=schema, message_encoding="cdr")
+        latched = any(offer["durability"] == "transient_local" for offer in topic.offers)
+        with self._lock:
+            self._channels[topic.name] = channel
+            if latched:
+                self._kept[topic.name] = deque(maxlen=LATCHED)
+
+    def put(self, messages: Sequence[Message]) -> None:
+        """Hand on messages."""
+        for message in messages:
+            name = message.topic.name
+            with self._lock:
+                channel = self._channels[name]
+                if name in self._kept:
+                    self._kept[name].append(message)
+            if channel.has_sinks():
+                channel.log(message.raw, log_time=message.stamp_ns)
+
+    def heard(self, topic: str) -> None:
+        """Repeat what was said on a latched topic, for a client that begins to listen.
+
+        The others hear it again: the server has no way to tell one of them alone.
+        """
+        with self._lock:
+            channel, kept = self._channels.get(topic), list(self._kept.get(topic, ()))
+        if channel is not None:
+            for message in kept:
+                channel.log(message.raw, log_time=message.stamp_ns)
+
+
+class Sharing:
+    """The server and what feeds it; open it, wait, close it."""
+
+    def __init__(
+        self, domain: int, discovery: str | tuple[str, ...], port: int | None = None
+    ) -> None:
+        """Serve at `port`, near the usual one if there is none. Raises ViewError."""
+        need_foxglove()
+        import foxglove
+
+        self.port = free_port(FOXGLOVE_PORT, port)
+        channels = _Channels()
+        try:
+            self._server = foxglove.start_server(
+                name=NAME,
+                host=HERE,
+                port=self.port,
+                capabilities=[],
+                server_listener=_listener(channels),
+                message_backlog_size=BACKLOG,
+            )
+        except Exception as error:
+            raise ViewError(
+                say("The server for Foxglove does not start: {reason}", reason=reason_of(error))
+            ) from error
+        self._relay = Relay(domain, discovery, channels, _is_shared)
+        self._relay.start()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._relay.stop()
+        self._server.stop()
+
+    @property
+    def url(self) -> str:
+        """What Foxglove is told to connect to."""
+        return f"ws://{HERE}:{self.port}"
+
+    def wait(self, stop: threading.Event) -> None:
+        """Wait until it is stopped. Raises ViewError if it broke."""
+        while not stop.wait(LOOK_S):
+            if self._relay.error:
+                raise ViewError(self._relay.error)
+
+
+def _is_shared(name: str, types: Sequence[str]) -> bool:
+    """Return whether a topic is handed on: whatever is not hidden."""
+    del types
+    return not is_hidden(name)
+
+
+def _listener(channels: _Channels) -> Any:  # noqa: ANN401
+    from foxglove.websocket import ServerListener
+
+    class Listener(ServerListener):  # type: ignore[misc]
+        """Tells the channels who begins to listen."""
+
+        def on_subscribe(self, client: Any, channel: Any) -> None:  # noqa: ANN401
+            """Pass it on."""
+            del client
+            channels.heard(channel.topic)
+
+    return Listener()
