@@ -23,6 +23,7 @@ from tui.frame.actions.app import APP_ACTIONS, EmergencyStop
 from tui.frame.actions.recording import RECORDING_ACTIONS, RecordToggle
 from tui.frame.actions.replay import REPLAY_ACTIONS
 from tui.frame.actions.ros2 import CopyAsRos2
+from tui.frame.actions.view import OpenView
 from tui.frame.replay_bar import ReplayBar
 from tui.lifecycle.sessions import Sessions
 from tui.recording.recording import Recording
@@ -37,6 +38,7 @@ from tui.terminal.harmless import Harmless
 from tui.terminal.key_queue import KeyQueue
 from tui.terminal.stall_detector import KeyStallDetector
 from tui.themes import HIGH_CONTRAST, after, few_colours
+from tui.viewing.view import View
 
 if TYPE_CHECKING:
     from textual.command import Provider
@@ -81,7 +83,7 @@ class DeckApp(App[int], Acting):
 
     TITLE = "Deck"
     BINDINGS: ClassVar[list[BindingType]] = bindings(
-        *APP_ACTIONS, CopyAsRos2, *REPLAY_ACTIONS, *RECORDING_ACTIONS, *AGENT_ACTIONS
+        *APP_ACTIONS, CopyAsRos2, OpenView, *REPLAY_ACTIONS, *RECORDING_ACTIONS, *AGENT_ACTIONS
     )
     COMMANDS: ClassVar = {_commands}
     ENABLE_COMMAND_PALETTE = False
@@ -119,6 +121,7 @@ class DeckApp(App[int], Acting):
         self.agents = AgentControl(self, self.feed)
         self.bypass = BypassDetector()
         self.recording = Recording(self, self.feed, lambda: self.keys_of(RecordToggle)[0])
+        self.view = View(self, self.feed)
         self._screens = Screens(self)
         self.sessions = Sessions(
             self,

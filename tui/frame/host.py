@@ -69,6 +69,13 @@ class SharedLesson(Protocol):
     """Whether it is wished beside the nodes on the Deck, too."""
 
 
+class BesideView(Protocol):
+    """The viewer beside the screen."""
+
+    def open(self) -> None:
+        """Open it, or say where it is open."""
+
+
 class KeyNames(Protocol):
     """Knows which keys run which actions."""
 
@@ -98,6 +105,10 @@ class Host(KeyNames, Protocol):
     @property
     def recording(self) -> Recording:
         """The recording of the session."""
+
+    @property
+    def view(self) -> BesideView:
+        """The viewer in 3D beside the screen."""
 
     @property
     def bypass(self) -> BypassDetector:

@@ -1,0 +1,30 @@
+"""The robot in 3D, beside the screen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from text.i18n import N_
+from tui.actions.action import Action
+
+if TYPE_CHECKING:
+    from tui.frame.host import Host
+
+
+class OpenView(Action["Host"]):
+    """Open the viewer, or say where it is open."""
+
+    id = "view.open"
+    key = "shift+f3"
+    title = N_("3D")
+    tooltip = N_("The robot in 3D, in a window of its own or in a browser: Rerun.")
+
+    @classmethod
+    def possible(cls, target: Host) -> bool | None:
+        """Only while a robot is shown, not a recording of one."""
+        return target.feed.link is not None and target.feed.replay is None
+
+    @classmethod
+    async def run(cls, target: Host) -> None:
+        """Open it."""
+        target.view.open()
