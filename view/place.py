@@ -68,14 +68,15 @@ def free_port(usual: int, asked: int | None = None) -> int:
     Raises PortTakenError if `asked` is taken.
     """
     if asked:
-        if not _is_free(asked):
+        if not is_free(asked):
             raise PortTakenError(asked)
         return asked
-    near = (port for port in range(usual, usual + TRIED) if _is_free(port))
+    near = (port for port in range(usual, usual + TRIED) if is_free(port))
     return next(near, None) or _any_port()
 
 
-def _is_free(port: int) -> bool:
+def is_free(port: int) -> bool:
+    """Return whether nobody listens at this port."""
     with socket.socket() as one:
         one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

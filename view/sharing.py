@@ -39,6 +39,7 @@ class _Channels:
     def __init__(self) -> None:
         self._channels: dict[str, Any] = {}
         self._kept: dict[str, deque[Message]] = {}
+        self._missed: set[str] = set()
         self._lock = threading.Lock()
 
     def add_topic(self, topic: BagTopic, text: str) -> None:
@@ -65,14 +66,22 @@ class _Channels:
                 channel.log(message.raw, log_time=message.stamp_ns)
 
     def heard(self, topic: str) -> None:
-        """Repeat what was said on a latched topic, for a client that begins to listen.
+        """Note that a client begins to listen to a topic; called by the server's thread."""
+        with self._lock:
+            if topic in self._kept:
+                self._missed.add(topic)
 
-        The others hear it again: the server has no way to tell one of them alone.
+    def repeat(self) -> None:
+        """Say again what was said on latched topics before somebody began to listen.
+
+        Not at once: the client is not heard of in the channel yet. Those who listen already hear it
+        again, since the server has no way to tell one of them alone.
         """
         with self._lock:
-            channel, kept = self._channels.get(topic), list(self._kept.get(topic, ()))
-        if channel is not None:
-            for message in kept:
+            missed, self._missed = self._missed, set()
+            again = [(self._channels[topic], list(self._kept[topic])) for topic in missed]
+        for channel, messages in again:
+            for message in messages:
                 channel.log(message.raw, log_time=message.stamp_ns)
 
 
@@ -87,7 +96,7 @@ class Sharing:
         import foxglove
 
         self.port = free_port(FOXGLOVE_PORT, port)
-        channels = _Channels()
+        self._channels = channels = _Channels()
         try:
             self._server = foxglove.start_server(
                 name=NAME,
@@ -121,6 +130,7 @@ class Sharing:
         while not stop.wait(LOOK_S):
             if self._relay.error:
                 raise ViewError(self._relay.error)
+            self._channels.repeat()
 
 
 def _is_shared(name: str, types: Sequence[str]) -> bool:

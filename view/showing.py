@@ -10,13 +10,14 @@ from view.arranged import arranged
 from view.faults import ViewError
 from view.installed import rerun_program
 from view.page import Page
-from view.place import DATA_PORT, PAGE_PORT, Place, free_port
+from view.place import DATA_PORT, PAGE_PORT, Place, free_port, is_free
 from view.scene.recorded import Stream
 from view.scene.scene import PICTURE_TYPES, Scene
 from view.viewer import Viewer
 
 if TYPE_CHECKING:
     import threading
+    from pathlib import Path
 
     from typing_extensions import Self
 
@@ -26,6 +27,7 @@ ROLE = "view"
 PERIOD_S = 0.05
 """Seconds between two looks at the queues: a camera's stay short, and its pictures come evenly."""
 LOOK_S = 0.1
+TRIES = 3
 
 
 class Showing:
@@ -53,14 +55,13 @@ class Showing:
         self._pictures: frozenset[str] = frozenset()
         self._open = ExitStack()
         page_port = 0 if window else free_port(PAGE_PORT, port)
-        self.place = Place(free_port(DATA_PORT), page_port)
-        """Where the page is; a window's page port is 0."""
-        inner_port = None if window else free_port(page_port + 1)
         with ExitStack() as opening:
-            self._viewer = Viewer(program, self.place.data_port, inner_port)
-            opening.enter_context(self._viewer)
-            if inner_port is not None:
-                opening.enter_context(Page(page_port, inner_port, self.place.data_port))
+            self._viewer = opening.enter_context(_started(program, page_port))
+            self.place = Place(self._viewer.data_port, page_port)
+            """Where the page is; a window's page port is 0."""
+            if self._viewer.page_port is not None:
+                origin_port, data_port = self._viewer.page_port, self._viewer.data_port
+                opening.enter_context(Page(page_port, origin_port, data_port))
             self._stream = Stream(self.place.source)
             opening.callback(self._stream.close)
             self._stream.arrange(arranged(self._pictures))
@@ -113,3 +114,17 @@ class Showing:
         found = [sample for samples in update.samples.values() for sample in samples]
         for time_s, drawn in self._scene.draw(found):
             self._stream.put(time_s, drawn)
+
+
+def _started(program: Path, page_port: int) -> Viewer:
+    """Return a viewer that has come up, at ports that nobody else has taken meanwhile."""
+    for left in range(TRIES, 0, -1):
+        data_port = free_port(DATA_PORT)
+        inner_port = free_port(page_port + 1) if page_port else None
+        try:
+            return Viewer(program, data_port, inner_port)
+        except ViewError:
+            taken = not is_free(data_port) or (inner_port is not None and not is_free(inner_port))
+            if left == 1 or not taken:
+                raise
+    raise AssertionError

@@ -45,6 +45,7 @@ class Viewer:
         Raises ViewError if it does not come up.
         """
         self.data_port = data_port
+        self.page_port = page_port
         self._folder = tempfile.TemporaryDirectory(prefix="deck-view-")
         folder = Path(self._folder.name)
         self._log = folder / "log"

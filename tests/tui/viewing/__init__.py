@@ -1,0 +1,1 @@
+"""Tests of the viewers beside the screen."""
