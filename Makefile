@@ -22,11 +22,12 @@ endif
 
 ROOMS := agents bench brain bridges cli course deck graph launcher nodes robot ros2 scripts space tests text tui view
 
-.PHONY: help setup run test lint lock architecture clean
+.PHONY: help setup run view test lint lock architecture clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo 'make run    set up if needed, then open Deck; PROFILE=09-brain ARGS="--lang ru"'
+	@echo 'make view   also install the viewers, Rerun and Foxglove: 700 MB'
 	@echo 'make test   set up if needed, then run the tests; ARGS="-k sonar"'
 	@echo 'make lint   style, types and who may import whom'
 	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python'
@@ -50,7 +51,16 @@ run: catalogues
 	@if [ -t 1 ]; then exec .venv/bin/deck $(PROFILE) $(ARGS); fi; \
 	exec .venv/bin/deck run $(or $(PROFILE),09-brain) $(ARGS)
 
-test: catalogues
+# What only those need who want to see the robot in 3D, and the tests.
+.venv/.view: .venv/.ready $(wildcard locked/view.txt)
+	@echo 'deck: installing the viewers, 250 MB to load' >&2
+	@.venv/bin/python -m pip --disable-pip-version-check install --quiet --no-compile --no-deps --require-hashes \
+	--requirement locked/view.txt
+	@touch $@
+
+view: catalogues .venv/.view
+
+test: catalogues .venv/.view
 	@exec .venv/bin/python -m pytest -n 5 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 lint: .venv/.ready

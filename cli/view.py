@@ -33,7 +33,7 @@ RVIZ = Path("rviz") / "robot.rviz"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
-class Opened(NamedTuple):
+class ViewOpened(NamedTuple):
     """What is open."""
 
     kind: str
@@ -65,7 +65,7 @@ def view_command(options: Namespace) -> int:
         raise UsageError(reason_of(error)) from error
     with showing:
         kind = "window" if window else "page"
-        _tell(Opened(kind, showing.url, showing.ports, domain), as_json=options.json)
+        _tell(ViewOpened(kind, showing.url, showing.ports, domain), as_json=options.json)
         if showing.url and options.open and has_window(os.environ):
             webbrowser.open(showing.url)
         return _wait(showing, stop)
@@ -82,7 +82,7 @@ def foxglove_command(options: Namespace) -> int:
     except ViewError as error:
         raise UsageError(reason_of(error)) from error
     with sharing:
-        _tell(Opened("foxglove", sharing.url, (sharing.port,), domain), as_json=options.json)
+        _tell(ViewOpened("foxglove", sharing.url, (sharing.port,), domain), as_json=options.json)
         return _wait(sharing, stop)
 
 
@@ -114,7 +114,7 @@ def _until_input_ends(stop: threading.Event) -> None:
     stop.set()
 
 
-def _tell(opened: Opened, *, as_json: bool) -> None:
+def _tell(opened: ViewOpened, *, as_json: bool) -> None:
     ssh = ssh_command(opened.ports, os.environ)
     if as_json:
         told = {"event": "view", **opened._asdict(), "ssh": ssh}
@@ -126,7 +126,7 @@ def _tell(opened: Opened, *, as_json: bool) -> None:
     sys.stdout.flush()
 
 
-def _lines(opened: Opened, ssh: str) -> list[str]:
+def _lines(opened: ViewOpened, ssh: str) -> list[str]:
     domain = opened.domain
     if opened.kind == "window":
         words = _("domain {domain} in a window of Rerun; close it or press Ctrl-C")

@@ -34,7 +34,7 @@ class _Asset(NamedTuple):
     body: bytes
 
 
-class Page:
+class ViewPage:
     """A server of the page at one port of this machine."""
 
     def __init__(self, port: int, origin_port: int, data_port: int) -> None:
@@ -69,7 +69,7 @@ class Page:
             def log_message(self, format: str, *args: object) -> None:  # noqa: A002
                 del format, args
 
-        self._server = _Server((HERE, port), Handler)
+        self._server = _PageServer((HERE, port), Handler)
         self._thread = threading.Thread(
             target=self._server.serve_forever, name="deck-page", daemon=True
         )
@@ -88,7 +88,7 @@ class Page:
         self._thread.join()
 
 
-class _Server(ThreadingHTTPServer):
+class _PageServer(ThreadingHTTPServer):
     daemon_threads = True
 
     def handle_error(self, request: object, client_address: object) -> None:

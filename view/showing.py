@@ -9,10 +9,10 @@ from graph.observer.observer import Observer
 from view.arranged import arranged
 from view.faults import ViewError
 from view.installed import rerun_program
-from view.page import Page
+from view.page import ViewPage
 from view.place import DATA_PORT, PAGE_PORT, Place, free_port, is_free
 from view.scene.recorded import Stream
-from view.scene.scene import PICTURE_TYPES, Scene
+from view.scene.scene import PICTURE_TYPES, ViewScene
 from view.viewer import Viewer
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class Showing:
         program = rerun_program()
         self.error = ""
         """Why nothing is shown any more."""
-        self._scene = Scene(compact=compact)
+        self._scene = ViewScene(compact=compact)
         self._pictures: frozenset[str] = frozenset()
         self._open = ExitStack()
         page_port = 0 if window else free_port(PAGE_PORT, port)
@@ -61,7 +61,7 @@ class Showing:
             """Where the page is; a window's page port is 0."""
             if self._viewer.page_port is not None:
                 origin_port, data_port = self._viewer.page_port, self._viewer.data_port
-                opening.enter_context(Page(page_port, origin_port, data_port))
+                opening.enter_context(ViewPage(page_port, origin_port, data_port))
             self._stream = Stream(self.place.source)
             opening.callback(self._stream.close)
             self._stream.arrange(arranged(self._pictures))

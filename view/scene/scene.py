@@ -37,7 +37,7 @@ ROOTS_EVERY_S = 5.0
 """As the server forgets what is old."""
 
 
-class Scene:
+class ViewScene:
     """From samples to what is drawn; it remembers frames, trails, and what it has complained of."""
 
     def __init__(self, *, compact: bool = False) -> None:

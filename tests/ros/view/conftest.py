@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import threading
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,12 +16,15 @@ from sensor_msgs.msg import Image
 from tests.conftest import take
 from tests.deck_process import DeckProcess
 from tests.ros.peer import Peer
+from view.installed import OLDEST
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from tests.domains import DomainPool
 
+collect_ignore = [] if sys.version_info >= OLDEST else ["test_page_in_a_browser.py"]
+"""Rerun has no wheels for older Pythons, and `deck view` says so."""
 WIDTH, HEIGHT = 160, 120
 RED = (255, 0, 0)
 PERIOD_S = 0.1

@@ -15,7 +15,8 @@ import psutil
 import pytest
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import Float32, String
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import connect
+from websockets.sync.connection import Connection
 from websockets.typing import Subprotocol
 
 from tests.deck_process import DeckProcess
@@ -48,7 +49,7 @@ def url_of(served: DeckProcess) -> str:
 class Client:
     """One client, who knows what is advertised."""
 
-    def __init__(self, line: ClientConnection) -> None:
+    def __init__(self, line: Connection) -> None:
         self.line = line
         self.info: dict[str, Any] = {}
         self.channels: dict[str, dict[str, Any]] = {}

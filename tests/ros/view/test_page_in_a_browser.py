@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,12 +13,11 @@ import pytest
 from tests.browser import Browser
 from tests.ros.view.conftest import CAMERA, HEIGHT, RED, WIDTH, Shown
 from tests.waiting import wait_until
-from view.installed import OLDEST, rerun_program
+from view.installed import rerun_program
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-pytestmark = pytest.mark.skipif(sys.version_info < OLDEST, reason="Rerun has no such wheels")
 PICTURES = 15
 WITHIN_S = 60.0
 
