@@ -14,7 +14,7 @@ import sys
 import threading
 import webbrowser
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, NoReturn, Protocol
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, Protocol, TypeVar
 
 from cli.running_domain import running_domain
 from launcher.errors import LauncherError, UsageError
@@ -27,6 +27,9 @@ from view.place import has_window, ssh_command
 
 if TYPE_CHECKING:
     from argparse import Namespace
+    from collections.abc import Callable
+
+T = TypeVar("T")
 
 RVIZ = Path("rviz") / "robot.rviz"
 """Among the profiles."""
@@ -54,8 +57,10 @@ def view_command(options: Namespace) -> int:
     _name, domain, discovery = running_domain(options.domain)
     if options.rviz:
         _rviz(domain, discovery)
+    from view.installed import rerun_program
     from view.showing import Showing
 
+    _have(rerun_program)
     window = has_window(os.environ) and not options.web
     compact = bool(os.environ.get("SSH_CONNECTION"))
     stop = _stopping(options)
@@ -74,8 +79,10 @@ def view_command(options: Namespace) -> int:
 def foxglove_command(options: Namespace) -> int:
     """Serve what is published to Foxglove until it is stopped."""
     _name, domain, discovery = running_domain(options.domain)
+    from view.installed import need_foxglove
     from view.sharing import Sharing
 
+    _have(need_foxglove)
     stop = _stopping(options)
     try:
         sharing = Sharing(domain, discovery, options.port)
@@ -84,6 +91,14 @@ def foxglove_command(options: Namespace) -> int:
     with sharing:
         _tell(ViewOpened("foxglove", sharing.url, (sharing.port,), domain), as_json=options.json)
         return _wait(sharing, stop)
+
+
+def _have(find: Callable[[], T]) -> T:
+    """Return what is installed. Raises UsageError if it is not."""
+    try:
+        return find()
+    except ViewError as error:
+        raise UsageError(reason_of(error)) from error
 
 
 def _wait(viewer: Waiting, stop: threading.Event) -> int:
@@ -147,9 +162,6 @@ def _rviz(domain: int, discovery: str | tuple[str, ...]) -> NoReturn:
     from launcher.profile.text import SHIPPED
     from view.installed import rviz_program
 
-    try:
-        program = rviz_program()
-    except ViewError as error:
-        raise UsageError(reason_of(error)) from error
+    program = _have(rviz_program)
     sys.stdout.flush()
     os.execve(program, [program, "-d", str(SHIPPED / RVIZ)], environment_in(domain, discovery))

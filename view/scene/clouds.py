@@ -75,11 +75,12 @@ def _rows(message: Message) -> NDArray[np.void]:
         )
     order = ">" if message["is_bigendian"] else "<"
     wanted = [fields[name] for name in (*"xyz", *COLOURS) if name in fields]
-    kinds = [order + KINDS.get(int(field["datatype"]), "") for field in wanted]
-    offsets = [int(field["offset"]) for field in wanted]
     line, data = int(message["row_step"]) or width * step, bytes(message["data"])
+    known = all(int(field["datatype"]) in KINDS for field in wanted)
+    kinds = [order + KINDS.get(int(field["datatype"]), "u1") for field in wanted]
+    offsets = [int(field["offset"]) for field in wanted]
     ends = [at + np.dtype(kind).itemsize for kind, at in zip(kinds, offsets, strict=True)]
-    if len(order) == len(min(kinds)) or max(ends) > step or line < width * step:
+    if not known or max(ends) > step or line < width * step:
         raise UnusableMessageError(
             say("its fields do not fit: point_step {step}, row_step {row}", step=step, row=line)
         )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from graph.housekeeping import is_hidden
 from graph.pictures.picture import COMPRESSED, IMAGE
 from graph.pictures.pixels import ImageError
-from robot.topics import TF, TF_STATIC
+from robot.topics import ROBOT_DESCRIPTION, TF, TF_STATIC
 from text.i18n import localized
 from text.sentences import Words, reason_of, say
 from view.scene.clouds import cloud, scan
@@ -23,6 +23,7 @@ from view.scene.pictures import compressed, image
 from view.scene.plots import PLOTTED, numbers
 from view.scene.poses import many, path, posed
 from view.scene.ranges import cone, ray
+from view.scene.robot import RobotShapes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     Reader = Callable[[str, Message], list[Drawn]]
 
 PICTURE_TYPES = frozenset({IMAGE, COMPRESSED})
-ROOTS_EVERY_S = 5.0
+AGAIN_EVERY_S = 5.0
 """As the server forgets what is old."""
 
 
@@ -44,7 +45,8 @@ class ViewScene:
         """With `compact`, pictures are compressed, for a viewer behind a slow line."""
         self._frames = Frames()
         self._trails = Trails()
-        self._roots_at_s = 0.0
+        self._robot = RobotShapes()
+        self._again_at_s = 0.0
         self._faults: dict[str, str] = {}
         self._readers: dict[str, tuple[Reader, ...]] = {
             "geometry_msgs/msg/PoseArray": (many,),
@@ -67,6 +69,7 @@ class ViewScene:
             known = self._readers.get(type_name, ())
             self._readers[type_name] = (*known, partial(numbers, type_name))
         self._by_name: dict[str, Reader] = {
+            ROBOT_DESCRIPTION: self._robot.read,
             TF: self._frames.moved,
             TF_STATIC: self._frames.fixed,
         }
@@ -83,9 +86,9 @@ class ViewScene:
     def draw(self, samples: Iterable[Sample]) -> Iterator[tuple[float, Drawn]]:
         """Yield what is drawn, with its time (unix time, seconds), in the order of arrival."""
         now_s = time.time()
-        if now_s >= self._roots_at_s:
-            self._roots_at_s = now_s + ROOTS_EVERY_S
-            for drawn in self._frames.roots():
+        if now_s >= self._again_at_s:
+            self._again_at_s = now_s + AGAIN_EVERY_S
+            for drawn in (*self._frames.roots(), *self._robot.again()):
                 yield now_s, drawn
         for sample in sorted(samples, key=_arrival_s):
             for drawn in self._read(sample):
