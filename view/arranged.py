@@ -14,6 +14,8 @@ from view.scene.recorded import TIMELINE
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+EYE_M, BEFORE_M = (-1.4, -1.2, 1.1), (0.4, 0.1, 0.1)
+"""Where one looks from and to at first, metres: behind a robot at the start of its way."""
 FLAT = (PICTURES, PLOTS, LOG)
 """What has no place in 3D."""
 
@@ -27,6 +29,7 @@ def arranged(pictures: Iterable[str]) -> Any:  # noqa: ANN401 - rerun comes with
         contents=["+ /**", *(f"- /{root}/**" for root in FLAT)],
         name=_("Space"),
         spatial_information=rrb.SpatialInformation(WORLD),
+        eye_controls=rrb.EyeControls3D(position=EYE_M, look_target=BEFORE_M),
     )
     cameras = [
         rrb.Spatial2DView(origin=_entity(topic), name=topic) for topic in sorted(pictures)

@@ -21,6 +21,8 @@ from view.place import HERE
 if TYPE_CHECKING:
     from typing_extensions import Self
 
+    from view.place import Place
+
 ELSEWHERE = re.compile(rb"<link\b[^>]*https?://[^>]*>")
 """Tags by which a page makes a browser connect before any policy is asked."""
 PASSED_ON = ("Content-Type", "rerun-final-length")
@@ -37,10 +39,11 @@ class _Asset(NamedTuple):
 class ViewPage:
     """A server of the page at one port of this machine."""
 
-    def __init__(self, port: int, origin_port: int, data_port: int) -> None:
-        """Serve at `port` what Rerun serves at `origin_port`; data come from `data_port`."""
+    def __init__(self, place: Place, origin_port: int) -> None:
+        """Serve what Rerun serves at `origin_port`."""
         assets = _Assets(origin_port)
-        policy = policy_for(data_port)
+        policy = policy_for(place.data_port)
+        told = f"/?{place.query}"
 
         class Handler(BaseHTTPRequestHandler):
             protocol_version = "HTTP/1.1"
@@ -52,6 +55,13 @@ class ViewPage:
                 self._answer(with_body=False)
 
             def _answer(self, *, with_body: bool) -> None:
+                if self.path == "/":
+                    # So that the address can be said, and typed.
+                    self.send_response(HTTPStatus.FOUND)
+                    self.send_header("Location", told)
+                    self.send_header("Content-Length", "0")
+                    self.end_headers()
+                    return
                 asset = assets.get(self.path.partition("?")[0])
                 self.send_response(HTTPStatus.OK if asset else HTTPStatus.NOT_FOUND)
                 body = asset.body if asset else b""
@@ -69,7 +79,7 @@ class ViewPage:
             def log_message(self, format: str, *args: object) -> None:  # noqa: A002
                 del format, args
 
-        self._server = _PageServer((HERE, port), Handler)
+        self._server = _PageServer((HERE, place.page_port), Handler)
         self._thread = threading.Thread(
             target=self._server.serve_forever, name="deck-page", daemon=True
         )

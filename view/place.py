@@ -39,8 +39,12 @@ class Place:
     @property
     def url(self) -> str:
         """The page that shows it."""
-        source = quote(self.source, safe="")
-        return f"http://{HERE}:{self.page_port}/?url={source}&hide_welcome_screen&persist=false"
+        return f"http://{HERE}:{self.page_port}"
+
+    @property
+    def query(self) -> str:
+        """What the page has to be told."""
+        return f"url={quote(self.source, safe='')}&hide_welcome_screen&persist=false"
 
 
 def has_window(environ: Mapping[str, str]) -> bool:

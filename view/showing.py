@@ -60,8 +60,7 @@ class Showing:
             self.place = Place(self._viewer.data_port, page_port)
             """Where the page is; a window's page port is 0."""
             if self._viewer.page_port is not None:
-                origin_port, data_port = self._viewer.page_port, self._viewer.data_port
-                opening.enter_context(ViewPage(page_port, origin_port, data_port))
+                opening.enter_context(ViewPage(self.place, self._viewer.page_port))
             self._stream = Stream(self.place.source)
             opening.callback(self._stream.close)
             self._stream.arrange(arranged(self._pictures))

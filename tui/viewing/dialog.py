@@ -56,17 +56,15 @@ class CopyViewUrl(Action["ViewDialog"]):
         target.copy(target.opened.url)
 
 
-class CopyViewTunnel(Action["ViewDialog"]):
-    """Copy the command that forwards the ports."""
+class CopyViewAll(Action["ViewDialog"]):
+    """Copy the command that forwards the ports, and the address."""
 
-    id = "view.copy_tunnel"
-    key = "Y,Н,alt+y"
-    title = N_("Copy ssh")
-    means = "As ros2 command"
-    tooltip = N_("Copy the command line for the machine in front of you.")
+    id = "view.copy_all"
+    key = "ctrl+y"
+    title = N_("Copy all")
+    tooltip = N_("Copy the command for the machine in front of you, and the address of the page.")
     footer = True
     palette = False
-    priority = True
 
     @classmethod
     def possible(cls, target: ViewDialog) -> bool | None:
@@ -75,8 +73,8 @@ class CopyViewTunnel(Action["ViewDialog"]):
 
     @classmethod
     async def run(cls, target: ViewDialog) -> None:
-        """Copy it."""
-        target.copy(target.opened.ssh)
+        """Copy both, a line each."""
+        target.copy(f"{target.opened.ssh}\n{target.opened.url}")
 
 
 class EndView(Action["ViewDialog"]):
@@ -99,9 +97,7 @@ class EndView(Action["ViewDialog"]):
 class ViewDialog(Dialog[None]):
     """Where the viewer is."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(
-        CloseView, CopyViewUrl, CopyViewTunnel, EndView
-    )
+    BINDINGS: ClassVar[list[BindingType]] = bindings(CloseView, CopyViewUrl, CopyViewAll, EndView)
 
     def __init__(self, opened: OpenedView, end: Callable[[], None]) -> None:
         """Show where it is open; `end` ends it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.request import urlopen
 
 import numpy as np
 import psutil
@@ -113,4 +114,5 @@ def test_nobody_but_this_machine_can_reach_it(shown: Shown) -> None:
 
 def data_port(shown: Shown) -> int:
     """Return the port that the page reads from."""
-    return int(shown.url.partition("127.0.0.1%3A")[2].partition("%2F")[0])
+    with urlopen(shown.url) as page:
+        return int(page.url.partition("127.0.0.1%3A")[2].partition("%2F")[0])

@@ -49,7 +49,6 @@ def test_a_port_that_was_asked_for_has_to_be_free() -> None:
 
 
 def test_the_page_is_told_where_its_data_are() -> None:
-    url = Place(data_port=9876, page_port=9090).url
-    assert url.startswith(
-        "http://127.0.0.1:9090/?url=rerun%2Bhttp%3A%2F%2F127.0.0.1%3A9876%2Fproxy"
-    )
+    place = Place(data_port=9876, page_port=9090)
+    assert place.url == "http://127.0.0.1:9090"
+    assert place.query.startswith("url=rerun%2Bhttp%3A%2F%2F127.0.0.1%3A9876%2Fproxy&")

@@ -1,0 +1,141 @@
+"""The viewer from the screen: the key, the dialog, what is copied, the end with the session."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.tui.app_runs import opened
+from tests.tui.snapshots import Look, SnapCompare, one_look
+from tests.waiting import until
+from tui.app import DeckApp
+from tui.viewing import view as viewing
+from tui.viewing.dialog import ViewDialog
+from tui.viewing.process import NotOpenedError, OpenedView
+
+PAGE = OpenedView("http://127.0.0.1:9090", (9090, 9876))
+TUNNEL = "ssh -N -L 9090:127.0.0.1:9090 -L 9876:127.0.0.1:9876 pi@192.168.1.20"
+
+
+class Opened:
+    """Stands in for the process, which the tests with ROS start."""
+
+    def __init__(self, where: OpenedView) -> None:
+        self.opened = where
+        self.ended = False
+        self.words = ""
+
+    async def fault(self) -> str:
+        return self.words
+
+    async def end(self) -> None:
+        self.ended = True
+
+
+class Starter:
+    """Opens what it is told to, and notes for which domain."""
+
+    def __init__(self) -> None:
+        self.where = PAGE
+        self.refusal = ""
+        self.made: list[Opened] = []
+        self.domains: list[int] = []
+
+    async def start(self, domain: int) -> Opened:
+        self.domains.append(domain)
+        if self.refusal:
+            raise NotOpenedError(self.refusal)
+        self.made.append(Opened(self.where))
+        return self.made[-1]
+
+
+@pytest.fixture
+def starter(monkeypatch: pytest.MonkeyPatch) -> Starter:
+    starter = Starter()
+    monkeypatch.setattr(viewing, "start_view", starter.start)
+    monkeypatch.setattr(viewing, "LOOK_S", 0.02)
+    return starter
+
+
+async def open_view(app: DeckApp, pilot: Pilot[Any]) -> None:
+    await pilot.press("shift+f3")
+    await until(lambda: isinstance(app.screen, ViewDialog), "the dialog")
+    await pilot.pause()
+
+
+async def test_the_key_opens_it_once_and_says_again_where_it_is(starter: Starter) -> None:
+    async with opened(screen="topics") as (app, pilot):
+        await open_view(app, pilot)
+        await pilot.press("escape")
+        await open_view(app, pilot)
+        assert app.feed.session is not None
+        assert starter.domains == [app.feed.session.domain]
+
+
+async def test_address_and_tunnel_are_copied(starter: Starter) -> None:
+    starter.where = OpenedView(PAGE.url, PAGE.ports, TUNNEL)
+    async with opened() as (app, pilot):
+        await open_view(app, pilot)
+        await pilot.press("y")
+        await until(lambda: app.clipboard == PAGE.url, "the address")
+        await pilot.press("ctrl+y")
+        await until(lambda: app.clipboard == f"{TUNNEL}\n{PAGE.url}", "both")
+
+
+async def test_it_ends_by_a_key_and_can_be_opened_again(starter: Starter) -> None:
+    async with opened() as (app, pilot):
+        await open_view(app, pilot)
+        await pilot.press("x")
+        await until(lambda: starter.made[0].ended, "its end")
+        await open_view(app, pilot)
+        assert len(starter.made) == 2
+
+
+async def test_it_ends_with_the_session(starter: Starter) -> None:
+    async with opened() as (app, pilot):
+        await open_view(app, pilot)
+        await pilot.press("escape", "f8")
+        await until(lambda: starter.made[0].ended, "its end")
+
+
+async def test_what_is_missing_is_said_and_the_next_key_tries_again(starter: Starter) -> None:
+    starter.refusal = "Rerun is not installed; to install it: make view"
+    async with opened() as (app, pilot):
+        await pilot.press("shift+f3")
+        await until(
+            lambda: any(starter.refusal in one.message for one in app._notifications), "the words"
+        )
+        starter.refusal = ""
+        await open_view(app, pilot)
+
+
+async def test_a_viewer_that_broke_is_told_of(starter: Starter) -> None:
+    async with opened() as (app, pilot):
+        await open_view(app, pilot)
+        starter.made[0].words = "Rerun ended with code 1"
+        starter.made[0].ended = True
+        await until(
+            lambda: any("ended with code 1" in one.message for one in app._notifications),
+            "the words",
+        )
+
+
+@one_look
+@pytest.mark.parametrize("where", ["window", "page", "ssh"])
+def test_look(look: Look, dump_compare: SnapCompare, starter: Starter, where: str) -> None:
+    """The dialog: a window, a page of this machine, and a page behind SSH with its command."""
+    starter.where = {
+        "window": OpenedView(""),
+        "page": PAGE,
+        "ssh": OpenedView(PAGE.url, PAGE.ports, TUNNEL),
+    }[where]
+
+    async def show(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        assert isinstance(pilot.app, DeckApp)
+        await open_view(pilot.app, pilot)
+        pilot.app.clear_notifications()
+
+    assert dump_compare(look.app(), terminal_size=look.size, run_before=show)
