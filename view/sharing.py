@@ -39,20 +39,21 @@ class _Channels:
     def __init__(self) -> None:
         self._channels: dict[str, Any] = {}
         self._kept: dict[str, deque[Message]] = {}
-        self._missed: set[str] = set()
+        self._asked: set[str] = set()
+        """Latched topics that a client has just asked for."""
         self._lock = threading.Lock()
 
     def add_topic(self, topic: BagTopic, text: str) -> None:
         """Announce a topic."""
         import foxglove
 
+        if any(offer["durability"] == "transient_local" for offer in topic.offers):
+            with self._lock:
+                self._kept[topic.name] = deque(maxlen=LATCHED)
         schema = foxglove.Schema(name=topic.type_name, encoding="ros2msg", data=text.encode())
         channel = foxglove.Channel(topic.name, schema=schema, message_encoding="cdr")
-        latched = any(offer["durability"] == "transient_local" for offer in topic.offers)
         with self._lock:
             self._channels[topic.name] = channel
-            if latched:
-                self._kept[topic.name] = deque(maxlen=LATCHED)
 
     def put(self, messages: Sequence[Message]) -> None:
         """Hand on messages."""
@@ -65,24 +66,28 @@ class _Channels:
             if channel.has_sinks():
                 channel.log(message.raw, log_time=message.stamp_ns)
 
-    def heard(self, topic: str) -> None:
+    def ask_for(self, topic: str) -> None:
         """Note that a client begins to listen to a topic; called by the server's thread."""
         with self._lock:
             if topic in self._kept:
-                self._missed.add(topic)
+                self._asked.add(topic)
 
     def repeat(self) -> None:
         """Say again what was said on latched topics before somebody began to listen.
 
-        Not at once: the client is not heard of in the channel yet. Those who listen already hear it
-        again, since the server has no way to tell one of them alone.
+        Those who listen already hear it again, since the server has no way to tell one of them
+        alone. The channel does not know a client yet when its wish is heard of: hence not at once.
         """
         with self._lock:
-            missed, self._missed = self._missed, set()
-            again = [(self._channels[topic], list(self._kept[topic])) for topic in missed]
+            ready = {topic for topic in self._asked if self._is_heard(topic)}
+            self._asked -= ready
+            again = [(self._channels[topic], list(self._kept[topic])) for topic in ready]
         for channel, messages in again:
             for message in messages:
                 channel.log(message.raw, log_time=message.stamp_ns)
+
+    def _is_heard(self, topic: str) -> bool:
+        return topic in self._channels and bool(self._channels[topic].has_sinks())
 
 
 class Sharing:
@@ -148,6 +153,6 @@ def _listener(channels: _Channels) -> Any:  # noqa: ANN401
         def on_subscribe(self, client: Any, channel: Any) -> None:  # noqa: ANN401
             """Pass it on."""
             del client
-            channels.heard(channel.topic)
+            channels.ask_for(channel.topic)
 
     return Listener()

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 PROTOCOL = Subprotocol("foxglove.sdk.v1")
 ANSWER_S = 20.0
+UNKNOWN = "Unknown channel ID"
 DATA = struct.Struct("<BIQ")
 """Opcode, number of the subscription, time in nanoseconds."""
 
@@ -55,6 +56,7 @@ class Client:
         self.channels: dict[str, dict[str, Any]] = {}
         self.data: list[tuple[int, bytes]] = []
         self.said: list[dict[str, Any]] = []
+        self.wanted: dict[int, str] = {}
 
     def hear(self) -> None:
         """Take one message of the server's."""
@@ -69,6 +71,10 @@ class Client:
             self.info = told
         if told["op"] == "advertise":
             self.channels |= {channel["topic"]: channel for channel in told["channels"]}
+        if UNKNOWN in told.get("message", ""):
+            # It announces a channel a little before it knows it.
+            for number, topic in self.wanted.items():
+                self.subscribe(number, topic)
 
     def until_advertised(self, topic: str) -> dict[str, Any]:
         """Wait until a topic has a channel."""
@@ -78,6 +84,7 @@ class Client:
 
     def subscribe(self, number: int, topic: str) -> None:
         """Begin to listen to a topic that is advertised."""
+        self.wanted[number] = topic
         wanted = {"id": number, "channelId": self.channels[topic]["id"]}
         self.line.send(json.dumps({"op": "subscribe", "subscriptions": [wanted]}))
 
