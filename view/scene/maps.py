@@ -35,7 +35,9 @@ def grid(topic: str, message: Message) -> list[Drawn]:
             )
         )
     if not (math.isfinite(cell_m) and cell_m > 0):
-        raise UnusableMessageError(say("info.resolution is no size: {size}", size=f"{cell_m:g}"))
+        raise UnusableMessageError(
+            say("info.resolution has to be above 0: {size}", size=f"{cell_m:g}")
+        )
     origin = pose(info["origin"])
     shape = rerun.GridMap(
         # A picture begins at the top, a map at the bottom.

@@ -67,7 +67,7 @@ def _points(message: Message, at: Transform) -> list[Vector]:
 def _size(message: Message) -> Vector:
     size = vector(message["scale"])
     if not all(math.isfinite(one) and one >= 0 for one in size):
-        raise UnusableMessageError(say("its scale is no size: {size}", size=size))
+        raise UnusableMessageError(say("its scale has to be positive numbers: {size}", size=size))
     return size
 
 

@@ -80,7 +80,10 @@ def test_every_command_shown_exists(readme: str) -> None:
     [
         *READMES,
         "SECURITY.md",
-        *(f"docs/{name}.md" for name in ("agents", "agents.ru", "profiles", "profiles.ru")),
+        *(
+            f"docs/{name}.md"
+            for name in ("agents", "agents.ru", "profiles", "profiles.ru", "view", "view.ru")
+        ),
     ],
 )
 def test_every_file_linked_is_there(page: str) -> None:
