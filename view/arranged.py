@@ -14,7 +14,7 @@ from view.scene.recorded import TIMELINE
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-EYE_M, BEFORE_M = (-1.4, -1.2, 1.1), (0.4, 0.1, 0.1)
+EYE_M, BEFORE_M = (-0.75, -0.65, 0.55), (0.1, 0.0, 0.1)
 """Where one looks from and to at first, metres: behind a robot at the start of its way."""
 FLAT = (PICTURES, PLOTS, LOG)
 """What has no place in 3D."""

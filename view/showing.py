@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate
 
 ROLE = "view"
-PERIOD_S = 0.05
-"""Seconds between two looks at the queues: a camera's stay short, and its pictures come evenly."""
+PERIOD_S = 0.1
+"""Seconds between two looks at the queues: enough for an eye, and for the queue of a camera."""
 LOOK_S = 0.1
 TRIES = 3
 
@@ -101,7 +101,9 @@ class Showing:
             self.error = update.error
             return
         wanted = self._scene.wanted(update.topics)
-        self._observer.follow(wanted)
+        followed = wanted & self._scene.every_one_of(update.topics)
+        self._observer.follow(followed)
+        self._observer.watch(wanted - followed)
         pictures = frozenset(
             row.name
             for row in update.topics

@@ -143,7 +143,7 @@ def silent_environment(folder: Path) -> dict[str, str]:
     }
     settings.write_text(json.dumps(said))
     others = {name: value for name, value in os.environ.items() if name != FORCED}
-    return {**others, "XDG_CONFIG_HOME": str(folder), "CI": "true"}
+    return {**others, "XDG_CONFIG_HOME": str(folder), "CI": "true", "NO_COLOR": "1"}
 
 
 def _listens(port: int) -> bool:

@@ -13,13 +13,13 @@ from view.scene.drawn import WORLD, Drawn, UnusableMessageError, frame_name
 from view.scene.geometry import transform
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from view.scene.drawn import Message
 
 FRAMES = "frames"
 """The root of all frames in the tree of entities."""
-AXIS_M = 0.15
+AXIS_M = 0.08
 
 
 class Frames:
@@ -108,6 +108,14 @@ class Frames:
             self._shown.add(frame)
             axes = rerun.TransformAxes3D(AXIS_M, show_frame=True)
             yield Drawn((FRAMES, frame), (axes,), frame=frame, static=True)
+
+
+def newest_of(messages: Sequence[Message]) -> Message:
+    """Return one message with the newest transform of every frame in these, oldest first."""
+    found = {
+        str(one["child_frame_id"]): one for message in messages for one in message["transforms"]
+    }
+    return {"transforms": list(found.values())}
 
 
 def _root(frame: str) -> Drawn:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -16,6 +17,8 @@ class Stream:
 
     def __init__(self, source: str) -> None:
         """Connect to `source`, in Rerun's own notation of an address."""
+        # That a viewer has been closed is no error of the stream's, to be told on a terminal.
+        os.environ.setdefault("RUST_LOG", "off")
         import rerun
 
         self._recording = rerun.RecordingStream(APPLICATION, send_properties=False)

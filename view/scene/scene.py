@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from text.i18n import localized
 from text.sentences import Words, reason_of, say
 from view.scene.clouds import cloud, scan
 from view.scene.drawn import Drawn, UnusableMessageError
-from view.scene.frames import Frames
+from view.scene.frames import Frames, newest_of
 from view.scene.log import remark, rosout
 from view.scene.maps import grid
 from view.scene.markers import marker, several
@@ -34,6 +35,10 @@ if TYPE_CHECKING:
     Reader = Callable[[str, Message], list[Drawn]]
 
 PICTURE_TYPES = frozenset({IMAGE, COMPRESSED})
+MARKER, MARKERS = "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray"
+LOG_LINE = "rcl_interfaces/msg/Log"
+EVERY_ONE = PICTURE_TYPES | {MARKER, MARKERS, LOG_LINE}
+"""Pictures, and what later messages do not replace."""
 AGAIN_EVERY_S = 5.0
 """As the server forgets what is old."""
 
@@ -55,13 +60,13 @@ class ViewScene:
             "nav_msgs/msg/OccupancyGrid": (grid,),
             "nav_msgs/msg/Odometry": (self._trails.read,),
             "nav_msgs/msg/Path": (path,),
-            "rcl_interfaces/msg/Log": (rosout,),
+            LOG_LINE: (rosout,),
             "sensor_msgs/msg/LaserScan": (scan,),
             "sensor_msgs/msg/PointCloud2": (cloud,),
             "sensor_msgs/msg/Range": (cone,),
             "std_msgs/msg/Float32": (ray,),
-            "visualization_msgs/msg/Marker": (marker,),
-            "visualization_msgs/msg/MarkerArray": (several,),
+            MARKER: (marker,),
+            MARKERS: (several,),
             IMAGE: (partial(image, compact=compact),),
             COMPRESSED: (partial(compressed, compact=compact),),
         }
@@ -83,6 +88,14 @@ class ViewScene:
             and (row.name in self._by_name or any(one in self._readers for one in row.type_names))
         )
 
+    def every_one_of(self, topics: Iterable[TopicRow]) -> frozenset[str]:
+        """Return those of which every message counts; of the others, the newest will do."""
+        return frozenset(
+            row.name
+            for row in topics
+            if row.name in (TF, TF_STATIC) or not EVERY_ONE.isdisjoint(row.type_names)
+        )
+
     def draw(self, samples: Iterable[Sample]) -> Iterator[tuple[float, Drawn]]:
         """Yield what is drawn, with its time (unix time, seconds), in the order of arrival."""
         now_s = time.time()
@@ -90,7 +103,7 @@ class ViewScene:
             self._again_at_s = now_s + AGAIN_EVERY_S
             for drawn in (*self._frames.roots(), *self._robot.again()):
                 yield now_s, drawn
-        for sample in sorted(samples, key=_arrival_s):
+        for sample in sorted(_fewer(samples), key=_arrival_s):
             for drawn in self._read(sample):
                 yield _arrival_s(sample), drawn
 
@@ -129,3 +142,17 @@ class ViewScene:
 
 def _arrival_s(sample: Sample) -> float:
     return sample.received_s - sample.age_s
+
+
+def _fewer(samples: Iterable[Sample]) -> Iterator[Sample]:
+    """Yield the samples, those of /tf put together: fifty a second are too many to draw."""
+    moved = []
+    for sample in samples:
+        if sample.topic == TF:
+            moved.append(sample)
+        else:
+            yield sample
+    if len(moved) > 1 and all("transforms" in sample.value for sample in moved):
+        yield replace(moved[-1], value=newest_of([sample.value for sample in moved]))
+    else:
+        yield from moved

@@ -60,6 +60,17 @@ def test_frames_stand_in_their_parents_and_a_root_in_the_view() -> None:
     assert frames_of(drawn["frames/odom"]) == ("tf#/", "odom")
 
 
+def test_of_many_transforms_the_newest_of_each_frame_is_drawn() -> None:
+    messages = (
+        transforms(moved("odom", "base", 1.0), moved("base", "head", 1.0)),
+        transforms(moved("odom", "base", 2.0)),
+    )
+    samples = [Sample("/tf", "tf2_msgs/msg/TFMessage", 10.0, 0.0, 1, one) for one in messages]
+    drawn = [one for _time, one in ViewScene().draw(samples) if one.path == ("frames", "base")]
+    places = [arrow(one.shapes[0].translation) for one in drawn if not one.static]
+    assert places == [[[2.0, 0.0, 0.0]]]
+
+
 def test_a_root_that_gets_a_parent_is_none_any_more() -> None:
     scene = ViewScene()
     draw(scene, "/tf", "tf2_msgs/msg/TFMessage", transforms(moved("odom", "base")))

@@ -15,9 +15,10 @@ class OpenView(Action["Host"]):
     """Open the viewer, or say where it is open."""
 
     id = "view.open"
-    key = "shift+f3"
+    key = "alt+v,alt+м"
     title = N_("3D")
     tooltip = N_("The robot in 3D, in a window of its own or in a browser: Rerun.")
+    priority = True
 
     @classmethod
     def possible(cls, target: Host) -> bool | None:
