@@ -34,6 +34,7 @@ MEASUREMENTS = {
     "space.screen": "Space open on a cloud of 300 000 points, and on the robot",
     "observer": "The observer alone, under the same load",
     "frames.cost": "200 frames of /tf at 50 Hz",
+    "viewers.cost": "The viewer in 3D and Foxglove's server beside the profile robot",
     "recording": "Recording 10 MB/s",
     "log_view": "The log view alone, under 10 000 lines/s",
     "node_ends": "From a signal to the end of a node",
