@@ -1,0 +1,1 @@
+"""`deck view` and `deck foxglove`: viewers beside the screen."""
