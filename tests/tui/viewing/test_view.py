@@ -60,7 +60,7 @@ def starter(monkeypatch: pytest.MonkeyPatch) -> Starter:
 
 
 async def open_view(app: DeckApp, pilot: Pilot[Any]) -> None:
-    await pilot.press("alt+v")
+    await pilot.press("alt+w")
     await until(lambda: isinstance(app.screen, ViewDialog), "the dialog")
     await pilot.pause()
 
@@ -103,7 +103,7 @@ async def test_it_ends_with_the_session(starter: Starter) -> None:
 async def test_what_is_missing_is_said_and_the_next_key_tries_again(starter: Starter) -> None:
     starter.refusal = "Rerun is not installed; to install it: make view"
     async with opened() as (app, pilot):
-        await pilot.press("alt+v")
+        await pilot.press("alt+w")
         await until(
             lambda: any(starter.refusal in one.message for one in app._notifications), "the words"
         )

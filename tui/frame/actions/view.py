@@ -15,7 +15,7 @@ class OpenView(Action["Host"]):
     """Open the viewer, or say where it is open."""
 
     id = "view.open"
-    key = "alt+v,alt+м"
+    key = "alt+w,alt+ц"
     title = N_("3D")
     tooltip = N_("The robot in 3D, in a window of its own or in a browser: Rerun.")
     priority = True
