@@ -65,6 +65,13 @@ async def open_view(app: DeckApp, pilot: Pilot[Any]) -> None:
     await pilot.pause()
 
 
+async def test_on_the_space_screen_another_view_is_the_viewer(starter: Starter) -> None:
+    async with opened(screen="space") as (app, pilot):
+        await pilot.press("v")
+        await until(lambda: isinstance(app.screen, ViewDialog), "the dialog")
+        assert len(starter.made) == 1
+
+
 async def test_the_key_opens_it_once_and_says_again_where_it_is(starter: Starter) -> None:
     async with opened(screen="topics") as (app, pilot):
         await open_view(app, pilot)

@@ -71,6 +71,8 @@ def test_every_command_shown_exists(readme: str) -> None:
         "doctor",
         "diagnostics",
         "frames",
+        "view",
+        "foxglove",
     }
     assert shown | {"ps", "logs", "attach", "down"} <= set(COMMANDS)
 
