@@ -45,6 +45,7 @@ class FramesScreen(DeckScreen):
         "stands beside each such frame, n goes from one to the next. A ? after a publisher: there "
         "are several, and the middleware does not say which of them it is."
     )
+    parts: ClassVar[tuple[str, ...]] = ("FrameTable", "#frames-side")
     wants_frames = True
     measure_all = True
     BINDINGS: ClassVar = bindings(*FRAMES_ACTIONS)

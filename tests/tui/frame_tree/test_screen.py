@@ -229,3 +229,13 @@ async def test_without_frames_it_says_what_is_missing(
         await at.press("y", "enter", "v", "n", "Y")
         await at.show(*ROBOT)
         assert at.row("base_link")
+
+
+async def test_the_tree_and_what_is_beside_it_can_be_enlarged() -> None:
+    async with stage() as at:
+        await at.press("z")
+        assert at.screen.maximized is at.screen.table
+        await at.press("z", "tab", "z")
+        enlarged = at.screen.maximized
+        assert enlarged is not None
+        assert enlarged.id == "frames-side"
