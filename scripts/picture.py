@@ -1,6 +1,6 @@
-"""Make the README's pictures: lesson 9 running, as the program draws it in a terminal.
+"""Make the README's pictures: lesson 9 and the Space screen, as the program draws them.
 
-`.venv/bin/python -m scripts.picture` writes docs/deck.en.png and docs/deck.ru.png; it needs
+`.venv/bin/python -m scripts.picture` writes docs/deck.*.png and docs/space.*.png; it needs
 `rsvg-convert` (Debian: librsvg2-bin) and a monospaced font (fonts-dejavu-core).
 """
 
@@ -11,16 +11,22 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tests.e2e.terminal import Terminal
 from tests.waiting import comes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parents[1]
 DOMAIN = 76
 WIDTH_PX = 1320
 SPOKEN = {"en": "wheel slower", "ru": "колесо медленнее"}
 """Text that the deck shows while the robot turns."""
+ANGLES = {"en": ("from the side", "perspective"), "ru": ("вид сбоку", "перспектива")}
 TURN_LEFT = "налево"
 PAUSE_S = 0.1
 
@@ -42,8 +48,9 @@ def wait_for_whole_frame(terminal: Terminal) -> None:
         time.sleep(PAUSE_S)
 
 
-def picture(language: str) -> None:
-    """Run lesson 9, make the robot turn left, and draw the screen at that moment."""
+@contextmanager
+def deck(profile: str, language: str, *more: str) -> Iterator[Terminal]:
+    """Run Deck on a profile, with settings and folders of its own."""
     with tempfile.TemporaryDirectory() as folder:
         env = {
             "DECK_RUN_DIR": f"{folder}/run",
@@ -52,34 +59,72 @@ def picture(language: str) -> None:
             "XDG_STATE_HOME": f"{folder}/state",
             "DECK_COURSE": f"{folder}/course",
         }
-        arguments = ["09-brain", "--lang", language, "--domain", str(DOMAIN)]
-        sonar = ["--set", "sonar_front.pattern=sweep"]
-        terminal = Terminal([sys.executable, "-m", "tui", *arguments, *sonar], 120, 40, env)
+        arguments = [profile, "--lang", language, "--domain", str(DOMAIN), *more]
+        terminal = Terminal([sys.executable, "-m", "tui", *arguments], 120, 40, env)
         try:
-            terminal.wait_for("9/9")
-            terminal.wait_for("◂", within_s=60)
-            while SPOKEN[language] not in terminal.text():
-                # A wall may be near just then, or the brain may give another command.
-                say_left(terminal, "^x STOP" if language == "en" else "^x СТОП")
-                comes(lambda: SPOKEN[language] in terminal.text(), within_s=3)
-            wait_for_whole_frame(terminal)
-            svg = Path(folder) / "deck.svg"
-            svg.write_text(terminal.svg("deck 09-brain"))
+            yield terminal
         finally:
             terminal.close()
-        png = ROOT / "docs" / f"deck.{language}.png"
-        png.parent.mkdir(exist_ok=True)
+
+
+def keep(terminal: Terminal, name: str) -> None:
+    """Draw what is on the screen now into docs/."""
+    wait_for_whole_frame(terminal)
+    png = ROOT / "docs" / name
+    with tempfile.TemporaryDirectory() as folder:
+        svg = Path(folder) / "deck.svg"
+        svg.write_text(terminal.svg("deck"))
         subprocess.run(["rsvg-convert", "-w", str(WIDTH_PX), "-o", png, svg], check=True)
-        print(f"{png.relative_to(ROOT)}: {png.stat().st_size // 1024} kB")
+    print(f"{png.relative_to(ROOT)}: {png.stat().st_size // 1024} kB")
+
+
+def lesson(language: str) -> None:
+    """Run lesson 9, make the robot turn left, and draw the screen at that moment."""
+    with deck("09-brain", language, "--set", "sonar_front.pattern=sweep") as terminal:
+        terminal.wait_for("9/9")
+        terminal.wait_for("◂", within_s=60)
+        while SPOKEN[language] not in terminal.text():
+            # A wall may be near just then, or the brain may give another command.
+            say_left(terminal, "^x STOP" if language == "en" else "^x СТОП")
+            comes(lambda: SPOKEN[language] in terminal.text(), within_s=3)
+        keep(terminal, f"deck.{language}.png")
+
+
+def scale(terminal: Terminal) -> str:
+    """Return the scale bar of the Space screen."""
+    return next(line for line in terminal.text().splitlines() if "├" in line)[:12]
+
+
+def space(language: str) -> None:
+    """Run the robot in its simulated room, and look at both in perspective, from near."""
+    with deck("robot", language) as terminal:
+        terminal.wait_for("16/16", within_s=60)
+        terminal.press("9")
+        terminal.wait_for("sonar_front_link", within_s=60)
+        for angle in ANGLES[language]:
+            terminal.press("alt+v")
+            terminal.wait_for(angle)
+        terminal.press("alt+t")
+        terminal.wait_for("▶ (")
+        terminal.press("down")
+        terminal.wait_for("▶ base_link")
+        terminal.press("enter")
+        terminal.wait_gone("▶ base_link")
+        far = scale(terminal)
+        terminal.press(*["+"] * 6)
+        terminal.wait_until(lambda _text: scale(terminal) != far, "a larger picture")
+        terminal.press("m")
+        keep(terminal, f"space.{language}.png")
 
 
 def main() -> int:
-    """Make both pictures."""
+    """Make all pictures."""
     if shutil.which("rsvg-convert") is None:
         print("rsvg-convert is missing: apt install librsvg2-bin", file=sys.stderr)
         return 1
     for language in ("en", "ru"):
-        picture(language)
+        lesson(language)
+        space(language)
     return 0
 
 

@@ -47,7 +47,8 @@ KEYS = {
     "shift+f5": "\x1b[15;2~",
     "shift+f9": "\x1b[20;2~",
 }
-"""What a terminal sends for the keys that have names; `ctrl+x` is understood besides."""
+"""What a terminal sends for the keys that have names; `ctrl+x` and `alt+v` are understood
+besides."""
 
 
 KEPT = 4_000_000
@@ -98,10 +99,12 @@ class Terminal:
         self._reader.start()
 
     def press(self, *keys: str) -> None:
-        """Press keys by name (`enter`, `ctrl+x`, `a`)."""
+        """Press keys by name (`enter`, `ctrl+x`, `alt+v`, `a`)."""
         for key in keys:
             if key.startswith("ctrl+"):
                 self.type(chr(ord(key[-1]) & 0x1F))
+            elif key.startswith("alt+"):
+                self.type(f"\x1b{key[-1]}")
             else:
                 self.type(key if len(key) == 1 else KEYS[key])
 

@@ -165,7 +165,7 @@ class FollowFrame(SpaceAction):
     """Keep a frame in the middle."""
 
     id = "space.follow"
-    key = "alt+f,alt+а"
+    key = "alt+t,alt+е"
     title = N_("Follow")
     tooltip = N_("Choose a frame that stays in the middle of the picture.")
     footer = True

@@ -6,6 +6,7 @@ import string
 from typing import Any
 
 import pytest
+from textual._ansi_sequences import ANSI_SEQUENCES_KEYS
 from textual.binding import Binding
 from textual.pilot import Pilot
 
@@ -104,6 +105,15 @@ def test_no_key_of_a_screen_hides_one_that_works_everywhere() -> None:
     for name in every_action():
         if name.split(".")[0] not in {"app", "emergency", "screen", "session", "stopping", "help"}:
             assert everywhere.isdisjoint(REGISTRY[name].key.split(",")), name
+
+
+def test_terminals_can_send_every_key() -> None:
+    """Alt+F, for one, is sent as what Ctrl+Right is in Emacs, and read as that."""
+    for name in every_action():
+        for key in REGISTRY[name].key.split(","):
+            assert key.replace("alt+", "\x1b") not in ANSI_SEQUENCES_KEYS, name
+            # The answer to a question about the cursor, ESC [ 1 ; 2 R, looks like it.
+            assert key != "shift+f3", name
 
 
 CURSOR = frozenset("hjklgG")

@@ -243,7 +243,7 @@ async def test_the_line_below_says_where_the_pointer_is() -> None:
 async def test_a_frame_is_followed() -> None:
     opener = robot_in_a_room()
     async with at_work(opener) as (screen, pilot):
-        await pilot.press("alt+f")
+        await pilot.press("alt+t")
         await pilot.pause()
         assert isinstance(pilot.app.screen, ChoiceScreen)
         await pilot.press("down", "enter")
