@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import pytest
@@ -9,6 +10,7 @@ from lifecycle_msgs.srv import GetState
 
 from tests.ros.managed_nodes import started
 from tests.ros.ros2.typed import typed
+from tests.waiting import wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -44,8 +46,10 @@ def failed(*words: str) -> str:
 
 def test_nodes_with_a_lifecycle_are_listed_and_not_who_is_only_called(world: World) -> None:
     world.node.create_client(GetState, "/nobody/get_state")
-    assert out("lifecycle", "nodes", "--spin-time", "2") == NODES
-    assert out("lifecycle", "nodes", "-c", "--spin-time", "2") == "5\n"
+    # On a busy machine it takes longer than it looks to find them all.
+    listed = partial(out, "lifecycle", "nodes", "--spin-time", "2")
+    wait_until(lambda: listed() == NODES, listed)
+    wait_until(lambda: listed("-c") == "5\n", "their number")
 
 
 @pytest.mark.usefixtures("patient")
@@ -58,9 +62,9 @@ def test_states_are_got_and_transitions_made() -> None:
     assert "- deactivate [4]\n\tStart: active\n" in out("lifecycle", "list", "good", "-a")
     assert out("lifecycle", "set", "/good", "configure") == "Transitioning successful\n"
     assert out("lifecycle", "set", "good", "3") == "Transitioning successful\n"
-    states = out("lifecycle", "get", "--spin-time", "2").splitlines()
-    assert states[0] == "/good: active [3]"
-    assert states[1:] == [f"{name}: unconfigured [1]" for name in NODES.split()[1:]]
+    states = ["/good: active [3]", *(f"{name}: unconfigured [1]" for name in NODES.split()[1:])]
+    told = partial(out, "lifecycle", "get", "--spin-time", "2")
+    wait_until(lambda: told().splitlines() == states, told)
 
 
 def test_who_is_not_there_is_not_waited_for_long() -> None:

@@ -270,7 +270,7 @@ def test_a_trail_in_another_frame_begins_anew() -> None:
 
 def test_a_long_trail_is_thinned() -> None:
     trail = DrivenTrail()
-    for step in range(20_000):
+    for step in range(5_000):
         last = trail.read(odometry(0.03 * step))
     line = trail_of(last)
     assert 1000 < len(line.starts) <= 4000
