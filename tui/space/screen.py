@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from tui.emergency.messages import EmergencyChanged
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
-PERIOD_S, CLOUD_PERIOD_S = 0.1, 0.08
+PERIOD_S, CLOUD_PERIOD_S = 0.1, 0.06
 """Clouds come ten times a second: looking as often as that would miss some of them."""
 NO_FRAME = " "
 """The answer for no frame, which no frame can be called."""
