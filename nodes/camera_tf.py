@@ -17,8 +17,8 @@ from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number, Text, Value
 from nodes.parts.qos import LATCHED
 from nodes.parts.runner import run
-from robot.motion.geometry import quaternion_from_rpy
 from robot.topics import TF_STATIC
+from space.transform import quaternion_from_rpy
 from text.i18n import N_
 
 if TYPE_CHECKING:
@@ -72,8 +72,8 @@ class CameraTf(LessonNode):
         x, y, z = (self.number(axis) for axis in "xyz")
         place, turn = stamped.transform.translation, stamped.transform.rotation
         place.x, place.y, place.z = x, y, z
-        rotation = quaternion_from_rpy(*(self.number(n) for n in ("roll", "pitch", "yaw")))
-        turn.x, turn.y, turn.z, turn.w = rotation.x, rotation.y, rotation.z, rotation.w
+        angles = (self.number(name) for name in ("roll", "pitch", "yaw"))
+        turn.x, turn.y, turn.z, turn.w = quaternion_from_rpy(*angles)
         self._publisher.publish(TFMessage(transforms=[stamped]))
         self.say.info(
             _PUBLISHED, parent=self.text("parent"), child=self.text("child"), x=x, y=y, z=z

@@ -27,13 +27,13 @@ from nodes.simulated.device_fault import FAULTS, FINE, NOISE, SILENT, SLOW, UNPL
 from nodes.simulated.map_message import occupancy_grid
 from nodes.simulated.motors import MockMotors
 from nodes.simulated.pseudo_terminal import PseudoSerial
-from robot.motion.geometry import quaternion_from_rpy
 from robot.topics import MAP, MOCK_POSE
 from robot.wire.tfluna import TofFrame, encode
 from robot.world.grid import grid_of
 from robot.world.pico import SimulatedPico
 from robot.world.servos import SimulatedServos
 from robot.world.world import STEP_S, SimulatedSonar, World
+from space.transform import quaternion_from_rpy
 from text.i18n import N_
 from text.os_words import os_reason
 from text.run_path import run_path
@@ -174,8 +174,8 @@ class MockRobot(LessonNode):
         message.header.frame_id = "odom"
         place, turn = message.pose.position, message.pose.orientation
         place.x, place.y = self._world.pose.x_m, self._world.pose.y_m
-        rotation = quaternion_from_rpy(0.0, 0.0, self._world.pose.heading_rad)
-        turn.x, turn.y, turn.z, turn.w = rotation.x, rotation.y, rotation.z, rotation.w
+        heading_rad = self._world.pose.heading_rad
+        turn.x, turn.y, turn.z, turn.w = quaternion_from_rpy(0.0, 0.0, heading_rad)
         self._publisher.publish(message)
 
 

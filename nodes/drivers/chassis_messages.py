@@ -14,9 +14,9 @@ from nodes.parts.drive import FRAME
 from nodes.parts.odometry import ODOM
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import turning_radius
-from robot.motion.geometry import quaternion_from_rpy
 from robot.motion.odometry import Pose, advance
 from robot.words import DriveSetpoint
+from space.transform import quaternion_from_rpy
 
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
@@ -80,8 +80,8 @@ class DeadReckoning:
         return message
 
     def _orientation(self) -> Quaternion:
-        turn = quaternion_from_rpy(0.0, 0.0, self.pose.heading_rad)
-        return Quaternion(x=turn.x, y=turn.y, z=turn.z, w=turn.w)
+        x, y, z, w = quaternion_from_rpy(0.0, 0.0, self.pose.heading_rad)
+        return Quaternion(x=x, y=y, z=z, w=w)
 
     def _command(self, telemetry: Telemetry) -> DriveSetpoint:
         """Return the robot's actual motion as a drive command."""

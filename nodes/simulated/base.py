@@ -20,10 +20,10 @@ from nodes.parts.odometry import ODOM
 from nodes.parts.qos import DEPTH
 from robot.kinematics import turning_radius
 from robot.limits import SPEED, STEERING, first_excess
-from robot.motion.geometry import quaternion_from_rpy
 from robot.motion.odometry import Pose, advance
 from robot.topics import ODOMETRY, TF
 from robot.words import STOP
+from space.transform import quaternion_from_rpy
 from text.i18n import N_
 
 if TYPE_CHECKING:
@@ -129,8 +129,7 @@ class SimulatedBase:
         message.header.frame_id, message.child_frame_id = ODOM, FRAME
         place, turn = message.pose.pose.position, message.pose.pose.orientation
         place.x, place.y = self._pose.x_m, self._pose.y_m
-        rotation = quaternion_from_rpy(0.0, 0.0, self._pose.heading_rad)
-        turn.x, turn.y, turn.z, turn.w = rotation.x, rotation.y, rotation.z, rotation.w
+        turn.x, turn.y, turn.z, turn.w = quaternion_from_rpy(0.0, 0.0, self._pose.heading_rad)
         radius_m = turning_radius(self._command.steering_rad, self._wheelbase_m)
         message.twist.twist.linear.x = self._command.speed_m_s
         message.twist.twist.angular.z = self._command.speed_m_s / radius_m

@@ -1,4 +1,4 @@
-"""How the robot moves: odometry, the way to a point, the head, angles in space.
+"""How the robot moves: odometry, the way to a point, the head.
 
 Each module may be used on its own.
 """

@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 import string
 import sys
-from dataclasses import astuple
 
 import rclpy
 from geometry_msgs.msg import TransformStamped
@@ -13,9 +12,9 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 from tf2_ros import StaticTransformBroadcaster
 
-from robot.motion.geometry import quaternion_from_rpy
 from ros2.ending import until_interrupted
 from ros2.log_lines import log
+from space.transform import quaternion_from_rpy
 
 SPIN_S = 0.2
 """How late a signal may be noticed: the middleware does not wake up for it."""
@@ -142,8 +141,8 @@ def _transform(given: dict[str, str]) -> TransformStamped:
     moved, turned = found.transform.translation, found.transform.rotation
     moved.x, moved.y, moved.z = (number.get(name, 0.0) for name in MOVED)
     if {*ANGLES} & number.keys():
-        rotation = quaternion_from_rpy(*(number.get(name, 0.0) for name in ANGLES))
-        turned.x, turned.y, turned.z, turned.w = astuple(rotation)
+        angles = (number.get(name, 0.0) for name in ANGLES)
+        turned.x, turned.y, turned.z, turned.w = quaternion_from_rpy(*angles)
     else:
         turned.x, turned.y, turned.z = (number.get(name, 0.0) for name in TURNED[:3])
         turned.w = number.get("qw", 1.0)

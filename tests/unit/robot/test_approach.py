@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from robot.limits import SPEED, STEERING
 from robot.motion.approach import Approach, ApproachLimits, ApproachProgress
-from robot.motion.geometry import quaternion_from_rpy
 from robot.motion.odometry import Point, Pose, advance, yaw_from_quaternion
 from robot.words import STOP, DriveSetpoint
+from space.transform import quaternion_from_rpy
 
 STEP_S = 0.05
 angles = st.floats(-math.pi, math.pi)
@@ -156,8 +156,7 @@ def test_it_drives_where_it_looks() -> None:
 
 @given(angles)
 def test_a_heading_survives_the_quaternion(heading: float) -> None:
-    turn = quaternion_from_rpy(0.0, 0.0, heading)
-    back = yaw_from_quaternion(turn.x, turn.y, turn.z, turn.w)
+    back = yaw_from_quaternion(*quaternion_from_rpy(0.0, 0.0, heading))
     assert math.cos(back - heading) == pytest.approx(1.0)
 
 
