@@ -42,6 +42,19 @@ def of_graph(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def of_node_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of the commands that list nodes."""
+    of_graph(parser)
+    add = parser.add_argument
+    add("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
+    add(
+        "-c",
+        "--count-nodes",
+        action="store_true",
+        help="Only display the number of nodes discovered",
+    )
+
+
 def hidden_topics(parser: argparse.ArgumentParser) -> None:
     """Declare `--include-hidden-topics`, where it means nothing to the verb itself."""
     parser.add_argument(

@@ -16,15 +16,7 @@ SUMMARY = "Output a list of available nodes"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    options.of_graph(parser)
-    add = parser.add_argument
-    add("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
-    add(
-        "-c",
-        "--count-nodes",
-        action="store_true",
-        help="Only display the number of nodes discovered",
-    )
+    options.of_node_list(parser)
 
 
 def main(args: argparse.Namespace) -> int | str | None:
