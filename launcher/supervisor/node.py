@@ -39,7 +39,7 @@ USAGE = 2
 UNREADY = Exit(1)
 """The end of a process that could not be brought up."""
 USAGE_WITHIN_S = 10.0
-"""A program that rejects its arguments does so within this time."""
+"""A program that rejects its arguments, or does not compile, ends within this time."""
 ASKED_TWICE_S = 0.3
 """Two stop requests closer together than this count as one."""
 
@@ -348,8 +348,11 @@ class SupervisedNode:
         if isinstance(verdict, Again):
             words = say("{why}; again in {seconds:g} s", why=why, seconds=verdict.delay_s)
             self.become(NodeState.BACKOFF, words)
-            self._nudge.clear()
-            await clock.wait(self._nudge, verdict.delay_s)
+            again_s = clock.now() + verdict.delay_s
+            # It may be nudged by what has just ended as well.
+            while not (self._forced or self._down) and (left_s := again_s - clock.now()) > 0:
+                self._nudge.clear()
+                await clock.wait(self._nudge, left_s)
             self._forced = False
             if not self._down:
                 self._restarts += 1
@@ -374,6 +377,8 @@ class SupervisedNode:
 
     def _is_hopeless(self, end: Exit, lasted: float) -> bool:
         """Whether another attempt would end in the same way."""
+        if self.fault is not None and self.fault.kind == "syntax" and lasted < USAGE_WITHIN_S:
+            return True
         if self.plan.module:
             return end.code == USAGE and lasted < USAGE_WITHIN_S
         return end.code in (NOT_EXECUTABLE, NOT_FOUND)

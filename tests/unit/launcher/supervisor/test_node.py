@@ -9,7 +9,7 @@ import pytest
 
 from launcher.processes.exit import Exit
 from launcher.processes.usage import Usage
-from launcher.status import NodeState, Severity
+from launcher.status import NodeFault, NodeState, Severity
 from launcher.supervisor.lifecycle import NotBroughtUpError
 from launcher.supervisor.readiness import ReadyCondition, Seen
 from launcher.supervisor.readying import LATE_S
@@ -165,6 +165,28 @@ async def test_a_crash_is_told_and_the_node_started_again_after_a_while(
     await session.clock.advance(0.2)
     assert (node.state, node.status().restarts) == (NodeState.RUNNING, 1)
     assert node.status().exit_code is None
+
+
+async def test_a_crash_before_it_is_ready_waits_as_long(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, ready=TOPIC))
+    await crash(session)
+    assert (node.state, len(session.started)) == (NodeState.BACKOFF, 1)
+    await session.clock.advance(0.9)
+    assert len(session.started) == 1
+    await session.clock.advance(0.2)
+    assert (node.state, len(session.started)) == (NodeState.STARTING, 2)
+
+
+async def test_a_file_that_does_not_compile_is_not_tried_again_until_it_is_saved(
+    session: FakeSession,
+) -> None:
+    node = await started(session, replace(PLAN, file="/own/hello.py"))
+    session.fault = fault = NodeFault("syntax", "/own/hello.py", 3, exception="SyntaxError: x")
+    await crash(session)
+    assert (node.state, node.detail, node.fault) == (NodeState.FAILED, fault.words, fault)
+    node.saved(None)
+    await settle()
+    assert (node.state, len(session.started)) == (NodeState.RUNNING, 2)
 
 
 async def test_what_a_killed_node_said_last_is_no_reason(session: FakeSession) -> None:
