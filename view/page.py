@@ -13,7 +13,6 @@ import threading
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, NamedTuple
-from urllib.error import HTTPError, URLError
 from urllib.request import ProxyHandler, build_opener
 
 from view.place import HERE
@@ -150,9 +149,7 @@ class _Assets:
             with self._opener.open(f"{self._origin}{path}", timeout=FETCH_S) as answer:
                 body = answer.read()
                 headers = {name: value for name in PASSED_ON if (value := answer.headers.get(name))}
-        except HTTPError:
-            return None
-        except (URLError, OSError):
+        except OSError:
             return None
         if headers.get("Content-Type", "").startswith("text/html"):
             body = ELSEWHERE.sub(b"", body)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING
-from urllib.request import urlopen
+from urllib.request import Request, urlopen
 
 import numpy as np
 import psutil
@@ -112,6 +112,21 @@ def test_nobody_but_this_machine_can_reach_it(shown: Shown) -> None:
     assert listening == {"127.0.0.1"}
     assert {one.raddr.ip for one in found if one.raddr} <= {"127.0.0.1"}
     assert len(own.children()) == 1
+
+
+@pytest.mark.parametrize(
+    ("site", "allowed"), [("http://127.0.0.1:9090", True), ("https://example.com", False)]
+)
+def test_other_sites_in_the_browser_may_not_read_the_data(
+    shown: Shown, site: str, *, allowed: bool
+) -> None:
+    asked = Request(
+        f"http://127.0.0.1:{data_port(shown)}/",
+        method="OPTIONS",
+        headers={"Origin": site, "Access-Control-Request-Method": "POST"},
+    )
+    with urlopen(asked) as answer:
+        assert (answer.headers["Access-Control-Allow-Origin"] == site) == allowed
 
 
 def data_port(shown: Shown) -> int:
