@@ -6,6 +6,7 @@ from typing import Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
+from tui.frame.actions.view import OpenViewHere
 
 
 class FramesTarget(Protocol):
@@ -56,37 +57,6 @@ class RelativeTo(FramesAction):
         target.relate()
 
 
-class OtherWayRound(FramesAction):
-    """Show the inverse."""
-
-    id = "frames.inverse"
-    key = "v,м"
-    title = N_("Other way")
-    means = "another view"
-    tooltip = N_("Show the first frame in the second, or the second in the first.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: FramesTarget) -> None:
-        """Turn it round."""
-        target.turn_round()
-
-
-class CopyTransform(FramesAction):
-    """Copy the transform as text."""
-
-    id = "frames.copy"
-    key = "y,н"
-    title = N_("Copy")
-    tooltip = N_("Copy the transform that is shown, with the command that publishes it.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: FramesTarget) -> None:
-        """Copy it."""
-        target.copy_pair()
-
-
 class _Findings(FramesAction):
     """An action on the findings."""
 
@@ -105,6 +75,17 @@ class NextFinding(_Findings):
     means = "next"
     tooltip = N_("Go to the next frame that something is wrong with.")
     footer = True
+
+    @classmethod
+    def shown(cls, target: FramesTarget) -> bool:
+        """Only if there is one: its room is for others otherwise."""
+        return target.has_findings
+
+    @classmethod
+    def label(cls, target: FramesTarget) -> str:
+        """Short, for the narrowest footer."""
+        del target
+        return N_("Finding")
 
     @classmethod
     async def run(cls, target: FramesTarget) -> None:
@@ -127,4 +108,47 @@ class PreviousFinding(_Findings):
         target.go_to_finding(-1)
 
 
-FRAMES_ACTIONS = (RelativeTo, OtherWayRound, CopyTransform, NextFinding, PreviousFinding)
+class CopyTransform(FramesAction):
+    """Copy the transform as text."""
+
+    id = "frames.copy"
+    key = "y,н"
+    title = N_("Copy")
+    tooltip = N_("Copy the transform that is shown, with the command that publishes it.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FramesTarget) -> None:
+        """Copy it."""
+        target.copy_pair()
+
+
+class FramesIn3D(OpenViewHere):
+    """The viewer, by the letter for another view."""
+
+    id = "frames.view"
+
+
+class OtherWayRound(FramesAction):
+    """Show the inverse."""
+
+    id = "frames.inverse"
+    key = "alt+x,alt+ч"
+    title = N_("Other way")
+    tooltip = N_("Show the first frame in the second, or the second in the first.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FramesTarget) -> None:
+        """Turn it round."""
+        target.turn_round()
+
+
+FRAMES_ACTIONS = (
+    RelativeTo,
+    NextFinding,
+    PreviousFinding,
+    CopyTransform,
+    FramesIn3D,
+    OtherWayRound,
+)

@@ -6,20 +6,14 @@ from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
-from tui.frame.actions.view import OpenView
+from tui.frame.actions.view import OpenViewHere
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable
 
-    from tui.frame.host import Host
-
 
 class SpaceTarget(Protocol):
     """The part of the Space screen that its actions use."""
-
-    @property
-    def deck(self) -> Host:
-        """The app."""
 
     @property
     def armed(self) -> bool:
@@ -123,26 +117,10 @@ class NextAngle(SpaceAction):
         target.next_angle()
 
 
-class OpenIn3D(SpaceAction):
+class OpenIn3D(OpenViewHere):
     """The viewer, by the letter for another view."""
 
     id = "space.view"
-    key = "v,м"
-    title = OpenView.title
-    means = "another view"
-    tooltip = OpenView.tooltip
-    footer = True
-    palette = False
-
-    @classmethod
-    def possible(cls, target: SpaceTarget) -> bool | None:
-        """As on every screen."""
-        return OpenView.possible(target.deck)
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        """Open it."""
-        await OpenView.run(target.deck)
 
 
 class FitAll(SpaceAction):

@@ -121,9 +121,9 @@ async def test_enter_marks_what_the_others_are_given_in_and_takes_it_back() -> N
         assert "◎" in at.row("camera_link")
         await at.press("down", "down", "down", "down")
         assert at.pair.startswith("sonar_front in camera_link x, y, z, m: 0.050 0.000 -0.150")
-        await at.press("v")
+        await at.press("alt+x")
         assert at.pair.startswith("camera_link in sonar_front x, y, z, m: -0.050 0.000 0.150")
-        await at.press("v", "up", "up", "up", "up", "enter", "down")
+        await at.press("alt+x", "up", "up", "up", "up", "enter", "down")
         assert "head_pan in odom" in at.pair
         assert not any("◎" in row for row in at.tree())
 
@@ -205,7 +205,7 @@ async def test_hostile_frames_draw_nothing_but_text() -> None:
     deep = [frame(f"joint_{number}", f"joint_{number + 1}") for number in range(300)]
     odd = frame(ESCAPE, "x" * 200, (math.inf, 0.0, 0.0), publishers=(ESCAPE,))
     async with stage(with_frames((*deep, frame("a", "b"), frame("b", "a"), odd))) as at:
-        await at.press("end", "enter", "home", "G", "n", "v", "y")
+        await at.press("end", "enter", "home", "G", "n", "alt+x", "y")
         drawn = "".join((*at.tree(), at.pair, at.findings, at.app.clipboard))
         assert not {"\x1b", "\x00", "\u202e"} & set(drawn)
 
@@ -226,7 +226,7 @@ async def test_without_frames_it_says_what_is_missing(
     empty = RecordedOpener(RecordedSession(lines=()), RecordedGraph(frames_update((), rows)))
     async with stage(empty) as at:
         assert at.empty.startswith(said)
-        await at.press("y", "enter", "v", "n", "Y")
+        await at.press("y", "enter", "alt+x", "n", "Y")
         await at.show(*ROBOT)
         assert at.row("base_link")
 

@@ -65,8 +65,11 @@ async def open_view(app: DeckApp, pilot: Pilot[Any]) -> None:
     await pilot.pause()
 
 
-async def test_on_the_space_screen_another_view_is_the_viewer(starter: Starter) -> None:
-    async with opened(screen="space") as (app, pilot):
+@pytest.mark.parametrize("screen", ["space", "frames"])
+async def test_where_things_are_placed_another_view_is_the_viewer(
+    starter: Starter, screen: str
+) -> None:
+    async with opened(screen=screen) as (app, pilot):
         await pilot.press("v")
         await until(lambda: isinstance(app.screen, ViewDialog), "the dialog")
         assert len(starter.made) == 1

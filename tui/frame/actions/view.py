@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
@@ -29,3 +29,32 @@ class OpenView(Action["Host"]):
     async def run(cls, target: Host) -> None:
         """Open it."""
         target.view.open()
+
+
+class OnDeck(Protocol):
+    """The part of a screen that leads to the app."""
+
+    @property
+    def deck(self) -> Host:
+        """The app."""
+
+
+class OpenViewHere(Action[OnDeck]):
+    """The viewer on a screen that shows where things are: another view of the same."""
+
+    key = "v,м"
+    title = OpenView.title
+    means = "another view"
+    tooltip = OpenView.tooltip
+    footer = True
+    palette = False
+
+    @classmethod
+    def possible(cls, target: OnDeck) -> bool | None:
+        """As on every screen."""
+        return OpenView.possible(target.deck)
+
+    @classmethod
+    async def run(cls, target: OnDeck) -> None:
+        """Open it."""
+        await OpenView.run(target.deck)
