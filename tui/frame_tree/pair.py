@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rich.cells import cell_len
+
 from space.buffer import NoTransformError, TransformBuffer
 from space.tree.finding import by_whom
 from text import ros2_words
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from space.tree.heard import HeardFrame
 
 LONGEST = 60
+METRES, QUATERNION, DEGREES = 8, 7, 6
+"""Cells of a number: -999.999, -0.7071, -180.0."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +80,12 @@ def publisher_line(heard: Sequence[HeardFrame]) -> str:
     return _("published by {nodes}").format(nodes=localized(by_whom(nodes)))
 
 
-def pair_lines(pair: FramePair) -> list[str]:
-    """Return what is shown of it: the two names, metres, the quaternion, degrees, a remark."""
+def pair_lines(pair: FramePair, room: int) -> list[str]:
+    """Return what is shown of it: the two names, metres, the quaternion, degrees, a remark.
+
+    Numbers that do not fit beside their name in `room` cells have a line of their own. A line is as
+    long for all frames of a robot, so that nothing below jumps while it moves.
+    """
     head = _("{source} in {target}").format(
         source=plain(pair.source, LONGEST), target=plain(pair.target, LONGEST)
     )
@@ -85,12 +93,12 @@ def pair_lines(pair: FramePair) -> list[str]:
         return [head, localized(pair.remark)]
     if pair.source == pair.target:
         return [head, _("Enter on another frame shows this one, and all others, relative to it.")]
-    moved, turned, rpy = map(decimal, _numbers(pair.transform))
+    moved, turned, rpy = _numbers(pair.transform)
     lines = [
         head,
-        _("x, y, z, m:  {numbers}").format(numbers=moved),
-        _("quaternion:  {numbers}").format(numbers=turned),
-        _("roll, pitch, yaw, °:  {numbers}").format(numbers=rpy),
+        *_named(_("x, y, z, m:"), moved, METRES, room),
+        *_named(_("quaternion:"), turned, QUATERNION, room),
+        *_named(_("roll, pitch, yaw, °:"), rpy, DEGREES, room),
     ]
     if pair.remark:
         lines.append(_("the newest of each: {reason}").format(reason=localized(pair.remark)))
@@ -101,7 +109,7 @@ def pair_text(pair: FramePair) -> str:
     """Return it as text to be pasted: with points in numbers, whatever the language."""
     if pair.transform is None:
         return ""
-    moved, turned, rpy = _numbers(pair.transform)
+    moved, turned, rpy = map("  ".join, _numbers(pair.transform))
     command = ros2_words.static_transform(
         pair.target, pair.source, pair.transform.translation, pair.transform.rotation
     )
@@ -114,11 +122,17 @@ def pair_text(pair: FramePair) -> str:
     )
 
 
-def _numbers(transform: Transform) -> tuple[str, str, str]:
+def _named(name: str, numbers: Sequence[str], width: int, room: int) -> list[str]:
+    texts = " ".join(decimal(number).rjust(width) for number in numbers)
+    line = f"{name} {texts}"
+    return [line] if cell_len(line) <= room else [name, f" {texts}"]
+
+
+def _numbers(transform: Transform) -> tuple[tuple[str, ...], ...]:
     return (
-        "  ".join(f"{_positive(number, 3):.3f}" for number in transform.translation),
-        "  ".join(f"{_positive(number, 4):.4f}" for number in transform.rotation),
-        "  ".join(f"{_positive(math.degrees(angle), 1):.1f}" for angle in transform.rpy_rad),
+        tuple(f"{_positive(number, 3):.3f}" for number in transform.translation),
+        tuple(f"{_positive(number, 4):.4f}" for number in transform.rotation),
+        tuple(f"{_positive(math.degrees(angle), 1):.1f}" for angle in transform.rpy_rad),
     )
 
 

@@ -64,8 +64,8 @@ class FramesScreen(DeckScreen):
     FramesScreen.-home, FramesScreen.-wide {
         #frames-body { layout: horizontal; }
         FrameTable { width: 9fr; height: 1fr; }
-        #frames-side { width: 5fr; height: 1fr; border-left: solid $panel; }
-        #frames-pair { max-height: 8; }
+        #frames-side { width: 5fr; min-width: 47; height: 1fr; border-left: solid $panel; }
+        #frames-pair { max-height: 10; }
     }
     """
 
@@ -234,7 +234,8 @@ class FramesScreen(DeckScreen):
 
     def _show_pair(self) -> None:
         pair = self.pair
-        lines = [_("no frame")] if pair is None else pair_lines(pair)
+        room = self.query_one("#frames-pair").scrollable_content_region.width
+        lines = [_("no frame")] if pair is None else pair_lines(pair, room)
         heard = next((line.heard for line in self._lines if key_of(line) == self.table.chosen), ())
         if heard:
             lines.append(publisher_line(heard))
