@@ -12,18 +12,18 @@ import os
 import signal
 import socket
 import subprocess
-import tempfile
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from text.plain import plain
 from text.sentences import say
 from view.faults import ViewError
+from view.own_folder import OwnFolder
 from view.place import HERE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from typing_extensions import Self
 
@@ -46,9 +46,8 @@ class Viewer:
         """
         self.data_port = data_port
         self.page_port = page_port
-        self._folder = tempfile.TemporaryDirectory(prefix="deck-view-")
-        folder = Path(self._folder.name)
-        self._log = folder / "log"
+        self._folder = OwnFolder()
+        self._log = self._folder.path / "log"
         serving = () if page_port is None else ("--serve-web", "--web-viewer-port", str(page_port))
         command: Sequence[str] = (
             *(str(program), "--bind", HERE, "--port", str(data_port)),
@@ -61,7 +60,7 @@ class Viewer:
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=log,
-                env=silent_environment(folder),
+                env=silent_environment(self._folder.path),
                 # Ctrl-C is meant for us, who end it.
                 start_new_session=True,
                 preexec_fn=_die_with_parent,  # noqa: PLW1509 - no thread of ours runs yet
@@ -105,7 +104,7 @@ class Viewer:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
-        self._folder.cleanup()
+        self._folder.close()
 
     def _wait_until_it_listens(self) -> None:
         deadline_s = time.monotonic() + READY_S
