@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from textual.containers import Vertical
-from textual.widgets import Digits, Static
+from textual.content import Content
+from textual.widget import Widget
 
 from text.plain import plain
+from tui.wall.digits import digit_lines, size_for
 
 if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
     from tui.wall.reading import WallNumber
 
-LOOKS = ("good", "warn", "bad", "muted")
+LOOKS = {
+    "": ("", ""),
+    "good": ("$text-success", "$text-success"),
+    "warn": ("$text-warning", "$text-warning"),
+    "bad": ("$text-error", "$text-error"),
+    "muted": ("$foreground 40%", "$text-warning"),
+}
+"""The colours of digits and note."""
+WIDEST = "-0.00"
+"""What has room always, so that no sign changes the size."""
 LONGEST = 60
 _LETTERS = {
     "S": ("▟███▙", "█▖   ", "▝███▖", "   ▝█", "▜███▛"),
@@ -26,24 +34,16 @@ _LETTERS = {
     "О": ("▟███▙", "█   █", "█   █", "█   █", "▜███▛"),
     "П": ("█████", "█   █", "█   █", "█   █", "█   █"),
 }
-"""Letters five lines high: Textual's digits have none of these."""
+"""Letters five lines high: no seven segments make these."""
 
 
-class BigNumber(Vertical):
-    """Label, digits three lines high, and a word below them."""
+class BigNumber(Widget):
+    """Label, digits as large as there is room, and a word below them."""
 
     DEFAULT_CSS = """
     BigNumber {
-        width: 1fr; height: 5; padding: 0 1;
-        .big-label { width: 1fr; height: 1; color: $text-muted; text-overflow: ellipsis; }
-        Digits { width: 1fr; height: 3; text-style: bold; }
-        .big-note { width: 1fr; height: 1; text-style: bold; text-overflow: ellipsis; }
-        .big-label, .big-note { text-wrap: nowrap; }
-        &.-good Digits, &.-good .big-note { color: $text-success; }
-        &.-warn Digits, &.-warn .big-note { color: $text-warning; }
-        &.-bad Digits, &.-bad .big-note { color: $text-error; }
-        &.-muted Digits { color: $foreground 40%; }
-        &.-muted .big-note { color: $text-warning; }
+        width: 1fr; height: 1fr; padding: 0 1; content-align: left middle;
+        text-wrap: nowrap; text-overflow: ellipsis;
     }
     """
 
@@ -51,22 +51,26 @@ class BigNumber(Vertical):
         super().__init__()
         self.shown: WallNumber | None = None
 
-    def compose(self) -> ComposeResult:
-        """Label above digits above the note."""
-        yield Static(classes="big-label", markup=False)
-        yield Digits()
-        yield Static(classes="big-note", markup=False)
-
     def show(self, number: WallNumber) -> None:
         """Show this number; redraws only if it is another."""
-        if number == self.shown or not self.is_mounted:
-            return
-        self.shown = number
-        self.query_one(".big-label", Static).update(plain(number.label, LONGEST))
-        self.query_one(Digits).update(plain(number.value, LONGEST))
-        self.query_one(".big-note", Static).update(plain(number.note, LONGEST))
-        for look in LOOKS:
-            self.set_class(look == number.look, f"-{look}")
+        if number != self.shown:
+            self.shown = number
+            self.refresh()
+
+    def render(self) -> Content:
+        """Draw the three below each other."""
+        if self.shown is None:
+            return Content("")
+        value, (of_value, of_note) = plain(self.shown.value, LONGEST), LOOKS[self.shown.look]
+        size = size_for((value, WIDEST), self.size.width, self.size.height - 2)
+        lines = [value] if size is None else digit_lines(value, size)
+        return Content("\n").join(
+            [
+                Content.styled(plain(self.shown.label, LONGEST), "$foreground 60%"),
+                *(Content.styled(line, f"bold {of_value}") for line in lines),
+                Content.styled(plain(self.shown.note, LONGEST), f"bold {of_note}"),
+            ]
+        )
 
 
 def big_word(word: str) -> str:

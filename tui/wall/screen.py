@@ -76,13 +76,13 @@ class WallScreen(DeckScreen):
         #wall-said { height: 3; }
         #wall-said VoicePanel { border: none; border-top: solid $panel; }
         &.-home #wall, &.-wide #wall {
-            layout: grid; grid-size: 2; grid-columns: 3fr 1fr; grid-rows: 1fr auto;
+            layout: grid; grid-size: 2; grid-columns: 2fr 1fr; grid-rows: 1fr auto;
         }
+        &.-wide #wall { grid-columns: 3fr 2fr; }
         &.-home #wall-numbers, &.-wide #wall-numbers {
-            height: 1fr; layout: vertical; align-vertical: middle; border-left: solid $panel;
+            height: 1fr; layout: vertical; border-left: solid $panel;
         }
         &.-home #wall-bottom, &.-wide #wall-bottom { column-span: 2; }
-        &.-home BigNumber, &.-wide BigNumber { height: 6; }
         &.-home #wall-state.-free, &.-home #wall-state.-held { padding: 1 1; }
         &.-wide #wall-state.-free, &.-wide #wall-state.-held { padding: 1 1; }
         &.-home #wall-said { height: 4; }
@@ -90,7 +90,7 @@ class WallScreen(DeckScreen):
         #wall-bottom { height: auto; }
         &.-no-camera #wall CameraPanel { display: none; }
         &.-no-camera #wall { layout: vertical; }
-        &.-no-camera #wall-numbers { height: 1fr; layout: horizontal; align: center middle; }
+        &.-no-camera #wall-numbers { height: 1fr; layout: horizontal; }
         &.-no-voice #wall-said { display: none; }
         &.-low.-stopped #wall-said, &.-flat.-stopped #wall-said { display: none; }
         &.-low #wall-state.-stop, &.-flat #wall-state.-stop { padding: 0 1; }

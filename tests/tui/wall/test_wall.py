@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import Digits, Static
+from textual.widgets import Static
 
 from graph.data import GraphUpdate, Sample, Trouble
 from robot.topics import BATTERY, ODOMETRY, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
@@ -64,13 +64,9 @@ def numbers(values: dict[str, dict[str, Any]], **more: Any) -> list[WallNumber]:
 def on_wall(app: DeckApp) -> list[tuple[str, str, str]]:
     """Return label, digits and note of each number that is shown."""
     return [
-        (
-            str(one.query_one(".big-label", Static).content),
-            one.query_one(Digits).value,
-            str(one.query_one(".big-note", Static).content),
-        )
+        one.shown[:3]
         for one in app.screen.query(BigNumber)
-        if one.display
+        if one.display and one.shown is not None
     ]
 
 
