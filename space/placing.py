@@ -7,11 +7,9 @@ from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
 from space.buffer import NoTransformError
-from space.drawing.paints import Tint
-from space.drawing.shapes import Sign, Speckles, axes, moved
+from space.drawing.shapes import Speckles, moved
 from space.drawing.thinning import FEW, thinned
 from space.reading.fields import Drawable
-from text.plain import plain
 from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
@@ -20,16 +18,11 @@ if TYPE_CHECKING:
     from space.buffer import TransformBuffer
     from space.drawing.camera import SpaceCamera
     from space.drawing.shapes import Shape
-    from space.transform import Transform, Vector
+    from space.transform import Transform
 
 ROOTS = ("map", "odom", "base_link")
 """Frames of REP-105: the tree that has the first of them is the robot's."""
-AXIS_M, LEAST_AXIS_DOTS, MOST_AXIS_DOTS = 0.15, 5.0, 30.0
 SMALLEST_CUBE_M = 0.004
-LONGEST_NAME = 40
-CLOSE_DOTS = 12.0
-"""Frames as close as this in the picture share one line for their names."""
-NAMED_TOGETHER = 2
 
 
 def robot_root(buffer: TransformBuffer, others: Iterable[str] = ()) -> str:
@@ -103,10 +96,7 @@ class Placer:
         return found, why
 
     def frames(self, buffer: TransformBuffer, fixed: str) -> tuple[list[Located], list[str]]:
-        """Return where all frames are, and those that are not joined to the fixed one.
-
-        Parents come first: of frames close together the first one gives its name.
-        """
+        """Return where all frames are, parents first, and those not joined to the fixed one."""
         found: list[Located] = []
         apart: list[str] = []
         for frame in sorted(buffer.frames, key=lambda one: (len(buffer.way_up(one)), one)):
@@ -136,23 +126,3 @@ class Placer:
         fewer = thinned(shape, cube_m)
         self._thinned[id(shape)] = shape, cube_m, fewer
         return fewer
-
-
-def frame_shapes(frames: Iterable[Located], camera: SpaceCamera) -> list[Shape]:
-    """Return axes and names of frames.
-
-    Axes are 0.15 m long, but never too small or too large to be seen.
-    """
-    size = min(max(AXIS_M * camera.dots_per_m, LEAST_AXIS_DOTS), MOST_AXIS_DOTS)
-    length_m = size / camera.dots_per_m
-    shapes: list[Shape] = []
-    named: dict[tuple[float, ...], tuple[Vector, list[str]]] = {}
-    for frame, at in ((one.drawable.frame, one.at) for one in frames):
-        shapes += axes(at, length_m)
-        spot = tuple(round(value * camera.dots_per_m / CLOSE_DOTS) for value in at.translation)
-        named.setdefault(spot, (at.translation, []))[1].append(frame)
-    for place, found in named.values():
-        text = ", ".join(plain(frame, LONGEST_NAME) for frame in found[:NAMED_TOGETHER])
-        more = len(found) - NAMED_TOGETHER
-        shapes.append(Sign(place, f"{text} +{more}" if more > 0 else text, Tint.TEXT))
-    return shapes

@@ -10,8 +10,11 @@ import numpy as np
 
 from space.drawing.braille import BLANK, BRAILLE, DOTS_ACROSS, DOTS_DOWN, characters
 from space.drawing.paints import RAMP_FROM, RAMP_STEPS, Paints, Tint
+from space.drawing.sign_rows import SignRows
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from space.drawing.shapes import Places
@@ -85,15 +88,17 @@ def _solid(codes: NDArray[np.uint16], dots: NDArray[np.int8]) -> NDArray[np.int8
 class Raster:
     """A picture of dots; what is nearer covers what is farther away."""
 
-    def __init__(self, columns: int, rows: int) -> None:
-        """Begin with nothing, in this many cells."""
+    def __init__(
+        self, columns: int, rows: int, signs_before: Mapping[str, int | None] | None = None
+    ) -> None:
+        """Begin with nothing, in this many cells; `signs_before` is from the picture before."""
         self.columns, self.rows = columns, rows
         self.width, self.height = DOTS_ACROSS * columns, DOTS_DOWN * rows
         self._depth = np.full(self.width * self.height, np.inf, dtype=np.float32)
         self._paint = np.zeros(self.width * self.height, dtype=np.uint8)
         self.floor = np.zeros((2 * rows, columns), dtype=np.uint8)
         """The paints behind all dots, in halves of cells."""
-        self._signs: list[tuple[int, int, str, int]] = []
+        self.signs = SignRows(rows, signs_before or {})
 
     def dots(self, spots: Places, paint: int | Paints) -> None:
         """Set dots, given as (x, y, depth); those outside, and NaN, are ignored."""
@@ -196,23 +201,14 @@ class Raster:
         whole[set_here] = depth[set_here]
         self._paint.reshape(self.height, self.width)[y0:y1, x0:x1][set_here] = paint
 
-    def sign(self, x: float, y: float, text: str, paint: int) -> None:
+    def sign(self, x: float, y: float, text: str, paint: int, name: str = "") -> None:
         """Write a text over the dots, its first character at a dot; parts outside are cut.
 
-        Where another text is already, it goes into a row close by, or is left out.
+        Where another text is already, it goes into a row close by, or is left out. With a `name`,
+        it does the same in the next picture, if it can.
         """
-        if not (0 <= x < self.width and 0 <= y < self.height) or not text:
-            return
-        row, column = int(y) // DOTS_DOWN, int(x) // DOTS_ACROSS
-        end = column + len(text) + 1
-        for near in (row, row + 1, row - 1, row + 2, row - 2):
-            free = all(
-                other != near or end <= begin or column > begin + len(written)
-                for other, begin, written, _paint in self._signs
-            )
-            if free and 0 <= near < self.rows:
-                self._signs.append((near, column, text, paint))
-                return
+        if 0 <= x < self.width and 0 <= y < self.height and text:
+            self.signs.write(int(y) // DOTS_DOWN, int(x) // DOTS_ACROSS, text, paint, name)
 
     def cells(self) -> CellPicture:
         """Return the cells; a cell whose dots are all set is drawn as two halves."""
@@ -244,7 +240,7 @@ class Raster:
         return picture
 
     def _write_signs(self, picture: CellPicture) -> None:
-        for row, column, text, paint in self._signs:
+        for row, column, text, paint in self.signs.written:
             shown = text[: self.columns - column]
             for place, char in enumerate(shown, column):
                 picture.codes[row, place] = ord(char)

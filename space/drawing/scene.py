@@ -139,4 +139,4 @@ def _draw_sign(sign: Sign, raster: Raster, camera: SpaceCamera) -> None:
     place = np.array([sign.place], dtype=np.float32)
     x, y, _depth = camera.project(place, raster.width, raster.height)[0]
     # A cell to the right, so that the place itself stays visible.
-    raster.sign(float(x) + 3, float(y), sign.text, sign.paint)
+    raster.sign(float(x) + 3, float(y), sign.text, sign.paint, sign.name)

@@ -67,6 +67,8 @@ class Sign:
     place: Vector
     text: str
     paint: int = Tint.TEXT
+    name: str = ""
+    """By what it is known in the next picture, so that it stays in its row; with none it is not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +99,7 @@ def moved(shape: Shape, by: Transform) -> Shape:
         flat = _points(by, shape.corners.reshape(-1, 3))
         return Faces(flat.reshape(-1, 3, 3), shape.paint)
     if isinstance(shape, Sign):
-        return Sign(by.point(shape.place), shape.text, shape.paint)
+        return Sign(by.point(shape.place), shape.text, shape.paint, shape.name)
     return Floor(shape.cells, shape.cell_m, by @ shape.origin)
 
 

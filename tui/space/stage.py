@@ -15,7 +15,8 @@ from space.drawing.paints import Tint
 from space.drawing.raster import Raster
 from space.drawing.scene import draw
 from space.drawing.shapes import Strokes
-from space.placing import Located, Placer, cube_of, frame_shapes, robot_root
+from space.frame_names import FrameNames
+from space.placing import Located, Placer, cube_of, robot_root
 from space.transform import Transform
 from text.sentences import say
 from tui.space.layers import SONARS, SpaceLayers
@@ -76,6 +77,9 @@ class Stage:
         self._placed_for: SpaceCamera | None = None
         self._found: list[Located] = []
         self._frames: list[Located] = []
+        self._names = FrameNames()
+        self._signs: dict[str, int | None] = {}
+        """In which rows names were in the last picture."""
 
     @property
     def fixed(self) -> str:
@@ -134,8 +138,13 @@ class Stage:
             return False
         self._placed_for, self._found, self._frames = camera, found, frames
         self._shapes = self._placer.place(found, cube_of(camera))
-        self._shapes += frame_shapes(frames, camera)
+        self._shapes += self._names.shapes(frames, camera, self._named_first)
         return True
+
+    @property
+    def _named_first(self) -> tuple[str, ...]:
+        """The frames whose names matter most: what the user has chosen, then what has data."""
+        return (self.follow, self.fixed, *(one.frame for one in self.layers if one.on))
 
     def extent(self) -> SpaceBox | None:
         """Return the box that holds everything placed, with a margin."""
@@ -165,13 +174,14 @@ class Stage:
 
     def picture(self, camera: SpaceCamera, columns: int, rows: int, aim: Aim | None) -> CellPicture:
         """Return the picture of what was placed last."""
-        raster = Raster(columns, rows)
+        raster = Raster(columns, rows, self._signs)
         shapes = [*_ground(camera, raster), *self._shapes]
         if self.sent is not None and self.sent[0] == self.fixed:
             shapes += self.sent[1].shapes(camera.dots_per_m)
         if aim is not None:
             shapes += aim.shapes(camera.dots_per_m)
         draw(raster, camera, shapes)
+        self._signs = raster.signs.moved
         return raster.cells()
 
 
