@@ -33,6 +33,9 @@ FLEETING = frozenset(
 )
 """Measurements: once nothing more arrives, what came last is no longer so."""
 
+STREAMS = FLEETING | {"nav_msgs/msg/Odometry"}
+"""What comes all the time, if it comes at all; the others may be published now and then."""
+
 
 class SpaceLayer:
     """What one topic shows."""
@@ -60,6 +63,14 @@ class SpaceLayer:
         if not self.on:
             return False
         return self.type_name not in FLEETING or self.row is None or self.row.trouble is None
+
+    @property
+    def rests(self) -> bool:
+        """Whether it is silent without a fault, as a goal is until somebody sets one."""
+        row = self.row
+        if row is None or row.trouble is not Trouble.QUIET:
+            return False
+        return self.type_name not in STREAMS and row.steady_hz is None
 
     def read(self, update: GraphUpdate, now_s: float) -> bool:
         """Take the messages of this update; return whether there were any."""

@@ -14,7 +14,7 @@ from text.i18n import _, localized
 from text.plain import plain
 from tui import clock
 from tui.widgets.rows import MARK, Cell, Column, Row, Rows
-from tui.widgets.trouble import advice
+from tui.widgets.trouble import advice, no_data_words
 
 if TYPE_CHECKING:
     from textual.events import Click
@@ -68,8 +68,8 @@ class LayerRows(Rows):
             if layer.on:
                 trouble = trouble_of_layer(layer)
                 rows += _words(trouble, width)
-                if not trouble and layer.frame:
-                    rows.append(Row("", (Cell(""), Cell(plain(layer.frame, width), "dim"))))
+                if not trouble and (calm := layer.frame or _rest_of(layer)):
+                    rows.append(Row("", (Cell(""), Cell(plain(calm, width), "dim"))))
         columns = [Column("", 1), Column(""), Column("", RATE, right=True)]
         self.show(columns, rows)
 
@@ -103,10 +103,18 @@ def _words(words: str, width: int) -> tuple[Row, ...]:
     return tuple(Row("", (Cell(""), Cell(line, "warn"))) for line in lines)
 
 
+def _rest_of(layer: SpaceLayer) -> str:
+    """Return since when a layer rests; empty if it does not."""
+    if not layer.rests or layer.row is None:
+        return ""
+    age_s = layer.row.age_s
+    return _("no message yet") if age_s is None else no_data_words(age_s)
+
+
 def trouble_of_layer(layer: SpaceLayer) -> str:
     """Return why a layer is not in the picture, or not all of it; empty if it is."""
     row = layer.row
-    if row is not None and row.trouble is not None:
+    if row is not None and row.trouble is not None and not layer.rests:
         headline, detail = advice(row)
         explained = row.trouble in {Trouble.QOS_MISMATCH, Trouble.UNKNOWN_TYPE}
         return f"{headline}: {detail}" if explained and detail else headline

@@ -10,7 +10,7 @@ import pytest
 from textual.events import MouseScrollUp
 from textual.pilot import Pilot
 
-from graph.data import GraphUpdate
+from graph.data import GraphUpdate, Trouble
 from space.drawing.camera import Angle
 from space.drawing.paints import Tint
 from space.transform import Transform
@@ -125,6 +125,31 @@ async def test_a_layer_that_is_not_joined_says_which_transform_is_missing() -> N
         assert layer is not None
         assert layer.apart == "not joined to map: there is no frame laser"
         assert "there is no frame" in " ".join(rows_of(screen).split())
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "said", "rests"),
+    [
+        ("/goal_pose", {"age_s": None}, "no message yet", True),
+        ("/scan", {"age_s": None}, "there is a publisher,", False),
+        ("/odom", {"age_s": None}, "there is a publisher,", False),
+        ("/plan", {"age_s": 9.0, "steady_hz": 1.0}, "no data for 9 s", False),
+        ("/plan", {"age_s": 9.0, "steady_hz": None}, "no data for 9 s", True),
+    ],
+)
+async def test_only_what_comes_all_the_time_is_missed(
+    name: str, more: dict[str, Any], said: str, rests: bool
+) -> None:
+    silent = space_update({name: {"trouble": Trouble.QUIET, "hz": None, **more}})
+    samples = {key: found for key, found in silent.samples.items() if key != name}
+    opener = robot_in_a_room(replace(silent, samples=samples))
+    async with at_work(opener) as (screen, _pilot):
+        lines = [line.strip(" │▶") for line in rows_of(screen).splitlines()]
+        at = next(number for number, line in enumerate(lines) if line.startswith(f"● {name}"))
+        assert lines[at + 1] == said
+        layer = screen.stage.layers.get(name)
+        assert layer is not None
+        assert layer.rests is rests
 
 
 async def test_a_layer_that_cannot_be_read_does_not_stop_the_others() -> None:
