@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from space.tree.heard import HeardFrame
 
@@ -63,11 +63,23 @@ class FrameTree:
             seen.add(frame)
         return frame
 
-    def lines(self) -> list[TreeLine]:
-        """Return the drawn tree, each root followed by what is below it."""
+    def with_ancestors(self, frames: Iterable[str]) -> frozenset[str]:
+        """Return these frames and all above them, by each of their parents."""
+        found: set[str] = set()
+        waiting = list(frames)
+        while waiting:
+            frame = waiting.pop()
+            if frame not in found:
+                found.add(frame)
+                waiting += self.parents.get(frame, ())
+        return frozenset(found)
+
+    def lines(self, only: Collection[str] | None = None) -> list[TreeLine]:
+        """Return the drawn tree, each root followed by what is below it; or `only` some frames."""
         drawn: set[str] = set()
         found: list[TreeLine] = []
-        waiting = [TreeLine(root, "", (), ()) for root in reversed(self.roots)]
+        shown = self.frames if only is None else only
+        waiting = [TreeLine(root, "", (), ()) for root in reversed(self.roots) if root in shown]
         # Not by recursion: an arm of two thousand joints must not end Deck.
         while waiting:
             line = waiting.pop()
@@ -76,7 +88,7 @@ class FrameTree:
                 continue
             drawn.add(line.frame)
             found.append(line)
-            below = self.children.get(line.frame, ())
+            below = [child for child in self.children.get(line.frame, ()) if child in shown]
             waiting += [
                 TreeLine(
                     child,

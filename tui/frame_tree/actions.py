@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
 from tui.frame.actions.view import OpenViewHere
+
+if TYPE_CHECKING:
+    from textual.widget import Widget
+    from textual.widgets import Input
 
 
 class FramesTarget(Protocol):
@@ -17,8 +21,23 @@ class FramesTarget(Protocol):
         """The frame at the cursor, empty if there is none."""
 
     @property
+    def has_frames(self) -> bool:
+        """Whether there is a tree."""
+
+    @property
+    def filter(self) -> Input:
+        """The input of the filter."""
+
+    @property
+    def focused(self) -> Widget | None:
+        """The widget that has the keys."""
+
+    @property
     def has_findings(self) -> bool:
         """Whether anything is wrong."""
+
+    def focus_filter(self) -> None:
+        """Focus the filter."""
 
     def relate(self) -> None:
         """Show frames relative to the one at the cursor, or to the root again."""
@@ -123,6 +142,29 @@ class CopyTransform(FramesAction):
         target.copy_pair()
 
 
+class FilterFrames(FramesAction):
+    """Filter the tree."""
+
+    id = "frames.filter"
+    key = "slash,ctrl+f"
+    title = N_("Filter")
+    means = "find"
+    tooltip = N_("Show only frames whose name or publisher has the words that you type.")
+    footer = True
+    priority = True
+    from_elsewhere = True
+
+    @classmethod
+    def possible(cls, target: FramesTarget) -> bool | None:
+        """Not in the filter itself, where a slash is typed, nor without frames."""
+        return target.has_frames and target.focused is not target.filter
+
+    @classmethod
+    async def run(cls, target: FramesTarget) -> None:
+        """Focus the filter."""
+        target.focus_filter()
+
+
 class FramesIn3D(OpenViewHere):
     """The viewer, by the letter for another view."""
 
@@ -149,6 +191,7 @@ FRAMES_ACTIONS = (
     NextFinding,
     PreviousFinding,
     CopyTransform,
+    FilterFrames,
     FramesIn3D,
     OtherWayRound,
 )

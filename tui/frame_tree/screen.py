@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
-from textual.containers import Container, VerticalScroll
+from textual.containers import Container, Vertical, VerticalScroll
 from textual.content import Content
-from textual.widgets import Static
+from textual.widgets import Input, Static
 
 from graph.frames.around import findings_in
 from space.tree.tree import FrameTree
@@ -19,6 +19,7 @@ from tui.frame_tree import words
 from tui.frame_tree.actions import FRAMES_ACTIONS
 from tui.frame_tree.pair import FramePair, FramePairs, pair_lines, pair_text, publisher_line
 from tui.frame_tree.table import FrameTable, frame_of, key_of
+from tui.widgets.field import Field
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -53,7 +54,8 @@ class FramesScreen(DeckScreen):
     FramesScreen {
         #frames-empty { height: 1fr; padding: 1 2; color: $text-muted; }
         #frames-body { height: 1fr; layout: vertical; }
-        FrameTable { height: 3fr; }
+        #frames-tree { height: 3fr; }
+        #frames-filter { width: 1fr; }
         #frames-side { height: 2fr; min-height: 10; }
         #frames-pair { height: auto; max-height: 6; padding: 0 1; background: $panel; }
         #frames-findings {
@@ -63,7 +65,7 @@ class FramesScreen(DeckScreen):
     }
     FramesScreen.-home, FramesScreen.-wide {
         #frames-body { layout: horizontal; }
-        FrameTable { width: 9fr; height: 1fr; }
+        #frames-tree { width: 9fr; height: 1fr; }
         #frames-side { width: 5fr; min-width: 47; height: 1fr; border-left: solid $panel; }
         #frames-pair { max-height: 10; }
     }
@@ -79,15 +81,17 @@ class FramesScreen(DeckScreen):
         self._relative_to = ""
         """The frame that Enter has marked; empty for the root of the one at the cursor."""
         self._turned = False
-        self._able = (False, False)
-        """Whether there is a frame, and a finding, to act on."""
+        self._able = (False, False, False)
+        """Whether a frame is chosen, and there is a finding, and a tree, to act on."""
         self._said: dict[str, list[tuple[str, str]]] = {}
 
     def compose_body(self) -> ComposeResult:
         """The tree, the transform and the findings, or why there is no frame."""
         yield Static(id="frames-empty", markup=False)
         with Container(id="frames-body"):
-            yield FrameTable()
+            with Vertical(id="frames-tree"):
+                yield Field(id="frames-filter", compact=True, select_on_focus=False)
+                yield FrameTable()
             with Container(id="frames-side"):
                 yield Static(id="frames-pair", markup=False)
                 with VerticalScroll(id="frames-findings"):
@@ -99,9 +103,19 @@ class FramesScreen(DeckScreen):
         return self.query_one(FrameTable)
 
     @property
+    def filter(self) -> Input:
+        """The input of the filter."""
+        return self.query_one("#frames-filter", Input)
+
+    @property
     def chosen(self) -> str:
         """The frame at the cursor, empty if there is none."""
         return frame_of(self.table.chosen) if self.is_mounted and self._lines else ""
+
+    @property
+    def has_frames(self) -> bool:
+        """Whether there is a tree."""
+        return bool(self._tree.frames)
 
     @property
     def has_findings(self) -> bool:
@@ -118,7 +132,8 @@ class FramesScreen(DeckScreen):
         return self._pairs.find(*((source, target) if self._turned else (target, source)))
 
     def on_mount(self) -> None:
-        """Say why there is nothing yet."""
+        """Put the keys to the tree, and say why there is nothing yet."""
+        self.table.focus()
         self._show()
 
     def on_session_changed(self, message: SessionChanged) -> None:
@@ -156,6 +171,19 @@ class FramesScreen(DeckScreen):
         self._show_findings()
         self.refresh_bindings()
 
+    @on(Input.Changed, "#frames-filter")
+    def _filter_changed(self) -> None:
+        self._show()
+
+    @on(Input.Submitted, "#frames-filter")
+    def _filter_done(self) -> None:
+        self.table.focus()
+
+    def key_escape(self) -> None:
+        """Leave the filter, and show every frame again."""
+        self.filter.value = ""
+        self.table.focus()
+
     @on(FrameTable.Opened)
     def _marked(self) -> None:
         self.relate()
@@ -166,6 +194,10 @@ class FramesScreen(DeckScreen):
         """Return what prints the transform that is shown."""
         pair = self.pair
         return ros2_words.tf2_echo(pair.target, pair.source) if pair else ""
+
+    def focus_filter(self) -> None:
+        """Focus the filter."""
+        self.set_focus(self.filter)
 
     def relate(self) -> None:
         """Show frames relative to the one at the cursor, or to the root again."""
@@ -210,11 +242,11 @@ class FramesScreen(DeckScreen):
             return
         update = self._update
         self._tree = FrameTree(() if update is None else update.frames)
-        self._lines = self._tree.lines()
+        self._lines, fitting = self._fitting()
         self._findings = [] if update is None else findings_in(update, self._tree)
         if self._relative_to not in self._tree.frames:
             self._relative_to = ""
-        empty = not self._lines and not self._findings
+        empty = not self._tree.frames and not self._findings
         self.query_one("#frames-body").display = not empty
         note = self.query_one("#frames-empty", Static)
         note.display = empty
@@ -223,14 +255,26 @@ class FramesScreen(DeckScreen):
             return
         if self.focused is None:
             self.table.focus()
+        self.filter.placeholder = _("filter: words of a frame or its publisher")
+        looks = {line.frame: "" if line.frame in fitting else "dim" for line in self._lines}
+        looks |= dict.fromkeys(self._wrong, "warn")
         wide = self.size.width >= WIDE_FROM
-        self.table.show_tree(self._lines, self._wrong, self._relative_to, wide=wide)
+        self.table.show_tree(self._lines, looks, self._relative_to, wide=wide)
         self._show_pair()
         self._show_findings()
-        able = (bool(self.chosen), self.has_findings)
+        able = (bool(self.chosen), self.has_findings, self.has_frames)
         if able != self._able:
             self._able = able
             self.refresh_bindings()
+
+    def _fitting(self) -> tuple[list[TreeLine], frozenset[str]]:
+        """Return what the filter leaves of the tree, and the frames in it that match themselves."""
+        lines = self._tree.lines()
+        parts = self.filter.value.casefold().split()
+        if not parts:
+            return lines, self._tree.frames
+        fitting = frozenset(line.frame for line in lines if words.fits(line, parts))
+        return self._tree.lines(self._tree.with_ancestors(fitting)), fitting
 
     def _show_pair(self) -> None:
         pair = self.pair

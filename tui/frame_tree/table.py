@@ -9,7 +9,7 @@ from tui.frame_tree import cells
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Mapping, Sequence
 
     from space.tree.tree import TreeLine
 
@@ -38,25 +38,30 @@ class FrameTable(Rows):
         return False if action == "open" else super().check_action(action, parameters)
 
     def show_tree(
-        self, lines: Sequence[TreeLine], wrong: Collection[str], relative_to: str, *, wide: bool
+        self,
+        lines: Sequence[TreeLine],
+        looks: Mapping[str, str],
+        relative_to: str,
+        *,
+        wide: bool,
     ) -> None:
-        """Show the tree; `wrong` are frames that a finding is about, one has been marked."""
+        """Show the tree; one frame has been marked, `looks` are `warn`, `dim` or none for each."""
         columns = [
             Column(_("frame")),
             Column(_("rate"), STATE, right=True),
             Column(_("age"), AGE, right=True),
             Column(_("publisher"), WIDE if wide else NARROW),
         ]
-        self.show(columns, [_row(line, wrong, relative_to) for line in lines])
+        rows = [_row(line, looks.get(line.frame, ""), relative_to) for line in lines]
+        self.show(columns, rows or [Row("", (Cell(_("nothing matches the filter"), "dim"),))])
 
 
-def _row(line: TreeLine, wrong: Collection[str], relative_to: str) -> Row:
-    is_wrong = line.frame in wrong
-    marks = (" ◎" if line.frame == relative_to else "") + (" !" if is_wrong else "")
+def _row(line: TreeLine, look: str, relative_to: str) -> Row:
+    marks = (" ◎" if line.frame == relative_to else "") + (" !" if look == "warn" else "")
     return Row(
         key_of(line),
         (
-            Cell(cells.name(line) + marks, "warn" if is_wrong else ""),
+            Cell(cells.name(line) + marks, look),
             Cell(*cells.state(line)),
             Cell(*cells.age(line)),
             Cell(*cells.publisher(line)),

@@ -18,11 +18,19 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate
     from space.tree.finding import FrameFinding
+    from space.tree.tree import TreeLine
     from tui.frame.host import Host
 
 NARROWEST = 16
 SHOWN = 30
 """Findings that are written out; the others are counted."""
+
+
+def fits(line: TreeLine, parts: Sequence[str]) -> bool:
+    """Return whether frame or publishers contain all parts, which are in small letters."""
+    heard = (node for one in line.heard for node in one.publishers)
+    text = " ".join((line.frame, *heard)).casefold()
+    return all(part in text for part in parts)
 
 
 def finding_lines(

@@ -160,6 +160,43 @@ async def test_what_is_silent_is_said_to_be_so_and_recovers() -> None:
         assert at.findings == "✓ nothing is wrong with the frames"
 
 
+def names(at: Stage) -> list[str]:
+    """The frames of the tree that is shown."""
+    return [row.lstrip("▶ └├│").split()[0] for row in at.tree()]
+
+
+async def test_the_filter_leaves_what_matches_and_what_is_above_it() -> None:
+    async with stage() as at:
+        whole = names(at)
+        await at.press("slash", *"HEAD_t")
+        assert names(at) == ["odom", "base_link", "head_pan", "head_tilt"]
+        assert at.tree()[1].startswith("└ base_link")
+        assert at.tree()[2].startswith("└ head_pan")
+        await at.press("enter", "end")
+        assert at.screen.chosen == "head_tilt"
+        assert at.pair.startswith("head_tilt in odom")
+        # By who publishes it.
+        await at.press("slash", *" head")
+        assert at.screen.filter.value == "HEAD_t head"
+        await at.press("escape")
+        assert names(at) == whole
+        assert at.screen.chosen == "head_tilt"
+
+
+async def test_a_filter_that_nothing_fits_says_so_and_is_kept_as_frames_come() -> None:
+    async with stage() as at:
+        await at.press("slash", *"lidar")
+        assert at.tree() == ["nothing matches the filter"]
+        assert at.pair == "no frame"
+        await at.press("enter", "enter", "y", "n")
+        await at.show(*ROBOT, frame("base_link", "lidar_link"))
+        assert names(at) == ["odom", "base_link", "lidar_link"]
+        await at.show()
+        await at.press("escape", "slash")
+        await at.show(*ROBOT)
+        assert len(names(at)) == 1 + len(ROBOT)
+
+
 async def test_n_goes_from_one_finding_to_the_next_and_shows_its_words_first() -> None:
     async with stage(with_frames(TROUBLES)) as at:
         seen = []

@@ -87,3 +87,13 @@ def test_an_arm_of_two_thousand_joints_is_drawn(closed: bool) -> None:
 def test_names_that_are_none_make_no_tree() -> None:
     rows = [FrameRow(Stamped("a", name, 0.0, IDENTITY), 1) for name in ("", "a")]
     assert FrameTree(rows).lines() == []
+
+
+def test_some_frames_are_drawn_with_all_that_is_above_them() -> None:
+    robot = tree("odom/base", "base:head", "head:eye", "base:sonar", "map/base", "x/y", "y/x")
+    only = robot.with_ancestors(["eye"])
+    assert only == {"eye", "head", "base", "odom", "map"}
+    shown = [f"{line.branch}{line.frame}" for line in robot.lines(only)]
+    assert shown == ["map", "└ base", "  └ head", "    └ eye", "odom", "└ base"]
+    assert robot.with_ancestors(["y", "nowhere"]) == {"x", "y", "nowhere"}
+    assert robot.lines(()) == []
