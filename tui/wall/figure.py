@@ -57,12 +57,21 @@ class BigNumber(Widget):
             self.shown = number
             self.refresh()
 
+    def _room(self) -> tuple[int, int]:
+        """Return the columns and rows for digits, those of the smallest number on the wall.
+
+        What is left of a room divided by three or four would make some a little larger.
+        """
+        beside = [one.size for one in self.siblings if isinstance(one, BigNumber) and one.display]
+        sizes = [self.size, *(size for size in beside if size.area)]
+        return min(size.width for size in sizes), min(size.height for size in sizes) - 2
+
     def render(self) -> Content:
         """Draw the three below each other."""
         if self.shown is None:
             return Content("")
         value, (of_value, of_note) = plain(self.shown.value, LONGEST), LOOKS[self.shown.look]
-        size = size_for((value, WIDEST), self.size.width, self.size.height - 2)
+        size = size_for((value, WIDEST), *self._room())
         lines = [value] if size is None else digit_lines(value, size)
         return Content("\n").join(
             [

@@ -155,6 +155,19 @@ def test_the_word_of_the_stop_has_large_letters_in_both_languages() -> None:
     assert big_word("HALT!") == "HALT!"
 
 
+@pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)])
+async def test_four_numbers_are_as_large_as_each_other(size: tuple[int, int]) -> None:
+    opener = RecordedOpener()
+    values = {SONAR_FRONT: {"data": 0.62}, SONAR_REAR: {"data": 2.08}}
+    opener.graph.update = graph({**values, ODOMETRY: moving(0.25), BATTERY: HALF_FULL})
+    async with opened(opener, screen="wall", size=size) as (app, pilot):
+        await until(lambda: len(on_wall(app)) == 4, "the numbers")
+        await pilot.pause()
+        heights = {len(str(one.render()).splitlines()) for one in app.screen.query(BigNumber)}
+        assert len(heights) == 1
+        assert heights.pop() >= 5
+
+
 async def test_a_key_shows_it_and_escape_goes_back() -> None:
     async with opened() as (app, pilot):
         await pilot.press("0")
