@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 ROOTS = ("map", "odom", "base_link")
 """Frames of REP-105: the tree that has the first of them is the robot's."""
 SMALLEST_CUBE_M = 0.004
+FARTHEST_M = 1e8
+"""Ten times what the frame `earth` of REP-105 can need; what is farther is no place."""
 
 
 def robot_root(buffer: TransformBuffer, others: Iterable[str] = ()) -> str:
@@ -66,10 +68,24 @@ class Placer:
     def where(
         self, buffer: TransformBuffer, fixed: str, frame: str, stamp_s: float | None = None
     ) -> Transform:
-        """Return where a frame is, at that time if it is known. Raises NoTransformError."""
+        """Return where a frame is, at that time if it is known.
+
+        Raises NoTransformError, also for one that is farther away than the Earth is wide.
+        """
+        at = self._where(buffer, fixed, frame, stamp_s)
+        if max(map(abs, at.translation)) > FARTHEST_M:
+            km = f"{FARTHEST_M / 1000:g}"
+            raise NoTransformError(
+                say("{frame} is farther than {km} km from {fixed}", frame=frame, km=km, fixed=fixed)
+            )
+        return at
+
+    def _where(
+        self, buffer: TransformBuffer, fixed: str, frame: str, stamp_s: float | None
+    ) -> Transform:
         if frame in self._mounts and frame not in buffer.frames:
             parent, place = self._mounts[frame]
-            return self.where(buffer, fixed, parent, stamp_s) @ place
+            return self._where(buffer, fixed, parent, stamp_s) @ place
         if stamp_s is not None:
             try:
                 return buffer.find(fixed, frame, stamp_s)
@@ -102,7 +118,7 @@ class Placer:
         for frame in sorted(buffer.frames, key=lambda one: (len(buffer.way_up(one)), one)):
             mark = self._marks.setdefault(frame, Drawable(frame, ()))
             try:
-                found.append(Located(mark, buffer.find(fixed, frame)))
+                found.append(Located(mark, self.where(buffer, fixed, frame)))
             except NoTransformError:
                 apart.append(frame)
         return found, sorted(apart)

@@ -45,6 +45,19 @@ def dot(frame: str, stamp_s: float | None = None) -> Drawable:
     return Drawable(frame, (Speckles(places((0.0, 0.0, 0.0))),), stamp_s)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("metres", [1e9, 1e300])
+def test_what_is_no_place_on_earth_is_not_drawn_but_told(metres: float) -> None:
+    known = buffer(("map", "base_link", 1.0), ("base_link", "lost", metres))
+    shapes, why = placed(Placer(), known, [dot("base_link"), dot("lost")])
+    assert len(shapes) == 1
+    assert why == "not joined to map: lost is farther than 100000 km from map"
+    found, apart = Placer().frames(known, "map")
+    assert [one.drawable.frame for one in found] == ["map", "base_link"]
+    assert apart == ["lost"]
+    assert with_names(known, "map", SpaceCamera())
+
+
 @pytest.mark.parametrize(
     ("edges", "root"),
     [
