@@ -109,6 +109,8 @@ def _for_programs(row: FrameRow) -> dict[str, Any]:
         "age_s": row.age_s,
         "delay_s": row.delay_s,
         "publishers": list(row.publishers),
+        "certain": row.certain,
+        "gone": row.gone,
         "translation": list(newest.transform.translation),
         "rotation": list(newest.transform.rotation),
     }

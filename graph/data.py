@@ -73,6 +73,8 @@ class EndpointInfo:
     """`automatic`, `manual_by_topic`; empty if the peer does not report it."""
     process: int | None = field(default=None, compare=False)
     """Number of its process modulo `PROCESS_NUMBERS`; None if the middleware does not report it."""
+    gid: bytes = field(default=b"", compare=False, repr=False)
+    """What the middleware knows it by, in this process; empty outside of a live graph."""
 
     @property
     def is_named(self) -> bool:
@@ -222,7 +224,11 @@ class FrameRow:
     delay_s: float = 0.0
     """Arrival minus stamp of the newest: negative if the stamp is from the future."""
     publishers: tuple[str, ...] = ()
-    """Full names of the nodes that may publish it: more than one if it is not known which."""
+    """Full names of the nodes that publish it, or of those that may; once for each of one name."""
+    certain: bool = True
+    """Whether all of them do, as the messages told. Otherwise one of them does, perhaps more."""
+    gone: str = ""
+    """Full name of the node that published it last, if that is known and has gone."""
     fault: str = ""
     """Why one of the last seconds was not taken, a sentence: NaN, a quaternion of length 0, no
     name. `newest` is the one before it, or the identity."""

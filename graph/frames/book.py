@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from graph.frames.reading import Names, TransformReader
 from graph.frames.record import FrameRecord
+from graph.frames.senders import Publishers
 from text.ros_names import TF, TF_STATIC
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from collections.abc import Set as AbstractSet
 
     from graph.data import FrameRow, Value
 
@@ -34,7 +34,7 @@ class FrameBook:
         self._lists: dict[tuple[bool, Names], list[FrameRecord | None]] = {}
         """The records of a message with these names; None for those that find no room."""
         self._listed = 0
-        self._present: dict[str, tuple[AbstractSet[str], float]] = {}
+        self._publishers = {topic: Publishers() for topic in FRAME_TOPICS}
         self._messages = 0
         self._is_full = False
         """Whether a frame has found no room since room was made."""
@@ -45,9 +45,17 @@ class FrameBook:
         self._records.clear()
         self._lists.clear()
 
-    def take(self, topic: str, raw: bytes, arrived_s: float, number: int | None = None) -> None:
-        """Take a message; `number` is what its publisher has given it, if the middleware tells.
+    def take(
+        self,
+        topic: str,
+        raw: bytes,
+        arrived_s: float,
+        number: int | None = None,
+        sender: bytes | None = None,
+    ) -> None:
+        """Take a message, with its `number` at its publisher, if the middleware counts.
 
+        `sender` is the gid of that publisher, if the middleware tells.
         Raises what `TransformReader.read` raises.
         """
         names, found = self._readers[topic].read(raw)
@@ -59,22 +67,22 @@ class FrameBook:
             number = self._messages = self._messages + 1
         for record, fields in zip(records, found, strict=True):
             if record is not None:
-                record.take(fields, arrived_s, number)
+                record.take(fields, arrived_s, number, sender)
 
-    def published_by(self, topic: str, nodes: AbstractSet[str], now_s: float) -> None:
-        """Say which nodes publish one of the topics now."""
-        known = self._present.get(topic)
-        if known is None or known[0] != nodes:
-            self._present[topic] = (nodes, now_s)
+    def published_by(self, topic: str, there: Mapping[bytes, str], now_s: float) -> None:
+        """Say who publishes one of the topics now: the gid of each publisher to its node.
+
+        The name is empty while it is unknown.
+        """
+        self._publishers[topic].are(there, now_s)
 
     def rows(self, now_s: float) -> tuple[FrameRow, ...]:
         """Return the rows at this unix time, sorted by frame and parent."""
         if self._is_full and abs(now_s - self._made_room_s) > ROOM_AGAIN_S:
             self._make_room(now_s)
-        nobody: tuple[AbstractSet[str], float] = (frozenset(), now_s)
-        moving, static = (self._present.get(topic, nobody) for topic in (TF, TF_STATIC))
+        moving, static = self._publishers[TF], self._publishers[TF_STATIC]
         return tuple(
-            record.row(now_s, *(static if record.static else moving))
+            record.row(now_s, static if record.static else moving)
             for record in self._records.values()
         )
 

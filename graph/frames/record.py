@@ -7,25 +7,23 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graph.data import FrameRow
+from graph.frames.senders import TOGETHER_S, Senders
 from space.buffer import Stamped
 from space.transform import IDENTITY, Transform
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Set as AbstractSet
+    from graph.frames.senders import Publishers
 
 WINDOW_S = 5.0
 """Of the rate, and how long a transform that was not taken is spoken of."""
 FEW = 3
 """Points of the rate that are kept whatever their age, so that a slow frame has one, too."""
-REWINDS = 3
-"""So often within the window the numbers go back only if several publishers take turns."""
+TURNS = 3
+"""So often within the window publishers change, or their numbers go back, only if several take
+turns."""
 CHANGES = 3
 """So many within the window: a parameter that somebody sets makes fewer."""
-TOGETHER_S = 0.5
-"""Two latched messages that come so close together, with other numbers, are of two nodes."""
-SETTLED_S = 3.0
-"""Endpoints, and their names, become known a little later than the messages arrive."""
 LONGEST_NAME = 200
 """Characters that are kept of a name."""
 TOLERANCE = 0.01
@@ -39,7 +37,7 @@ class _Counted(NamedTuple):
 
     arrived_s: float
     taken: int
-    rewinds: int
+    turns: int
 
 
 class FrameRecord:
@@ -48,16 +46,14 @@ class FrameRecord:
     __slots__ = (
         "_bad",
         "_bad_s",
-        "_candidates",
         "_changes",
         "_faults",
-        "_first_s",
-        "_gone_s",
         "_good",
         "_number",
         "_points",
-        "_rewinds",
         "_rivals",
+        "_senders",
+        "_turns",
         "_wrong_name",
         "arrived_s",
         "count",
@@ -75,7 +71,6 @@ class FrameRecord:
         self.count = 0
         self.arrived_s = arrived_s
         """When the newest came, unix time."""
-        self._first_s = arrived_s
         self._wrong_name = _wrong_name(parent, child)
         self._good: tuple[Any, ...] = ()
         """Fields of the newest that was taken, as `graph.frames.reading.Transforms` has them."""
@@ -86,18 +81,27 @@ class FrameRecord:
         """When a static one came with other numbers."""
         self._rivals = False
         self._number = -1
-        self._rewinds = 0
+        self._turns = 0
+        """How often another publisher than before has sent one that moves, as far as is known."""
         self._points: deque[_Counted] = deque()
-        self._candidates: AbstractSet[str] | None = None
-        self._gone_s = INFINITE
+        self._senders = Senders(arrived_s)
 
-    def take(self, fields: tuple[Any, ...], arrived_s: float, number: int) -> None:
-        """Take the next transform; `number` counts the messages of its publisher."""
+    def take(
+        self, fields: tuple[Any, ...], arrived_s: float, number: int, sender: bytes | None
+    ) -> None:
+        """Take the next transform; `number` counts the messages of its publisher, `sender`."""
         self.count += 1
         if self.count == 1:
             self._points.append(_Counted(arrived_s, 1, 0))
-        rewound, passed_s = number <= self._number, arrived_s - self.arrived_s
-        self._rewinds += rewound
+        passed_s = arrived_s - self.arrived_s
+        if sender != self._senders.newest:
+            turned = self.count > 1
+            self._senders.hand_over(sender, self.arrived_s, self._good, passed_s)
+        else:
+            # The numbers of one publisher do not go back.
+            turned = sender is None and number <= self._number
+        if turned and not self.static:
+            self._turns += 1
         self._number, self.arrived_s = number, arrived_s
         _, _, _, _, x, y, z, a, b, c, d = fields
         # Written so that any comparison with NaN fails.
@@ -111,16 +115,16 @@ class FrameRecord:
             if self.static and self._good and self._good[4:] != fields[4:]:
                 self._changes.append(arrived_s)
                 # A node that is started anew takes longer.
-                self._rivals = self._rivals or (rewound and passed_s < TOGETHER_S)
+                self._rivals = self._rivals or (turned and passed_s < TOGETHER_S)
             self._good = fields
         else:
             self._bad, self._bad_s = fields, arrived_s
             self._faults += 1
 
-    def row(self, now_s: float, present: AbstractSet[str], since_s: float) -> FrameRow:
-        """Return what is known at `now_s`; `present` are the publishers of its topic `since_s`."""
+    def row(self, now_s: float, topic: Publishers) -> FrameRow:
+        """Return what is known at `now_s`; `topic` are the publishers of its topic."""
         self._mark()
-        self._narrow_down(now_s, present, since_s)
+        who = self._senders.who(topic, self.arrived_s, now_s, latched=self.static)
         good = self._good
         stamp = good or self._bad
         stamp_s = stamp[0] + stamp[1] * NANOSECONDS
@@ -132,18 +136,18 @@ class FrameRecord:
             None if self.static else self._hz(),
             max(0.0, now_s - self.arrived_s),
             self.arrived_s - stamp_s,
-            tuple(sorted(self._candidates or ())),
+            *who,
             self._fault(now_s),
             self._faults,
             self.slashed,
-            self._rivals or self._keeps_changing(now_s),
-            self._points[-1].rewinds - self._points[0].rewinds >= REWINDS,
+            self._keeps_changing(now_s) or self._has_rivals(topic, now_s),
+            self._points[-1].turns - self._points[0].turns >= TURNS,
         )
 
     def _mark(self) -> None:
         points = self._points
         if points[-1].taken != self.count:
-            points.append(_Counted(self.arrived_s, self.count, self._rewinds))
+            points.append(_Counted(self.arrived_s, self.count, self._turns))
         while len(points) > FEW and self.arrived_s - points[0].arrived_s > WINDOW_S:
             points.popleft()
 
@@ -155,17 +159,11 @@ class FrameRecord:
     def _keeps_changing(self, now_s: float) -> bool:
         return len(self._changes) == CHANGES and now_s - self._changes[0] < WINDOW_S
 
-    def _narrow_down(self, now_s: float, present: AbstractSet[str], since_s: float) -> None:
-        """Whoever was not there while the frame came cannot be its publisher."""
-        if self.arrived_s > self._gone_s:
-            self._first_s, self._gone_s, self._candidates = self.arrived_s, INFINITE, None
-        known = self._candidates
-        if known is None or now_s - self._first_s < SETTLED_S:
-            self._candidates = present
-        elif self.arrived_s > since_s + SETTLED_S:
-            self._candidates = known & present or present
-        elif known and known.isdisjoint(present):
-            self._candidates, self._gone_s = frozenset(), now_s
+    def _has_rivals(self, topic: Publishers, now_s: float) -> bool:
+        senders = self._senders
+        if senders.newest is None or senders.newest not in topic.known:
+            return self._rivals
+        return self.static and senders.disagree(topic, self._good, self.arrived_s, now_s)
 
     def _fault(self, now_s: float) -> str:
         if now_s - self._bad_s > WINDOW_S and self._good:

@@ -155,17 +155,17 @@ class ObserverNode:
         # Also if only the passive subscriptions have changed.
         self.publications.tune(seen.topics)
         if seen != self._scan:
-            self._scan = seen
             self.dead_man_switch.tune(seen.topics)
+        # Also if it is equal: endpoints may have been replaced by others like them.
+        self._scan = seen
 
     def _frame_rows(self) -> tuple[FrameRow, ...]:
         now_s = time.time()
         for topic in FRAME_TOPICS:
             ends = self._scan.topics.get(topic)
-            nodes = (
-                frozenset(end.called for end in ends.everyone_publishing) if ends else frozenset()
-            )
-            self._frames.published_by(topic, nodes, now_s)
+            everyone = ends.everyone_publishing if ends else ()
+            there = {end.gid: end.node if end.is_named else "" for end in everyone}
+            self._frames.published_by(topic, there, now_s)
         return self._frames.rows(now_s)
 
     def _update(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol
 
 from graph.data import Sample
 from graph.messages.decoding import decoder
@@ -13,6 +14,7 @@ from graph.messages.stand_in import stand_in
 from graph.messages.types import UnknownTypeError, load_message, not_decoded
 from graph.observer.losses import Losses
 from graph.observer.rates import RateMeter
+from graph.observer.taking import SENDER, SenderReader, TakeError
 from graph.observer.timing import Arrival
 from graph.qos import Qos, profile
 
@@ -21,6 +23,16 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
     from rclpy.subscription import Subscription
+
+
+class TakeEvery(Protocol):
+    """Takes each message of a topic."""
+
+    def __call__(
+        self, raw: bytes, arrived_s: float, number: int | None, sender: bytes | None
+    ) -> None:
+        """Take the next: when it arrived, its number at its publisher, and which one that is."""
+
 
 DEEP = 200
 DEEP_OF_EVERY = 2000
@@ -52,11 +64,12 @@ class Tap:
         qos: Qos,
         depth: int,
         meter: RateMeter | None = None,
-        every: Callable[[bytes, float, int | None], None] | None = None,
+        every: TakeEvery | None = None,
     ) -> None:
         """Subscribe; `meter` continues where an earlier tap ended.
 
-        `every` is given each message, its arrival in unix time and its number at its publisher.
+        `every` is given each message, its arrival in unix time, its number at its publisher, and
+        the identifier of that.
         A type that is not installed is measured if the middleware allows it, but not decoded.
         Raises UnknownTypeError, and what rclpy raises.
         """
@@ -90,6 +103,7 @@ class Tap:
             raw=True,
         )
         self._losses = Losses(self._subscription)
+        self._senders = SenderReader.load() if every else None
 
     def drain(self, *, one_publisher: bool, decode: int) -> tuple[Sample, ...]:
         """Empty the queue, and return the newest `decode` messages as samples.
@@ -138,16 +152,22 @@ class Tap:
     def close(self) -> None:
         """End the subscription."""
         self._losses.close()
+        self._end_senders()
         self._node.destroy_subscription(self._subscription)
 
     def _take_all(self, decode: int) -> tuple[list[Arrival], deque[tuple[bytes, float, float]]]:
         batch: list[Arrival] = []
         kept: deque[tuple[bytes, float, float]] = deque(maxlen=decode)
-        handle = self._subscription.handle
-        with handle:
+        take = self._taking()
+        with self._subscription.handle:
             # A publisher faster than this loop must not keep it busy for ever.
             for _ in range(2 * self.depth):
-                taken = handle.take_message(self._cls, True)
+                try:
+                    taken = take()
+                except TakeError:
+                    # From the next poll on rclpy takes them, and says what is wrong if it cannot.
+                    self._end_senders()
+                    break
                 if taken is None:
                     break
                 raw, info = taken
@@ -155,21 +175,32 @@ class Tap:
                 delay_s = self._delay(raw, stamp_s) if self._delay else None
                 number = info["publication_sequence_number"]
                 if self.every:
-                    self._hand_on(self.every, raw, stamp_s, number)
+                    self._hand_on(self.every, raw, stamp_s, number, info.get(SENDER))
                 batch.append(Arrival(stamp_s, len(raw), number, delay_s))
                 self._last = (raw, stamp_s, info["source_timestamp"] * NANOSECONDS)
                 kept.append(self._last)
         return batch, kept
 
+    def _taking(self) -> Callable[[], tuple[bytes, dict[str, Any]] | None]:
+        if self._senders:
+            return partial(self._senders.take, self._subscription)
+        return partial(self._subscription.handle.take_message, self._cls, True)
+
+    def _end_senders(self) -> None:
+        if self._senders:
+            self._senders.close()
+            self._senders = None
+
     def _hand_on(
         self,
-        every: Callable[[bytes, float, int | None], None],
+        every: TakeEvery,
         raw: bytes,
         stamp_s: float,
         number: int | None,
+        sender: bytes | None,
     ) -> None:
         try:
-            every(raw, stamp_s, number)
+            every(raw, stamp_s, number, sender)
         except Exception as error:  # noqa: BLE001 - as in `_sample`
             self.broken = not_decoded(self.type_name, error)
         else:

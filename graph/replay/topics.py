@@ -205,7 +205,7 @@ class ReplayTopics:
     def frames(self, now_s: float) -> tuple[FrameRow, ...]:
         """Return a row for each frame as of `now_s`, unix time in the bag."""
         for topic in FRAME_TOPICS:
-            self._frames.published_by(topic, frozenset({NODE}), now_s)
+            self._frames.published_by(topic, {b"": NODE}, now_s)
         return self._frames.rows(now_s)
 
     def samples(

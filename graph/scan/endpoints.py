@@ -69,7 +69,7 @@ def full_name(name: str, namespace: str) -> str:
 
 
 def _endpoint(info: dict[str, Any]) -> EndpointInfo:
-    qos = info["qos_profile"]
+    qos, gid = info["qos_profile"], bytes(info["endpoint_gid"])
     history, reliability, durability, liveliness = _names(
         qos["history"], qos["reliability"], qos["durability"], qos["liveliness"]
     )
@@ -84,7 +84,8 @@ def _endpoint(info: dict[str, Any]) -> EndpointInfo:
         _seconds(qos["lifespan"]),
         _seconds(qos["liveliness_lease_duration"]),
         liveliness,
-        _process(bytes(info["endpoint_gid"])),
+        _process(gid),
+        gid,
     )
 
 

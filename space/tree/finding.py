@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -10,6 +11,8 @@ from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from space.tree.heard import HeardFrame
 
 NAMED = 3
 """Frames and nodes that a sentence names; the others are counted."""
@@ -49,25 +52,28 @@ class FrameFinding:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Name the first of them, and count the others."""
+    """Name the first of them, and count the others; what is there several times is named once."""
     if not names:
         return say("nobody")
-    words = _called(names[0])
-    for name in names[1:NAMED]:
+    counted = Counter(names)
+    first, *others = list(counted)[:NAMED]
+    words = _called(first, counted[first])
+    for name in others:
         # Nested, since a name may be a sentence that is still to be translated.
-        words = say("{names}, {name}", names=words, name=_called(name))
-    more = len(names) - NAMED
+        words = say("{names}, {name}", names=words, name=_called(name, counted[name]))
+    more = len(counted) - NAMED
     return say("{names} and {count} more", names=words, count=more) if more > 0 else words
 
 
-def by_whom(publishers: Sequence[str]) -> str:
-    """Name the publisher, or those that it may be."""
-    return (
-        listed(publishers)
-        if len(publishers) < 2
-        else say("one of {nodes}", nodes=listed(publishers))
-    )
+def by_whom(heard: Sequence[HeardFrame]) -> str:
+    """Name the publishers of frames, or those that it may be."""
+    names: Counter[str] = Counter()
+    for one in heard:
+        names |= Counter(one.publishers)
+    nodes = listed(tuple(names.elements()))
+    return nodes if all(one.certain for one in heard) else say("one of {nodes}", nodes=nodes)
 
 
-def _called(name: str) -> str:
-    return name or say("a frame without a name")
+def _called(name: str, times: int) -> str:
+    called = name or say("a frame without a name")
+    return say("{name} ({count} of this name)", name=called, count=times) if times > 1 else called

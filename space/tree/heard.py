@@ -42,7 +42,15 @@ class HeardFrame(Protocol):
 
     @property
     def publishers(self) -> tuple[str, ...]:
-        """The nodes that may publish it; empty if all of them have gone."""
+        """The nodes that publish it, or that may; empty if all of them have gone."""
+
+    @property
+    def certain(self) -> bool:
+        """Whether all of them do; otherwise one of them does, perhaps more."""
+
+    @property
+    def gone(self) -> str:
+        """The node that published it last, if that is known and has gone."""
 
     @property
     def fault(self) -> str:

@@ -40,7 +40,9 @@ def findings_of_frames(
 
 
 def _numbers(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
-    for found in _grouped(heard, lambda one: one.fault and (one.publishers, one.fault)):
+    for found in _grouped(
+        heard, lambda one: one.fault and (one.publishers, one.certain, one.fault)
+    ):
         first = found[0]
         text = say(
             "{frames}: {fault}; refused {faults} of {count}",
@@ -51,55 +53,65 @@ def _numbers(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
         )
         advice = say(
             "tf2 drops such a transform as well: mend what {node} fills in",
-            node=by_whom(first.publishers),
+            node=by_whom([first]),
         )
         yield FrameFinding(FrameTrouble.NUMBERS, _names(found), text, advice)
 
 
 def _contested(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
-    for found in _grouped(heard, lambda one: one.contested and one.publishers):
-        text = say(
-            "several nodes publish {frames} by turns, so that it jumps",
-            frames=listed(_names(found)),
+    for found in _grouped(heard, lambda one: one.contested and (one.publishers, one.certain)):
+        names, nodes = listed(_names(found)), listed(found[0].publishers)
+        text = (
+            say("{nodes} publish {frames} by turns, so that it jumps", nodes=nodes, frames=names)
+            if found[0].certain and len(found[0].publishers) > 1
+            else say("several publishers send {frames} by turns, so that it jumps", frames=names)
         )
         advice = say(
             "leave it to one of {nodes}; many nodes have a parameter like publish_tf: false",
-            nodes=listed(found[0].publishers),
+            nodes=nodes,
         )
         yield FrameFinding(FrameTrouble.CONTESTED, _names(found), text, advice)
 
 
 def _stale(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
-    for found in _grouped(heard, lambda one: is_stale(one) and (one.publishers,)):
-        publishers = found[0].publishers
+    for found in _grouped(heard, lambda one: is_stale(one) and (one.publishers, one.gone)):
+        first = found[0]
         text = say(
             "{frames}: silent for {seconds:.0f} s",
             frames=listed(_names(found)),
             seconds=max(one.age_s for one in found),
         )
-        if publishers:
+        if first.publishers:
             advice = say(
                 "see in Logs why {node} publishes it no more; tf2 does not answer for a time that "
                 "it has not heard of",
-                node=by_whom(publishers),
+                node=by_whom(found[:1]),
             )
+        elif first.gone:
+            advice = say("{node}, which published it, has gone: start it again", node=first.gone)
         else:
             advice = say("the node that published it has gone: start it again")
         yield FrameFinding(FrameTrouble.STALE, _names(found), text, advice)
 
 
 def _gone(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
-    found = [
-        one
-        for one in heard
-        # Endpoints become known a little later than their messages.
-        if one.is_static and not one.publishers and one.age_s > ONCE_S
-    ]
-    if found:
-        text = say(
-            "{frames}: the node that published it on {topic} has gone",
-            frames=listed(_names(found)),
-            topic=TF_STATIC,
+    # Endpoints become known a little later than their messages.
+    gone = [one for one in heard if one.is_static and not one.publishers and one.age_s > ONCE_S]
+    for found in _grouped(gone, lambda one: (one.gone,)):
+        frames, node = listed(_names(found)), found[0].gone
+        text = (
+            say(
+                "{frames}: {node}, which published it on {topic}, has gone",
+                frames=frames,
+                node=node,
+                topic=TF_STATIC,
+            )
+            if node
+            else say(
+                "{frames}: the node that published it on {topic} has gone",
+                frames=frames,
+                topic=TF_STATIC,
+            )
         )
         advice = say("start it again: a node that starts now does not get this frame")
         yield FrameFinding(FrameTrouble.GONE, _names(found), text, advice)
@@ -107,11 +119,13 @@ def _gone(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
 
 def _clocks(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
     moving = [one for one in heard if not one.is_static and one.count > one.faults]
-    for found in _grouped(moving, lambda one: (kind := _clock(one)) and (kind, one.publishers)):
+    for found in _grouped(
+        moving, lambda one: (kind := _clock(one)) and (kind, one.publishers, one.certain)
+    ):
         first = found[0]
         values: dict[str, object] = {
             "frames": listed(_names(found)),
-            "node": by_whom(first.publishers),
+            "node": by_whom([first]),
             "seconds": abs(first.delay_s),
             "stamp": first.newest.stamp_s,
         }
@@ -165,27 +179,33 @@ _CLOCK_WORDS = {"other start": _of_other_start, "future": _of_future, "behind": 
 
 
 def _static_moved(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
-    for found in _grouped(heard, lambda one: one.moved and (one.publishers,)):
-        text = say(
-            "{frames}: comes on {topic} with different numbers",
-            frames=listed(_names(found)),
-            topic=TF_STATIC,
-        )
-        advice = say(
-            "what moves belongs on {topic}; if two nodes publish it, leave it to one: {nodes}",
-            topic=TF,
-            nodes=listed(found[0].publishers),
-        )
+    for found in _grouped(heard, lambda one: one.moved and (one.publishers, one.certain)):
+        first = found[0]
+        words: dict[str, object] = {
+            "frames": listed(_names(found)),
+            "nodes": listed(first.publishers),
+            "topic": TF_STATIC,
+        }
+        if first.certain and len(first.publishers) > 1:
+            text = say("{nodes} publish {frames} on {topic} with different numbers", **words)
+            advice = say("leave it to one: which of them holds depends on who comes last")
+        else:
+            text = say("{frames}: comes on {topic} with different numbers", **words)
+            advice = say(
+                "what moves belongs on {topic}; if two nodes publish it, leave it to one: {nodes}",
+                topic=TF,
+                nodes=words["nodes"],
+            )
         yield FrameFinding(FrameTrouble.STATIC_MOVED, _names(found), text, advice)
 
 
 def _slashed(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
-    for found in _grouped(heard, lambda one: one.slashed and (one.publishers,)):
+    for found in _grouped(heard, lambda one: one.slashed and (one.publishers, one.certain)):
         text = say("{frames}: published with a slash in front", frames=listed(_names(found)))
         advice = say(
             "take it away in {node}: tf2 knows names without one, and others may look for it with "
             "the slash",
-            node=by_whom(found[0].publishers),
+            node=by_whom(found[:1]),
         )
         yield FrameFinding(FrameTrouble.SLASH, _names(found), text, advice)
 

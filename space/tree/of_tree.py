@@ -11,9 +11,8 @@ from text.sentences import say
 from text.suggestions import near
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
-    from space.tree.heard import HeardFrame
     from space.tree.tree import FrameTree
 
 ALIKE = 0.85
@@ -49,7 +48,7 @@ def _loops(tree: FrameTree) -> Iterator[FrameFinding]:
             "a frame's parent is the one that it hangs on: take {parent} → {child} out of {node}",
             parent=loop[-1],
             child=loop[0],
-            node=_publishers(closing),
+            node=by_whom(closing),
         )
         yield FrameFinding(FrameTrouble.LOOP, loop, text, advice)
 
@@ -63,9 +62,9 @@ def _parents(tree: FrameTree) -> Iterator[FrameFinding]:
             "{frame} has two parents: {first} by {one}, {second} by {other}",
             frame=frame,
             first=first,
-            one=_publishers(tree.edges[first, frame]),
+            one=by_whom(tree.edges[first, frame]),
             second=second,
-            other=_publishers(tree.edges[second, frame]),
+            other=by_whom(tree.edges[second, frame]),
         )
         advice = say(
             "it would jump between the two: keep one, and turn the other round ({frame} → {first}) "
@@ -96,7 +95,7 @@ def _to_join(tree: FrameTree, main: str, others: list[str]) -> str:
                 "is {root} a slip for {meant}? Then correct the parent that {node} gives",
                 root=root,
                 meant=meant,
-                node=_publishers(tree.edges[root, tree.children[root][0]]),
+                node=by_whom(tree.edges[root, tree.children[root][0]]),
             )
     return say(
         "publish where {root} is in the other tree: ros2 run tf2_ros static_transform_publisher "
@@ -142,9 +141,9 @@ def _both(tree: FrameTree) -> Iterator[FrameFinding]:
             child=child,
             parent=parent,
             moving=TF,
-            one=by_whom(moving.publishers),
+            one=by_whom([moving]),
             static=TF_STATIC,
-            other=by_whom(static.publishers),
+            other=by_whom([static]),
         )
         advice = say(
             "what moves is published on {moving} alone, what is fixed on {static} alone, once",
@@ -158,7 +157,3 @@ def _both(tree: FrameTree) -> Iterator[FrameFinding]:
 def _meant(name: str, known: frozenset[str]) -> str:
     """Return the frame that was probably meant, empty if none is as similar."""
     return next(iter(near(name, sorted(known), cutoff=ALIKE)), "")
-
-
-def _publishers(heard: Iterable[HeardFrame]) -> str:
-    return by_whom(tuple(dict.fromkeys(node for one in heard for node in one.publishers)))

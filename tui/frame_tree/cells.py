@@ -71,7 +71,11 @@ def publisher(line: TreeLine) -> Words:
     if not heard.publishers:
         return _("gone"), "bad" if heard.age_s > FRESH_S else "dim"
     first, *others = (localized(node).removeprefix("/") for node in heard.publishers)
-    return f"{first}? +{len(others)}" if others else first, ""
+    if not others:
+        return first, ""
+    if set(others) == {first}:
+        return f"{first} ×{len(others) + 1}", ""
+    return f"{first}{'' if heard.certain else '?'} +{len(others)}", ""
 
 
 def _rate(hz: float | None) -> str:

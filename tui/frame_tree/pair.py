@@ -76,8 +76,10 @@ class FramePairs:
 
 def publisher_line(heard: Sequence[HeardFrame]) -> str:
     """Return who publishes a frame, or may do so, with the whole names."""
-    nodes = tuple(dict.fromkeys(node for one in heard for node in one.publishers))
-    return _("published by {nodes}").format(nodes=localized(by_whom(nodes)))
+    gone = next((one.gone for one in heard if one.gone), "")
+    if gone and not any(one.publishers for one in heard):
+        return _("published by {node}, which has gone").format(node=localized(gone))
+    return _("published by {nodes}").format(nodes=localized(by_whom(heard)))
 
 
 def pair_lines(pair: FramePair, room: int) -> list[str]:

@@ -282,7 +282,12 @@ class FramesScreen(DeckScreen):
         lines = [_("no frame")] if pair is None else pair_lines(pair, room)
         heard = next((line.heard for line in self._lines if key_of(line) == self.table.chosen), ())
         if heard:
-            lines.append(publisher_line(heard))
+            recorded = self.feed.replay is not None
+            lines.append(
+                _("a recording does not tell which node published it")
+                if recorded
+                else publisher_line(heard)
+            )
         looks = ["bold"] + [""] * len(lines)
         self._say("#frames-pair", list(zip(lines, looks, strict=False)))
 

@@ -14,16 +14,14 @@ from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
 from tf2_msgs.msg import TFMessage
 
-from graph.data import FrameRow
 from graph.frames.around import surroundings
 from graph.frames.book import MOST_FRAMES
-from graph.frames.reading import TransformReader
+from graph.frames.reading import TF_MESSAGE, TransformReader
 from graph.messages.decoding import decoder
+from tests.ros.frame_publishing import frames, latch, repeat, see, value
 from tests.ros.observing import Peer, Watcher
 from tests.unit.transform_messages import Sent, cdr
 from tests.waiting import wait_until
-
-TF_MESSAGE = "tf2_msgs/msg/TFMessage"
 
 
 @pytest.fixture(scope="module")
@@ -48,47 +46,6 @@ def watcher(module_watcher: Watcher) -> Iterator[Watcher]:
     module_watcher.observer.watch_frames(False)
     module_watcher.observer.measure(all_topics=False)
     wait_until(lambda: not module_watcher.update.frames, "no frames any more")
-
-
-def value(*sent: Sent) -> dict[str, Any]:
-    """A message as a peer takes it."""
-    return {
-        "transforms": [
-            {
-                "header": {
-                    "stamp": {"sec": int(one.stamp_s), "nanosec": 0},
-                    "frame_id": one.parent,
-                },
-                "child_frame_id": one.child,
-                "transform": {
-                    "translation": dict(zip("xyz", one.translation, strict=True)),
-                    "rotation": dict(zip("xyzw", one.rotation, strict=True)),
-                },
-            }
-            for one in sent
-        ]
-    }
-
-
-def frames(watcher: Watcher, child: str) -> list[FrameRow]:
-    return [row for row in watcher.update.frames if row.newest.child == child]
-
-
-def see(watcher: Watcher, child: str, test: Any, what: str) -> FrameRow:
-    """Wait for a row of this frame that passes."""
-    return wait_until(
-        lambda: next((row for row in frames(watcher, child) if test(row)), None), f"{child}: {what}"
-    )
-
-
-def repeat(peer: Peer, hz: float, *sent: Sent) -> None:
-    peer.advertise("/tf", type_name=TF_MESSAGE)
-    peer.repeat("/tf", value=value(*sent), hz=hz)
-
-
-def latch(peer: Peer, *sent: Sent) -> None:
-    peer.advertise("/tf_static", type_name=TF_MESSAGE, durability="transient_local", depth=1)
-    peer.publish("/tf_static", value=value(*sent))
 
 
 def test_two_publishers_on_both_topics_are_told_apart(

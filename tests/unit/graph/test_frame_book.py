@@ -167,7 +167,7 @@ def test_two_latched_messages_that_come_together_with_other_numbers_are_of_two_n
 
 
 def publishers(book: FrameBook, child: str, now_s: float, *nodes: str) -> tuple[str, ...]:
-    book.published_by(TF, frozenset(nodes), now_s)
+    book.published_by(TF, {node.encode(): node for node in nodes}, now_s)
     return row(book, child, now_s).publishers
 
 

@@ -87,11 +87,13 @@ def test_two_parents_name_both_and_who_publishes_them() -> None:
 
 
 def test_a_loop_is_told_with_the_publisher_that_closes_it() -> None:
-    found = find(heard("a", "b"), heard("b", "c"), heard("c", "a", publishers=("/x", "/y")))
-    (loop,) = found
+    closing = heard("c", "a", publishers=("/x", "/y"), certain=False)
+    (loop,) = find(heard("a", "b"), heard("b", "c"), closing)
     assert loop.trouble is FrameTrouble.LOOP
     assert loop.text.startswith("a → b → c and back to a")
     assert "c → a out of one of /x, /y" in loop.advice
+    (loop,) = find(heard("a", "b"), heard("b", "c"), replace(closing, certain=True))
+    assert "c → a out of /x, /y" in loop.advice
 
 
 def test_two_trees_are_told_with_the_command_that_joins_them() -> None:
@@ -158,15 +160,33 @@ def test_a_frame_on_both_topics_is_told_with_both_publishers() -> None:
 
 
 def test_a_static_frame_that_moves_is_told() -> None:
-    found = only(*ROBOT, heard("base_link", "head", static=True, moved=True))
+    row = heard("base_link", "head", static=True, moved=True)
+    found = only(*ROBOT, row)
     assert (found.trouble, found.frames) == (FrameTrouble.STATIC_MOVED, ("head",))
+    assert found.text == "head: comes on /tf_static with different numbers"
+
+
+def test_two_nodes_that_latch_one_frame_in_two_places_are_told() -> None:
+    row = heard("base_link", "head", static=True, moved=True, publishers=("/one", "/other"))
+    found = only(*ROBOT, row)
+    assert found.trouble is FrameTrouble.STATIC_MOVED
+    assert found.text == "/one, /other publish head on /tf_static with different numbers"
+    found = only(*ROBOT, replace(row, certain=False))
+    assert found.text == "head: comes on /tf_static with different numbers"
+    assert "/one, /other" in found.advice
 
 
 def test_a_frame_that_two_nodes_publish_by_turns_is_told() -> None:
     row = heard("base_link", "head", contested=True, publishers=("/ekf", "/wheels"))
     found = only(*ROBOT, row)
     assert found.trouble is FrameTrouble.CONTESTED
+    assert found.text == "/ekf, /wheels publish head by turns, so that it jumps"
     assert "/ekf, /wheels" in found.advice
+    found = only(*ROBOT, replace(row, certain=False))
+    assert found.text == "several publishers send head by turns, so that it jumps"
+    assert "/ekf, /wheels" in found.advice
+    found = only(*ROBOT, replace(row, publishers=("/ekf", "/ekf")))
+    assert found.text == "/ekf (2 of this name) publish head by turns, so that it jumps"
 
 
 def test_numbers_that_are_refused_are_told_with_how_many() -> None:

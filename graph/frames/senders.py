@@ -1,0 +1,159 @@
+"""Who sends a frame: exactly if the messages tell their publisher, otherwise who may do so.
+
+In a live graph they do, see `graph.observer.taking`; in a recording nothing of it is kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from collections.abc import Set as AbstractSet
+
+SETTLED_S = 3.0
+"""Endpoints, and their names, become known a little later than the messages arrive."""
+RECENT_S = 5.0
+"""Whoever has not sent a moving frame for so long no longer does."""
+TOGETHER_S = 0.5
+"""Two latched messages that come so close together are of two nodes: a restart takes longer."""
+REPLACED_S = 30.0
+"""A node that was killed stays in the graph until its lease has expired, 20 s with Fast DDS; it is
+no second node beside the one of its name that was started in its place."""
+PARTICIPANT = 12
+"""Bytes of a gid that all publishers of one process have. Source: OMG DDSI-RTPS 2.5, 8.2.4.1."""
+MOST_KNOWN, MOST_OTHERS = 1000, 20
+"""Publishers that are remembered, of a topic and of a frame."""
+
+
+@dataclass
+class Publishers:
+    """Those of one topic: who is there now, and who has been."""
+
+    there: Mapping[bytes, str] = field(default_factory=dict)
+    """Gid to the name of the node, empty while that is unknown."""
+    nodes: AbstractSet[str] = frozenset()
+    since_s: float = float("inf")
+    """Since when it is just these nodes."""
+    known: dict[bytes, str] = field(default_factory=dict)
+    """Those with a name, also if they have gone."""
+
+    def are(self, there: Mapping[bytes, str], now_s: float) -> None:
+        """Say who is there now."""
+        if there == self.there:
+            return
+        self.there = there
+        nodes = frozenset(name or say("unknown node") for name in there.values())
+        if nodes != self.nodes:
+            self.nodes, self.since_s = nodes, now_s
+        if len(self.known) > MOST_KNOWN:
+            self.known.clear()
+        self.known.update((gid, name) for gid, name in there.items() if name)
+
+
+class Who(NamedTuple):
+    """Who publishes a frame, as `graph.data.FrameRow` has it."""
+
+    publishers: tuple[str, ...]
+    certain: bool
+    gone: str = ""
+
+
+class _Sent(NamedTuple):
+    """The last that a publisher has sent before another one did."""
+
+    arrived_s: float
+    fields: tuple[Any, ...]
+    beside: bool
+    """Whether it was there at the same time as that other one, for sure."""
+
+
+class Senders:
+    """Those of one frame in one parent on one of the topics."""
+
+    __slots__ = ("_candidates", "_first_s", "_gone_s", "_others", "newest")
+
+    def __init__(self, first_s: float) -> None:
+        """Begin with the first message."""
+        self.newest: bytes | None = None
+        """Gid of the one that sent the newest; None if it is not told."""
+        self._others: dict[bytes, _Sent] = {}
+        self._first_s = first_s
+        self._candidates: AbstractSet[str] | None = None
+        self._gone_s = float("inf")
+
+    def hand_over(
+        self, sender: bytes | None, arrived_s: float, fields: tuple[Any, ...], passed_s: float
+    ) -> None:
+        """Say that `sender` sends the next; the one before has sent `fields`, at `arrived_s`.
+
+        `passed_s` is the time since then.
+        """
+        # Whoever comes again has been there all the time.
+        returned = sender is not None and self._others.pop(sender, None) is not None
+        if self.newest is not None:
+            beside = returned or passed_s < TOGETHER_S
+            self._others[self.newest] = _Sent(arrived_s, fields, beside)
+            if len(self._others) > MOST_OTHERS:
+                del self._others[next(iter(self._others))]
+        self.newest = sender
+
+    def who(self, topic: Publishers, arrived_s: float, now_s: float, *, latched: bool) -> Who:
+        """Return who publishes it at `now_s`; the newest has arrived at `arrived_s`."""
+        if self.newest is None or self.newest not in topic.known:
+            self._narrow_down(topic, arrived_s, now_s)
+            candidates = tuple(sorted(self._candidates or ()))
+            return Who(candidates, certain=len(candidates) < 2)
+        gids = [
+            gid
+            for gid, sent in self._beside(topic, arrived_s, now_s)
+            if latched or arrived_s - sent.arrived_s < RECENT_S
+        ]
+        if topic.there.get(self.newest):
+            gids.append(self.newest)
+        # A node that has two publishers is one node.
+        found = {(topic.there[gid], gid[:PARTICIPANT]) for gid in gids}
+        names = tuple(name for name, _ in sorted(found))
+        return Who(names, certain=True, gone="" if names else topic.known[self.newest])
+
+    def disagree(
+        self, topic: Publishers, fields: tuple[Any, ...], arrived_s: float, now_s: float
+    ) -> bool:
+        """Return whether others that are there have sent other numbers than `fields`, the newest.
+
+        The first four fields are stamps and names, which do not matter.
+        """
+        return self.newest in topic.there and any(
+            sent.fields and sent.fields[4:] != fields[4:]
+            for _, sent in self._beside(topic, arrived_s, now_s)
+        )
+
+    def _beside(
+        self, topic: Publishers, arrived_s: float, now_s: float
+    ) -> Iterator[tuple[bytes, _Sent]]:
+        """Yield those that are there beside the one that has sent the newest."""
+        newest = self.newest or b""
+        name = topic.known.get(newest)
+        for gid, sent in self._others.items():
+            if topic.there.get(gid) and (
+                topic.there[gid] != name
+                or gid[:PARTICIPANT] == newest[:PARTICIPANT]
+                or sent.beside
+                or now_s - arrived_s > REPLACED_S
+            ):
+                yield gid, sent
+
+    def _narrow_down(self, topic: Publishers, arrived_s: float, now_s: float) -> None:
+        """Whoever was not there while the frame came cannot be its publisher."""
+        if arrived_s > self._gone_s:
+            self._first_s, self._gone_s, self._candidates = arrived_s, float("inf"), None
+        known, present = self._candidates, topic.nodes
+        if known is None or now_s - self._first_s < SETTLED_S:
+            self._candidates = present
+        elif arrived_s > topic.since_s + SETTLED_S:
+            self._candidates = known & present or present
+        elif known and known.isdisjoint(present):
+            self._candidates, self._gone_s = frozenset(), now_s
