@@ -54,7 +54,7 @@ TROUBLES = (
     *ROBOT[:3],
     replace(ROBOT[3], age_s=7.4, newest=replace(ROBOT[3].newest, stamp_s=NOW_S - 7.4)),
     replace(ROBOT[4], age_s=7.4, newest=replace(ROBOT[4].newest, stamp_s=NOW_S - 7.4)),
-    replace(ROBOT[5], publishers=()),
+    replace(ROBOT[5], publishers=(), gone="/robot_state_publisher"),
     replace(ROBOT[6], publishers=("/chassis", "/robot_state_publisher"), contested=True),
     replace(
         ROBOT[7],
@@ -62,8 +62,8 @@ TROUBLES = (
         faults=250,
     ),
     frame("map", "base_link", (1.0, 0.0, 0.0), publishers=("/slam",), hz=5.0),
-    frame("camera_lnk", "lens", static=True),
-    frame("gripper", "finger", publishers=("/arm",)),
+    frame("camera_lnk", "lens", static=True, publishers=("/camera", "/camera"), moved=True),
+    frame("gripper", "finger", publishers=("/arm", "/hand"), certain=False),
     frame("finger", "gripper", publishers=("/arm",)),
 )
 

@@ -6,12 +6,15 @@ import math
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
 from textual.widgets import Static
 
 from graph.data import EndpointInfo, TopicRow, Trouble
+from graph.frames.reading import TF_MESSAGE
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_frames import (
     FOREIGN,
@@ -22,7 +25,11 @@ from tests.tui.recorded_frames import (
     topics,
     with_frames,
 )
+from tests.tui.replayed import replayed
 from tests.tui.snapshots import Look, settle
+from tests.unit.bags import BEGIN_NS, store
+from tests.unit.transform_messages import Sent, cdr
+from tests.waiting import until
 from tui.app import DeckApp
 from tui.frame_tree.screen import FramesScreen
 
@@ -195,6 +202,42 @@ async def test_a_filter_that_nothing_fits_says_so_and_is_kept_as_frames_come() -
         await at.press("escape", "slash")
         await at.show(*ROBOT)
         assert len(names(at)) == 1 + len(ROBOT)
+@pytest.mark.parametrize(
+    ("heard", "cell", "line"),
+    [
+        ({"publishers": ("/arm",)}, "arm", "published by /arm"),
+        ({"publishers": ("/arm", "/hand")}, "arm +1", "published by /arm, /hand"),
+        (
+            {"publishers": ("/arm", "/hand"), "certain": False},
+            "arm? +1",
+            "published by one of /arm, /hand",
+        ),
+        ({"publishers": ("/arm", "/arm")}, "arm ×2", "published by /arm (2 of this name)"),
+        ({"publishers": (), "gone": "/arm"}, "gone", "published by /arm, which has gone"),
+        ({"publishers": ()}, "gone", "published by nobody"),
+    ],
+)
+async def test_who_publishes_a_frame_is_named_or_who_may_do_so(
+    heard: dict[str, Any], cell: str, line: str
+) -> None:
+    async with stage(with_frames((frame("odom", "base_link", **heard),))) as at:
+        await at.press("down")
+        assert at.row("base_link").endswith(f"50 Hz < 1 s {cell}")
+        assert at.pair.endswith(f" {line}")
+
+
+async def test_a_recording_is_said_not_to_know_the_publishers(tmp_path: Path) -> None:
+    types = store()
+    with Writer(tmp_path / "drive", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        static = writer.add_connection("/tf_static", TF_MESSAGE, typestore=types)
+        writer.write(static, BEGIN_NS, cdr(Sent("base_link", "camera_link")))
+    async with replayed(tmp_path / "drive", "frames") as (app, pilot, replay):
+        replay.toggle()
+        at = Stage(pilot, RecordedGraph(frames_update()))
+        await until(lambda: any("camera_link" in row for row in at.tree()), "the frame")
+        await at.press("down")
+        assert at.pair.endswith("a recording does not tell which node published it")
+        assert app.feed.replay is replay
 
 
 async def test_n_goes_from_one_finding_to_the_next_and_shows_its_words_first() -> None:
@@ -206,7 +249,7 @@ async def test_n_goes_from_one_finding_to_the_next_and_shows_its_words_first() -
         assert seen[:4] == ["base_link", "head_pan", "head_tilt", "sonar_front"]
         await at.press("N", "N")
         assert at.screen.chosen == "sonar_front"
-        assert "findings ✗ sonar_front: the node that published it on /tf_static" in at.findings
+        assert "findings ✗ sonar_front: /robot_state_publisher, which published it" in at.findings
         before = at.screen.chosen
         await at.press("N", "n")
         assert at.screen.chosen == before

@@ -61,8 +61,10 @@ def test_a_frame_that_has_fallen_silent_is_stale() -> None:
     assert find(*ROBOT, heard("base_link", "head", age_s=4.0, hz=0.5)) == []
     assert find(*ROBOT, heard("base_link", "head", age_s=0.9, hz=100.0)) == []
     assert find(*ROBOT, heard("base_link", "head", age_s=4.0, hz=None)) != []
-    gone = only(*ROBOT, heard("base_link", "head", age_s=4.0, publishers=()))
-    assert "gone" in gone.advice
+    gone = heard("base_link", "head", age_s=4.0, publishers=())
+    assert "the node that published it has gone" in only(*ROBOT, gone).advice
+    gone = replace(gone, gone="/neck")
+    assert only(*ROBOT, gone).advice == "/neck, which published it, has gone: start it again"
 
 
 def test_what_one_node_does_to_many_frames_is_said_once() -> None:
@@ -75,6 +77,10 @@ def test_what_one_node_does_to_many_frames_is_said_once() -> None:
 def test_a_static_frame_whose_publisher_has_gone_is_not_heard_by_newcomers() -> None:
     found = only(*ROBOT, heard("base_link", "sonar", static=True, publishers=(), age_s=60.0))
     assert (found.trouble, found.frames) == (FrameTrouble.GONE, ("sonar",))
+    assert found.text == "sonar: the node that published it on /tf_static has gone"
+    row = heard("base_link", "sonar", static=True, publishers=(), gone="/state", age_s=60.0)
+    found = only(*ROBOT, row)
+    assert found.text == "sonar: /state, which published it on /tf_static, has gone"
     assert find(*ROBOT, heard("base_link", "sonar", static=True, age_s=6000.0)) == []
     assert find(*ROBOT, heard("base_link", "sonar", static=True, publishers=(), age_s=1.0)) == []
 
