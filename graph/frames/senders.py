@@ -54,7 +54,7 @@ class Publishers:
         self.known.update((gid, name) for gid, name in there.items() if name)
 
 
-class Who(NamedTuple):
+class PublishedBy(NamedTuple):
     """Who publishes a frame, as `graph.data.FrameRow` has it."""
 
     publishers: tuple[str, ...]
@@ -101,12 +101,14 @@ class Senders:
                 del self._others[next(iter(self._others))]
         self.newest = sender
 
-    def who(self, topic: Publishers, arrived_s: float, now_s: float, *, latched: bool) -> Who:
+    def who(
+        self, topic: Publishers, arrived_s: float, now_s: float, *, latched: bool
+    ) -> PublishedBy:
         """Return who publishes it at `now_s`; the newest has arrived at `arrived_s`."""
         if self.newest is None or self.newest not in topic.known:
             self._narrow_down(topic, arrived_s, now_s)
             candidates = tuple(sorted(self._candidates or ()))
-            return Who(candidates, certain=len(candidates) < 2)
+            return PublishedBy(candidates, certain=len(candidates) < 2)
         gids = [
             gid
             for gid, sent in self._beside(topic, arrived_s, now_s)
@@ -117,7 +119,7 @@ class Senders:
         # A node that has two publishers is one node.
         found = {(topic.there[gid], gid[:PARTICIPANT]) for gid in gids}
         names = tuple(name for name, _ in sorted(found))
-        return Who(names, certain=True, gone="" if names else topic.known[self.newest])
+        return PublishedBy(names, certain=True, gone="" if names else topic.known[self.newest])
 
     def disagree(
         self, topic: Publishers, fields: tuple[Any, ...], arrived_s: float, now_s: float

@@ -27,7 +27,7 @@ from tests.tui.recorded_frames import (
 )
 from tests.tui.replayed import replayed
 from tests.tui.snapshots import Look, settle
-from tests.unit.bags import BEGIN_NS, store
+from tests.unit.bags import BEGIN_NS, SECOND_NS, store
 from tests.unit.transform_messages import Sent, cdr
 from tests.waiting import until
 from tui.app import DeckApp
@@ -230,10 +230,12 @@ async def test_a_recording_is_said_not_to_know_the_publishers(tmp_path: Path) ->
     types = store()
     with Writer(tmp_path / "drive", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         static = writer.add_connection("/tf_static", TF_MESSAGE, typestore=types)
-        writer.write(static, BEGIN_NS, cdr(Sent("base_link", "camera_link")))
-    async with replayed(tmp_path / "drive", "frames") as (app, pilot, replay):
-        replay.toggle()
+        for second in (0, 60):
+            raw = cdr(Sent("base_link", "camera_link"))
+            writer.write(static, BEGIN_NS + second * SECOND_NS, raw)
+    async with replayed(tmp_path / "drive") as (app, pilot, replay):
         at = Stage(pilot, RecordedGraph(frames_update()))
+        await at.press("8")
         await until(lambda: any("camera_link" in row for row in at.tree()), "the frame")
         await at.press("down")
         assert at.pair.endswith("a recording does not tell which node published it")

@@ -1,0 +1,1 @@
+"""How frames are counted, kept and replayed, without ROS."""
