@@ -105,7 +105,7 @@ class Senders:
         self, topic: Publishers, arrived_s: float, now_s: float, *, latched: bool
     ) -> PublishedBy:
         """Return who publishes it at `now_s`; the newest has arrived at `arrived_s`."""
-        if self.newest is None or self.newest not in topic.known:
+        if self.newest is None or self._is_news(topic, now_s):
             self._narrow_down(topic, arrived_s, now_s)
             candidates = tuple(sorted(self._candidates or ()))
             return PublishedBy(candidates, certain=len(candidates) < 2)
@@ -131,6 +131,13 @@ class Senders:
         return self.newest in topic.there and any(
             sent.fields and sent.fields[4:] != fields[4:]
             for _, sent in self._beside(topic, arrived_s, now_s)
+        )
+
+    def _is_news(self, topic: Publishers, now_s: float) -> bool:
+        """Return whether one of them is still to be found in the graph."""
+        return self.newest not in topic.known or any(
+            gid not in topic.known and now_s - sent.arrived_s < RECENT_S
+            for gid, sent in self._others.items()
         )
 
     def _beside(

@@ -103,8 +103,8 @@ def test_two_nodes_that_send_one_frame_are_both_named_and_no_third(
 ) -> None:
     for peer in peers[:2]:
         repeat(peer, 20, Sent("odom", "shared"))
-    row = see(watcher, "shared", lambda row: row.contested, "is contested")
-    assert who(row) == (("/arm", "/driver"), True)
+    both = (("/arm", "/driver"), True)
+    see(watcher, "shared", lambda row: row.contested and who(row) == both, "is contested")
     (said,) = findings(watcher, FrameTrouble.CONTESTED)
     assert "/arm, /driver publish shared by turns" in said
     for peer in peers[:2]:
@@ -150,12 +150,23 @@ def test_a_node_that_is_killed_and_comes_back_under_its_name_is_one_node(
     assert row.gone == "/gripper"
 
 
+def test_a_publisher_that_a_node_makes_anew_is_known_too(
+    peers: tuple[Peer, Peer, Peer], watcher: Watcher
+) -> None:
+    head = peers[2]
+    see(watcher, "fixed_by_head", lambda row: who(row) == published(head), "is known")
+    # Too fast for anybody to see that there was none in between.
+    head.withdraw("/tf_static")
+    latch(head, Sent("base", "eye"))
+    see(watcher, "eye", lambda row: who(row) == published(head), "is known")
+
+
 def test_two_nodes_of_one_name_are_told_apart(module_domain: int, watcher: Watcher) -> None:
     with closing(Peer("twin", module_domain)) as one, closing(Peer("twin", module_domain)) as other:
         for peer in (one, other):
             repeat(peer, 20, Sent("odom", "shadow"))
-        row = see(watcher, "shadow", lambda row: row.contested, "is contested")
-        assert who(row) == (("/twin", "/twin"), True)
+        both = (("/twin", "/twin"), True)
+        see(watcher, "shadow", lambda row: row.contested and who(row) == both, "is contested")
 
 
 def _none() -> None:

@@ -64,6 +64,18 @@ def test_until_the_endpoint_is_known_it_may_be_any(book: FrameBook) -> None:
     assert seen(book, BEGIN_S + 1, ALL).publishers == ("/b",)
 
 
+def test_while_one_of_two_is_still_to_be_found_neither_passes_for_the_only_one(
+    book: FrameBook,
+) -> None:
+    send(book, A, BEGIN_S)
+    send(book, B, BEGIN_S + 1)
+    send(book, A, BEGIN_S + 2)
+    found = seen(book, BEGIN_S + 2, {A: "/a", C: "/c"})
+    assert (found.publishers, found.certain) == (("/a", "/c"), False)
+    found = seen(book, BEGIN_S + 3, ALL)
+    assert (found.publishers, found.certain) == (("/a", "/b"), True)
+
+
 def test_both_who_send_it_by_turns_are_named_and_said_to_fight(book: FrameBook) -> None:
     for turn in range(5):
         send(book, A, BEGIN_S + turn)
