@@ -28,7 +28,7 @@ SHOWN = 30
 
 def fits(line: TreeLine, parts: Sequence[str]) -> bool:
     """Return whether frame or publishers contain all parts, which are in small letters."""
-    heard = (node for one in line.heard for node in one.publishers)
+    heard = (node for one in line.heard for node in (*one.publishers, one.gone))
     text = " ".join((line.frame, *heard)).casefold()
     return all(part in text for part in parts)
 

@@ -190,6 +190,13 @@ async def test_the_filter_leaves_what_matches_and_what_is_above_it() -> None:
         assert at.screen.chosen == "head_tilt"
 
 
+async def test_the_filter_finds_what_a_node_that_has_gone_has_published() -> None:
+    async with stage(with_frames(TROUBLES)) as at:
+        await at.press("slash", *"robot_state sonar")
+        assert "sonar_front" in names(at)
+        assert "camera_link" not in names(at)
+
+
 async def test_a_filter_that_nothing_fits_says_so_and_is_kept_as_frames_come() -> None:
     async with stage() as at:
         await at.press("slash", *"lidar")
@@ -202,6 +209,8 @@ async def test_a_filter_that_nothing_fits_says_so_and_is_kept_as_frames_come() -
         await at.press("escape", "slash")
         await at.show(*ROBOT)
         assert len(names(at)) == 1 + len(ROBOT)
+
+
 @pytest.mark.parametrize(
     ("heard", "cell", "line"),
     [
