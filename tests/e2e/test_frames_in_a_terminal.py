@@ -18,7 +18,7 @@ def test_the_camera_of_lesson_5_and_a_stranger_s_frame(deck: Deck, ros_domain: i
     terminal.wait_for("nothing is wrong with the frames")
     terminal.press("down")
     terminal.wait_for("camera_link in base_link")
-    terminal.wait_for("0.150  0.000  0.250")
+    terminal.wait_for("0.150    0.000    0.250")
     with Peer(ros_domain, "stranger") as stranger:
         publisher = stranger.publisher("/tf", TFMessage)
         made = TransformStamped(child_frame_id="lens")
