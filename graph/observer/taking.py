@@ -2,8 +2,8 @@
 
 The middleware tells it with every message, in `rmw_message_info_t.publisher_gid`, but the rclpy of
 Jazzy leaves it out of what `take_message` returns (later ones have it: ros2/rclpy, pull request
-1466). So this calls the function of rcl that rclpy calls itself, by ctypes, in the
-library that rclpy has loaded, with the subscription that rclpy has made.
+1466). So this calls the function of rcl that rclpy calls itself, by ctypes, in the library that
+rclpy has loaded, with the subscription that rclpy has made.
 
 Sources: rcl/subscription.h (`rcl_take_serialized_message`), rmw/types.h (`rmw_message_info_t`),
 rcutils/types/uint8_array.h and rcutils/allocator.h, as Jazzy has them.
@@ -33,7 +33,7 @@ INFO = struct.Struct("@qqQQP16s")
 UNNUMBERED = 2**64 - 1
 """Source: rmw/types.h, `RMW_MESSAGE_INFO_SEQUENCE_NUMBER_UNSUPPORTED`."""
 ROOM = 256
-"""Bytes for what a library of another version may fill in: more than twice of what this one does"""
+"""Bytes for what a library of another version may fill in: three times as much as this one does."""
 FIRST_BYTES = 4096
 """Of the buffer, which grows with the messages."""
 SENDER = "sender"
@@ -47,6 +47,10 @@ class TakeError(Exception):
 
 class _Allocator(ctypes.Structure):
     _fields_ = (("functions", ctypes.c_void_p * 4), ("state", ctypes.c_void_p))
+
+
+class _ReturnedAllocator(ctypes.Structure):
+    _fields_ = (("allocator", _Allocator), ("room", ctypes.c_ubyte * ROOM))
 
 
 class _Bytes(ctypes.Structure):
@@ -71,12 +75,12 @@ class SenderReader:
         name = library.rmw_get_implementation_identifier
         name.restype = ctypes.c_void_p
         usual = library.rcutils_get_default_allocator
-        usual.restype = _Allocator
+        usual.restype = _ReturnedAllocator
         self._middleware: int | None = name()
         self._info = ctypes.create_string_buffer(ROOM)
         self._bytes = _Bytes()
         self._place = ctypes.byref(self._bytes)
-        allocator = usual()
+        allocator = usual().allocator
         failed = begin(self._place, ctypes.c_size_t(FIRST_BYTES), ctypes.byref(allocator))
         if failed or not self._middleware or not self._is_as_expected(allocator):
             # Not given back: who knows where it is.
