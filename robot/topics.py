@@ -43,6 +43,8 @@ SAY = "/say"
 """Words to be spoken, std_msgs/String; empty: be quiet at once."""
 SONAR_FRONT = "/sensor/sonar_front"
 SONAR_REAR = "/sensor/sonar_rear"
+SONAR_FRAMES = {SONAR_FRONT: "sonar_front_link", SONAR_REAR: "sonar_rear_link"}
+"""A bare number has no header: the frames in which the sonars measure are those of lesson 6."""
 SPEAKER = "/audio/speaker_raw"
 TF = ros_names.TF
 TF_STATIC = ros_names.TF_STATIC

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from space.drawing.paints import Tint, cube, ramp
+from space.drawing.paints import cube, ramp
 from space.drawing.shapes import Speckles
 from space.reading.fields import (
     Drawable,
@@ -25,7 +27,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from space.drawing.paints import Paints
     from space.drawing.shapes import Places
 
 KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
@@ -44,15 +45,37 @@ class _CloudColumn(NamedTuple):
     kind: str
 
 
+@dataclass(frozen=True, eq=False)
+class CloudPoints:
+    """The points of a cloud that are places, and what colours them: `rgb` or else `shares`."""
+
+    places: Places
+    rgb: NDArray[np.uint8] | None
+    """Shape (n, 3)."""
+    shares: NDArray[np.float32]
+    """How large the intensity of each is, or else its height, from 0 to 1; empty beside `rgb`."""
+
+
 def read_cloud(tree: Mapping[str, Any]) -> Drawable:
     """Return the points of a cloud, coloured by rgb, intensity or height.
 
     Raises NotDrawnError.
     """
+    found, count = cloud_points(tree), _count(tree)
+    paint = ramp(found.shares, 0.0, 1.0) if found.rgb is None else cube(found.rgb)
+    remark = None
+    if count and not len(found.places):
+        remark = say("no point is a place: NaN or too far away, all {count}", count=count)
+    return Drawable(frame(tree), (Speckles(found.places, paint),), stamp_s(tree), remark)
+
+
+def cloud_points(tree: Mapping[str, Any], most: int = MOST_POINTS) -> CloudPoints:
+    """Return the points of a cloud, of a large one only `most`, evenly. Raises NotDrawnError."""
     columns = _columns(tree)
     step, count = whole(tree, "point_step"), _count(tree)
     _check_columns(columns, step)
-    rows = _points_of(tree, step, count)
+    rows = _points_of(tree, step, count)[:: max(1, math.ceil(count / most))]
+    count = len(rows)
     order = ">" if field(tree, "is_bigendian") else "<"
 
     def column(name: str) -> NDArray[np.generic]:
@@ -68,15 +91,11 @@ def read_cloud(tree: Mapping[str, Any]) -> Drawable:
     kept = np.flatnonzero(is_near(whole_cloud.T))
     if len(kept) < count:
         whole_cloud = whole_cloud.take(kept, axis=1)
-    paint = _paint({name: column(name) for name in columns if name in (*COLOURS, *STRENGTHS)}, kept)
-    places: Places = whole_cloud.T
-    if paint is None and len(kept):
-        paint = _by_height(places[:, 2])
-    remark = None
-    if count and not len(kept):
-        remark = say("no point is a place: NaN or too far away, all {count}", count=count)
-    shape = Speckles(places, Tint.ACCENT if paint is None else paint)
-    return Drawable(frame(tree), (shape,), stamp_s(tree), remark)
+    for name in COLOURS:
+        if name in columns and column(name).dtype.itemsize == 4:
+            return CloudPoints(whole_cloud.T, _unpacked(column(name)[kept]), whole_cloud[0, :0])
+    strength = next((column(name)[kept] for name in STRENGTHS if name in columns), whole_cloud[2])
+    return CloudPoints(whole_cloud.T, None, _shares(strength.astype(np.float32)))
 
 
 def _columns(tree: Mapping[str, Any]) -> dict[str, _CloudColumn]:
@@ -145,32 +164,21 @@ def _points_of(tree: Mapping[str, Any], step: int, count: int) -> NDArray[np.uin
     return np.ascontiguousarray(rows).reshape(count, step)
 
 
-def _paint(columns: Mapping[str, NDArray[np.generic]], kept: NDArray[np.intp]) -> Paints | None:
-    for name in COLOURS:
-        packed = columns.get(name)
-        if packed is not None and packed.dtype.itemsize == 4:
-            # PCL packs 0xRRGGBB into the bits of a float32.
-            bits = np.ascontiguousarray(packed[kept])
-            bits = bits.astype(bits.dtype.newbyteorder("="))
-            whole_bits = bits.view(np.uint32)
-            rgb = np.stack([whole_bits >> 16, whole_bits >> 8, whole_bits], axis=1) & 0xFF
-            return cube(rgb.astype(np.uint8))
-    for name in STRENGTHS:
-        values = columns.get(name)
-        if values is not None and len(kept):
-            return _by_value(values[kept].astype(np.float32))
-    return None
+def _unpacked(packed: NDArray[np.generic]) -> NDArray[np.uint8]:
+    """Return red, green and blue of 0xRRGGBB, which PCL packs into the bits of a float32."""
+    bits = packed.astype(packed.dtype.newbyteorder("=")).view(np.uint32)
+    return np.stack([bits >> 16, bits >> 8, bits], axis=1).astype(np.uint8)
 
 
-def _by_height(heights: NDArray[np.float32]) -> Paints:
-    """Steps of fixed heights would be few for a table and too many for a house."""
-    return _by_value(heights)
+def _shares(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return how large values are among themselves, for a ramp of colours.
 
-
-def _by_value(values: NDArray[np.float32]) -> Paints:
+    Steps of fixed heights would be few for a table and too many for a house.
+    """
     sample = values[:: max(1, len(values) // SAMPLED)]
     sample = sample[np.isfinite(sample)]
-    if not sample.size:
-        return ramp(np.zeros(len(values), dtype=np.float32), 0.0, 0.0)
-    least, most = np.percentile(sample, SPREAD)
-    return ramp(np.nan_to_num(values, posinf=0.0, neginf=0.0), float(least), float(most))
+    least, most = np.percentile(sample, SPREAD).tolist() if sample.size else (0.0, 0.0)
+    if not most > least:
+        return np.zeros_like(values)
+    shares = (np.nan_to_num(values, posinf=0.0, neginf=0.0) - least) / (most - least)
+    return np.clip(shares, 0.0, 1.0)

@@ -44,10 +44,11 @@ class Drawable:
 def field(tree: Any, path: str) -> Any:  # noqa: ANN401 - a message is a tree of anything
     """Return what is at a path such as `info.origin`. Raises NotDrawnError."""
     found = tree
-    for name in path.split("."):
-        if not isinstance(found, Mapping) or name not in found:
-            raise NotDrawnError(say("the message has no field {field}", field=path))
-        found = found[name]
+    try:
+        for name in path.split("."):
+            found = found[name]
+    except (IndexError, KeyError, TypeError):
+        raise NotDrawnError(say("the message has no field {field}", field=path)) from None
     return found
 
 
@@ -59,6 +60,17 @@ def number(tree: Any, path: str) -> float:  # noqa: ANN401
     if not math.isfinite(found):
         raise NotDrawnError(say("{field} is not a finite number", field=path))
     return float(found)
+
+
+def finite(tree: Any, path: str, names: str) -> list[float]:  # noqa: ANN401
+    """Return finite numbers with names of one letter each. Raises NotDrawnError."""
+    found = field(tree, path)
+    if type(found) is dict:
+        # The quick way, as a path has hundreds of poses.
+        values: list[Any] = [found.get(name) for name in names]
+        if all(type(value) is float for value in values) and math.isfinite(sum(values)):
+            return values
+    return [number(tree, f"{path}.{name}") for name in names]
 
 
 def whole(tree: Any, path: str) -> int:  # noqa: ANN401
@@ -86,7 +98,7 @@ def numbers(tree: Any, path: str) -> NDArray[np.float32]:  # noqa: ANN401
 
 def vector(tree: Any, path: str) -> Vector:  # noqa: ANN401
     """Return x, y and z. Raises NotDrawnError."""
-    x, y, z = (number(tree, f"{path}.{axis}") for axis in "xyz")
+    x, y, z = finite(tree, path, "xyz")
     if max(abs(x), abs(y), abs(z)) > FARTHEST_M:
         far = f"{FARTHEST_M / 1000:g}"
         raise NotDrawnError(say("{field} is farther away than {km} km", field=path, km=far))
@@ -94,12 +106,22 @@ def vector(tree: Any, path: str) -> Vector:  # noqa: ANN401
 
 
 def pose(tree: Any, path: str) -> Transform:  # noqa: ANN401
-    """Return a geometry_msgs/Pose. Raises NotDrawnError.
+    """Return a geometry_msgs/Pose. Raises NotDrawnError."""
+    return _turned(vector(tree, f"{path}.position"), tree, f"{path}.orientation")
 
-    A quaternion of zeros, which is what messages have that nobody filled in, is no rotation.
+
+def transform(tree: Any, path: str) -> Transform:  # noqa: ANN401
+    """Return a geometry_msgs/Transform, however far away: /tf may begin in the middle of the Earth.
+
+    Raises NotDrawnError.
     """
-    place = vector(tree, f"{path}.position")
-    x, y, z, w = (number(tree, f"{path}.orientation.{axis}") for axis in "xyzw")
+    x, y, z = finite(tree, f"{path}.translation", "xyz")
+    return _turned((x, y, z), tree, f"{path}.rotation")
+
+
+def _turned(place: Vector, tree: Any, path: str) -> Transform:  # noqa: ANN401
+    """A quaternion of zeros, which is what messages have that nobody filled in, is no rotation."""
+    x, y, z, w = finite(tree, path, "xyzw")
     if not (x or y or z or w):
         return Transform(place)
     return Transform.of(place, (x, y, z, w))
@@ -122,14 +144,19 @@ def stamp_s(tree: Any, path: str = "header") -> float | None:  # noqa: ANN401
     return seconds or None
 
 
-def points(tree: Any, path: str) -> NDArray[np.float32]:  # noqa: ANN401
-    """Return a list of geometry_msgs/Point as (n, 3). Raises NotDrawnError."""
+def table(tree: Any, path: str, names: str) -> NDArray[np.float32]:  # noqa: ANN401
+    """Return a list of things with such numbers, one letter each, as (n, len(names)).
+
+    Infinities and NaN are included. Raises NotDrawnError.
+    """
     found = listed(tree, path)
     try:
-        rows = [(float(one["x"]), float(one["y"]), float(one["z"])) for one in found]
+        rows = [[float(one[name]) for name in names] for one in found]
     except (KeyError, TypeError, ValueError):
-        raise NotDrawnError(say("{field} is not a list of points", field=path)) from None
-    return np.array(rows, dtype=np.float32).reshape(-1, 3)
+        raise NotDrawnError(
+            say("{field} is not a list of {names}", field=path, names=", ".join(names))
+        ) from None
+    return np.array(rows, dtype=np.float32).reshape(-1, len(names))
 
 
 def is_near(array: NDArray[np.float32]) -> NDArray[np.bool_]:

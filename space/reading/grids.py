@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from space.drawing.paints import Paints
+    from space.transform import Transform
 
 FREE_BELOW, OCCUPIED_FROM = 25, 65
 """The thresholds of nav2_map_server, of 100."""
@@ -35,8 +37,25 @@ MOST_CELLS = 4_000_000
 """Of a larger map only every second, third, ... cell is kept, the most occupied of its square."""
 
 
+@dataclass(frozen=True, eq=False)
+class GridCells:
+    """The cells of a map, fewer and larger ones of a very large map."""
+
+    cells: NDArray[np.int8]
+    """Shape (rows, columns), the first at the origin, percent occupied; -1 for unknown."""
+    cell_m: float
+    origin: Transform
+
+
 def read_grid(tree: Mapping[str, Any]) -> Drawable:
     """Return a map. Raises NotDrawnError."""
+    grid = grid_cells(tree)
+    floor = Floor(_painted(grid.cells), grid.cell_m, grid.origin)
+    return Drawable(frame(tree), (floor,), stamp_s(tree))
+
+
+def grid_cells(tree: Mapping[str, Any]) -> GridCells:
+    """Return the cells of a map. Raises NotDrawnError."""
     rows, columns = whole(tree, "info.height"), whole(tree, "info.width")
     cell_m = number(tree, "info.resolution")
     if rows < 1 or columns < 1:
@@ -56,10 +75,9 @@ def read_grid(tree: Mapping[str, Any]) -> Drawable:
                 count=cells.size,
             )
         )
-    kept = _fewer(cells.reshape(rows, columns))
-    cell_m *= math.ceil(math.sqrt(cells.size / MOST_CELLS))
-    floor = Floor(_painted(kept), cell_m, pose(tree, "info.origin"))
-    return Drawable(frame(tree), (floor,), stamp_s(tree))
+    stride = math.ceil(math.sqrt(cells.size / MOST_CELLS))
+    kept = _fewer(cells.reshape(rows, columns), stride)
+    return GridCells(kept, cell_m * stride, pose(tree, "info.origin"))
 
 
 def _small(data: object) -> NDArray[np.int8]:
@@ -69,8 +87,7 @@ def _small(data: object) -> NDArray[np.int8]:
         raise NotDrawnError(say("{field} is not a list of numbers", field="data")) from None
 
 
-def _fewer(cells: NDArray[np.int8]) -> NDArray[np.int8]:
-    stride = math.ceil(math.sqrt(cells.size / MOST_CELLS))
+def _fewer(cells: NDArray[np.int8], stride: int) -> NDArray[np.int8]:
     if stride == 1:
         return cells
     rows, columns = (size // stride for size in cells.shape)

@@ -1,7 +1,4 @@
-"""visualization_msgs/Marker and MarkerArray: shapes that stay until they are deleted or expire.
-
-Numbers and meanings: visualization_msgs/msg/Marker.msg.
-"""
+"""visualization_msgs/Marker and MarkerArray: shapes that stay until they are deleted or expire."""
 
 from __future__ import annotations
 
@@ -12,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from space.drawing.paints import Tint, cube, nearest
+from space.drawing.paints import cube, nearest
 from space.drawing.shapes import (
     Shape,
     Sign,
@@ -25,46 +22,30 @@ from space.drawing.shapes import (
     moved,
     polyline,
 )
-from space.reading.fields import (
-    Drawable,
-    NotDrawnError,
-    field,
-    frame,
-    is_near,
-    listed,
-    number,
-    points,
-    pose,
-    vector,
-    whole,
+from space.reading.fields import Drawable, NotDrawnError, listed, whole
+from space.reading.figures import (
+    MarkerAction,
+    MarkerKind,
+    kind_name,
+    marker_action,
+    marker_key,
+    read_figure,
 )
-from space.transform import Transform
+from space.transform import IDENTITY, Transform
 from text.plain import plain
-from text.sentences import reason_of, say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from space.drawing.paints import Paints
-    from space.drawing.shapes import Places
+    from space.reading.figures import MarkerFigure
+    from space.transform import Vector
     from text.sentences import Words
 
-ADD, DELETE, DELETE_ALL = 0, 2, 3
-NAMES = (
-    "ARROW",
-    "CUBE",
-    "SPHERE",
-    "CYLINDER",
-    "LINE_STRIP",
-    "LINE_LIST",
-    "CUBE_LIST",
-    "SPHERE_LIST",
-    "POINTS",
-    "TEXT_VIEW_FACING",
-    "MESH_RESOURCE",
-    "TRIANGLE_LIST",
-    "ARROW_STRIP",
-)
+    _Maker = Callable[[MarkerFigure], Sequence[Shape]]
+    _Solid = Callable[[Transform, Vector, int], Sequence[Shape]]
+
 MOST_MARKERS = 5_000
 MOST_SOLIDS = 500
 """Of the cubes or spheres of one list that are drawn as such; more are drawn as points."""
@@ -116,17 +97,15 @@ class MarkerBook:
         return say("not drawn: {kinds}", kinds=kinds)
 
     def _take(self, tree: Mapping[str, Any], now_s: float) -> None:
-        key = (str(field(tree, "ns")), whole(tree, "id"))
-        action = whole(tree, "action")
-        if action == DELETE_ALL:
+        key = marker_key(tree)
+        action = marker_action(tree)
+        if action == MarkerAction.DELETE_ALL:
             self.clear()
-        elif action == DELETE:
+        elif action == MarkerAction.DELETE:
             self._kept.pop(key, None)
             self._refused.pop(key, None)
-        elif action == ADD:
-            self._add(key, tree, now_s)
         else:
-            raise NotDrawnError(say("a marker has the unknown action {action}", action=action))
+            self._add(key, tree, now_s)
 
     def _add(self, key: tuple[str, int], tree: Mapping[str, Any], now_s: float) -> None:
         kind = whole(tree, "type")
@@ -135,125 +114,81 @@ class MarkerBook:
         if make is None:
             self._kept.pop(key, None)
             if len(self._refused) < MOST_MARKERS:
-                self._refused[key] = NAMES[kind] if 0 <= kind < len(NAMES) else str(kind)
+                self._refused[key] = kind_name(kind)
             return
         if key not in self._kept and len(self._kept) >= MOST_MARKERS:
             raise NotDrawnError(say("more than {count} markers are not kept", count=MOST_MARKERS))
-        try:
-            at, size = pose(tree, "pose"), vector(tree, "scale")
-            shapes = make(tree, Transform(), size)
-            drawable = Drawable(frame(tree), tuple(moved(shape, at) for shape in shapes))
-        except NotDrawnError as error:
-            name = plain(f"{key[0]}/{key[1]}" if key[0] else str(key[1]), LONGEST_TEXT)
-            raise NotDrawnError(
-                say("marker {name}: {reason}", name=name, reason=reason_of(error))
-            ) from None
-        lifetime_s = number(tree, "lifetime.sec") + 1e-9 * number(tree, "lifetime.nanosec")
-        ends_s = now_s + lifetime_s if lifetime_s > 0 else math.inf
-        self._kept[key] = _KeptMarker(drawable, ends_s)
+        figure = read_figure(tree)
+        shapes = tuple(moved(shape, figure.at) for shape in make(figure))
+        ends_s = now_s + figure.lifetime_s if figure.lifetime_s > 0 else math.inf
+        self._kept[key] = _KeptMarker(Drawable(figure.frame, shapes), ends_s)
 
 
-def _colour(tree: Mapping[str, Any]) -> int:
-    return nearest(*(number(tree, f"color.{channel}") for channel in "rgb"))
+def _paint(figure: MarkerFigure) -> int | Paints:
+    """Return the paint of all, or that of each point."""
+    paints = cube((figure.rgba[:, :3] * 255).astype(np.uint8))
+    return int(paints[0]) if len(paints) == 1 else paints
 
 
-def _colours(tree: Mapping[str, Any], count: int) -> int | Paints:
-    """The paints of the points, if there is one for each, otherwise that of the marker."""
-    found = listed(tree, "colors")
-    if len(found) != count or not count:
-        return _colour(tree)
-    rgb = np.array([[number(one, channel) for channel in "rgb"] for one in found])
-    return cube((np.clip(rgb, 0, 1) * 255).astype(np.uint8))
+def _make_arrow(figure: MarkerFigure) -> Sequence[Shape]:
+    (x, y, z), end = figure.way.tolist()
+    ahead, left, up = end[0] - x, end[1] - y, end[2] - z
+    turn = (0.0, -math.atan2(up, math.hypot(ahead, left)), math.atan2(left, ahead))
+    at = Transform.from_rpy((x, y, z), turn)
+    return [arrow(at, math.hypot(ahead, left, up), _colour(figure))]
 
 
-def _make_arrow(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
-    ends = points(tree, "points")
-    if len(ends) < 2:
-        return [arrow(at, size[0], _colour(tree))]
-    start, end = ends[0], ends[1]
-    way = end - start
-    length = float(np.linalg.norm(way))
-    flat = float(np.hypot(way[0], way[1]))
-    turn = (0.0, -math.atan2(float(way[2]), flat), math.atan2(float(way[1]), float(way[0])))
-    begin = (float(start[0]), float(start[1]), float(start[2]))
-    return [arrow(Transform.from_rpy(begin, turn), length, _colour(tree))]
+def _colour(figure: MarkerFigure) -> int:
+    return nearest(*figure.rgba[0, :3].tolist())
 
 
-def _make_box(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
-    return list(box(at, (size[0], size[1], size[2]), _colour(tree)))
+def _make_solid(solid: _Solid) -> _Maker:
+    return lambda figure: solid(IDENTITY, figure.size, _colour(figure))
 
 
-def _make_ball(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
-    return list(ellipsoid(at, (size[0], size[1], size[2]), _colour(tree)))
-
-
-def _make_cylinder(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
-    return list(cylinder(at, (size[0], size[1], size[2]), _colour(tree)))
-
-
-def _clear_points(tree: Mapping[str, Any]) -> tuple[Places, int | Paints]:
-    found = points(tree, "points")
-    paint = _colours(tree, len(found))
-    near = is_near(found) if len(found) else np.zeros(0, dtype=np.bool_)
-    return found[near], paint[near] if isinstance(paint, np.ndarray) else paint
-
-
-def _make_strip(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
-    del at, size
-    found, paint = _clear_points(tree)
+def _make_strip(figure: MarkerFigure) -> Sequence[Shape]:
+    paint = _paint(figure)
     line = paint[1:] if isinstance(paint, np.ndarray) else paint
-    return [polyline(found, line)] if len(found) > 1 else []
+    return [polyline(figure.points, line)] if len(figure.points) > 1 else []
 
 
-def _make_lines(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
-    del at, size
-    found = points(tree, "points")
-    if len(found) % 2:
-        raise NotDrawnError(say("a LINE_LIST has an odd number of points"))
-    paint = _colours(tree, len(found))
-    both = is_near(found) if len(found) else np.zeros(0, dtype=np.bool_)
-    both = both[0::2] & both[1::2]
-    line = paint[0::2][both] if isinstance(paint, np.ndarray) else paint
-    return [Strokes(found[0::2][both], found[1::2][both], line)]
+def _make_lines(figure: MarkerFigure) -> Sequence[Shape]:
+    paint = _paint(figure)
+    line = paint[::2] if isinstance(paint, np.ndarray) else paint
+    return [Strokes(figure.points[::2], figure.points[1::2], line)]
 
 
-def _make_points(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
-    del at
-    return [Speckles(*_clear_points(tree), solid_m=min(abs(size[0]), 0.2))]
+def _make_points(figure: MarkerFigure) -> Sequence[Shape]:
+    return [Speckles(figure.points, _paint(figure), solid_m=min(figure.size[0], 0.2))]
 
 
-def _make_solids(
-    one: Callable[[Transform, tuple[float, float, float], int], Sequence[Shape]],
-) -> Callable[[Mapping[str, Any], Transform, Sequence[float]], list[Shape]]:
-    def make(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
-        del at
-        found, paint = _clear_points(tree)
-        if len(found) > MOST_SOLIDS:
-            return [Speckles(found, paint, solid_m=min(abs(size[0]), 0.2))]
+def _make_solids(solid: _Solid) -> _Maker:
+    def make(figure: MarkerFigure) -> Sequence[Shape]:
+        if len(figure.points) > MOST_SOLIDS:
+            return _make_points(figure)
+        paint = _paint(figure)
         shapes: list[Shape] = []
-        for place, (x, y, z) in enumerate(found.tolist()):
+        for place, (x, y, z) in enumerate(figure.points.tolist()):
             own = int(paint[place]) if isinstance(paint, np.ndarray) else paint
-            shapes += one(Transform((x, y, z)), (size[0], size[1], size[2]), own)
+            shapes += solid(Transform((x, y, z)), figure.size, own)
         return shapes
 
     return make
 
 
-def _make_text(tree: Mapping[str, Any], at: Transform, size: Sequence[float]) -> list[Shape]:
-    del size
-    text = plain(str(field(tree, "text")), LONGEST_TEXT)
-    return [Sign(at.translation, text, _colour(tree) if text else Tint.TEXT)]
+def _make_text(figure: MarkerFigure) -> Sequence[Shape]:
+    return [Sign((0.0, 0.0, 0.0), plain(figure.text, LONGEST_TEXT), _colour(figure))]
 
 
-_MAKERS: dict[int, Callable[[Mapping[str, Any], Transform, Sequence[float]], list[Shape]]] = {
-    0: _make_arrow,
-    1: _make_box,
-    2: _make_ball,
-    3: _make_cylinder,
-    4: _make_strip,
-    5: _make_lines,
-    6: _make_solids(box),
-    7: _make_solids(ellipsoid),
-    8: _make_points,
-    9: _make_text,
+_MAKERS: dict[int, _Maker] = {
+    MarkerKind.ARROW: _make_arrow,
+    MarkerKind.CUBE: _make_solid(box),
+    MarkerKind.SPHERE: _make_solid(ellipsoid),
+    MarkerKind.CYLINDER: _make_solid(cylinder),
+    MarkerKind.LINE_STRIP: _make_strip,
+    MarkerKind.LINE_LIST: _make_lines,
+    MarkerKind.CUBE_LIST: _make_solids(box),
+    MarkerKind.SPHERE_LIST: _make_solids(ellipsoid),
+    MarkerKind.POINTS: _make_points,
+    MarkerKind.TEXT_VIEW_FACING: _make_text,
 }

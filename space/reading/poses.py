@@ -17,6 +17,7 @@ from space.reading.fields import (
     listed,
     pose,
     stamp_s,
+    vector,
 )
 from text.sentences import say
 
@@ -75,7 +76,7 @@ def read_path(tree: Mapping[str, Any]) -> Drawable:
             others += 1
             continue
         try:
-            found.append(pose(one, "pose").translation)
+            found.append(vector(one, "pose.position"))
         except NotDrawnError as error:
             raise NotDrawnError(
                 say("pose {number} of the path: {reason}", number=number, reason=error.args[0])
@@ -103,12 +104,10 @@ class DrivenTrail:
         held = self._held
         if held is not None and held[0].frame == frame_id and held[1].is_near(at, STANDING_M):
             return held[0]
-        if frame_id != self._frame:
-            self._frame, self._places = frame_id, []
-        self._add(at.translation)
+        self.add(frame_id, at.translation)
         shapes: list[Shape] = [dart(at, DART_M, Tint.SECOND)]
         if len(self._places) > 1:
-            shapes.append(self._line())
+            shapes.append(self.line())
         drawable = Drawable(frame_id, tuple(shapes), stamp_s(tree))
         self._held = drawable, at
         return drawable
@@ -117,17 +116,22 @@ class DrivenTrail:
         """Forget the trail."""
         self._places, self._least_m, self._held = [], LEAST_M, None
 
-    def _line(self) -> Strokes:
+    def add(self, frame_id: str, place: Vector) -> bool:
+        """Go on to a place, in another frame anew; return whether the trail has grown."""
+        if frame_id != self._frame:
+            self._frame, self._places = frame_id, []
+        if self._places and math.dist(self._places[-1], place) < self._least_m:
+            return False
+        self._places.append(place)
+        if len(self._places) > MOST_PLACES:
+            self._places = self._places[::2]
+            self._least_m *= 2
+        return True
+
+    def line(self) -> Strokes:
+        """Return the trail."""
         points = places(*self._places)
         ways = points[1:] - points[:-1]
         torn = max(TORN_M, 2 * self._least_m)
         whole = np.hypot(np.hypot(ways[:, 0], ways[:, 1]), ways[:, 2]) <= torn
         return Strokes(points[:-1][whole], points[1:][whole], Tint.ACCENT)
-
-    def _add(self, place: Vector) -> None:
-        if self._places and math.dist(self._places[-1], place) < self._least_m:
-            return
-        self._places.append(place)
-        if len(self._places) > MOST_PLACES:
-            self._places = self._places[::2]
-            self._least_m *= 2

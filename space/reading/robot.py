@@ -15,12 +15,22 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from space.drawing.shapes import Shape
-    from space.robot_model import ModelLink, Visual
+    from space.robot_model import ModelLink, RobotModel, Visual
     from text.sentences import Words
 
 
 GREY = (0.7, 0.7, 0.75)
 """Of links without a colour."""
+
+
+def read_model(text: object) -> RobotModel:
+    """Return the robot that a URDF describes. Raises NotDrawnError."""
+    if not isinstance(text, str):
+        raise NotDrawnError(say("{field} is not a text", field="data"))
+    try:
+        return read_urdf(text)
+    except UrdfError as error:
+        raise NotDrawnError(reason_of(error)) from None
 
 
 class ModelReader:
@@ -36,15 +46,10 @@ class ModelReader:
         """Take the description. Raises NotDrawnError."""
         del now_s
         text = field(tree, "data")
-        if not isinstance(text, str):
-            raise NotDrawnError(say("{field} is not a text", field="data"))
         if text == self._text:
             return
         self.clear()
-        try:
-            model = read_urdf(text)
-        except UrdfError as error:
-            raise NotDrawnError(reason_of(error)) from None
+        model = read_model(text)
         self._text = text
         self._links = tuple(map(self._drawable, model.links.values()))
 

@@ -32,6 +32,14 @@ CLEAR_M = 4.0
 
 def read_scan(tree: Mapping[str, Any]) -> Drawable:
     """Return the points where rays ended. Raises NotDrawnError."""
+    ends, remark = scan_ends(tree), None
+    if not len(ends):
+        remark = say("no range is valid, of {count}", count=len(field(tree, "ranges")))
+    return Drawable(frame(tree), (Speckles(ends, Tint.BAD),), stamp_s(tree), remark)
+
+
+def scan_ends(tree: Mapping[str, Any]) -> Places:
+    """Return where the rays ended whose ranges are valid. Raises NotDrawnError."""
     ranges = numbers(tree, "ranges")
     first, step = number(tree, "angle_min"), number(tree, "angle_increment")
     least, most = number(tree, "range_min"), _farthest(tree, "range_max")
@@ -43,11 +51,7 @@ def read_scan(tree: Mapping[str, Any]) -> Drawable:
         valid = np.isfinite(ranges) & (ranges >= least) & (ranges <= most)
     angles = (first + step * np.flatnonzero(valid)).astype(np.float32)
     far = ranges[valid]
-    ends = np.stack([far * np.cos(angles), far * np.sin(angles), np.zeros_like(far)], axis=1)
-    remark = None
-    if not valid.any():
-        remark = say("no range is valid, of {count}", count=ranges.size)
-    return Drawable(frame(tree), (Speckles(ends, Tint.BAD),), stamp_s(tree), remark)
+    return np.stack([far * np.cos(angles), far * np.sin(angles), np.zeros_like(far)], axis=1)
 
 
 def _farthest(tree: Mapping[str, Any], path: str) -> float:

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from graph.data import Trouble
-from robot.topics import ROBOT_DESCRIPTION, SONAR_FRONT, SONAR_REAR
+from robot.topics import ROBOT_DESCRIPTION, SONAR_FRAMES
 from space.reading.fields import NotDrawnError
 from space.reading.kinds import KINDS, LayerKind, NewestReader
 from space.reading.robot import ModelReader
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
 FLOAT, TEXT = "std_msgs/msg/Float32", "std_msgs/msg/String"
-SONARS = {SONAR_FRONT: "sonar_front_link", SONAR_REAR: "sonar_rear_link"}
-"""Topics of the course with bare distances, and the frames in which they are measured."""
 FLEETING = frozenset(
     {
         FLOAT,
@@ -151,8 +149,8 @@ def _kind_of(topic: str, type_names: Iterable[str]) -> tuple[str, LayerKind] | N
             return name, KINDS[name]
         if name == TEXT and topic == ROBOT_DESCRIPTION:
             return name, LayerKind(ModelReader)
-        if name == FLOAT and topic in SONARS:
-            return name, LayerKind(partial(_sonar_reader, SONARS[topic]))
+        if name == FLOAT and topic in SONAR_FRAMES:
+            return name, LayerKind(partial(_sonar_reader, SONAR_FRAMES[topic]))
     return None
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robot.topics import SONAR_FRAMES
 from robot.world.world import Body
 from space.buffer import NoTransformError, TransformBuffer
 from space.drawing.extent import SpaceBox, extent_of
@@ -19,7 +20,7 @@ from space.frame_names import FrameNames
 from space.placing import Located, Placer, cube_of, robot_root
 from space.transform import Transform
 from text.sentences import say
-from tui.space.layers import SONARS, SpaceLayers
+from tui.space.layers import SpaceLayers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -46,7 +47,7 @@ SEEN_M = 0.002
 
 def _mounts() -> dict[str, tuple[str, Transform]]:
     """Where the sonars of the course are, for robots that do not publish it."""
-    front, rear = SONARS.values()
+    front, rear = SONAR_FRAMES.values()
     ahead, behind = BODY.length_m - BODY.behind_m, -BODY.behind_m
     return {
         front: (BASE, Transform((ahead, 0.0, 0.0))),

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from space.reading.fields import NotDrawnError, frame
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
 LONGEST_NAME = 200
 IMPLICIT = "tf#"
@@ -16,17 +17,11 @@ IMPLICIT = "tf#"
 WORLD = "tf#/"
 """The frame of the 3D view, in which the roots of the trees of frames are put."""
 
+SPACE = "space"
+"""The root of what is drawn in 3D, apart from frames, markers and the robot itself."""
+
 Message: TypeAlias = "Mapping[str, Any]"
 """A decoded message, see `graph.data.Value`."""
-
-
-class UnusableMessageError(ValueError):
-    """A message that nobody can draw; its text is a sentence that says what is wrong with it."""
-
-    def __init__(self, words: str, drawn: Sequence[Drawn] = ()) -> None:
-        """`drawn` is what could be drawn of it."""
-        super().__init__(words)
-        self.drawn = drawn
 
 
 @dataclass(frozen=True)
@@ -48,6 +43,23 @@ def frame_name(text: object) -> str:
     """Return a frame's name as it is shown, without a leading slash."""
     name = plain(str(text).lstrip("/"), LONGEST_NAME)
     return f"_{name}" if name.startswith(IMPLICIT) else name
+
+
+def frame_of(message: Message) -> str:
+    """Return the frame in the header of a message. Raises NotDrawnError without one."""
+    return frame_name(frame(message))
+
+
+def each(parts: Iterable[Message], read: Callable[[Message], Iterator[Drawn]]) -> Iterator[Drawn]:
+    """Yield what every part draws. Raises NotDrawnError at the end, if one draws nothing."""
+    fault: NotDrawnError | None = None
+    for part in parts:
+        try:
+            yield from read(part)
+        except NotDrawnError as error:  # noqa: PERF203
+            fault = error
+    if fault is not None:
+        raise fault
 
 
 def topic_path(root: str, topic: str, *more: str) -> tuple[str, ...]:

@@ -6,11 +6,12 @@ told at the entity that a transform of it would be told at.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
+from space.reading.fields import NotDrawnError, field, listed, transform
 from text.sentences import reason_of, say
-from view.scene.drawn import WORLD, Drawn, UnusableMessageError, frame_name
-from view.scene.geometry import transform
+from view.scene.drawn import WORLD, Drawn, each, frame_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -29,15 +30,15 @@ class Frames:
         self._parents: dict[str, str] = {}
         self._shown: set[str] = set()
 
-    def moved(self, topic: str, message: Message) -> list[Drawn]:
-        """Return the transforms of a message of /tf. Raises UnusableMessageError."""
+    def moved(self, topic: str, message: Message) -> Iterator[Drawn]:
+        """Yield the transforms of a message of /tf. Raises NotDrawnError."""
         del topic
-        return self._read(message, static=False)
+        return each(listed(message, "transforms"), partial(self._joined, static=False))
 
-    def fixed(self, topic: str, message: Message) -> list[Drawn]:
-        """Return those of /tf_static, which hold for all times. Raises UnusableMessageError."""
+    def fixed(self, topic: str, message: Message) -> Iterator[Drawn]:
+        """Yield those of /tf_static, which hold for all times. Raises NotDrawnError."""
         del topic
-        return self._read(message, static=True)
+        return each(listed(message, "transforms"), partial(self._joined, static=True))
 
     def need(self, frame: str) -> list[Drawn]:
         """Return what puts a frame into the view that no transform has named so far."""
@@ -47,26 +48,23 @@ class Frames:
         """Return what keeps the roots in the view: told again, as a viewer forgets what is old."""
         return [_root(frame) for frame in sorted(self._shown - self._parents.keys())]
 
-    def _read(self, message: Message, *, static: bool) -> list[Drawn]:
-        drawn: list[Drawn] = []
-        fault = ""
-        for one in message["transforms"]:
-            try:
-                drawn += self._joined(one, static=static)
-            except UnusableMessageError as error:  # noqa: PERF203
-                fault = reason_of(error)
-        if fault:
-            raise UnusableMessageError(fault, drawn)
-        return drawn
-
-    def _joined(self, value: Message, *, static: bool) -> list[Drawn]:
+    def _joined(self, value: Message, *, static: bool) -> Iterator[Drawn]:
         import rerun
 
-        parent = frame_name(value["header"]["frame_id"])
-        child = frame_name(value["child_frame_id"])
+        parent = frame_name(field(value, "header.frame_id"))
+        child = frame_name(field(value, "child_frame_id"))
         self._check(parent, child)
-        moved = value["transform"]
-        at = transform(moved["translation"], moved["rotation"])
+        try:
+            at = transform(value, "transform")
+        except NotDrawnError as error:
+            raise NotDrawnError(
+                say(
+                    "{child} in {parent}: {reason}",
+                    child=child,
+                    parent=parent,
+                    reason=reason_of(error),
+                )
+            ) from None
         self._parents[child] = parent
         place = rerun.Transform3D(
             translation=at.translation,
@@ -74,12 +72,13 @@ class Frames:
             parent_frame=parent,
             child_frame=child,
         )
-        joined = Drawn((FRAMES, child), (place,), static=static)
-        return [*self.need(parent), *self._axes(child), joined]
+        yield from self.need(parent)
+        yield from self._axes(child)
+        yield Drawn((FRAMES, child), (place,), static=static)
 
     def _check(self, parent: str, child: str) -> None:
         if not parent or not child or parent == child:
-            raise UnusableMessageError(
+            raise NotDrawnError(
                 say(
                     "a transform from '{parent}' to '{child}' joins no two frames",
                     parent=parent,
@@ -87,7 +86,7 @@ class Frames:
                 )
             )
         if self._would_close_a_loop(parent, child):
-            raise UnusableMessageError(
+            raise NotDrawnError(
                 say(
                     "{child} in {parent} closes a loop of frames: nobody knows where they are",
                     child=child,

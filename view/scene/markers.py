@@ -2,204 +2,143 @@
 
 from __future__ import annotations
 
-import math
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from space.reading.fields import NotDrawnError, listed, whole
+from space.reading.figures import (
+    MarkerAction,
+    MarkerKind,
+    kind_name,
+    marker_action,
+    marker_key,
+    read_figure,
+)
 from text.plain import plain
-from text.sentences import reason_of, say
-from view.scene.drawn import Drawn, UnusableMessageError, topic_path
-from view.scene.geometry import colour, frame_of, pose, vector
+from text.sentences import say
+from view.scene.drawn import Drawn, each, frame_name, topic_path
+from view.scene.solids import Solids
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
-    from space.transform import Transform, Vector
+    from numpy.typing import NDArray
+
+    from space.reading.figures import MarkerFigure
     from view.scene.drawn import Message
 
 MARKERS = "markers"
 """The root of all markers in the tree of entities."""
-DELETE, DELETE_ALL = 2, 3
-MESH = 10
 LONGEST = 200
 
 
-def marker(topic: str, message: Message) -> list[Drawn]:
-    """Return what a marker draws, or that it is removed. Raises UnusableMessageError."""
-    if message["action"] == DELETE_ALL:
-        return [Drawn(topic_path(MARKERS, topic), (), recursive=True)]
-    name = (plain(str(message["ns"]), LONGEST) or "_", str(message["id"]))
-    path = topic_path(MARKERS, topic, *name)
-    if message["action"] == DELETE:
-        return [Drawn(path, (), recursive=True)]
-    kind = int(message["type"])
-    if kind not in _SHAPES:
-        raise UnusableMessageError(_unknown(kind))
-    shape = _SHAPES[kind](message, pose(message["pose"]))
-    return [Drawn(path, (shape,), frame=frame_of(message))]
-
-
-def several(topic: str, message: Message) -> list[Drawn]:
-    """Return what a `MarkerArray` draws. Raises UnusableMessageError."""
-    drawn: list[Drawn] = []
-    fault = ""
-    for one in message["markers"]:
-        try:
-            drawn += marker(topic, one)
-        except UnusableMessageError as error:  # noqa: PERF203
-            fault = reason_of(error)
-    if fault:
-        raise UnusableMessageError(fault, drawn)
-    return drawn
-
-
-def _unknown(kind: int) -> str:
-    if kind == MESH:
-        return say("a marker of type MESH_RESOURCE needs a file, and is not drawn")
-    return say("there is no marker of type {number}", number=kind)
-
-
-def _points(message: Message, at: Transform) -> list[Vector]:
-    """Return the points in the marker's frame, without those that are none."""
-    points = [vector(point) for point in message["points"]]
-    return [at.point(point) for point in points if all(map(math.isfinite, point))]
-
-
-def _size(message: Message) -> Vector:
-    size = vector(message["scale"])
-    if not all(math.isfinite(one) and one >= 0 for one in size):
-        raise UnusableMessageError(say("its scale has to be positive numbers: {size}", size=size))
-    return size
-
-
-def _arrow(message: Message, at: Transform) -> Any:  # noqa: ANN401
-    import rerun
-
-    size, ends = _size(message), _points(message, at)
-    if len(ends) == 2:
-        begin, end, radius = ends[0], ends[1], size[0] / 2
+def marker(topic: str, message: Message) -> Iterator[Drawn]:
+    """Yield what a marker draws, or that it is removed. Raises NotDrawnError."""
+    space, number = marker_key(message)
+    path = topic_path(MARKERS, topic, plain(space, LONGEST) or "_", str(number))
+    action = marker_action(message)
+    if action == MarkerAction.DELETE_ALL:
+        yield Drawn(topic_path(MARKERS, topic), (), recursive=True)
+    elif action == MarkerAction.DELETE:
+        yield Drawn(path, (), recursive=True)
     else:
-        begin, end, radius = at.translation, at.point((size[0], 0.0, 0.0)), size[1] / 2
-    along = tuple(b - a for a, b in zip(begin, end, strict=True))
+        kind = whole(message, "type")
+        if kind not in _SHAPES:
+            raise NotDrawnError(
+                say("there is no shape for markers of type {kind}", kind=kind_name(kind))
+            )
+        figure = read_figure(message)
+        yield Drawn(path, (_SHAPES[kind](figure),), frame=frame_name(figure.frame))
+
+
+def several(topic: str, message: Message) -> Iterator[Drawn]:
+    """Yield what a `MarkerArray` draws. Raises NotDrawnError."""
+    return each(listed(message, "markers"), partial(marker, topic))
+
+
+def _colours(figure: MarkerFigure) -> NDArray[np.uint8]:
+    return np.rint(255 * figure.rgba).astype(np.uint8)
+
+
+def _placed(figure: MarkerFigure) -> NDArray[np.floating]:
+    return figure.at.points(figure.points)
+
+
+def _arrow(figure: MarkerFigure) -> Any:  # noqa: ANN401 - rerun comes without types
+    import rerun
+
+    begin, end = figure.at.points(figure.way)
+    # Without points, x of the scale is the length.
+    wide = figure.size[0] if len(figure.points) > 1 else figure.size[1]
     return rerun.Arrows3D(
-        origins=[begin], vectors=[along], radii=radius, colors=colour(message["color"])
+        origins=[begin], vectors=[end - begin], radii=wide / 2, colors=_colours(figure)
     )
 
 
-def _box(message: Message, at: Transform) -> Any:  # noqa: ANN401
+def _solid(figure: MarkerFigure) -> Solids:
+    middle = np.array([figure.at.translation])
+    return Solids(middle, figure.at.rotation, figure.size, _colours(figure))
+
+
+def _boxes(figure: MarkerFigure) -> Any:  # noqa: ANN401
+    return Solids(_placed(figure), figure.at.rotation, figure.size, _colours(figure)).boxes()
+
+
+def _dots(figure: MarkerFigure) -> Any:  # noqa: ANN401
     import rerun
 
-    return rerun.Boxes3D(
-        sizes=[_size(message)],
-        centers=[at.translation],
-        quaternions=[at.rotation],
-        colors=colour(message["color"]),
-        fill_mode="solid",
-    )
+    return rerun.Points3D(_placed(figure), radii=figure.size[0] / 2, colors=_colours(figure))
 
 
-def _ball(message: Message, at: Transform) -> Any:  # noqa: ANN401
+def _strip(figure: MarkerFigure) -> Any:  # noqa: ANN401
+    places, colours = _placed(figure), _colours(figure)
+    if len(colours) > 1:
+        return _strips(figure, np.stack([places[:-1], places[1:]], axis=1), colours[1:])
+    return _strips(figure, places[None], colours)
+
+
+def _lines(figure: MarkerFigure) -> Any:  # noqa: ANN401
+    return _strips(figure, _placed(figure).reshape(-1, 2, 3), _colours(figure)[::2])
+
+
+def _strips(figure: MarkerFigure, strips: NDArray[np.floating], colours: NDArray[np.uint8]) -> Any:  # noqa: ANN401
     import rerun
 
-    return rerun.Ellipsoids3D(
-        half_sizes=[[one / 2 for one in _size(message)]],
-        centers=[at.translation],
-        quaternions=[at.rotation],
-        colors=colour(message["color"]),
-        fill_mode="solid",
-    )
+    return rerun.LineStrips3D(strips, radii=figure.size[0] / 2, colors=colours)
 
 
-def _cylinder(message: Message, at: Transform) -> Any:  # noqa: ANN401
-    import rerun
-
-    size = _size(message)
-    return rerun.Cylinders3D(
-        lengths=[size[2]],
-        radii=[size[0] / 2],
-        centers=[at.translation],
-        quaternions=[at.rotation],
-        colors=colour(message["color"]),
-        fill_mode="solid",
-    )
-
-
-def _boxes(message: Message, at: Transform) -> Any:  # noqa: ANN401
-    import rerun
-
-    places = _points(message, at)
-    return rerun.Boxes3D(
-        sizes=[_size(message)] * len(places),
-        centers=places,
-        quaternions=[at.rotation] * len(places),
-        colors=_colours(message, len(places)),
-        fill_mode="solid",
-    )
-
-
-def _dots(message: Message, at: Transform) -> Any:  # noqa: ANN401
-    import rerun
-
-    places = _points(message, at)
-    return rerun.Points3D(
-        places, radii=_size(message)[0] / 2, colors=_colours(message, len(places))
-    )
-
-
-def _strip(message: Message, at: Transform) -> Any:  # noqa: ANN401
-    import rerun
-
-    return rerun.LineStrips3D(
-        [_points(message, at)], radii=_size(message)[0] / 2, colors=colour(message["color"])
-    )
-
-
-def _lines(message: Message, at: Transform) -> Any:  # noqa: ANN401
-    import rerun
-
-    ends = _points(message, at)
-    pairs = [list(pair) for pair in zip(ends[::2], ends[1::2], strict=False)]
-    return rerun.LineStrips3D(
-        pairs, radii=_size(message)[0] / 2, colors=_colours(message, len(ends))[::2]
-    )
-
-
-def _text(message: Message, at: Transform) -> Any:  # noqa: ANN401
+def _text(figure: MarkerFigure) -> Any:  # noqa: ANN401
     import rerun
 
     return rerun.Points3D(
-        [at.translation],
+        [figure.at.translation],
         radii=0.0,
-        labels=plain(str(message["text"]), LONGEST),
+        labels=plain(figure.text, LONGEST),
         show_labels=True,
-        colors=colour(message["color"]),
+        colors=_colours(figure),
     )
 
 
-def _triangles(message: Message, at: Transform) -> Any:  # noqa: ANN401
+def _triangles(figure: MarkerFigure) -> Any:  # noqa: ANN401
     import rerun
 
-    corners = _points(message, at)
-    whole = corners[: len(corners) // 3 * 3]
-    return rerun.Mesh3D(vertex_positions=whole, vertex_colors=_colours(message, len(whole)))
+    corners = _placed(figure)
+    colours = np.broadcast_to(_colours(figure), (len(corners), 4))
+    return rerun.Mesh3D(vertex_positions=corners, vertex_colors=colours)
 
 
-def _colours(message: Message, count: int) -> list[tuple[int, int, int, int]]:
-    """Return a colour for each point: its own, or that of the marker."""
-    own = [colour(one) for one in message["colors"]]
-    return own if len(own) == count else [colour(message["color"])] * count
-
-
-_SHAPES: dict[int, Callable[[Message, Transform], Any]] = {
-    0: _arrow,
-    1: _box,
-    2: _ball,
-    3: _cylinder,
-    4: _strip,
-    5: _lines,
-    6: _boxes,
-    7: _dots,
-    8: _dots,
-    9: _text,
-    11: _triangles,
+_SHAPES: dict[int, Callable[[MarkerFigure], Any]] = {
+    MarkerKind.ARROW: _arrow,
+    MarkerKind.CUBE: lambda figure: _solid(figure).boxes(),
+    MarkerKind.SPHERE: lambda figure: _solid(figure).ellipsoids(),
+    MarkerKind.CYLINDER: lambda figure: _solid(figure).cylinders(),
+    MarkerKind.LINE_STRIP: _strip,
+    MarkerKind.LINE_LIST: _lines,
+    MarkerKind.CUBE_LIST: _boxes,
+    MarkerKind.SPHERE_LIST: _dots,
+    MarkerKind.POINTS: _dots,
+    MarkerKind.TEXT_VIEW_FACING: _text,
+    MarkerKind.TRIANGLE_LIST: _triangles,
 }
-"""Numbers of the types. Source: `visualization_msgs/msg/Marker.msg`."""

@@ -2,67 +2,73 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from view.scene.clouds import SPACE
-from view.scene.drawn import Drawn, topic_path
-from view.scene.geometry import frame_of, pose, vector
+from space.reading.fields import NotDrawnError, field, listed, pose
+from space.reading.poses import DrivenTrail, read_path
+from view.scene.drawn import SPACE, Drawn, frame_of, topic_path
+from view.scene.lines import lines
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
-    from space.transform import Transform, Vector
+    from space.transform import Transform
     from view.scene.drawn import Message
 
 ARROW_M = 0.3
-AHEAD: Vector = (ARROW_M, 0.0, 0.0)
-ORANGE, GREEN = (255, 160, 40), (60, 220, 90)
+ORANGE = (255, 160, 40)
 
 
-def posed(topic: str, message: Message) -> list[Drawn]:
-    """Return a `PoseStamped`, or one with a covariance, as an arrow along its x."""
-    value = message["pose"]
-    return [arrows(topic, frame_of(message), [pose(value.get("pose", value))])]
+def posed(topic: str, message: Message) -> Iterator[Drawn]:
+    """Yield a `PoseStamped`, or one with a covariance, as an arrow along its x.
+
+    Raises NotDrawnError.
+    """
+    where = "pose.pose" if "pose" in field(message, "pose") else "pose"
+    yield _arrows(topic, frame_of(message), [pose(message, where)])
 
 
-def many(topic: str, message: Message) -> list[Drawn]:
-    """Return a `PoseArray` as arrows."""
-    return [arrows(topic, frame_of(message), [pose(one) for one in message["poses"]])]
+def many(topic: str, message: Message) -> Iterator[Drawn]:
+    """Yield a `PoseArray` as arrows. Raises NotDrawnError."""
+    found = [pose({"pose": one}, "pose") for one in listed(message, "poses")]
+    yield _arrows(topic, frame_of(message), found)
 
 
-def path(topic: str, message: Message) -> list[Drawn]:
-    """Return a `nav_msgs/Path` as a line, in the frame of its own header."""
-    points = [vector(one["pose"]["position"]) for one in message["poses"]]
-    return [line(topic_path(SPACE, topic), frame_of(message), points)]
+def path(topic: str, message: Message) -> Iterator[Drawn]:
+    """Yield a `nav_msgs/Path` as a line. Raises NotDrawnError, also for poses that are left out."""
+    found = read_path(message)
+    yield Drawn(topic_path(SPACE, topic), (lines(found.shapes),), frame=frame_of(message))
+    if found.remark:
+        raise NotDrawnError(found.remark)
 
 
-def arrows(topic: str, frame: str, poses: Sequence[Transform]) -> Drawn:
+class Trails:
+    """The way of every odometry, since the viewer opened."""
+
+    def __init__(self) -> None:
+        self._trails: dict[str, DrivenTrail] = {}
+
+    def read(self, topic: str, message: Message) -> Iterator[Drawn]:
+        """Yield a `nav_msgs/Odometry` as an arrow, and its trail if that has grown.
+
+        Raises NotDrawnError.
+        """
+        frame, at = frame_of(message), pose(message, "pose.pose")
+        yield _arrows(topic, frame, [at])
+        trail = self._trails.setdefault(topic, DrivenTrail())
+        if trail.add(frame, at.translation):
+            entity = topic_path(SPACE, topic, "trail")
+            yield Drawn(entity, (lines([trail.line()]),), frame=frame)
+
+
+def _arrows(topic: str, frame: str, poses: Sequence[Transform]) -> Drawn:
     """Return an arrow along the x of each pose."""
     import rerun
 
     shape = rerun.Arrows3D(
         origins=[one.translation for one in poses],
-        vectors=[_difference(one.point(AHEAD), one.translation) for one in poses],
+        vectors=[(one.matrix()[:3, 0] * ARROW_M) for one in poses],
         colors=ORANGE,
         radii=0.02,
     )
     return Drawn(topic_path(SPACE, topic), (shape,), frame=frame)
-
-
-def line(path: tuple[str, ...], frame: str, points: Sequence[Vector]) -> Drawn:
-    """Return a line through these points, broken where one is no place."""
-    import rerun
-
-    pieces: list[list[Any]] = [[]]
-    for point in points:
-        if all(map(math.isfinite, point)):
-            pieces[-1].append(point)
-        elif pieces[-1]:
-            pieces.append([])
-    shape = rerun.LineStrips3D([one for one in pieces if len(one) > 1], colors=GREEN, radii=0.01)
-    return Drawn(path, (shape,), frame=frame)
-
-
-def _difference(one: Vector, other: Vector) -> Vector:
-    return one[0] - other[0], one[1] - other[1], one[2] - other[2]

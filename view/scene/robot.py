@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from space.reading.fields import field
+from space.reading.robot import read_model
 from space.robot_model import Cuboid, Cylinder, Mesh, Sphere
-from space.urdf import UrdfError, read_urdf
-from text.sentences import reason_of
-from view.scene.drawn import Drawn, UnusableMessageError, frame_name
+from view.scene.drawn import Drawn, frame_name
+from view.scene.solids import Solids
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from space.robot_model import Visual
     from view.scene.drawn import Message
 
@@ -25,19 +31,16 @@ class RobotShapes:
         self._text = ""
         self._drawn: list[Drawn] = []
 
-    def read(self, topic: str, message: Message) -> list[Drawn]:
-        """Return the links of a robot, apart from meshes, whose files are not read.
+    def read(self, topic: str, message: Message) -> Iterator[Drawn]:
+        """Yield the links of a robot, apart from meshes, whose files are not read.
 
-        Raises UnusableMessageError if the text describes no robot.
+        Raises NotDrawnError if the text describes no robot.
         """
         del topic
-        text = str(message["data"])
+        text = field(message, "data")
         if text == self._text:
-            return []
-        try:
-            model = read_urdf(text)
-        except UrdfError as error:
-            raise UnusableMessageError(reason_of(error)) from error
+            return
+        model = read_model(text)
         self._text = text
         self._drawn = [
             Drawn((ROBOT, frame_name(name), str(number)), (_shape(visual),), frame_name(name))
@@ -46,7 +49,8 @@ class RobotShapes:
             if not isinstance(visual.shape, Mesh)
         ]
         # The robot before it may have had other links.
-        return [Drawn((ROBOT,), (), recursive=True), *self._drawn]
+        yield Drawn((ROBOT,), (), recursive=True)
+        yield from self._drawn
 
     def again(self) -> list[Drawn]:
         """Return them again, as a viewer forgets what is old."""
@@ -54,18 +58,13 @@ class RobotShapes:
 
 
 def _shape(visual: Visual) -> Any:  # noqa: ANN401
-    import rerun
-
     at, shape = visual.origin, visual.shape
-    placed = {
-        "centers": [at.translation],
-        "quaternions": [at.rotation],
-        "colors": tuple(round(255 * share) for share in visual.colour or GREY),
-        "fill_mode": "solid",
-    }
+    colour = np.rint(255 * np.array([visual.colour or GREY])).astype(np.uint8)
+    solids = partial(Solids, np.array([at.translation]), at.rotation, rgba=colour)
     if isinstance(shape, Cuboid):
-        return rerun.Boxes3D(sizes=[shape.size_m], **placed)
+        return solids(shape.size_m).boxes()
+    assert isinstance(shape, (Cylinder, Sphere))
+    wide = 2 * shape.radius_m
     if isinstance(shape, Cylinder):
-        return rerun.Cylinders3D(lengths=[shape.length_m], radii=[shape.radius_m], **placed)
-    assert isinstance(shape, Sphere)
-    return rerun.Ellipsoids3D(radii=[shape.radius_m], **placed)
+        return solids((wide, wide, shape.length_m)).cylinders()
+    return solids((wide, wide, wide)).ellipsoids()

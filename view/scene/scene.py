@@ -11,18 +11,18 @@ from graph.housekeeping import is_hidden
 from graph.pictures.picture import COMPRESSED, IMAGE
 from graph.pictures.pixels import ImageError
 from robot.topics import ROBOT_DESCRIPTION, TF, TF_STATIC
+from space.reading.fields import NotDrawnError
 from text.i18n import localized
 from text.sentences import Words, reason_of, say
 from view.scene.clouds import cloud, scan
-from view.scene.drawn import Drawn, UnusableMessageError
+from view.scene.drawn import Drawn
 from view.scene.frames import Frames, newest_of
 from view.scene.log import remark, rosout
 from view.scene.maps import grid
 from view.scene.markers import marker, several
-from view.scene.odometry import Trails
 from view.scene.pictures import compressed, image
 from view.scene.plots import PLOTTED, numbers
-from view.scene.poses import many, path, posed
+from view.scene.poses import Trails, many, path, posed
 from view.scene.ranges import cone, ray
 from view.scene.robot import RobotShapes
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from graph.data import Sample, TopicRow
     from view.scene.drawn import Message
 
-    Reader = Callable[[str, Message], list[Drawn]]
+    Reader = Callable[[str, Message], Iterable[Drawn]]
 
 PICTURE_TYPES = frozenset({IMAGE, COMPRESSED})
 MARKER, MARKERS = "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray"
@@ -113,16 +113,11 @@ class ViewScene:
         fault = ""
         for reader in readers:
             try:
-                found = reader(sample.topic, sample.value)
-            except UnusableMessageError as error:  # noqa: PERF203
-                fault = reason_of(error)
-                yield from self._placed(error.drawn)
-            except ImageError as error:
+                yield from self._placed(reader(sample.topic, sample.value))
+            except (ImageError, NotDrawnError) as error:  # noqa: PERF203
                 fault = reason_of(error)
             except Exception as error:  # noqa: BLE001 - whatever is published under a known name
                 fault = say("it cannot be read: {reason}", reason=reason_of(error))
-            else:
-                yield from self._placed(found)
         yield from self._complaint(sample.topic, fault)
 
     def _placed(self, found: Iterable[Drawn]) -> Iterator[Drawn]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -82,6 +85,34 @@ def test_other_kinds_are_named_as_not_drawn() -> None:
 def test_a_bad_marker_is_named_and_the_ones_before_it_are_kept() -> None:
     book = MarkerBook()
     good = marker(1, 1, Transform(), (1.0, 1.0, 1.0))
-    with pytest.raises(NotDrawnError, match=r"marker things/7: a LINE_LIST has an odd number"):
+    with pytest.raises(NotDrawnError, match=r"marker things/7: a LINE_LIST needs a multiple of 2"):
         book.read({"markers": [good, {**good, "id": 7, "type": 5, "points": POINTS[:1]}]}, 0.0)
     assert len(book.shown(0.0)) == 1
+
+
+def test_a_line_with_one_end_that_is_no_place_is_left_out_whole() -> None:
+    book = MarkerBook()
+    ends = [*POINTS, {"x": math.nan, "y": 0.0, "z": 0.0}, *POINTS, POINTS[1]]
+    book.read(marker(1, 5, Transform(), (0.1, 0.1, 0.1), points=ends), 0.0)
+    (found,) = book.shown(0.0)[0].shapes
+    assert isinstance(found, Strokes)
+    assert found.ends[:, 0].tolist() == [1.0, 1.0]
+    assert found.starts[:, 0].tolist() == [0.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"scale": {"x": 0.1, "y": -0.1, "z": 0.1}}, "its scale has to be positive numbers"),
+        ({"type": 8, "points": [{"x": 1.0}]}, "points is not a list of x, y, z"),
+        ({"type": 8, "points": POINTS, "colors": [{}, {}]}, "colors is not a list of r, g, b, a"),
+        ({"color": {"r": math.nan}}, "color.r is not a finite number"),
+        ({"lifetime": {"sec": 1}}, "the message has no field lifetime.nanosec"),
+    ],
+)
+def test_what_is_wrong_with_a_marker_is_a_sentence_with_its_name(
+    more: dict[str, Any], words: str
+) -> None:
+    bad = {**marker(7, 1, Transform(), (1.0, 1.0, 1.0)), **more}
+    with pytest.raises(NotDrawnError, match=f"marker things/7: {words}"):
+        MarkerBook().read(bad, 0.0)

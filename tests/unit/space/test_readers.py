@@ -315,7 +315,22 @@ def path_with_a_bad_pose() -> Tree:
             cloud_tree(THREE, "lidar", point_step=8),
             "field z of the cloud ends behind its point_step of 8 bytes",
         ),
+        (
+            CLOUD,
+            cloud_tree(THREE, "lidar", height=2),
+            "6 points of 12 bytes are announced, and 36 bytes have come",
+        ),
+        (
+            CLOUD,
+            cloud_tree(THREE, "lidar", point_step=0),
+            "field x of the cloud ends behind its point_step of 0 bytes",
+        ),
         (CLOUD, cloud_tree(THREE, "lidar", fields=[]), "the cloud has no field x, y, z"),
+        (
+            CLOUD,
+            cloud_tree(THREE, "l", fields=[{"name": "x", "offset": 0, "datatype": 99}]),
+            "the cloud has no field x, y, z",
+        ),
         (
             read_path,
             path_with_a_bad_pose(),

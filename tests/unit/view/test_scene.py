@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-import struct
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pytest
 
 from graph.data import Sample
+from space.transform import Transform
+from tests.unit.space.trees import cloud_tree, marker, pose_tree
 from view.scene.drawn import Drawn
 from view.scene.scene import ViewScene
 
 NO_TURN = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+STILL = {"twist": {"linear": {"x": 0.0}, "angular": {"z": 0.0}}}
 ORIGIN = {"x": 0.0, "y": 0.0, "z": 0.0}
 HEADER = {"stamp": {"sec": 1, "nanosec": 0}, "frame_id": "map"}
 
@@ -60,6 +62,13 @@ def test_frames_stand_in_their_parents_and_a_root_in_the_view() -> None:
     assert frames_of(drawn["frames/odom"]) == ("tf#/", "odom")
 
 
+def test_a_frame_may_be_in_the_middle_of_the_earth() -> None:
+    message = transforms(moved("earth", "map", 6_371_000.0))
+    drawn = draw(ViewScene(), "/tf_static", "tf2_msgs/msg/TFMessage", message)
+    assert not said(drawn)
+    assert frames_of(drawn["frames/map"]) == ("earth", "map")
+
+
 def test_of_many_transforms_the_newest_of_each_frame_is_drawn() -> None:
     messages = (
         transforms(moved("odom", "base", 1.0), moved("base", "head", 1.0)),
@@ -84,7 +93,7 @@ def test_a_root_that_gets_a_parent_is_none_any_more() -> None:
     [
         (moved("a", "a"), "joins no two frames"),
         (moved("", "b"), "joins no two frames"),
-        (moved("a", "b", math.nan), "is not a number: nan"),
+        (moved("a", "b", math.nan), "b in a: transform.translation.x is not a finite number"),
         (moved("b", "a"), "closes a loop"),
     ],
 )
@@ -114,60 +123,40 @@ def test_names_from_outside_can_do_no_harm() -> None:
     assert frames_of(child) == ("_tf#/", "a␛[31m/b")
 
 
-def cloud(points: Iterable[tuple[float, float, float]], **changes: Any) -> dict[str, Any]:
-    data = b"".join(struct.pack("<fff", *point) for point in points)
-    fields = [
-        {"name": name, "offset": 4 * index, "datatype": 7, "count": 1}
-        for index, name in enumerate("xyz")
-    ]
-    whole = {
-        "header": HEADER,
-        "height": 1,
-        "width": len(data) // 12,
-        "fields": fields,
-        "is_bigendian": False,
-        "point_step": 12,
-        "row_step": len(data),
-        "data": data,
-        "is_dense": True,
-    }
-    return {**whole, **changes}
-
-
 CLOUD = "sensor_msgs/msg/PointCloud2"
 
 
 def test_a_cloud_is_its_points_without_those_that_are_none() -> None:
-    message = cloud([(1.0, 2.0, 3.0), (math.nan, 0.0, 0.0), (4.0, 5.0, math.inf), (7.0, 8.0, 9.0)])
-    drawn = draw(ViewScene(), "/points", CLOUD, message)["space/points"]
+    places = np.array([(1.0, 2.0, 3.0), (math.nan, 0.0, 0.0), (7.0, 8.0, 9.0)])
+    drawn = draw(ViewScene(), "/points", CLOUD, cloud_tree(places, "map"))["space/points"]
     assert arrow(drawn.shapes[0].positions) == [[1.0, 2.0, 3.0], [7.0, 8.0, 9.0]]
     assert drawn.frame == "map"
 
 
+def test_a_cloud_has_its_colours_to_the_byte() -> None:
+    records = np.array([(1.0, 2.0, 3.0, 0x0A141E)], "<f4,<f4,<f4,<u4")
+    fields = [
+        {"name": name, "offset": 4 * at, "datatype": 7, "count": 1}
+        for at, name in enumerate(("x", "y", "z", "rgb"))
+    ]
+    message = cloud_tree(
+        np.zeros((1, 3)), "map", fields=fields, point_step=16, row_step=16, data=records.tobytes()
+    )
+    drawn = draw(ViewScene(), "/points", CLOUD, message)["space/points"]
+    assert arrow(drawn.shapes[0].colors) == [0x0A141EFF]
+
+
 def test_a_large_cloud_is_thinned_out() -> None:
-    points = np.zeros((300_000, 3), np.float32)
-    message = cloud([], width=300_000, row_step=3_600_000, data=points.tobytes())
+    message = cloud_tree(np.zeros((300_000, 3)), "map")
     drawn = draw(ViewScene(), "/points", CLOUD, message)["space/points"]
     assert len(arrow(drawn.shapes[0].positions)) == 100_000
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"width": 5}, "its fields do not fit: point_step 12, row_step 12"),
-        ({"height": 2}, "data has 12 bytes, and 2 rows of 12 need 24"),
-        ({"point_step": 8}, "its fields do not fit"),
-        ({"point_step": 0}, "its fields do not fit"),
-        ({"fields": []}, "it has no field x, y, z"),
-        ({"header": {**HEADER, "frame_id": ""}}, "header.frame_id is empty"),
-        ({"fields": [{"name": n, "offset": 0, "datatype": 99} for n in "xyz"]}, "do not fit"),
-    ],
-)
-def test_a_cloud_that_does_not_fit_is_told_of(changes: dict[str, Any], words: str) -> None:
-    drawn = draw(ViewScene(), "/points", CLOUD, cloud([(1.0, 2.0, 3.0)], **changes))
+def test_a_cloud_that_does_not_fit_is_told_of() -> None:
+    message = cloud_tree(np.zeros((1, 3)), "map", fields=[])
+    drawn = draw(ViewScene(), "/points", CLOUD, message)
     assert "space/points" not in drawn
-    assert said(drawn).startswith("/points is not drawn: ")
-    assert words in said(drawn)
+    assert said(drawn) == "/points is not drawn: the cloud has no field x, y, z"
 
 
 def test_a_scan_is_points_in_its_plane_within_its_limits() -> None:
@@ -194,30 +183,69 @@ def test_a_map_is_turned_upright() -> None:
     message = {"header": HEADER, "info": info, "data": np.array([0, 100, -1, 50], np.int8)}
     drawn = draw(ViewScene(), "/map", "nav_msgs/msg/OccupancyGrid", message)["space/map"]
     assert bytes(arrow(drawn.shapes[0].data)[0]) == bytes([255, 50, 0, 100])
-    small = {**message, "data": np.array([0], np.int8)}
-    words = said(draw(ViewScene(), "/map", "nav_msgs/msg/OccupancyGrid", small))
-    assert "the map has 1 cells, and its size is 2 x 2" in words
 
 
-def test_a_sonar_is_a_ray_and_a_number() -> None:
+def test_a_sonar_is_a_cone_and_a_number() -> None:
     drawn = draw(ViewScene(), "/sensor/sonar_front", "std_msgs/msg/Float32", {"data": 1.5})
     assert drawn["space/sensor/sonar_front"].frame == "sonar_front_link"
-    assert arrow(drawn["space/sensor/sonar_front"].shapes[0].strips) == [[[0, 0, 0], [1.5, 0, 0]]]
+    for side in arrow(drawn["space/sensor/sonar_front"].shapes[0].strips):
+        assert math.hypot(*side[-1]) == pytest.approx(1.5)
     assert arrow(drawn["plots/sensor/sonar_front"].shapes[0].scalars) == [1.5]
 
 
-def test_nothing_in_range_is_no_ray_and_no_number() -> None:
-    drawn = draw(ViewScene(), "/sensor/sonar_front", "std_msgs/msg/Float32", {"data": math.inf})
-    assert arrow(drawn["space/sensor/sonar_front"].shapes[0].strips) == []
-    assert "plots/sensor/sonar_front" not in drawn
+def test_nothing_in_range_is_a_cone_of_another_colour_and_no_number() -> None:
+    near, clear = (
+        draw(ViewScene(), "/sensor/sonar_front", "std_msgs/msg/Float32", {"data": metres})
+        for metres in (1.5, math.inf)
+    )
+    colours = [
+        set(arrow(drawn["space/sensor/sonar_front"].shapes[0].colors)) for drawn in (near, clear)
+    ]
+    assert colours[0].isdisjoint(colours[1])
+    assert "plots/sensor/sonar_front" not in clear
 
 
 def test_a_range_is_a_cone_of_its_width() -> None:
-    message = {"header": HEADER, "field_of_view": 1.0, "range": 2.0}
+    message = {"header": HEADER, "field_of_view": 1.0, "range": 2.0, "max_range": 4.0}
     drawn = draw(ViewScene(), "/sonar/range", "sensor_msgs/msg/Range", message)
-    rim = np.array(arrow(drawn["space/sonar/range"].shapes[0].strips)[0])
+    rim = np.array(arrow(drawn["space/sonar/range"].shapes[0].strips)[-1])
     assert np.linalg.norm(rim, axis=1) == pytest.approx(2.0)
     assert rim[:, 0] == pytest.approx(2.0 * math.cos(0.5))
+
+
+def test_a_robot_leaves_a_trail_which_is_torn_where_it_was_not_driven() -> None:
+    messages = [
+        {"header": HEADER, "pose": {"pose": pose_tree(Transform((x, 0.0, 0.0)))}, "twist": STILL}
+        for x in (0.0, 0.5, 1.0, 9.0, 9.5)
+    ]
+    drawn = draw(ViewScene(), "/odom", "nav_msgs/msg/Odometry", *messages)
+    assert arrow(drawn["space/odom"].shapes[0].origins) == [[9.5, 0.0, 0.0]]
+    strips = arrow(drawn["space/odom/trail"].shapes[0].strips)
+    assert [[x for x, _, _ in strip] for strip in strips] == [[0.0, 0.5, 1.0], [9.0, 9.5]]
+
+
+def test_a_path_is_a_line_through_its_poses() -> None:
+    poses = [
+        {"header": HEADER, "pose": pose_tree(Transform((float(x), 0.0, 0.0)))} for x in range(3)
+    ]
+    drawn = draw(ViewScene(), "/plan", "nav_msgs/msg/Path", {"header": HEADER, "poses": poses})
+    assert arrow(drawn["space/plan"].shapes[0].strips) == [[[0, 0, 0], [1, 0, 0], [2, 0, 0]]]
+    assert not said(drawn)
+    poses[1]["header"] = {**HEADER, "frame_id": "odom"}
+    drawn = draw(ViewScene(), "/plan", "nav_msgs/msg/Path", {"header": HEADER, "poses": poses})
+    assert arrow(drawn["space/plan"].shapes[0].strips) == [[[0, 0, 0], [2, 0, 0]]]
+    assert said(drawn).endswith("poses in other frames are not drawn: 1")
+
+
+@pytest.mark.parametrize("kind", ["PoseStamped", "PoseWithCovarianceStamped", "PoseArray"])
+def test_poses_are_arrows_along_their_x(kind: str) -> None:
+    one = pose_tree(Transform.from_rpy((1.0, 2.0, 0.0), (0.0, 0.0, math.pi / 2)))
+    pose = {"pose": one} if kind == "PoseWithCovarianceStamped" else one
+    message = {"header": HEADER, "pose": pose, "poses": [one]}
+    drawn = draw(ViewScene(), "/goal", f"geometry_msgs/msg/{kind}", message)
+    shape = drawn["space/goal"].shapes[0]
+    assert arrow(shape.origins) == [[1.0, 2.0, 0.0]]
+    assert arrow(shape.vectors) == [pytest.approx([0.0, 0.3, 0.0])]
 
 
 def image(encoding: str, pixels: np.ndarray[Any, Any], **changes: Any) -> dict[str, Any]:
@@ -265,43 +293,39 @@ def test_a_picture_that_is_cut_off_is_told_of() -> None:
     )
 
 
-def marker(**changes: Any) -> dict[str, Any]:
-    whole = {
-        "header": HEADER,
-        "ns": "obstacles",
-        "id": 3,
-        "type": 2,
-        "action": 0,
-        "pose": {"position": {"x": 1.0, "y": 0.0, "z": 0.0}, "orientation": NO_TURN},
-        "scale": {"x": 0.1, "y": 0.1, "z": 0.1},
-        "color": {"r": 1.0, "g": 0.0, "b": 0.0, "a": 0.5},
-        "points": [],
-        "colors": [],
-        "text": "",
-    }
-    return {**whole, **changes}
+MARKER = marker(3, 2, Transform((1.0, 0.0, 0.0)), (0.1, 0.1, 0.1))
 
 
 @pytest.mark.parametrize("kind", [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11])
 def test_every_kind_of_marker_is_drawn(kind: int) -> None:
     points = [{"x": float(x), "y": 0.0, "z": 0.0} for x in range(6)]
-    message = marker(type=kind, points=points)
+    message = {**MARKER, "type": kind, "points": points}
     drawn = draw(ViewScene(), "/marks", "visualization_msgs/msg/Marker", message)
     assert not said(drawn)
-    assert drawn["markers/marks/obstacles/3"].frame == "map"
+    assert drawn["markers/marks/things/3"].frame == "map"
+
+
+def test_a_marker_is_placed_by_its_pose_and_has_its_colours_to_the_byte() -> None:
+    points = [{"x": float(x), "y": 0.0, "z": 0.0} for x in range(2)]
+    colours = [{"r": 1.0, "g": 0.2, "b": 0.0, "a": 0.4}, {"r": 0.0, "g": 0.6, "b": 1.0, "a": 1.0}]
+    message = {**MARKER, "type": 8, "points": points, "colors": colours}
+    drawn = draw(ViewScene(), "/marks", "visualization_msgs/msg/Marker", message)
+    shape = drawn["markers/marks/things/3"].shapes[0]
+    assert arrow(shape.positions) == [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]
+    assert arrow(shape.colors) == [0xFF330066, 0x0099FFFF]
 
 
 def test_one_bad_marker_leaves_the_others() -> None:
-    message = {"markers": [marker(id=1), marker(id=2, type=42), marker(id=3)]}
+    message = {"markers": [{**MARKER, "id": 1}, {**MARKER, "id": 2, "type": 42}, MARKER]}
     drawn = draw(ViewScene(), "/marks", "visualization_msgs/msg/MarkerArray", message)
-    assert {"markers/marks/obstacles/1", "markers/marks/obstacles/3"} <= drawn.keys()
-    assert "there is no marker of type 42" in said(drawn)
+    assert {"markers/marks/things/1", "markers/marks/things/3"} <= drawn.keys()
+    assert "there is no shape for markers of type 42" in said(drawn)
 
 
 def test_a_marker_can_be_removed() -> None:
-    message = marker(action=2)
+    message = {**MARKER, "action": 2}
     drawn = draw(ViewScene(), "/marks", "visualization_msgs/msg/Marker", message)
-    assert drawn["markers/marks/obstacles/3"].recursive
+    assert drawn["markers/marks/things/3"].recursive
 
 
 def test_the_robot_is_drawn_link_by_link() -> None:
@@ -317,4 +341,4 @@ def test_the_robot_is_drawn_link_by_link() -> None:
 
 def test_a_message_of_another_shape_ends_nothing() -> None:
     drawn = draw(ViewScene(), "/tf", "std_msgs/msg/String", {"data": "?"})
-    assert "it cannot be read" in said(drawn)
+    assert "the message has no field transforms" in said(drawn)
