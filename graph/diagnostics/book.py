@@ -74,6 +74,10 @@ class DiagnosticsBook:
         """Do not count the time before `now_s` (unix) as silence: nobody was listening."""
         self._excused_s = now_s
 
+    def heard_s(self, record: StatusRecord) -> float:
+        """Return from when on a status has been silent, unix time."""
+        return max(record.status.heard_s, self._excused_s)
+
     def take(self, samples: Iterable[Sample]) -> None:
         """Read messages of diagnostic_msgs/DiagnosticArray; malformed ones are left out."""
         for sample in samples:
@@ -83,8 +87,7 @@ class DiagnosticsBook:
     def look(self, now_s: float) -> None:
         """Find what has become stale by `now_s`, unix time."""
         for record in self._records.values():
-            heard_s = max(record.status.heard_s, self._excused_s)
-            if now_s - heard_s > STALE_S and record.level is not StatusLevel.STALE:
+            if now_s - self.heard_s(record) > STALE_S and record.level is not StatusLevel.STALE:
                 self.revision += 1
                 _set(record, StatusLevel.STALE, now_s)
 

@@ -26,7 +26,7 @@ from tui.devices.diagnostics import (
     worst_of,
 )
 from tui.devices.frame_rows import KEPT, WAYS, FrameRows, frame_columns
-from tui.devices.reading import Device, DeviceBook, frames_topic
+from tui.devices.reading import Device, device_of, devices_of, frames_topic
 from tui.devices.table import DevicesTable
 from tui.frame.screen import DeckScreen
 from tui.log_view.pane import LogPane
@@ -76,7 +76,6 @@ class DevicesScreen(DeckScreen):
     def __init__(self) -> None:
         super().__init__()
         self.frames = FrameRows()
-        self._book = DeviceBook()
         self._diagnostics = DiagnosticsBook()
         self._update: GraphUpdate | None = None
         self._topic: str | None = None
@@ -109,7 +108,8 @@ class DevicesScreen(DeckScreen):
         """The chosen driver, if drivers are shown."""
         if not self.is_mounted or self.shows_tree:
             return None
-        return self._book.get(self.table.chosen)
+        record = self._diagnostics.get(self.table.chosen)
+        return None if record is None else device_of(self._diagnostics, record)
 
     @property
     def has_diagnostics(self) -> bool:
@@ -141,7 +141,6 @@ class DevicesScreen(DeckScreen):
 
     def on_screen_resume(self) -> None:
         """Excuse the drivers: nobody was listening while another screen was in front."""
-        self._book.excuse(clock.now())
         self._diagnostics.excuse(clock.now())
         self._look()
 
@@ -151,7 +150,6 @@ class DevicesScreen(DeckScreen):
         session = self.feed.session
         if session is not None:
             self.pane.save_folder = session.log_dir
-            self._book.clear()
             self._diagnostics.clear()
             self._update = None
         self._look()
@@ -165,7 +163,6 @@ class DevicesScreen(DeckScreen):
         """Take in the reports and the frames."""
         self._update = message.update
         samples = message.update.samples
-        self._book.take(samples.get(DIAGNOSTICS, ()))
         self._diagnostics.take(samples.get(DIAGNOSTICS, ()))
         self._look()
         if self._topic is not None:
@@ -296,10 +293,10 @@ class DevicesScreen(DeckScreen):
         """Show the current state."""
         if not self.is_mounted or self.feed.front is not self:
             return
-        devices, now_s = self._book.devices, clock.now()
+        devices, now_s = devices_of(self._diagnostics), clock.now()
         for widget in (self.table, self.query_one("#devices-chosen"), self.pane):
             widget.display = bool(devices) and not self.shows_tree
-        self._show_tabs(now_s)
+        self._show_tabs(len(devices), now_s)
         empty = self.query_one("#devices-empty", Static)
         empty.display = not devices
         if not devices:
@@ -316,9 +313,9 @@ class DevicesScreen(DeckScreen):
         self.table.show_devices(devices, now_s)
         self._show_chosen(now_s)
 
-    def _show_tabs(self, now_s: float) -> None:
+    def _show_tabs(self, devices: int, now_s: float) -> None:
         self._diagnostics.look(now_s)
-        tabs, devices = self.query_one(TabLine), len(self._book.devices)
+        tabs = self.query_one(TabLine)
         tabs.display = bool(devices)
         words, drivers = _("Diagnostics"), _("Drivers")
         told = len(self._diagnostics.records)
@@ -333,8 +330,8 @@ class DevicesScreen(DeckScreen):
         if device is None:
             return
         topic = frames_topic(device, () if self._update is None else self._update.topics)
-        if device.name != self._shown_name:
-            self._shown_name = device.name
+        if device.report.name != self._shown_name:
+            self._shown_name = device.report.name
             self.clear_frames()
         if topic != self._topic:
             self._topic = topic

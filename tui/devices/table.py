@@ -72,7 +72,7 @@ def _columns(layout: _Layout) -> list[Column]:
 def _row(device: Device, layout: _Layout, now_s: float) -> Row:
     frames = [figure(device, "frames_in_per_s")] if layout.frames else []
     cells = (
-        Cell(plain(device.name)),
+        Cell(plain(device.report.name)),
         state(device, now_s),
         _port(device, layout.port or 14),
         _since(device, layout.since),
@@ -80,9 +80,9 @@ def _row(device: Device, layout: _Layout, now_s: float) -> Row:
         figure(device, "bytes_out_per_s"),
         *frames,
         errors(device),
-        *([Cell(device.message)] if layout.message else []),
+        *([Cell(device.report.message)] if layout.message else []),
     )
-    return Row(device.name, cells)
+    return Row(device.report.name, cells)
 
 
 def state(device: Device, now_s: float) -> Cell:
@@ -90,7 +90,7 @@ def state(device: Device, now_s: float) -> Cell:
     age_s = device.age_s(now_s)
     if age_s > STALE_S:
         return Cell(_("○ stale {seconds} s").format(seconds=round(min(age_s, 9999.0))), "dim")
-    words, meaning = STATES[device.level]
+    words, meaning = STATES[device.report.level]
     return Cell(_(words), meaning)
 
 

@@ -27,7 +27,7 @@ HEAD = "nodes.head_controller"
 def whole(device: Device, now_s: float, width: int) -> str:
     """Return the message, and below it as many figures as fit into one line of `width` cells."""
     word = state(device, now_s).text
-    lines = [f"{plain(device.name)} · {word} · {device.message}", ""]
+    lines = [f"{plain(device.report.name)} · {word} · {device.report.message}", ""]
     for figure in _figures(device):
         longer = f"{lines[1]} · {figure}" if lines[1] else figure
         if cell_len(longer) <= width:
@@ -59,7 +59,7 @@ def _figures(device: Device) -> list[str]:
 
 def no_frames(device: Device, topic: str | None, now_s: float) -> str:
     """Say why no frame of this driver has arrived, and what to do."""
-    name = plain(device.name)
+    name = plain(device.report.name)
     age_s = device.age_s(now_s)
     if age_s > STALE_S:
         words = _(
