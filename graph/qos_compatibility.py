@@ -10,20 +10,34 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from graph.qos import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE
+from text.i18n import N_
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from graph.data import EndpointInfo
+    from text.sentences import Words
 
 RELIABILITY, DURABILITY, LIVELINESS = "reliability", "durability", "liveliness"
 DEADLINE, LEASE = "deadline", "lease"
-TIMES = {
-    DEADLINE: ("a message", "deadline"),
-    LEASE: ("a sign of life", "liveliness lease duration"),
-}
-"""The policies that are durations, with the event they limit, and their name in words."""
+TIMES = (DEADLINE, LEASE)
+"""The policies that are durations."""
 AUTOMATIC, MANUAL = "automatic", "manual_by_topic"
+_WHAT = {
+    "": N_(
+        "{subscriber} does not hear {publisher}: {policy} {requested} is asked for, {offered} is "
+        "offered."
+    ),
+    DEADLINE: N_(
+        "{subscriber} does not hear {publisher}: it asks for a message at least every {requested} "
+        "(deadline), {offered} is offered."
+    ),
+    LEASE: N_(
+        "{subscriber} does not hear {publisher}: it asks for a sign of life at least every "
+        "{requested} (liveliness lease duration), {offered} is offered."
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -38,22 +52,28 @@ class Mismatch:
     """The policy's value, or seconds (`0.5`) for a duration; empty if there is none."""
     requested: str
 
-    def in_words(self) -> str:
-        """Return who does not receive from whom, and the two ways to fix it."""
-        about = f"{self.subscriber} does not hear {self.publisher}: it asks for"
-        let, or_let = f"Let {self.publisher} offer", f"or let {self.subscriber} ask for"
+    @property
+    def what(self) -> Words:
+        """Who does not receive from whom, and why."""
+        return say(_WHAT.get(self.policy, _WHAT[""]), **self._shown())
+
+    @property
+    def mend(self) -> Words:
+        """The two ways to fix it."""
         if self.policy not in TIMES:
-            return (
-                f"{about} {self.policy} {self.requested}, offered is {self.offered}. "
-                f"{let} {self.requested}, {or_let} {self.offered}."
+            template = N_(
+                "Let {publisher} offer {requested}, or let {subscriber} ask for {offered}."
             )
-        event, name = TIMES[self.policy]
-        offered = f"{self.offered} s" if self.offered else "none"
-        at_least = f"{offered} or more" if self.offered else "none"
-        return (
-            f"{about} {event} at least every {self.requested} s ({name}), offered is {offered}. "
-            f"{let} {self.requested} s or less, {or_let} {at_least}."
-        )
+        elif self.offered:
+            template = N_(
+                "Let {publisher} offer {requested} or less, or let {subscriber} ask for {offered} "
+                "or more."
+            )
+        else:
+            template = N_(
+                "Let {publisher} offer {requested} or less, or let {subscriber} ask for none."
+            )
+        return say(template, **self._shown())
 
     def facts(self) -> dict[str, str]:
         """Return the same as names and values, for a sentence in another language."""
@@ -64,6 +84,12 @@ class Mismatch:
             "offered": self.offered,
             "requested": self.requested,
         }
+
+    def _shown(self) -> dict[str, str]:
+        shown = self.facts()
+        if self.policy in TIMES:
+            shown["requested"], shown["offered"] = _time(self.requested), _time(self.offered)
+        return shown
 
 
 def mismatches(
@@ -101,6 +127,10 @@ def _short_falls(
 def _is_longer(offered_s: float | None, requested_s: float | None) -> bool:
     """Return whether the offer comes less often than requested; None means never."""
     return requested_s is not None and (offered_s is None or offered_s > requested_s)
+
+
+def _time(seconds: str) -> Words:
+    return say("{seconds:g} s", seconds=float(seconds)) if seconds else say("nothing")
 
 
 def _text(seconds: float | None) -> str:

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 from graph.findings.finding import FindingLevel, FindingPlace, GraphFinding
 from graph.housekeeping import is_hidden
 from graph.qos import BEST_EFFORT
-from graph.qos_compatibility import DEADLINE, TIMES, mismatches
+from graph.qos_compatibility import mismatches
 from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from graph.data import GraphUpdate, TopicRow
-    from graph.qos_compatibility import Mismatch
 
 FEWEST_LOST = 20
 LOST_SHARE = 0.05
@@ -29,7 +28,7 @@ def misfits(update: GraphUpdate) -> Iterator[GraphFinding]:
         found = list(dict.fromkeys(mismatches(row.published_by, row.subscribed_by)))
         if not found or is_hidden(row.name):
             continue
-        what, more = _in_words(found[0]), len(found) - 1
+        what, more = found[0].what, len(found) - 1
         if more:
             what = say("{what} (and {more} more such pairs)", what=what, more=more)
         nodes = {name for pair in found for name in (pair.publisher, pair.subscriber)}
@@ -38,52 +37,9 @@ def misfits(update: GraphUpdate) -> Iterator[GraphFinding]:
             "qos",
             FindingPlace("topic", row.name),
             what,
-            _fix(found[0]),
+            found[0].mend,
             tuple(sorted(nodes)),
         )
-
-
-def _in_words(pair: Mismatch) -> str:
-    facts = _facts(pair)
-    if pair.policy not in TIMES:
-        return say(
-            "{subscriber} does not hear {publisher}: {policy} {requested} is asked for, {offered} "
-            "is offered.",
-            **facts,
-        )
-    if pair.policy == DEADLINE:
-        return say(
-            "{subscriber} does not hear {publisher}: it asks for a message at least every "
-            "{requested} (deadline), {offered} is offered.",
-            **facts,
-        )
-    return say(
-        "{subscriber} does not hear {publisher}: it asks for a sign of life at least every "
-        "{requested} (liveliness lease duration), {offered} is offered.",
-        **facts,
-    )
-
-
-def _fix(pair: Mismatch) -> str:
-    if pair.policy not in TIMES:
-        return say(
-            "Let {publisher} offer {requested}, or let {subscriber} ask for {offered}.",
-            **_facts(pair),
-        )
-    return say(
-        "Let {publisher} offer {requested} or less, or let {subscriber} ask for {offered} or more.",
-        **_facts(pair),
-    )
-
-
-def _facts(pair: Mismatch) -> dict[str, str]:
-    facts = pair.facts()
-    if pair.policy in TIMES:
-        facts["requested"] = say("{seconds:g} s", seconds=float(pair.requested))
-        facts["offered"] = (
-            say("{seconds:g} s", seconds=float(pair.offered)) if pair.offered else say("nothing")
-        )
-    return facts
 
 
 def losses(update: GraphUpdate) -> Iterator[GraphFinding]:

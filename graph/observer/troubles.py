@@ -64,7 +64,7 @@ def _misfit(found: Sequence[Mismatch]) -> Diagnosis:
     # Two identical endpoints of one node give the same sentence.
     told = list(dict.fromkeys(found))
     more = len(told) - MOST_PAIRS
-    words = [pair.in_words() for pair in told[:MOST_PAIRS]]
+    words = [f"{pair.what} {pair.mend}" for pair in told[:MOST_PAIRS]]
     words += [f"(and {more} more pairs)"] if more > 0 else []
     others = {"more": str(len(told) - 1)} if len(told) > 1 else {}
     return Diagnosis(Trouble.QOS_MISMATCH, " ".join(words), told[0].facts() | others)

@@ -103,7 +103,7 @@ def _types_lines(row: TopicRow, width: int) -> Iterator[Line]:
 
 def _pair_lines(pairs: Sequence[Pair], width: int) -> list[Line]:
     # If a node has two identical endpoints, its pairs produce the same text.
-    told = list(dict.fromkeys(pair_words(pair.mismatch.facts()) for pair in pairs))
+    told = list(dict.fromkeys(pair_words(pair.mismatch) for pair in pairs))
     lines: list[Line] = []
     for words in told[:MOST_PAIRS]:
         lines += _wrapped(MISMATCH, words, width, "bad")

@@ -15,7 +15,7 @@ def facts(**values: str) -> dict[str, str]:
 
 
 APART = "/brain does not hear /lidar: "
-LIFE = "it asks for a sign of life at least every 2.0 s (liveliness lease duration), "
+LIFE = "it asks for a sign of life at least every 2 s (liveliness lease duration), "
 
 
 @pytest.mark.parametrize(
@@ -28,23 +28,23 @@ LIFE = "it asks for a sign of life at least every 2.0 s (liveliness lease durati
         ),
         (
             "deadline", "0.5", "0.25",
-            "it asks for a message at least every 250 ms (deadline), 500 ms is offered.",
-            " Let /lidar offer 250 ms or less, or let /brain ask for 500 ms or more.",
+            "it asks for a message at least every 0.25 s (deadline), 0.5 s is offered.",
+            " Let /lidar offer 0.25 s or less, or let /brain ask for 0.5 s or more.",
         ),
         (
             "deadline", "", "2",
-            "it asks for a message at least every 2.0 s (deadline), no deadline is offered.",
-            " Let /lidar offer 2.0 s or less, or let /brain ask for none.",
+            "it asks for a message at least every 2 s (deadline), nothing is offered.",
+            " Let /lidar offer 2 s or less, or let /brain ask for none.",
         ),
         (
             "lease", "", "2",
-            LIFE + "none is offered.",
-            " Let /lidar offer 2.0 s or less, or let /brain ask for none.",
+            LIFE + "nothing is offered.",
+            " Let /lidar offer 2 s or less, or let /brain ask for none.",
         ),
         (
             "lease", "3", "2",
-            LIFE + "3.0 s is offered.",
-            " Let /lidar offer 2.0 s or less, or let /brain ask for 3.0 s or more.",
+            LIFE + "3 s is offered.",
+            " Let /lidar offer 2 s or less, or let /brain ask for 3 s or more.",
         ),
     ],
 )  # fmt: skip
@@ -52,7 +52,7 @@ def test_each_policy_has_its_own_words(
     policy: str, offered: str, requested: str, why: str, way_out: str
 ) -> None:
     values = facts(policy=policy, offered=offered, requested=requested)
-    assert pair_words(values) == APART + why + way_out
+    assert misfit_words(values) == APART + why + way_out
 
 
 def test_further_pairs_are_counted() -> None:
@@ -62,7 +62,7 @@ def test_further_pairs_are_counted() -> None:
 
 
 def test_hostile_names_are_shown_harmlessly() -> None:
-    words = pair_words(
+    words = misfit_words(
         facts(policy="reliability", offered="best_effort", requested="reliable")
         | {"publisher": "/\x1b[31m{x}[b]"}
     )
@@ -77,7 +77,7 @@ def test_every_policy_that_is_found_is_told_in_russian_too() -> None:
     )  # fmt: skip
     set_language("ru")
     try:
-        told = [pair_words(found.facts()) for found in mismatches([offer], [asked])]
+        told = [pair_words(found) for found in mismatches([offer], [asked])]
     finally:
         set_language("en")
     assert len(told) == 5
