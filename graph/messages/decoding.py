@@ -44,11 +44,9 @@ def read_image(raw: bytes) -> dict[str, Value] | None:
     hundredth of a core. Layout: OMG DDS-XTypes 1.3, 7.4.1, plain CDR, numbers aligned to their
     size.
     """
-    if raw[:2] != LITTLE_ENDIAN_CDR:
-        return None
-    try:
-        reader = _CdrCursor(raw)
-        tree: dict[str, Value] = {
+    return _read(
+        raw,
+        lambda reader: {
             "header": reader.header(),
             "height": reader.number("<I"),
             "width": reader.number("<I"),
@@ -56,10 +54,8 @@ def read_image(raw: bytes) -> dict[str, Value] | None:
             "is_bigendian": reader.number("<B"),
             "step": reader.number("<I"),
             "data": reader.take(reader.number("<I")),
-        }
-    except (struct.error, ValueError):
-        return None
-    return tree
+        },
+    )
 
 
 def read_point_cloud(raw: bytes) -> dict[str, Value] | None:
@@ -67,11 +63,9 @@ def read_point_cloud(raw: bytes) -> dict[str, Value] | None:
 
     As for images: a cloud of 300 000 points has 5 MB and more.
     """
-    if raw[:2] != LITTLE_ENDIAN_CDR:
-        return None
-    try:
-        reader = _CdrCursor(raw)
-        tree: dict[str, Value] = {
+    return _read(
+        raw,
+        lambda reader: {
             "header": reader.header(),
             "height": reader.number("<I"),
             "width": reader.number("<I"),
@@ -81,10 +75,17 @@ def read_point_cloud(raw: bytes) -> dict[str, Value] | None:
             "row_step": reader.number("<I"),
             "data": reader.take(reader.number("<I")),
             "is_dense": bool(reader.number("<B")),
-        }
+        },
+    )
+
+
+def _read(raw: bytes, tree_of: Callable[[_CdrCursor], dict[str, Value]]) -> dict[str, Value] | None:
+    if raw[:2] != LITTLE_ENDIAN_CDR:
+        return None
+    try:
+        return tree_of(_CdrCursor(raw))
     except (struct.error, ValueError):
         return None
-    return tree
 
 
 class _CdrCursor:
