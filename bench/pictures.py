@@ -20,7 +20,7 @@ import numpy as np
 from bench.observer import program
 from bench.processes import cpu_s, watch_stdin
 from bench.screen import screen_processes
-from tests.e2e.terminal import Terminal
+from tests.e2e.terminal import Terminal, own_folders
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -141,14 +141,8 @@ def open_topic(folder: Path) -> Terminal:
     """Return the program, with the camera's topic selected."""
     profile = folder / "nothing.yaml"
     profile.write_text("title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n")
-    env = {
-        "DECK_RUN_DIR": str(folder / "run"),
-        "DECK_LOG_DIR": str(folder / "logs"),
-        "XDG_CONFIG_HOME": str(folder / "config"),
-        "XDG_STATE_HOME": str(folder / "state"),
-        "SSH_CONNECTION": "",  # Otherwise the limit over SSH would apply to pictures.
-        "LANG": "C.UTF-8",
-    }
+    # Otherwise the limit over SSH would apply to pictures.
+    env = own_folders(folder, SSH_CONNECTION="")
     argv = [sys.executable, "-m", "tui", str(profile), "--domain", DOMAIN, "--lang", "en"]
     terminal = Terminal(argv, COLUMNS, ROWS, env)
     terminal.wait_for("1/1")

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from bench.processes import children, command, cpu_s, pss_mb
-from tests.e2e.terminal import Terminal
+from tests.e2e.terminal import Terminal, own_folders
 
 DOMAIN = int(os.environ.get("BENCH_DOMAIN", "77"))
 ROUNDS = 7
@@ -54,14 +54,7 @@ while True:
 @contextmanager
 def deck(folder: Path, *args: str) -> Iterator[Terminal]:
     """Run the program in a terminal of 120x40 with its own directories."""
-    env = {
-        "DECK_RUN_DIR": str(folder / "run"),
-        "DECK_LOG_DIR": str(folder / "logs"),
-        "XDG_CONFIG_HOME": str(folder / "config"),
-        "XDG_STATE_HOME": str(folder / "state"),
-        "DECK_COURSE": str(folder / "course"),
-        "LANG": "C.UTF-8",
-    }
+    env = own_folders(folder, DECK_COURSE=str(folder / "course"))
     settings = folder / "config" / "deck" / "settings.json"
     settings.parent.mkdir(parents=True, exist_ok=True)
     settings.write_text(json.dumps({"tour": "seen"}))

@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 from tests.e2e.panning_camera import PROFILE, TOPIC
-from tests.e2e.terminal import Terminal
+from tests.e2e.terminal import Terminal, own_folders
 
 DOMAIN = os.environ.get("BENCH_DOMAIN", "79")
 ROOT = Path(__file__).resolve().parents[1]
@@ -39,14 +39,7 @@ def open_picture(folder: Path, env: dict[str, str]) -> Terminal:
     """Return the program, with the camera's picture on the screen."""
     profile = folder / "pan.yaml"
     profile.write_text(PROFILE.format(python=sys.executable, root=ROOT, topic=TOPIC))
-    own = {
-        "DECK_RUN_DIR": str(folder / "run"),
-        "DECK_LOG_DIR": str(folder / "logs"),
-        "XDG_CONFIG_HOME": str(folder / "config"),
-        "XDG_STATE_HOME": str(folder / "state"),
-        "SSH_CONNECTION": "",
-        "LANG": "C.UTF-8",
-    }
+    own = own_folders(folder, SSH_CONNECTION="")
     argv = [sys.executable, "-m", "tui", str(profile), "--domain", DOMAIN, "--lang", "en"]
     terminal = Terminal(argv, COLUMNS, ROWS, {**own, **env})
     terminal.wait_for("1/1")

@@ -18,7 +18,7 @@ from bench.load import RATES_HZ
 from bench.observer import measure, program
 from bench.processes import cpu_s, pss_mb
 from bench.screen import screen_processes
-from tests.e2e.terminal import Terminal
+from tests.e2e.terminal import Terminal, own_folders
 
 DOMAIN = os.environ.get("BENCH_DOMAIN", "79")
 WARM_UP_S = 8.0
@@ -30,15 +30,8 @@ def open_topics(folder: Path, topic: str = "/load/image", domain: str = DOMAIN) 
     """Return the program with the Topics screen open, once this topic is on it."""
     profile = folder / "nothing.yaml"
     profile.write_text("title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n")
-    env = {
-        "DECK_RUN_DIR": str(folder / "run"),
-        "DECK_LOG_DIR": str(folder / "logs"),
-        "XDG_CONFIG_HOME": str(folder / "config"),
-        "XDG_STATE_HOME": str(folder / "state"),
-        "LANG": "C.UTF-8",
-    }
     argv = [sys.executable, "-m", "tui", str(profile), "--domain", domain, "--lang", "en"]
-    terminal = Terminal(argv, 120, 40, env)
+    terminal = Terminal(argv, 120, 40, own_folders(folder))
     terminal.wait_for("1/1")
     terminal.press("f3")
     terminal.wait_for(topic)

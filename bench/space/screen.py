@@ -19,7 +19,7 @@ from bench.observer import program
 from bench.processes import cpu_s, pss_mb
 from bench.screen import screen_processes
 from bench.space.load import TOPIC
-from tests.e2e.terminal import Terminal
+from tests.e2e.terminal import Terminal, own_folders
 
 DOMAIN = os.environ.get("BENCH_DOMAIN", "83")
 WARM_UP_S = 8.0
@@ -43,14 +43,7 @@ def open_space(
     folder: Path, profile: str, ready: str, shown: str, env: Mapping[str, str]
 ) -> Terminal:
     """Return the program with the Space screen open, once it is ready and these words are on it."""
-    own = {
-        "DECK_RUN_DIR": str(folder / "run"),
-        "DECK_LOG_DIR": str(folder / "logs"),
-        "XDG_CONFIG_HOME": str(folder / "config"),
-        "XDG_STATE_HOME": str(folder / "state"),
-        "SSH_CONNECTION": "",
-        "LANG": "C.UTF-8",
-    }
+    own = own_folders(folder, SSH_CONNECTION="")
     argv = [sys.executable, "-m", "tui", profile, "--domain", DOMAIN, "--lang", "en"]
     terminal = Terminal(argv, 120, 40, {**own, **env})
     terminal.wait_for(ready, 60)

@@ -18,6 +18,7 @@ import termios
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 import pyte
 from rich.console import Console
@@ -241,6 +242,18 @@ class Terminal:
                 if len(self.kept) < KEPT:
                     self.kept += data
                 self._stream.feed(self._decoder.decode(data))
+
+
+def own_folders(folder: Path, **more: str) -> dict[str, str]:
+    """Return an environment in which the program keeps everything below `folder`."""
+    return {
+        "DECK_RUN_DIR": str(folder / "run"),
+        "DECK_LOG_DIR": str(folder / "logs"),
+        "XDG_CONFIG_HOME": str(folder / "config"),
+        "XDG_STATE_HOME": str(folder / "state"),
+        "LANG": "C.UTF-8",
+        **more,
+    }
 
 
 def _take_terminal() -> None:
