@@ -32,13 +32,6 @@ def peers(module_domain: int) -> Iterator[tuple[Peer, Peer]]:
         peer.close()
 
 
-@pytest.fixture(scope="module")
-def module_watcher(module_domain: int) -> Iterator[Watcher]:
-    watcher = Watcher(module_domain)
-    yield watcher
-    watcher.close()
-
-
 @pytest.fixture
 def watcher(module_watcher: Watcher) -> Iterator[Watcher]:
     module_watcher.observer.watch_frames(True)

@@ -25,13 +25,6 @@ def peer(module_domain: int) -> Iterator[Peer]:
     peer.close()
 
 
-@pytest.fixture(scope="module")
-def module_watcher(module_domain: int) -> Iterator[Watcher]:
-    watcher = Watcher(module_domain)
-    yield watcher
-    watcher.close()
-
-
 @pytest.fixture
 def watcher(module_watcher: Watcher) -> Iterator[Watcher]:
     yield module_watcher

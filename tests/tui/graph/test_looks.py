@@ -33,15 +33,21 @@ def app_of(look: Look, update: GraphUpdate | None = None) -> DeckApp:
     return look.app("graph", RecordedOpener(graph=graph))
 
 
+async def settled(pilot: Pilot[Any]) -> tuple[GraphScreen, RecordedGraph]:
+    """Return the screen and the recorded graph, once what was recorded is shown."""
+    await settle(pilot)
+    assert isinstance(pilot.app, DeckApp)
+    screen, graph = pilot.app.screen, pilot.app.feed.graph
+    assert isinstance(screen, GraphScreen)
+    assert isinstance(graph, RecordedGraph)
+    return screen, graph
+
+
 def at(place: GraphPlace, *steps: str | Step) -> Callable[[Pilot[Any]], Awaitable[None]]:
     """Go to a place, then press keys and take steps."""
 
     async def before(pilot: Pilot[Any]) -> None:
-        await settle(pilot)
-        assert isinstance(pilot.app, DeckApp)
-        screen, graph = pilot.app.screen, pilot.app.feed.graph
-        assert isinstance(screen, GraphScreen)
-        assert isinstance(graph, RecordedGraph)
+        screen, graph = await settled(pilot)
         await screen.go(place)
         await still(pilot, screen)
         for step in steps:
@@ -184,11 +190,7 @@ def told(
     """List the findings of a graph that is ill, as they are once they have lasted."""
 
     async def before(pilot: Pilot[Any]) -> None:
-        await settle(pilot)
-        assert isinstance(pilot.app, DeckApp)
-        screen, graph = pilot.app.screen, pilot.app.feed.graph
-        assert isinstance(screen, GraphScreen)
-        assert isinstance(graph, RecordedGraph)
+        screen, graph = await settled(pilot)
         screen.list_kind(GraphKind.FINDING)
         late_s = clock.steady() + 60.0
         patch.setattr(clock, "steady", lambda: late_s)
