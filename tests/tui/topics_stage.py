@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import AbstractAsyncContextManager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,34 +11,24 @@ import numpy as np
 from textual.widgets import Static
 
 from graph.data import GraphUpdate, TopicRow
-from tests.tui.recorded import TOPICS, RecordedGraph, RecordedOpener, lesson_update, sample
+from tests.tui.recorded import TOPICS, lesson_update, sample
 from tests.tui.recorded_image import colour_bars
-from tests.tui.snapshots import Look, settle
+from tests.tui.screen_stage import HOME, ScreenStage, on_stage
+from tests.tui.snapshots import Look
 from tests.waiting import until
 from tui.topics.detail import TopicHead
 from tui.topics.screen import TopicsScreen
 
 if TYPE_CHECKING:
-    from textual.pilot import Pilot
+    pass
 
-    from tui.app import DeckApp
-
-HOME = Look((120, 40), "en")
 SONAR, CAMERA = "/sensor/sonar_front", "/camera/color/image_raw"
 
 
-class Stage:
-    """The screen of topics over a recorded graph, under a pilot."""
+class TopicsStage(ScreenStage[TopicsScreen]):
+    """The screen of topics."""
 
-    def __init__(self, app: DeckApp, pilot: Pilot[Any], graph: RecordedGraph) -> None:
-        self.app, self.pilot, self.graph = app, pilot, graph
-
-    @property
-    def screen(self) -> TopicsScreen:
-        """The screen."""
-        screen = self.app.screen
-        assert isinstance(screen, TopicsScreen)
-        return screen
+    name, kind = "topics", TopicsScreen
 
     def measures(self) -> bool:
         """Whether the rates of all topics are asked for now."""
@@ -55,12 +44,6 @@ class Stage:
         await until(
             lambda: self.graph.watched == {topic}, lambda: f"{topic}, but {self.graph.watched}"
         )
-        await self.pilot.pause()
-
-    async def show(self, update: GraphUpdate) -> None:
-        """Let the graph be this, and wait until it is drawn."""
-        self.graph.show(update)
-        await self.pilot.pause()
         await self.pilot.pause()
 
     async def decoded(self) -> None:
@@ -84,14 +67,9 @@ class Stage:
         return "\n".join(tree.render_line(y).text.rstrip() for y in range(tree.size.height)).strip()
 
 
-@asynccontextmanager
-async def opened(look: Look = HOME) -> AsyncIterator[Stage]:
+def opened(look: Look = HOME) -> AbstractAsyncContextManager[TopicsStage]:
     """Open the screen of topics of lesson 9."""
-    graph = RecordedGraph()
-    app = look.app("topics", RecordedOpener(graph=graph))
-    async with app.run_test(size=look.size) as pilot:
-        await settle(pilot)
-        yield Stage(app, pilot, graph)
+    return on_stage(TopicsStage, look=look)
 
 
 def row(name: str, **more: Any) -> TopicRow:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.tui import graph_stage, topics_stage
-from tests.tui.graph_stage import Stage
+from tests.tui.graph_stage import GraphStage
 
 
 async def test_a_topic_is_echoed() -> None:
@@ -16,7 +16,7 @@ async def test_a_topic_is_echoed() -> None:
 
 async def test_a_node_is_told_about() -> None:
     async with graph_stage.opened() as stage:
-        assert isinstance(stage, Stage)
+        assert isinstance(stage, GraphStage)
         name = stage.screen.names.chosen_name
         await stage.press("Н")
         assert stage.app.clipboard == f"ros2 node info {name}"

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import AbstractAsyncContextManager
 from typing import TYPE_CHECKING
 
 from textual.widgets import Static
@@ -13,9 +12,10 @@ from textual.widgets import Static
 from brain.settings import settings_path
 from robot.topics import LLM_RAW_JSON
 from tests.model_server import Exchange, obeys
-from tests.tui.composer.test_composer import PARSER, Stage
+from tests.tui.composer.test_composer import PARSER, ComposerStage
 from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
-from tests.tui.snapshots import Look, settle
+from tests.tui.screen_stage import on_stage
+from tests.tui.snapshots import Look
 from tests.waiting import until
 
 if TYPE_CHECKING:
@@ -83,19 +83,14 @@ def set_up(url: str, **more: str) -> None:
     settings_path().write_text(text, encoding="utf-8")
 
 
-@asynccontextmanager
-async def composer(size: tuple[int, int] = (120, 40)) -> AsyncIterator[Stage]:
+def composer(size: tuple[int, int] = (120, 40)) -> AbstractAsyncContextManager[ComposerStage]:
     """Open the Composer over a recorded lesson 9."""
     topics = (*lesson_update().topics, PARSER)
     graph = RecordedGraph(update=lesson_update(topics=topics))
-    look = Look(size, "en")
-    app = look.app("composer", RecordedOpener(graph=graph))
-    async with app.run_test(size=size) as pilot:
-        await settle(pilot)
-        yield Stage(app, pilot, graph)
+    return on_stage(ComposerStage, RecordedOpener(graph=graph), Look(size, "en"))
 
 
-async def ask(stage: Stage, words: str = WORDS) -> None:
+async def ask(stage: ComposerStage, words: str = WORDS) -> None:
     """Say it in the line, and press Enter."""
     await stage.pilot.press("alt+q")
     stage.screen.line.field.value = words
@@ -103,37 +98,37 @@ async def ask(stage: Stage, words: str = WORDS) -> None:
     await stage.pilot.pause()
 
 
-async def answered(stage: Stage) -> None:
+async def answered(stage: ComposerStage) -> None:
     """Wait until nothing is under way any more."""
     await until(lambda: not is_asking(stage), "the end of the question")
     await stage.pilot.pause()
 
 
-def is_asking(stage: Stage) -> bool:
+def is_asking(stage: ComposerStage) -> bool:
     """Whether an answer is under way."""
     return stage.screen.is_asking
 
 
-def is_auto(stage: Stage) -> bool:
+def is_auto(stage: ComposerStage) -> bool:
     """Whether a valid answer is sent by itself."""
     return stage.screen.is_auto
 
 
-def shown(stage: Stage) -> str:
+def shown(stage: ComposerStage) -> str:
     """Everything on the screen in front."""
     return "\n".join(strip.text for strip in stage.app.screen._compositor.render_strips())
 
 
-def verdict(stage: Stage) -> str:
+def verdict(stage: ComposerStage) -> str:
     """The line that says how the JSON stands."""
     return str(stage.screen.verdict.query_one(Static).content)
 
 
-def status(stage: Stage) -> str:
+def status(stage: ComposerStage) -> str:
     """What the answer took, and the budget."""
     return str(stage.screen.query_one("#ask-status", Static).content)
 
 
-def sent(stage: Stage) -> list[object]:
+def sent(stage: ComposerStage) -> list[object]:
     """What went to the robot."""
     return [value["data"] for topic, _, value, _ in stage.graph.published if topic == LLM_RAW_JSON]

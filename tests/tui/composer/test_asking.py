@@ -161,7 +161,7 @@ async def test_each_failure_has_its_own_words_that_stay(kind: str, server: Model
         assert not stage.screen.editor.read_only
         assert not is_auto(stage)
         assert sent(stage) == []
-        await stage.show()
+        await stage.hear()
         assert words in stage.screen.line.note
 
 
@@ -281,7 +281,7 @@ async def test_the_model_is_told_what_the_screen_sees(server: ModelServer) -> No
     set_up(server.url)
     async with composer() as stage:
         report = result(event="refused", problems=["too fast"])
-        await stage.show(report, after_s=0.0)
+        await stage.hear(report, after_s=0.0)
         near = replace(
             report, topic="/sensor/sonar_front", value={"data": 1.25}, received_s=clock.now()
         )

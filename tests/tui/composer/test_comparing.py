@@ -8,7 +8,7 @@ from textual.widgets import Static
 from brain.settings import settings_path
 from tests.model_server import Exchange, ModelServer
 from tests.tui.composer.asking import GOOD, WORDS, Answers, composer, sent, set_up
-from tests.tui.composer.test_composer import Stage
+from tests.tui.composer.test_composer import ComposerStage
 from tests.waiting import until
 from tui.composer.compare import ComparedAnswer, CompareDialog
 from tui.composer.json_editor import JsonEditor
@@ -16,7 +16,7 @@ from tui.composer.json_editor import JsonEditor
 pytestmark = pytest.mark.usefixtures("own_folders")
 
 
-async def opened_comparison(stage: Stage) -> CompareDialog:
+async def opened_comparison(stage: ComposerStage) -> CompareDialog:
     """Ask both, and wait for both."""
     await stage.pilot.press("alt+q")
     stage.screen.line.field.value = WORDS

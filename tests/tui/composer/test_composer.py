@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import AsyncIterator
 from concurrent.futures import Future
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 from textual.widgets import OptionList, Static
@@ -13,7 +14,8 @@ from textual.widgets import OptionList, Static
 from graph.data import EndpointInfo, Sample, TopicRow
 from tests.tui.composer.test_outcome import drive, result
 from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
-from tests.tui.snapshots import Look, settle
+from tests.tui.screen_stage import HOME, ScreenStage, on_stage
+from tests.tui.snapshots import settle
 from tests.waiting import until
 from tui import clock
 from tui.composer.screen import ComposerScreen
@@ -24,11 +26,7 @@ from tui.outcome.trail import FOLLOWED
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from textual.pilot import Pilot
 
-    from tui.app import DeckApp
-
-HOME = Look((120, 40), "en")
 VALID = '{"thought": "go", "commands": [{"action": "drive", "speed": 0.1, "steering": 0.0}]}'
 TOO_FAST = VALID.replace("0.1", "9.0")
 PARSER = TopicRow(
@@ -40,18 +38,10 @@ PARSER = TopicRow(
 )
 
 
-class Stage:
-    """The composer over a recorded graph, under a pilot."""
+class ComposerStage(ScreenStage[ComposerScreen]):
+    """The composer over a recorded graph."""
 
-    def __init__(self, app: DeckApp, pilot: Pilot[Any], graph: RecordedGraph) -> None:
-        self.app, self.pilot, self.graph = app, pilot, graph
-
-    @property
-    def screen(self) -> ComposerScreen:
-        """The screen."""
-        screen = self.app.screen
-        assert isinstance(screen, ComposerScreen)
-        return screen
+    name, kind = "composer", ComposerScreen
 
     async def write(self, text: str) -> None:
         """Put a text into the editor and wait until it is checked."""
@@ -59,13 +49,11 @@ class Stage:
         self.screen.check()
         await self.pilot.pause()
 
-    async def show(self, *samples: Sample, after_s: float = 0.02) -> None:
+    async def hear(self, *samples: Sample, after_s: float = 0.02) -> None:
         """Let these come so long after now."""
         come = [replace(one, received_s=clock.now() + after_s) for one in samples]
         topics = (*lesson_update().topics, PARSER)
-        self.graph.show(lesson_update(topics=topics, samples={one.topic: (one,) for one in come}))
-        await self.pilot.pause()
-        await self.pilot.pause()
+        await self.show(lesson_update(topics=topics, samples={one.topic: (one,) for one in come}))
 
     def told(self) -> list[str]:
         """What the outcome says."""
@@ -83,14 +71,12 @@ def graph() -> RecordedGraph:
 
 
 @pytest.fixture
-async def stage(graph: RecordedGraph) -> Any:
-    app = HOME.app("composer", RecordedOpener(graph=graph))
-    async with app.run_test(size=HOME.size) as pilot:
-        await settle(pilot)
-        yield Stage(app, pilot, graph)
+async def stage(graph: RecordedGraph) -> AsyncIterator[ComposerStage]:
+    async with on_stage(ComposerStage, RecordedOpener(graph=graph)) as found:
+        yield found
 
 
-async def test_it_opens_with_a_valid_example_and_says_who_listens(stage: Stage) -> None:
+async def test_it_opens_with_a_valid_example_and_says_who_listens(stage: ComposerStage) -> None:
     assert stage.screen.editor.text == TEMPLATES[0].text()
     assert stage.screen.problems == ()
     assert (
@@ -99,7 +85,7 @@ async def test_it_opens_with_a_valid_example_and_says_who_listens(stage: Stage) 
     assert stage.graph.prepared[-1][:2] == ("/llm_raw_json", "std_msgs/msg/String")
 
 
-async def test_sending_publishes_exactly_what_stands_there(stage: Stage) -> None:
+async def test_sending_publishes_exactly_what_stands_there(stage: ComposerStage) -> None:
     text = VALID.replace("go", "вперёд 🤖 \\u0000")
     await stage.write(text)
     await stage.pilot.press("ctrl+s")
@@ -110,11 +96,11 @@ async def test_sending_publishes_exactly_what_stands_there(stage: Stage) -> None
     assert stage.told() == ["· /llm_result: waiting for an answer"]
 
 
-async def test_what_came_of_it_is_told_with_its_delay(stage: Stage) -> None:
+async def test_what_came_of_it_is_told_with_its_delay(stage: ComposerStage) -> None:
     await stage.write(VALID)
     await stage.pilot.press("ctrl+s")
-    await stage.show(result(event="accepted", commands=1, thought="go"), after_s=0.012)
-    await stage.show(drive("/drive", 0.1, 0.0), after_s=0.015)
+    await stage.hear(result(event="accepted", commands=1, thought="go"), after_s=0.012)
+    await stage.hear(drive("/drive", 0.1, 0.0), after_s=0.015)
     assert stage.told() == [
         "✓ /llm_result: accepted: 1 command “go”",
         "→ /drive: 0.10 m/s, 0.00 rad, straight on",
@@ -122,38 +108,42 @@ async def test_what_came_of_it_is_told_with_its_delay(stage: Stage) -> None:
     assert [round(one.delay_s or 0, 3) for one in stage.screen.outcome.entries] == [0.012, 0.015]
 
 
-async def test_the_trail_is_followed_also_while_another_screen_is_in_front(stage: Stage) -> None:
+async def test_the_trail_is_followed_also_while_another_screen_is_in_front(
+    stage: ComposerStage,
+) -> None:
     assert stage.graph.followed >= FOLLOWED
     await stage.write(VALID)
     await stage.pilot.press("ctrl+s", "f5")
     await settle(stage.pilot)
     assert stage.graph.followed >= FOLLOWED
-    await stage.show(result(event="accepted", commands=1, thought=""))
+    await stage.hear(result(event="accepted", commands=1, thought=""))
     await stage.pilot.press("f4")
     await settle(stage.pilot)
     assert stage.told()[0].startswith("✓ /llm_result: accepted")
 
 
-async def test_without_a_message_nothing_is_followed_behind_another_screen(stage: Stage) -> None:
+async def test_without_a_message_nothing_is_followed_behind_another_screen(
+    stage: ComposerStage,
+) -> None:
     await stage.pilot.press("f5")
     await settle(stage.pilot)
     assert not stage.graph.followed & {"/drive", "/wheel_commands"}
 
 
 async def test_silence_is_told_after_three_seconds(
-    stage: Stage, monkeypatch: pytest.MonkeyPatch
+    stage: ComposerStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     await stage.write(VALID)
     await stage.pilot.press("ctrl+s")
     later = clock.now() + 3.1
     monkeypatch.setattr(clock, "now", lambda: later)
-    await stage.show()
+    await stage.hear()
     assert stage.told() == [
         "✗ /llm_result: no answer within 3 s: is llm_parser running? Listening: llm_parser"
     ]
 
 
-async def test_what_is_wrong_is_marked_listed_and_not_sent(stage: Stage) -> None:
+async def test_what_is_wrong_is_marked_listed_and_not_sent(stage: ComposerStage) -> None:
     await stage.write(TOO_FAST)
     assert stage.screen.editor.render_line(0).text.startswith("1✗")
     listed = stage.screen.verdict.query_one(OptionList)
@@ -166,11 +156,11 @@ async def test_what_is_wrong_is_marked_listed_and_not_sent(stage: Stage) -> None
     assert stage.screen.editor.cursor_location == (0, 60)
 
 
-async def test_what_is_wrong_is_sent_by_a_key_of_its_own(stage: Stage) -> None:
+async def test_what_is_wrong_is_sent_by_a_key_of_its_own(stage: ComposerStage) -> None:
     await stage.write(TOO_FAST)
     await stage.pilot.press("ctrl+o")
     problem = {"field": "commands[0].speed", "line": 1, "column": 59, "message": "too fast"}
-    await stage.show(result(event="refused", problems=[problem]))
+    await stage.hear(result(event="refused", problems=[problem]))
     assert stage.graph.published[0][2] == {"data": TOO_FAST}
     assert stage.told() == [
         "✗ /llm_result: refused: nothing of it is executed",
@@ -178,21 +168,21 @@ async def test_what_is_wrong_is_sent_by_a_key_of_its_own(stage: Stage) -> None:
     ]
 
 
-async def test_that_key_does_nothing_while_all_is_well(stage: Stage) -> None:
+async def test_that_key_does_nothing_while_all_is_well(stage: ComposerStage) -> None:
     await stage.write(VALID)
     await stage.pilot.press("ctrl+o")
     await stage.pilot.pause()
     assert stage.graph.published == []
 
 
-async def test_typing_is_checked_by_itself(stage: Stage) -> None:
+async def test_typing_is_checked_by_itself(stage: ComposerStage) -> None:
     stage.screen.editor.replace_all("")
     await stage.pilot.press("{")
     await until(lambda: stage.screen.problems, "what is wrong with it")
     assert "name in double quotes is expected" in stage.screen.problems[0].message
 
 
-async def test_a_key_walks_from_problem_to_problem(stage: Stage) -> None:
+async def test_a_key_walks_from_problem_to_problem(stage: ComposerStage) -> None:
     await stage.write('{"thought": 1,\n "commands": [\n {"action": "jump"}]}')
     seen = []
     for _press in range(3):
@@ -201,7 +191,7 @@ async def test_a_key_walks_from_problem_to_problem(stage: Stage) -> None:
     assert seen == [(0, 12), (2, 12), (0, 12)]
 
 
-async def test_enter_in_the_list_of_problems_goes_to_the_place(stage: Stage) -> None:
+async def test_enter_in_the_list_of_problems_goes_to_the_place(stage: ComposerStage) -> None:
     await stage.write('{"thought": 1,\n "commands": [\n {"action": "jump"}]}')
     stage.screen.verdict.query_one(OptionList).focus()
     await stage.pilot.press("end", "enter")
@@ -210,7 +200,7 @@ async def test_enter_in_the_list_of_problems_goes_to_the_place(stage: Stage) -> 
     assert stage.screen.editor.has_focus
 
 
-async def test_a_graph_that_refuses_is_told(stage: Stage) -> None:
+async def test_a_graph_that_refuses_is_told(stage: ComposerStage) -> None:
     stage.graph.publish_error = RuntimeError("no publisher for you \x1b[2J")
     await stage.write(VALID)
     await stage.pilot.press("ctrl+s")
@@ -219,7 +209,7 @@ async def test_a_graph_that_refuses_is_told(stage: Stage) -> None:
 
 
 async def test_a_graph_that_never_answers_does_not_hold_the_keys(
-    stage: Stage, monkeypatch: pytest.MonkeyPatch
+    stage: ComposerStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(stage.graph, "publish", lambda *_args, **_more: Future())
     await stage.write(VALID)
@@ -228,7 +218,7 @@ async def test_a_graph_that_never_answers_does_not_hold_the_keys(
     assert stage.screen.editor.text == "x" + VALID
 
 
-async def test_space_types_a_space_and_ctrl_x_stops_the_robot(stage: Stage) -> None:
+async def test_space_types_a_space_and_ctrl_x_stops_the_robot(stage: ComposerStage) -> None:
     await stage.write("")
     stage.screen.editor.focus()
     await stage.pilot.press("a", "space", "1", "q")
@@ -241,7 +231,7 @@ async def test_space_types_a_space_and_ctrl_x_stops_the_robot(stage: Stage) -> N
     assert stage.screen.editor.text == "a 1q"
 
 
-async def test_enter_is_a_new_line_and_sends_nothing(stage: Stage) -> None:
+async def test_enter_is_a_new_line_and_sends_nothing(stage: ComposerStage) -> None:
     await stage.write("")
     stage.screen.editor.focus()
     await stage.pilot.press("enter")
@@ -249,7 +239,7 @@ async def test_enter_is_a_new_line_and_sends_nothing(stage: Stage) -> None:
     assert stage.graph.published == []
 
 
-async def test_a_template_takes_the_place_of_the_text(stage: Stage) -> None:
+async def test_a_template_takes_the_place_of_the_text(stage: ComposerStage) -> None:
     await stage.pilot.press("ctrl+t")
     await stage.pilot.pause()
     assert isinstance(stage.app.screen, TemplatesDialog)
@@ -269,7 +259,7 @@ def recalled(sent: Sent) -> list[str]:
     return texts[::-1]
 
 
-async def test_what_was_sent_is_recalled_and_the_draft_comes_back(stage: Stage) -> None:
+async def test_what_was_sent_is_recalled_and_the_draft_comes_back(stage: ComposerStage) -> None:
     for text in (VALID, TOO_FAST):
         await stage.write(text)
         await stage.pilot.press("ctrl+o" if text == TOO_FAST else "ctrl+s")
@@ -293,11 +283,11 @@ async def test_without_a_lesson_nothing_is_sent() -> None:
         assert graph.published == []
 
 
-async def test_any_size_is_survived(stage: Stage) -> None:
+async def test_any_size_is_survived(stage: ComposerStage) -> None:
     await stage.write(TOO_FAST)
     for size in ((1, 1), (10, 4), (30, 8), (59, 19)):
         await stage.pilot.resize_terminal(*size)
-        await stage.show(drive("/drive", 0.1, 0.0))
+        await stage.hear(drive("/drive", 0.1, 0.0))
 
 
 def test_a_broken_history_is_as_good_as_none(tmp_path: Path) -> None:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import AbstractAsyncContextManager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Static
 
 from graph.data import Sample
@@ -28,10 +25,9 @@ from tests.tui.recorded_devices import (
     update,
     with_drivers,
 )
-from tests.tui.snapshots import Look, settle
+from tests.tui.screen_stage import ScreenStage, on_stage
 from tests.waiting import until
 from tui import clock
-from tui.app import DeckApp
 from tui.devices import words as devices_words
 from tui.devices.diagnostics import DiagnosticsView, StatusFacts
 from tui.devices.screen import DevicesScreen
@@ -41,31 +37,13 @@ from tui.widgets.tab_line import TabLine
 ESCAPE = "\x1b[31m[bold red]\x00\u202e"
 
 
-class Stage:
-    """The screen with its recorded graph."""
+class DevicesStage(ScreenStage[DevicesScreen]):
+    """The screen with its recorded drivers."""
 
-    def __init__(self, pilot: Pilot[Any], graph: RecordedGraph) -> None:
-        self.pilot, self.graph = pilot, graph
+    name, kind = "devices", DevicesScreen
 
-    @property
-    def app(self) -> DeckApp:
-        assert isinstance(self.pilot.app, DeckApp)
-        return self.pilot.app
-
-    @property
-    def screen(self) -> DevicesScreen:
-        found = self.app.get_screen("devices")
-        assert isinstance(found, DevicesScreen)
-        return found
-
-    async def press(self, *keys: str) -> None:
-        await self.pilot.press(*keys)
-        await self.pilot.pause()
-
-    async def show(self, *samples: Sample) -> None:
-        self.graph.show(update(*samples))
-        for _round in range(3):
-            await self.pilot.pause()
+    async def hear(self, *samples: Sample) -> None:
+        await self.show(update(*samples))
 
     def drivers(self) -> list[str]:
         """The rows of the table, without blanks at the ends."""
@@ -84,16 +62,8 @@ class Stage:
         return str(self.screen.query_one("#devices-empty", Static).render())
 
 
-@asynccontextmanager
-async def stage(
-    of: RecordedOpener | None = None, size: tuple[int, int] = (120, 40)
-) -> AsyncIterator[Stage]:
-    chosen = of or with_drivers()
-    app = Look(size, "en").app("devices", chosen)
-    async with app.run_test(size=size) as pilot:
-        await settle(pilot)
-        assert isinstance(chosen.graph, RecordedGraph)
-        yield Stage(pilot, chosen.graph)
+def stage(of: RecordedOpener | None = None) -> AbstractAsyncContextManager[DevicesStage]:
+    return on_stage(DevicesStage, of or with_drivers())
 
 
 async def test_every_driver_has_a_row_though_all_speak_on_one_topic() -> None:
@@ -106,7 +76,7 @@ async def test_every_driver_has_a_row_though_all_speak_on_one_topic() -> None:
         assert "1\N{NO-BREAK SPACE}290" in rows[0]
         assert "✗ error" in rows[3]
         assert "no link" in rows[3]
-        await at.show(status("sonar_rear", 0, "back again"))
+        await at.hear(status("sonar_rear", 0, "back again"))
         assert "back again" in at.drivers()[3]
         assert "The wheels stand" in at.drivers()[0]
 
@@ -117,9 +87,9 @@ async def test_frames_are_asked_for_of_the_chosen_driver_and_only_while_shown() 
         await at.press("down", "down")
         assert "/chassis/frames" not in at.graph.followed
         assert "/sonar_front/frames" in at.graph.followed
-        await at.show(of_chassis())
+        await at.hear(of_chassis())
         assert at.lines() == []
-        await at.show(of_sonar(1.23))
+        await at.hear(of_sonar(1.23))
         assert [line.split("  ")[0] for line in at.lines()] == [
             "distance 1.23 m, strength 1000, 30.0 °C"
         ]
@@ -131,7 +101,7 @@ async def test_frames_are_asked_for_of_the_chosen_driver_and_only_while_shown() 
 
 async def test_frames_both_ways_with_noise_and_a_bad_one() -> None:
     async with stage() as at:
-        await at.show(of_chassis())
+        await at.hear(of_chassis())
         lines = at.lines()
         assert len(lines) == 17
         assert lines[0].split("  ")[0].startswith("drive left 3.20 right 3.40 rad/s")
@@ -151,7 +121,7 @@ async def test_frames_both_ways_with_noise_and_a_bad_one() -> None:
 
 async def test_filter_pause_and_clear() -> None:
     async with stage() as at:
-        await at.show(of_chassis())
+        await at.hear(of_chassis())
         await at.press("b")
         assert not any("drive" in line for line in at.lines())
         await at.press("и")
@@ -159,7 +129,7 @@ async def test_filter_pause_and_clear() -> None:
         await at.press("b", "а")
         assert [line[:2] for line in at.lines()] == ["~ ", "✗ "]
         await at.press("f", "p")
-        await at.show(of_chassis())
+        await at.hear(of_chassis())
         assert not at.screen.pane.view.following
         assert at.screen.pane.view.fresh == 17
         assert "Resume" in at.screen.query_one(KeyBar).render().plain
@@ -169,7 +139,7 @@ async def test_filter_pause_and_clear() -> None:
 
 async def test_lines_are_copied_and_written_to_a_file(tmp_path: Path) -> None:
     async with stage() as at:
-        await at.show(of_sonar(1.23), of_chassis(1))
+        await at.hear(of_sonar(1.23), of_chassis(1))
         await at.press("tab", "up", "y")
         assert "wheels left 3.10" in at.app.clipboard
         assert "← in" in at.app.clipboard
@@ -194,7 +164,7 @@ async def test_why_nothing_comes_from_a_driver(monkeypatch: pytest.MonkeyPatch) 
         assert "no such port; plug it in" in at.whole()
         await at.press("home")
         monkeypatch.setattr(clock, "now", lambda: AT_S + 5.0)
-        await at.show(status("sonar_front"))
+        await at.hear(status("sonar_front"))
         rows = at.drivers()
         assert "○ stale 5 s" in rows[0]
         assert "chassis has said nothing for 5 s" in at.screen.pane.view.empty_words
@@ -217,7 +187,7 @@ async def test_why_there_is_no_driver(monkeypatch: pytest.MonkeyPatch) -> None:
 async def test_what_others_put_into_it_does_no_harm() -> None:
     async with stage() as at:
         bad = FrameLine(AT_S, "in", FrameKind.FRAME, ESCAPE.encode(), ESCAPE)
-        await at.show(
+        await at.hear(
             status(ESCAPE, 7, ESCAPE, port=ESCAPE, errors="nan", bytes_in_per_s="x" * 9999),
             foreign("", "x"),
             sample("/diagnostics", "other/msg/Type", {"status": 5}),

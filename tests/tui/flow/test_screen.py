@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import AbstractAsyncContextManager
 from dataclasses import replace
 from typing import Any
 
-from textual.pilot import Pilot
 from textual.widgets import Static
 
 from launcher.events import LogEvent
@@ -16,9 +14,8 @@ from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSes
 from tests.tui.recorded_brain import brain_state, no_answer_yet
 from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines, word
 from tests.tui.recorded_flow import at as told
-from tests.tui.snapshots import Look, settle
+from tests.tui.screen_stage import ScreenStage, on_stage
 from tui import clock
-from tui.app import DeckApp
 from tui.flow.chains import Lane
 from tui.flow.reading import TOPICS
 from tui.flow.screen import FlowScreen
@@ -26,31 +23,13 @@ from tui.flow.view import FlowView
 from tui.outcome.model_usage import COMPOSER, UsageFigures, noted
 
 
-class Stage:
+class FlowStage(ScreenStage[FlowScreen]):
     """The screen with its recorded session and graph."""
 
-    def __init__(self, pilot: Pilot[Any], graph: RecordedGraph, session: RecordedSession) -> None:
-        self.pilot, self.graph, self.session = pilot, graph, session
+    name, kind = "flow", FlowScreen
 
-    @property
-    def app(self) -> DeckApp:
-        assert isinstance(self.pilot.app, DeckApp)
-        return self.pilot.app
-
-    @property
-    def screen(self) -> FlowScreen:
-        found = self.app.get_screen("flow")
-        assert isinstance(found, FlowScreen)
-        return found
-
-    async def press(self, *keys: str) -> None:
-        await self.pilot.press(*keys)
-        await self.pilot.pause()
-
-    async def show(self, *samples: Any) -> None:
-        self.graph.show(update(*samples))
-        for _round in range(3):
-            await self.pilot.pause()
+    async def hear(self, *samples: Any) -> None:
+        await self.show(update(*samples))
 
     def rows(self) -> list[str]:
         """What is drawn, without blanks at the ends."""
@@ -60,13 +39,9 @@ class Stage:
         return [view.render_line(y).text.strip() for y in range(min(height, view.size.height))]
 
 
-@asynccontextmanager
-async def stage() -> AsyncIterator[Stage]:
+def stage() -> AbstractAsyncContextManager[FlowStage]:
     graph, session = RecordedGraph(update(*BEFORE)), RecordedSession(lines=())
-    app = Look((120, 40), "en").app("flow", RecordedOpener(session, graph))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await settle(pilot)
-        yield Stage(pilot, graph, session)
+    return on_stage(FlowStage, RecordedOpener(session, graph))
 
 
 async def test_it_follows_its_topics_also_behind_another_screen() -> None:
@@ -74,7 +49,7 @@ async def test_it_follows_its_topics_also_behind_another_screen() -> None:
         assert at.graph.followed >= set(TOPICS)
         await at.press("1")
         assert at.graph.followed >= set(TOPICS)
-        await at.show(*voice(0.0))
+        await at.hear(*voice(0.0))
         await at.press("6")
         assert len(at.screen.chains) == 1
         assert any("/wheel_commands" in row for row in at.rows())
@@ -83,7 +58,7 @@ async def test_it_follows_its_topics_also_behind_another_screen() -> None:
 async def test_messages_and_log_lines_meet_in_one_chain() -> None:
     async with stage() as at:
         at.session.say(LogEvent(voice_lines(0.0)))
-        await at.show(*voice(0.0))
+        await at.hear(*voice(0.0))
         rows = at.rows()
         assert "13 steps in 1012 ms" in rows[0]
         assert [row.split()[2] for row in rows[2:6]] == [
@@ -93,8 +68,8 @@ async def test_messages_and_log_lines_meet_in_one_chain() -> None:
 
 async def test_the_cursor_walks_and_the_whole_of_a_step_is_shown() -> None:
     async with stage() as at:
-        await at.show(*voice(0.0))
-        await at.show(*command(9.0))
+        await at.hear(*voice(0.0))
+        await at.hear(*command(9.0))
         assert at.screen.chosen_chain is at.screen.chains[0]
         await at.press("n")
         assert at.screen.chosen_chain is at.screen.chains[1]
@@ -109,17 +84,17 @@ async def test_the_cursor_walks_and_the_whole_of_a_step_is_shown() -> None:
 
 async def test_who_looks_at_an_older_one_is_not_carried_away_by_a_newer_one() -> None:
     async with stage() as at:
-        await at.show(*voice(0.0))
+        await at.hear(*voice(0.0))
         await at.press("down", "down", "down")
         chosen = at.screen.chosen_step
-        await at.show(*command(9.0))
+        await at.hear(*command(9.0))
         assert at.screen.chosen_step == chosen
         assert len(at.screen.chains) == 2
 
 
 async def test_a_kind_can_be_hidden_and_all_shown_again() -> None:
     async with stage() as at:
-        await at.show(*voice(0.0))
+        await at.hear(*voice(0.0))
         await at.press("down", "m")
         assert not any("/audio/mic_raw" in row for row in at.rows())
         at.screen.action_lane(Lane.WHEELS.value)
@@ -130,7 +105,7 @@ async def test_a_kind_can_be_hidden_and_all_shown_again() -> None:
 
 async def test_the_logs_of_other_nodes_come_when_asked() -> None:
     async with stage() as at:
-        await at.show(*voice(0.0))
+        await at.hear(*voice(0.0))
         at.session.say(LogEvent((line("sonar_front", 1, "Distance: 2.35 m", at_s=0.4),)))
         await at.pilot.pause()
         assert not any("sonar_front" in row for row in at.rows())
@@ -140,9 +115,9 @@ async def test_the_logs_of_other_nodes_come_when_asked() -> None:
 
 async def test_paused_it_stands_still_and_loses_nothing() -> None:
     async with stage() as at:
-        await at.show(*voice(0.0))
+        await at.hear(*voice(0.0))
         await at.press("p")
-        await at.show(*command(9.0))
+        await at.hear(*command(9.0))
         assert len(at.screen.chains) == 1
         assert "+1" in str(at.screen.query_one("#flow-lanes").render())
         await at.press("p")
@@ -151,7 +126,7 @@ async def test_paused_it_stands_still_and_loses_nothing() -> None:
 
 async def test_an_utterance_is_copied_as_text() -> None:
     async with stage() as at:
-        await at.show(*command(9.0))
+        await at.hear(*command(9.0))
         await at.press("y")
         copied = at.app.clipboard
         assert "“налево” · 4 steps in 5.2 ms" in copied
@@ -161,13 +136,13 @@ async def test_an_utterance_is_copied_as_text() -> None:
 
 async def test_hostile_words_are_drawn_as_they_are() -> None:
     async with stage() as at:
-        await at.show(word("[b]left[/b] \x1b[31m", 9.0))
+        await at.hear(word("[b]left[/b] \x1b[31m", 9.0))
         assert any("[b]left[/b] ␛[31m" in row for row in at.rows())
 
 
 async def test_it_speaks_another_language_at_once() -> None:
     async with stage() as at:
-        await at.show(*command(9.0))
+        await at.hear(*command(9.0))
         await at.press("f9")
         assert any("рад, влево" in row for row in at.rows())
         await at.press("f9")
@@ -179,8 +154,8 @@ async def test_it_says_from_when_on_it_has_collected() -> None:
         # By the time of what has come, which in a replay is not that of the look.
         since = clock.time_of_day(min(one.received_s for one in BEFORE))
         assert f"collected since {since}" in shown.replace("\N{NO-BREAK SPACE}", " ")
-        await at.show(*voice(5.0))
-        await at.show(*(replace(one, received_s=one.received_s - 60) for one in BEFORE))
+        await at.hear(*voice(5.0))
+        await at.hear(*(replace(one, received_s=one.received_s - 60) for one in BEFORE))
         earlier = clock.time_of_day(min(one.received_s for one in BEFORE) - 60)
         assert since != earlier
         again = str(at.screen.query_one("#flow-lanes", Static).render())
@@ -190,9 +165,9 @@ async def test_it_says_from_when_on_it_has_collected() -> None:
 async def test_a_model_s_answer_is_named_with_what_it_took() -> None:
     """Once for the chain, however often it is reported, and not by whoever looks at pictures."""
     async with stage() as at:
-        await at.show(told(no_answer_yet(), -3.0))
-        await at.show(*voice(0.0), told(brain_state(), 0.3))
-        await at.show(told(brain_state(), 1.3), told(brain_state(node="vlm_agent", model="v"), 1.4))
+        await at.hear(told(no_answer_yet(), -3.0))
+        await at.hear(*voice(0.0), told(brain_state(), 0.3))
+        await at.hear(told(brain_state(), 1.3), told(brain_state(node="vlm_agent", model="v"), 1.4))
         took = "m-1: 412 + 86 tokens · first 0.31 s · all 1.20 s · 0.00011 USD"
         assert at.rows()[1] == took
         assert not any("/brain_state" in row for row in at.rows())
@@ -202,14 +177,14 @@ async def test_a_model_s_answer_is_named_with_what_it_took() -> None:
 
 async def test_what_was_answered_before_belongs_to_no_later_chain() -> None:
     async with stage() as at:
-        await at.show(told(brain_state(), -3.0))
-        await at.show(*voice(0.0), told(brain_state(), 0.3))
+        await at.hear(told(brain_state(), -3.0))
+        await at.hear(*voice(0.0), told(brain_state(), 0.3))
         assert not any("412 + 86" in row for row in at.rows())
 
 
 async def test_what_the_composer_sent_is_named_with_what_it_took() -> None:
     async with stage() as at:
-        await at.show(told(word("{}", 0.0, "/llm_raw_json"), 0.0))
+        await at.hear(told(word("{}", 0.0, "/llm_raw_json"), 0.0))
         usage = UsageFigures("m-2", 100, 20, 0.5, 1.0, 0.5, "EUR")
         noted_at_s = NOW_S + 0.001
         at.session.say(

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import AbstractAsyncContextManager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,46 +25,25 @@ from tests.tui.recorded_frames import (
     with_frames,
 )
 from tests.tui.replayed import replayed
-from tests.tui.snapshots import Look, settle
+from tests.tui.screen_stage import ScreenStage, on_stage
 from tests.unit.bags import BEGIN_NS, SECOND_NS, store
 from tests.unit.transform_messages import Sent, cdr
 from tests.waiting import until
-from tui.app import DeckApp
 from tui.frame_tree.screen import FramesScreen
 
 if TYPE_CHECKING:
-    from textual.pilot import Pilot
-
     from graph.data import FrameRow
 
 ESCAPE = "\x1b[31m[bold red]\x00\u202e"
 
 
-class Stage:
-    """The screen with its recorded graph."""
+class FramesStage(ScreenStage[FramesScreen]):
+    """The screen with its recorded frames."""
 
-    def __init__(self, pilot: Pilot[Any], graph: RecordedGraph) -> None:
-        self.pilot, self.graph = pilot, graph
+    name, kind = "frames", FramesScreen
 
-    @property
-    def app(self) -> DeckApp:
-        assert isinstance(self.pilot.app, DeckApp)
-        return self.pilot.app
-
-    @property
-    def screen(self) -> FramesScreen:
-        found = self.app.get_screen("frames")
-        assert isinstance(found, FramesScreen)
-        return found
-
-    async def press(self, *keys: str) -> None:
-        await self.pilot.press(*keys)
-        await self.pilot.pause()
-
-    async def show(self, *frames: FrameRow, rows: tuple[TopicRow, ...] = topics()) -> None:
-        self.graph.show(frames_update(frames, rows))
-        for _round in range(3):
-            await self.pilot.pause()
+    async def hear(self, *frames: FrameRow, rows: tuple[TopicRow, ...] = topics()) -> None:
+        await self.show(frames_update(frames, rows))
 
     def tree(self) -> list[str]:
         """The rows, each without the blanks between its cells."""
@@ -92,14 +70,8 @@ class Stage:
         return self.text("#frames-empty")
 
 
-@asynccontextmanager
-async def stage(of: RecordedOpener | None = None) -> AsyncIterator[Stage]:
-    opener = of or with_frames()
-    app = Look((120, 40), "en").app("frames", opener)
-    async with app.run_test(size=(120, 40)) as pilot:
-        await settle(pilot)
-        assert isinstance(opener.graph, RecordedGraph)
-        yield Stage(pilot, opener.graph)
+def stage(of: RecordedOpener | None = None) -> AbstractAsyncContextManager[FramesStage]:
+    return on_stage(FramesStage, of or with_frames())
 
 
 async def test_frames_are_asked_for_only_while_the_screen_is_in_front() -> None:
@@ -118,7 +90,7 @@ async def test_a_frame_is_given_in_its_root_and_stays_up_to_date() -> None:
         assert at.pair.startswith("camera_link in odom x, y, z, m: 2.000 1.150 0.250")
         assert "roll, pitch, yaw, °: 0.0 0.0 90.0" in at.pair
         assert at.pair.endswith("published by /robot_state_publisher")
-        await at.show(frame("odom", "base_link", (5.0, 0.0, 0.0)), *ROBOT[1:])
+        await at.hear(frame("odom", "base_link", (5.0, 0.0, 0.0)), *ROBOT[1:])
         assert "5.150 0.000 0.250" in at.pair
 
 
@@ -139,7 +111,7 @@ async def test_a_marked_frame_that_is_heard_of_no_more_is_forgotten() -> None:
     async with stage() as at:
         await at.press("down", "down", "enter", "up")
         assert "base_link in camera_link" in at.pair
-        await at.show(ROBOT[0])
+        await at.hear(ROBOT[0])
         assert "base_link in odom" in at.pair
 
 
@@ -159,15 +131,15 @@ async def test_the_transform_is_copied_with_what_publishes_it() -> None:
 
 async def test_what_is_silent_is_said_to_be_so_and_recovers() -> None:
     async with stage() as at:
-        await at.show(replace(ROBOT[0], age_s=6.0), *ROBOT[1:])
+        await at.hear(replace(ROBOT[0], age_s=6.0), *ROBOT[1:])
         assert at.row("base_link").split()[-5:] == ["✗", "stale", "6", "s", "chassis"]
         assert "✗ base_link: silent for 6 s" in at.findings
-        await at.show(*ROBOT)
+        await at.hear(*ROBOT)
         assert "50 Hz < 1 s chassis" in at.row("base_link")
         assert at.findings == "✓ nothing is wrong with the frames"
 
 
-def names(at: Stage) -> list[str]:
+def names(at: FramesStage) -> list[str]:
     """The frames of the tree that is shown."""
     return [row.lstrip("▶ └├│").split()[0] for row in at.tree()]
 
@@ -203,11 +175,11 @@ async def test_a_filter_that_nothing_fits_says_so_and_is_kept_as_frames_come() -
         assert at.tree() == ["nothing matches the filter"]
         assert at.pair == "no frame"
         await at.press("enter", "enter", "y", "n")
-        await at.show(*ROBOT, frame("base_link", "lidar_link"))
+        await at.hear(*ROBOT, frame("base_link", "lidar_link"))
         assert names(at) == ["odom", "base_link", "lidar_link"]
-        await at.show()
+        await at.hear()
         await at.press("escape", "slash")
-        await at.show(*ROBOT)
+        await at.hear(*ROBOT)
         assert len(names(at)) == 1 + len(ROBOT)
 
 
@@ -243,7 +215,7 @@ async def test_a_recording_is_said_not_to_know_the_publishers(tmp_path: Path) ->
             raw = cdr(Sent("base_link", "camera_link"))
             writer.write(static, BEGIN_NS + second * SECOND_NS, raw)
     async with replayed(tmp_path / "drive") as (app, pilot, replay):
-        at = Stage(pilot, RecordedGraph(frames_update()))
+        at = FramesStage(app, pilot, with_frames())
         await at.press("8")
         await until(lambda: any("camera_link" in row for row in at.tree()), "the frame")
         await at.press("down")
@@ -272,7 +244,7 @@ async def test_topics_tell_of_frames_that_are_elsewhere_or_unknown() -> None:
         assert "frames come on /arm/tf too, which nobody here listens to" in at.findings
         volatile = EndpointInfo("/camera", "tf2_msgs/msg/TFMessage", "reliable", "volatile")
         rows = (replace(topics()[2], published_by=(volatile,)),)
-        await at.show(*ROBOT, rows=rows)
+        await at.hear(*ROBOT, rows=rows)
         assert "/camera: publishes /tf_static without transient_local" in at.findings
 
 
@@ -318,7 +290,7 @@ async def test_without_frames_it_says_what_is_missing(
     async with stage(empty) as at:
         assert at.empty.startswith(said)
         await at.press("y", "enter", "alt+x", "n", "Y")
-        await at.show(*ROBOT)
+        await at.hear(*ROBOT)
         assert at.row("base_link")
 
 

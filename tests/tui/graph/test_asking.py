@@ -11,7 +11,7 @@ import pytest
 from textual.widgets import Input
 
 from graph.data import CallResult, GoalStatus, SeenGoal
-from tests.tui.graph_stage import Stage, opened
+from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import SERVICES, graph_update
 from tests.tui.snapshots import Look
@@ -23,7 +23,7 @@ ACTION, DRIVE = "/drive_to_point", "deck_interfaces/action/DriveToPoint"
 
 
 @asynccontextmanager
-async def at(place: GraphPlace, graph: RecordedGraph | None = None) -> AsyncIterator[Stage]:
+async def at(place: GraphPlace, graph: RecordedGraph | None = None) -> AsyncIterator[GraphStage]:
     """Open the screen with the form of this place filled in by its defaults."""
     async with opened(graph) as stage:
         await stage.screen.go(place)
@@ -33,24 +33,24 @@ async def at(place: GraphPlace, graph: RecordedGraph | None = None) -> AsyncIter
 
 
 @pytest.fixture
-async def service() -> AsyncIterator[Stage]:
+async def service() -> AsyncIterator[GraphStage]:
     async with at(GraphPlace(GraphKind.SERVICE, SERVICE)) as stage:
         yield stage
 
 
 @pytest.fixture
-async def action() -> AsyncIterator[Stage]:
+async def action() -> AsyncIterator[GraphStage]:
     async with at(GraphPlace(GraphKind.ACTION, ACTION)) as stage:
         yield stage
 
 
-def fill(stage: Stage, text: str) -> None:
+def fill(stage: GraphStage, text: str) -> None:
     pane = stage.screen.ask_pane
     assert pane is not None
     pane.form.editor.replace_all(text)
 
 
-async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: Stage) -> None:
+async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: GraphStage) -> None:
     assert "not called yet" in service.seen()
     fill(service, "a: 30\nb: -10\n")
     await service.press("ctrl+s")
@@ -101,19 +101,19 @@ async def test_the_footer_of_a_small_terminal_says_where_tab_leads(
         await stage.wait(lambda: stage.screen.ask_pane is not None and words in footer(stage))
 
 
-def footer(stage: Stage) -> str:
+def footer(stage: GraphStage) -> str:
     """Return the keys that are shown."""
     return str(stage.screen.query_one(KeyBar).render())
 
 
-async def test_a_wrong_request_is_not_sent(service: Stage) -> None:
+async def test_a_wrong_request_is_not_sent(service: GraphStage) -> None:
     fill(service, "a: much\n")
     await service.press("ctrl+s")
     assert service.graph.called == []
     assert "✗" in service.seen()
 
 
-async def test_a_call_that_waits_freezes_nothing_and_can_be_given_up(service: Stage) -> None:
+async def test_a_call_that_waits_freezes_nothing_and_can_be_given_up(service: GraphStage) -> None:
     service.graph.hold_calls = True
     await service.press("ctrl+s")
     await service.wait_for("Still waiting: 0 s of 5 s")
@@ -131,7 +131,7 @@ async def test_a_call_that_waits_freezes_nothing_and_can_be_given_up(service: St
     await service.wait_for("sum: 7")
 
 
-def time_is_over(stage: Stage) -> Future[CallResult]:
+def time_is_over(stage: GraphStage) -> Future[CallResult]:
     """Let the time of the newest call pass; the future is for what still comes of it."""
     late: Future[CallResult] = Future()
     why = "/set_head_position: no answer within 5 s"
@@ -139,12 +139,12 @@ def time_is_over(stage: Stage) -> Future[CallResult]:
     return late
 
 
-def timeout_field(stage: Stage) -> Input:
+def timeout_field(stage: GraphStage) -> Input:
     return stage.screen.query_one("#call-timeout", Input)
 
 
 async def test_the_time_out_is_chosen_below_the_form_and_each_service_keeps_its_own(
-    service: Stage,
+    service: GraphStage,
 ) -> None:
     service.graph.hold_calls = True
     assert timeout_field(service).value == "5"
@@ -162,7 +162,7 @@ async def test_the_time_out_is_chosen_below_the_form_and_each_service_keeps_its_
 
 @pytest.mark.parametrize("typed", ["", "soon", "0", "-3", "nan", "1e9"])
 async def test_a_time_out_that_is_none_is_told_and_nothing_is_called(
-    service: Stage, typed: str
+    service: GraphStage, typed: str
 ) -> None:
     timeout_field(service).value = typed
     await service.wait_for("✗ 0.1 to 3600 s")
@@ -175,7 +175,7 @@ async def test_a_time_out_that_is_none_is_told_and_nothing_is_called(
     assert service.graph.waited_s == [0.5]
 
 
-async def test_a_late_answer_is_told_wherever_one_is_and_shown_as_late(service: Stage) -> None:
+async def test_a_late_answer_is_told_wherever_one_is_and_shown_as_late(service: GraphStage) -> None:
     service.graph.hold_calls = True
     await service.press("ctrl+s")
     await service.wait_for("Still waiting")
@@ -191,7 +191,7 @@ async def test_a_late_answer_is_told_wherever_one_is_and_shown_as_late(service: 
     await service.wait_for("sum: 42")
 
 
-async def test_a_service_that_leaves_after_the_time_out_is_told(service: Stage) -> None:
+async def test_a_service_that_leaves_after_the_time_out_is_told(service: GraphStage) -> None:
     service.graph.hold_calls = True
     await service.press("ctrl+s")
     await service.wait_for("Still waiting")
@@ -202,7 +202,7 @@ async def test_a_service_that_leaves_after_the_time_out_is_told(service: Stage) 
     await service.wait_for(why)
 
 
-async def test_a_call_that_fails_says_why(service: Stage) -> None:
+async def test_a_call_that_fails_says_why(service: GraphStage) -> None:
     why = "no answer within 5 s"
     service.graph.answers[SERVICE] = CallResult(SERVICE, False, None, why, 5.0)
     await service.press("ctrl+s")
@@ -211,7 +211,7 @@ async def test_a_call_that_fails_says_why(service: Stage) -> None:
     assert "No response · 5000.0 ms" in service.seen()
 
 
-async def test_calls_are_listed_and_an_older_answer_can_be_seen_again(service: Stage) -> None:
+async def test_calls_are_listed_and_an_older_answer_can_be_seen_again(service: GraphStage) -> None:
     await service.press("ctrl+s")
     await service.wait_for("Response in")
     service.graph.answers[SERVICE] = CallResult(SERVICE, True, {"sum": 0}, "", 0.2)
@@ -223,7 +223,7 @@ async def test_calls_are_listed_and_an_older_answer_can_be_seen_again(service: S
     await service.wait_for("sum: 1")
 
 
-async def test_a_service_that_vanishes_is_told_and_not_called(service: Stage) -> None:
+async def test_a_service_that_vanishes_is_told_and_not_called(service: GraphStage) -> None:
     rest = tuple(row for row in SERVICES if row.name != SERVICE)
     await service.show(graph_update(services=rest))
     assert "nobody serves it any more" in service.seen()
@@ -231,7 +231,7 @@ async def test_a_service_that_vanishes_is_told_and_not_called(service: Stage) ->
     assert service.graph.called == []
 
 
-async def test_what_was_typed_is_there_when_one_comes_back(service: Stage) -> None:
+async def test_what_was_typed_is_there_when_one_comes_back(service: GraphStage) -> None:
     fill(service, "a: 5\nb: 6\n")
     await service.press("escape", "a")
     await service.choose("/camera/set_parameters")
@@ -240,7 +240,7 @@ async def test_what_was_typed_is_there_when_one_comes_back(service: Stage) -> No
     await service.wait_for("a: 5")
 
 
-async def test_names_lead_to_the_type_and_to_the_server(service: Stage) -> None:
+async def test_names_lead_to_the_type_and_to_the_server(service: GraphStage) -> None:
     await service.screen.go(GraphPlace(GraphKind.TYPE, ADD))
     await service.wait_for("response")
     assert "int64" in service.seen()
@@ -248,7 +248,7 @@ async def test_names_lead_to_the_type_and_to_the_server(service: Stage) -> None:
     assert service.screen.history.here == GraphPlace(GraphKind.SERVICE, SERVICE)
 
 
-async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: Stage) -> None:
+async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: GraphStage) -> None:
     fill(action, "x: 1.0\ny: 2.0\ntolerance: 0.1\n")
     await action.press("ctrl+s")
     await action.wait(lambda: action.graph.sent_goals)
@@ -265,7 +265,7 @@ async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: Stag
     assert "4.2 s" in action.seen()
 
 
-async def test_several_goals_are_listed_and_the_chosen_one_is_cancelled(action: Stage) -> None:
+async def test_several_goals_are_listed_and_the_chosen_one_is_cancelled(action: GraphStage) -> None:
     await action.press("ctrl+s", "ctrl+s")
     await action.wait_for("#2")
     assert "#1" in action.seen()
@@ -278,7 +278,7 @@ async def test_several_goals_are_listed_and_the_chosen_one_is_cancelled(action: 
     assert action.graph.canceled_goals == [2, 1]
 
 
-async def test_a_goal_is_forgotten(action: Stage) -> None:
+async def test_a_goal_is_forgotten(action: GraphStage) -> None:
     await action.press("ctrl+s")
     await action.wait_for("#1")
     await action.press("escape", "d")
@@ -286,7 +286,7 @@ async def test_a_goal_is_forgotten(action: Stage) -> None:
     await action.wait_for("no goal has been sent yet")
 
 
-async def test_a_goal_that_is_refused_says_why(action: Stage) -> None:
+async def test_a_goal_that_is_refused_says_why(action: GraphStage) -> None:
     await action.press("ctrl+s")
     await action.wait_for("#1")
     action.graph.change_goal(1, status=GoalStatus.REJECTED, error="the point is too far")
@@ -298,7 +298,7 @@ async def test_a_goal_that_is_refused_says_why(action: Stage) -> None:
 
 
 async def test_a_goal_that_was_just_sent_is_chosen_as_soon_as_it_is_listed(
-    action: Stage, monkeypatch: pytest.MonkeyPatch
+    action: GraphStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     await action.press("ctrl+s")
     await action.wait_for("#1 ◌ sending")
@@ -330,7 +330,7 @@ SEEN = (
 
 
 async def test_goals_of_other_clients_are_listed_with_id_state_age_and_feedback(
-    action: Stage,
+    action: GraphStage,
 ) -> None:
     assert action.graph.goals_watched == {ACTION}
     await action.show(graph_update(seen_goals=SEEN))
@@ -345,7 +345,7 @@ async def test_goals_of_other_clients_are_listed_with_id_state_age_and_feedback(
     assert action.graph.goals_watched == {ACTION}
 
 
-async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: Stage) -> None:
+async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: GraphStage) -> None:
     await action.press("ctrl+s")
     await action.wait_for("#1 ◌ sending 0.0 s own")
     update = action.graph.update
@@ -374,7 +374,7 @@ async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: S
 
 
 async def test_the_newest_goal_of_others_is_meant_where_the_chosen_one_has_ended(
-    action: Stage,
+    action: GraphStage,
 ) -> None:
     await action.show(graph_update(seen_goals=SEEN[:1]))
     await action.wait_for("3f2a9c1e ✓ succeeded")
@@ -386,14 +386,14 @@ async def test_the_newest_goal_of_others_is_meant_where_the_chosen_one_has_ended
     assert THEIRS in action.seen()
 
 
-async def test_why_a_goal_of_another_client_was_not_cancelled_is_told(action: Stage) -> None:
+async def test_why_a_goal_of_another_client_was_not_cancelled_is_told(action: GraphStage) -> None:
     why = "the server refuses to cancel it"
     await action.show(graph_update(seen_goals=(replace(SEEN[1], error=why),)))
     await action.wait_for("8d00b7f4 ● executing · of another client")
     assert why in action.seen()
 
 
-async def test_what_is_not_in_front_is_neither_sent_nor_forgotten(action: Stage) -> None:
+async def test_what_is_not_in_front_is_neither_sent_nor_forgotten(action: GraphStage) -> None:
     await action.press("ctrl+s")
     await action.wait_for("#1")
     await action.press("escape", "slash", *"x: 2")
@@ -414,7 +414,7 @@ async def test_what_is_not_in_front_is_neither_sent_nor_forgotten(action: Stage)
     assert len(action.graph.sent_goals) == 2
 
 
-async def test_what_is_asked_belongs_to_its_place(action: Stage) -> None:
+async def test_what_is_asked_belongs_to_its_place(action: GraphStage) -> None:
     await action.press("ctrl+s")
     await action.wait_for("#1")
     await action.press("escape", "left")
@@ -422,7 +422,7 @@ async def test_what_is_asked_belongs_to_its_place(action: Stage) -> None:
     assert action.screen.history.kind is GraphKind.SERVICE
 
 
-async def test_all_types_that_are_installed_can_be_looked_into(service: Stage) -> None:
+async def test_all_types_that_are_installed_can_be_looked_into(service: GraphStage) -> None:
     await service.press("escape", "right", "right")
     assert service.screen.history.kind is GraphKind.TYPE
     assert "geometry_msgs/msg/Twist" not in service.seen()

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
 
 import pytest
 
-from tests.tui.graph_stage import Stage, opened
+from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_findings import ill_graph
 from tests.tui.recorded_nodes import graph_update
@@ -31,7 +31,17 @@ def later(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
     return at
 
 
-def tab_words(stage: Stage) -> str:
+@pytest.fixture
+async def listed(later: Callable[[float], None]) -> AsyncIterator[GraphStage]:
+    """The list of what is wrong with a graph that is ill, once it has lasted."""
+    async with opened(RecordedGraph(update=ill_graph())) as stage:
+        later(LATER_S)
+        stage.screen.list_kind(GraphKind.FINDING)
+        await stage.show(ill_graph())
+        yield stage
+
+
+def tab_words(stage: GraphStage) -> str:
     return stage.screen.query_one(TabLine).render().plain
 
 
@@ -58,57 +68,37 @@ async def test_what_lasts_is_counted_on_the_tab_and_listed_the_worst_first(
         assert not stage.graph.measured
 
 
-async def test_a_finding_that_is_mended_leaves_the_list(later: Callable[[float], None]) -> None:
-    async with opened(RecordedGraph(update=ill_graph())) as stage:
-        later(LATER_S)
-        stage.screen.list_kind(GraphKind.FINDING)
-        await stage.show(ill_graph())
-        await stage.choose(NEAR)
-        await stage.show(graph_update())
-        await stage.wait_for("no findings")
-        assert "Findings 0" in tab_words(stage)
-        assert "gone" not in stage.seen()
+async def test_a_finding_that_is_mended_leaves_the_list(listed: GraphStage) -> None:
+    await listed.choose(NEAR)
+    await listed.show(graph_update())
+    await listed.wait_for("no findings")
+    assert "Findings 0" in tab_words(listed)
+    assert "gone" not in listed.seen()
 
 
-async def test_enter_goes_to_the_topic_and_links_to_the_nodes(
-    later: Callable[[float], None],
-) -> None:
-    async with opened(RecordedGraph(update=ill_graph())) as stage:
-        later(LATER_S)
-        stage.screen.list_kind(GraphKind.FINDING)
-        await stage.show(ill_graph())
-        await stage.choose(NEAR)
-        pane = stage.screen.pane
-        assert pane is not None
-        assert pane.ros2_command() == "ros2 topic info --verbose /sensor/sonar_frnt"
-        first = pane.first()
-        assert first is not None
-        first.focus()
-        await stage.press("down", "enter")
-        assert stage.screen.history.here == GraphPlace(GraphKind.NODE, "/guard")
-        await stage.press("escape")
-        assert stage.screen.history.here == GraphPlace(GraphKind.FINDING, NEAR)
-        await stage.press("enter")
-        assert stage.app.screen is stage.app.get_screen("topics")
-        await stage.wait_for("/sensor/sonar_frnt")
+async def test_enter_goes_to_the_topic_and_links_to_the_nodes(listed: GraphStage) -> None:
+    await listed.choose(NEAR)
+    pane = listed.screen.pane
+    assert pane is not None
+    assert pane.ros2_command() == "ros2 topic info --verbose /sensor/sonar_frnt"
+    first = pane.first()
+    assert first is not None
+    first.focus()
+    await listed.press("down", "enter")
+    assert listed.screen.history.here == GraphPlace(GraphKind.NODE, "/guard")
+    await listed.press("escape")
+    assert listed.screen.history.here == GraphPlace(GraphKind.FINDING, NEAR)
+    await listed.press("enter")
+    assert listed.app.screen is listed.app.get_screen("topics")
+    await listed.wait_for("/sensor/sonar_frnt")
 
 
-async def test_a_service_that_does_not_exist_leads_to_who_calls_it(
-    later: Callable[[float], None],
-) -> None:
-    async with opened(RecordedGraph(update=ill_graph())) as stage:
-        later(LATER_S)
-        stage.screen.list_kind(GraphKind.FINDING)
-        await stage.show(ill_graph())
-        await stage.choose(UNSERVED)
-        await stage.press("enter")
-        assert stage.screen.history.here == GraphPlace(GraphKind.NODE, "/guard")
+async def test_a_service_that_does_not_exist_leads_to_who_calls_it(listed: GraphStage) -> None:
+    await listed.choose(UNSERVED)
+    await listed.press("enter")
+    assert listed.screen.history.here == GraphPlace(GraphKind.NODE, "/guard")
 
 
-async def test_the_filter_finds_words_of_the_sentence(later: Callable[[float], None]) -> None:
-    async with opened(RecordedGraph(update=ill_graph())) as stage:
-        later(LATER_S)
-        stage.screen.list_kind(GraphKind.FINDING)
-        await stage.show(ill_graph())
-        stage.screen.filter.value = "future"
-        await stage.wait(lambda: stage.screen.names.chosen_name == "clock topic /imu")
+async def test_the_filter_finds_words_of_the_sentence(listed: GraphStage) -> None:
+    listed.screen.filter.value = "future"
+    await listed.wait(lambda: listed.screen.names.chosen_name == "clock topic /imu")

@@ -9,7 +9,7 @@ import pytest
 
 from graph.inner_states import ContainerRow, LifecycleRow, TransitionResult
 from tests.tui.graph.test_looks import app_of, at
-from tests.tui.graph_stage import Stage, opened
+from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_inner import LIFECYCLES, managed_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
@@ -22,16 +22,16 @@ CONTAINER = GraphPlace(GraphKind.NODE, "/perception")
 
 
 @pytest.fixture
-async def stage() -> AsyncIterator[Stage]:
+async def stage() -> AsyncIterator[GraphStage]:
     async with opened(RecordedGraph(update=managed_update())) as opened_room:
         yield opened_room
 
 
-async def until_told(stage: Stage, words: str) -> None:
+async def until_told(stage: GraphStage, words: str) -> None:
     await stage.wait(lambda: any(words in one.message for one in stage.app._notifications))
 
 
-def footer(stage: Stage) -> str:
+def footer(stage: GraphStage) -> str:
     return str(stage.app.screen.query_one(KeyBar).render())
 
 
@@ -63,11 +63,11 @@ def test_log_levels_to_choose_from(look: Look, dump_compare: SnapCompare) -> Non
     assert dump_compare(app, terminal_size=look.size, run_before=at(CAMERA, "K"))
 
 
-async def test_the_graph_is_asked_for_inner_states(stage: Stage) -> None:
+async def test_the_graph_is_asked_for_inner_states(stage: GraphStage) -> None:
     assert stage.graph.inner_wanted
 
 
-async def test_a_state_is_followed_and_only_what_is_possible_is_offered(stage: Stage) -> None:
+async def test_a_state_is_followed_and_only_what_is_possible_is_offered(stage: GraphStage) -> None:
     await stage.choose("/safety_stop")
     assert "lifecycle" not in stage.seen()
     assert "Lifecycle" not in footer(stage)
@@ -84,7 +84,7 @@ async def test_a_state_is_followed_and_only_what_is_possible_is_offered(stage: S
     await stage.wait_for("lifecycle: activating · /camera does not answer within 5 s")
 
 
-async def test_a_transition_is_made_by_a_key_and_its_outcome_is_told(stage: Stage) -> None:
+async def test_a_transition_is_made_by_a_key_and_its_outcome_is_told(stage: GraphStage) -> None:
     await stage.choose("/camera")
     await stage.press("J")
     await stage.wait(lambda: isinstance(stage.app.screen, ChoiceScreen))
@@ -97,14 +97,14 @@ async def test_a_transition_is_made_by_a_key_and_its_outcome_is_told(stage: Stag
     await until_told(stage, "/camera refuses to cleanup and stays inactive")
 
 
-async def test_nothing_is_done_if_none_is_chosen(stage: Stage) -> None:
+async def test_nothing_is_done_if_none_is_chosen(stage: GraphStage) -> None:
     await stage.choose("/camera")
     await stage.press("J", "escape", "K", "escape", "K", "enter")
     await stage.wait(lambda: not isinstance(stage.app.screen, ChoiceScreen))
     assert (stage.graph.inner.changes, stage.graph.inner.levels) == ([], {})
 
 
-async def test_a_log_level_is_set_or_it_is_said_how_to_allow_that(stage: Stage) -> None:
+async def test_a_log_level_is_set_or_it_is_said_how_to_allow_that(stage: GraphStage) -> None:
     await stage.choose("/camera")
     await stage.press("K")
     await stage.wait(lambda: isinstance(stage.app.screen, ChoiceScreen))
@@ -117,7 +117,7 @@ async def test_a_log_level_is_set_or_it_is_said_how_to_allow_that(stage: Stage) 
     await until_told(stage, "/audio does not let others change its log level")
 
 
-async def test_a_link_leads_from_a_container_to_its_component_and_back(stage: Stage) -> None:
+async def test_a_link_leads_from_a_container_to_its_component_and_back(stage: GraphStage) -> None:
     await stage.choose("/perception")
     await stage.wait_for("/debayer component 2")
     await stage.press("enter", "enter")
@@ -125,7 +125,7 @@ async def test_a_link_leads_from_a_container_to_its_component_and_back(stage: St
     await stage.wait_for("Is in the container")
 
 
-async def test_a_container_says_that_it_is_empty_or_does_not_answer(stage: Stage) -> None:
+async def test_a_container_says_that_it_is_empty_or_does_not_answer(stage: GraphStage) -> None:
     await stage.choose("/perception")
     for row, words in (
         (ContainerRow("/perception"), "An empty container"),
@@ -135,7 +135,7 @@ async def test_a_container_says_that_it_is_empty_or_does_not_answer(stage: Stage
         await stage.wait_for(words)
 
 
-async def test_what_a_node_calls_its_states_cannot_harm_the_terminal(stage: Stage) -> None:
+async def test_what_a_node_calls_its_states_cannot_harm_the_terminal(stage: GraphStage) -> None:
     evil = replace(LIFECYCLES[0], state="\x1b[2Jin[red]ert", transitions=("\x1b]52;c;x\x07go",))
     await stage.show(replace(managed_update(), lifecycles=(evil,)))
     await stage.choose("/camera")

@@ -8,7 +8,7 @@ import pytest
 from textual.events import Key
 
 from graph.data import GraphUpdate, NodeRow
-from tests.tui.graph_stage import Stage, opened
+from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tui.graph.map_drawing import MapDrawing, drawing
 from tui.graph.neighbours import neighbours, node_called
@@ -25,7 +25,7 @@ BRAIN = """
 
 
 @pytest.fixture
-async def stage() -> AsyncIterator[Stage]:
+async def stage() -> AsyncIterator[GraphStage]:
     async with opened() as opened_room:
         await opened_room.choose("/safety_stop")
         await opened_room.press("M")
@@ -39,7 +39,7 @@ def drawn(name: str, width: int, height: int, update: GraphUpdate | None = None)
     return drawing(name, neighbours(update, node), width, height)
 
 
-async def held(stage: Stage, key: str, times: int, place: GraphPlace) -> None:
+async def held(stage: GraphStage, key: str, times: int, place: GraphPlace) -> None:
     """Press a key as one that is held down, and wait for where that leads.
 
     A busy machine takes a minute for sixty keys if each is waited for.
@@ -83,7 +83,7 @@ def test_every_neighbour_can_be_reached() -> None:
     assert right == ["/drive_safe", "/electronic_differential", "/safety_state"]
 
 
-async def test_arrows_walk_and_enter_goes_on_from_there(stage: Stage) -> None:
+async def test_arrows_walk_and_enter_goes_on_from_there(stage: GraphStage) -> None:
     assert stage.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
     await stage.press("right", "up", "up", "up", "down")
     assert stage.screen.map.here == GraphPlace(GraphKind.NODE, "/electronic_differential")
@@ -94,7 +94,7 @@ async def test_arrows_walk_and_enter_goes_on_from_there(stage: Stage) -> None:
     assert stage.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
 
 
-async def test_the_edge_is_not_walked_over(stage: Stage) -> None:
+async def test_the_edge_is_not_walked_over(stage: GraphStage) -> None:
     await stage.press("left", "left", "left")
     for key, times, edge in (
         ("up", 10, GraphPlace(GraphKind.TOPIC, "/drive")),
@@ -105,7 +105,7 @@ async def test_the_edge_is_not_walked_over(stage: Stage) -> None:
         assert stage.screen.map.here == edge
 
 
-async def test_enter_on_a_service_goes_to_its_form(stage: Stage) -> None:
+async def test_enter_on_a_service_goes_to_its_form(stage: GraphStage) -> None:
     await stage.screen.go(GraphPlace(GraphKind.NODE, "/head_controller"))
     await stage.pilot.pause()
     await stage.press("left", *("up",) * 5, "enter")
@@ -114,7 +114,7 @@ async def test_enter_on_a_service_goes_to_its_form(stage: Stage) -> None:
     await stage.wait_for("valid example_interfaces/srv/AddTwoInts")
 
 
-async def test_a_node_that_vanishes_is_said_to_have_left(stage: Stage) -> None:
+async def test_a_node_that_vanishes_is_said_to_have_left(stage: GraphStage) -> None:
     rest = tuple(row for row in NODE_ROWS if row.name != "/safety_stop")
     await stage.show(graph_update(nodes=rest))
     assert "this node has left the graph" in stage.seen()
@@ -122,7 +122,7 @@ async def test_a_node_that_vanishes_is_said_to_have_left(stage: Stage) -> None:
     assert "┌" in stage.seen()
 
 
-async def test_without_a_node_it_says_so(stage: Stage) -> None:
+async def test_without_a_node_it_says_so(stage: GraphStage) -> None:
     await stage.press("M")
     stage.screen.history.forget()
     await stage.show(GraphUpdate(0.0))
@@ -132,7 +132,7 @@ async def test_without_a_node_it_says_so(stage: Stage) -> None:
     assert "no node in this domain" in stage.seen()
 
 
-async def test_more_neighbours_than_rows_are_scrolled(stage: Stage) -> None:
+async def test_more_neighbours_than_rows_are_scrolled(stage: GraphStage) -> None:
     hub = NodeRow("/hub", publishes=tuple(f"/topic_{n:02}" for n in range(60)))
     await stage.show(graph_update(nodes=(hub,)))
     await stage.screen.go(GraphPlace(GraphKind.NODE, "/hub"))

@@ -9,7 +9,7 @@ import pytest
 from textual.message import Message
 
 from graph.data import GraphUpdate, NodeRow
-from tests.tui.graph_stage import Stage, opened
+from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tui.graph.places import GraphKind, GraphPlace
 from tui.session.messages import LanguageChanged, SessionChanged, StatusChanged
@@ -17,12 +17,12 @@ from tui.topics.screen import TopicsScreen
 
 
 @pytest.fixture
-async def stage() -> AsyncIterator[Stage]:
+async def stage() -> AsyncIterator[GraphStage]:
     async with opened() as opened_room:
         yield opened_room
 
 
-async def test_a_node_tells_with_whom_it_talks_and_which_process_it_is(stage: Stage) -> None:
+async def test_a_node_tells_with_whom_it_talks_and_which_process_it_is(stage: GraphStage) -> None:
     await stage.choose("/safety_stop")
     seen = " ".join(stage.seen().split())
     assert "● ready · process 4205 · CPU 2 % · 22 MB" in seen
@@ -32,13 +32,13 @@ async def test_a_node_tells_with_whom_it_talks_and_which_process_it_is(stage: St
     assert "parameter_events" not in seen
 
 
-async def test_a_node_of_somebody_else_is_said_to_be_one(stage: Stage) -> None:
+async def test_a_node_of_somebody_else_is_said_to_be_one(stage: GraphStage) -> None:
     await stage.choose("/lesson_helper")
     assert "not started by Deck" in stage.seen()
     assert "Sends goals to" in stage.seen()
 
 
-async def test_what_ros_needs_is_hidden_until_it_is_asked_for(stage: Stage) -> None:
+async def test_what_ros_needs_is_hidden_until_it_is_asked_for(stage: GraphStage) -> None:
     await stage.press("right")
     assert stage.screen.history.kind is GraphKind.SERVICE
     assert "/camera/set_parameters" not in stage.seen()
@@ -48,7 +48,7 @@ async def test_what_ros_needs_is_hidden_until_it_is_asked_for(stage: Stage) -> N
     assert "/rosout" not in stage.seen()
 
 
-async def test_a_filter_narrows_down_as_one_types_and_escape_ends_it(stage: Stage) -> None:
+async def test_a_filter_narrows_down_as_one_types_and_escape_ends_it(stage: GraphStage) -> None:
     await stage.press("slash", *"sonar")
     assert "1 of 10" in stage.seen()
     assert stage.screen.names.chosen_name == "/sonar_front"
@@ -58,7 +58,7 @@ async def test_a_filter_narrows_down_as_one_types_and_escape_ends_it(stage: Stag
     assert "nothing matches the filter" in stage.seen()
 
 
-async def test_enter_follows_a_link_to_a_service_and_escape_goes_back(stage: Stage) -> None:
+async def test_enter_follows_a_link_to_a_service_and_escape_goes_back(stage: GraphStage) -> None:
     await stage.choose("/head_controller")
     await stage.screen.go(GraphPlace(GraphKind.SERVICE, "/set_head_position"))
     await stage.pilot.pause()
@@ -67,7 +67,7 @@ async def test_enter_follows_a_link_to_a_service_and_escape_goes_back(stage: Sta
     assert stage.screen.history.here == GraphPlace(GraphKind.NODE, "/head_controller")
 
 
-async def test_enter_on_a_topic_goes_to_the_screen_of_topics(stage: Stage) -> None:
+async def test_enter_on_a_topic_goes_to_the_screen_of_topics(stage: GraphStage) -> None:
     await stage.choose("/sonar_front")
     await stage.press("enter", "enter")
     await stage.wait(lambda: isinstance(stage.app.screen, TopicsScreen))
@@ -79,14 +79,14 @@ async def test_enter_on_a_topic_goes_to_the_screen_of_topics(stage: Stage) -> No
     assert stage.screen.history.here == GraphPlace(GraphKind.NODE, "/sonar_front")
 
 
-async def test_a_topic_of_ros_itself_is_shown_though_topics_hides_it(stage: Stage) -> None:
+async def test_a_topic_of_ros_itself_is_shown_though_topics_hides_it(stage: GraphStage) -> None:
     await stage.screen.go(GraphPlace(GraphKind.TOPIC, "/rosout"))
     topics = stage.app.screen
     assert isinstance(topics, TopicsScreen)
     await stage.wait(lambda: topics.table.chosen == "/rosout")
 
 
-async def test_a_chosen_node_that_vanishes_stays_and_says_so(stage: Stage) -> None:
+async def test_a_chosen_node_that_vanishes_stays_and_says_so(stage: GraphStage) -> None:
     await stage.choose("/camera")
     rest = tuple(row for row in NODE_ROWS if row.name != "/camera")
     await stage.show(graph_update(nodes=rest))
@@ -98,13 +98,13 @@ async def test_a_chosen_node_that_vanishes_stays_and_says_so(stage: Stage) -> No
     assert "this node has left the graph" not in stage.seen()
 
 
-async def test_a_node_that_does_nothing_is_said_to(stage: Stage) -> None:
+async def test_a_node_that_does_nothing_is_said_to(stage: GraphStage) -> None:
     await stage.show(graph_update(nodes=(NodeRow("/idle"),)))
     await stage.choose("/idle")
     assert "it talks to nobody" in stage.seen()
 
 
-async def test_without_ros_it_says_why(stage: Stage) -> None:
+async def test_without_ros_it_says_why(stage: GraphStage) -> None:
     await stage.show(GraphUpdate(0.0, error="rclpy is missing: source ROS 2"))
     assert "/ai_brain (gone)" in stage.seen()
     stage.screen.history.forget()
@@ -112,7 +112,7 @@ async def test_without_ros_it_says_why(stage: Stage) -> None:
     assert "rclpy is missing: source ROS 2" in stage.seen()
 
 
-async def test_an_empty_domain_is_told_for_every_kind(stage: Stage) -> None:
+async def test_an_empty_domain_is_told_for_every_kind(stage: GraphStage) -> None:
     stage.screen.history.forget()
     await stage.show(GraphUpdate(0.0))
     assert "no node in this domain" in stage.seen()
@@ -121,7 +121,7 @@ async def test_an_empty_domain_is_told_for_every_kind(stage: Stage) -> None:
         assert words in stage.seen()
 
 
-async def test_hostile_names_are_shown_as_they_are(stage: Stage) -> None:
+async def test_hostile_names_are_shown_as_they_are(stage: GraphStage) -> None:
     evil = replace(NODE_ROWS[0], name="/\x1b[2J[red]", publishes=("/\x1b]0;x\x07[/]",))
     await stage.show(graph_update(nodes=(evil,)))
     await stage.choose(evil.name)
@@ -129,7 +129,7 @@ async def test_hostile_names_are_shown_as_they_are(stage: Stage) -> None:
     assert "/␛[2J[red]" in stage.seen()
 
 
-async def test_space_stops_the_robot_from_the_list(stage: Stage) -> None:
+async def test_space_stops_the_robot_from_the_list(stage: GraphStage) -> None:
     await stage.press("space")
     assert stage.app.emergency.state.engaged
 
@@ -138,7 +138,7 @@ async def test_space_stops_the_robot_from_the_list(stage: Stage) -> None:
     "told", [lambda: StatusChanged({}, frozenset()), SessionChanged, LanguageChanged]
 )
 async def test_the_frame_is_shown_once_for_all_that_it_is_told(
-    stage: Stage, monkeypatch: pytest.MonkeyPatch, told: Callable[[], Message]
+    stage: GraphStage, monkeypatch: pytest.MonkeyPatch, told: Callable[[], Message]
 ) -> None:
     shown: list[str] = []
     monkeypatch.setattr(stage.screen, "show_frame", lambda: shown.append("frame"))

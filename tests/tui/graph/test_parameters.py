@@ -12,7 +12,7 @@ import pytest
 from textual.widgets import Input
 
 from graph.data import GraphUpdate, ParametersResult, Sample
-from tests.tui.graph_stage import Stage, opened
+from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import settle
 from tui.graph.parameter_dialog import ParameterDialog
@@ -22,18 +22,18 @@ NODE = "/sonar_front"
 
 
 @pytest.fixture
-async def stage() -> AsyncIterator[Stage]:
+async def stage() -> AsyncIterator[GraphStage]:
     async with opened() as opened_room:
         await opened_room.choose(NODE)
         yield opened_room
 
 
-async def typed(stage: Stage, text: str) -> None:
+async def typed(stage: GraphStage, text: str) -> None:
     stage.app.screen.query_one(Input).value = text
     await stage.press("enter")
 
 
-async def test_they_are_read_when_asked_and_not_before(stage: Stage) -> None:
+async def test_they_are_read_when_asked_and_not_before(stage: GraphStage) -> None:
     assert stage.graph.asked_parameters == []
     await stage.press("E")
     await stage.wait_for("5 parameters · read in 10 ms")
@@ -44,7 +44,7 @@ async def test_they_are_read_when_asked_and_not_before(stage: Stage) -> None:
     assert "5 parameters" not in stage.seen()
 
 
-async def test_those_of_a_node_that_is_not_in_front_are_not_offered(stage: Stage) -> None:
+async def test_those_of_a_node_that_is_not_in_front_are_not_offered(stage: GraphStage) -> None:
     await stage.press("E")
     await stage.wait_for("5 parameters")
     await stage.press("slash", "q", "q")
@@ -58,7 +58,7 @@ async def test_those_of_a_node_that_is_not_in_front_are_not_offered(stage: Stage
     await stage.wait_for("W Save")
 
 
-async def test_another_value_is_set_and_read_back(stage: Stage) -> None:
+async def test_another_value_is_set_and_read_back(stage: GraphStage) -> None:
     await stage.press("E", "down", "enter")
     assert "Allowed: 0.1…50, above 0" in stage.seen()
     await typed(stage, "2.5")
@@ -67,20 +67,20 @@ async def test_another_value_is_set_and_read_back(stage: Stage) -> None:
     await stage.wait(lambda: stage.graph.asked_parameters == [NODE, NODE])
 
 
-def shown(stage: Stage) -> GraphUpdate:
+def shown(stage: GraphStage) -> GraphUpdate:
     """The graph as it is now."""
     assert stage.graph.update is not None
     return stage.graph.update
 
 
-def changed(stage: Stage, node: str) -> GraphUpdate:
+def changed(stage: GraphStage, node: str) -> GraphUpdate:
     """The graph in which a node tells that `rate` was set from outside."""
     value: dict[str, Any] = {"node": node, "changed_parameters": [{"name": "rate"}]}
     event = Sample(PARAMETER_EVENTS, "rcl_interfaces/msg/ParameterEvent", 0.0, 0.0, 99, value)
     return replace(shown(stage), samples={PARAMETER_EVENTS: (event,)})
 
 
-async def test_a_change_from_outside_is_read_at_once(stage: Stage) -> None:
+async def test_a_change_from_outside_is_read_at_once(stage: GraphStage) -> None:
     """`ros2 param set` in another window; what other nodes change asks this one nothing."""
     assert PARAMETER_EVENTS in stage.graph.followed
     await stage.press("E")
@@ -94,7 +94,7 @@ async def test_a_change_from_outside_is_read_at_once(stage: Stage) -> None:
     assert stage.graph.asked_parameters == [NODE, NODE], "they are not shown"
 
 
-def started(stage: Stage, *processes: int) -> GraphUpdate:
+def started(stage: GraphStage, *processes: int) -> GraphUpdate:
     """The graph in which the node lives in these processes, in none if there are none."""
     others = [row for row in shown(stage).nodes if row.name != NODE]
     (node,) = (row for row in graph_update().nodes if row.name == NODE)
@@ -102,7 +102,7 @@ def started(stage: Stage, *processes: int) -> GraphUpdate:
     return replace(shown(stage), nodes=nodes)
 
 
-async def test_a_node_that_was_started_again_is_read_anew(stage: Stage) -> None:
+async def test_a_node_that_was_started_again_is_read_anew(stage: GraphStage) -> None:
     """It has its first values again, and who listens now may not have heard it tell so."""
     await stage.show(started(stage, 7))
     await stage.press("E")
@@ -116,7 +116,7 @@ async def test_a_node_that_was_started_again_is_read_anew(stage: Stage) -> None:
 
 
 async def test_changes_faster_than_the_answers_are_read_once_more(
-    stage: Stage, monkeypatch: pytest.MonkeyPatch
+    stage: GraphStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One that asked anew at each of them would never see an answer."""
     asked: list[Future[ParametersResult]] = []
@@ -139,7 +139,7 @@ async def test_changes_faster_than_the_answers_are_read_once_more(
     assert len(asked) == 2
 
 
-async def test_a_refusal_keeps_the_dialog_open_and_says_why(stage: Stage) -> None:
+async def test_a_refusal_keeps_the_dialog_open_and_says_why(stage: GraphStage) -> None:
     stage.graph.refusals["rate"] = "outside of 0.1 to 50"
     await stage.press("E", "down", "enter")
     await typed(stage, "99")
@@ -148,7 +148,9 @@ async def test_a_refusal_keeps_the_dialog_open_and_says_why(stage: Stage) -> Non
     assert stage.app.screen is stage.screen
 
 
-async def test_a_name_that_the_title_of_the_dialog_cuts_stands_whole_in_it(stage: Stage) -> None:
+async def test_a_name_that_the_title_of_the_dialog_cuts_stands_whole_in_it(
+    stage: GraphStage,
+) -> None:
     await stage.press("E", "down", "enter")
     dialog = stage.app.screen
     assert isinstance(dialog, ParameterDialog)
@@ -158,7 +160,7 @@ async def test_a_name_that_the_title_of_the_dialog_cuts_stands_whole_in_it(stage
     assert long.words().plain.startswith(f"{NODE} · {row.name}\n")
 
 
-async def test_what_can_only_be_read_is_not_offered_for_change(stage: Stage) -> None:
+async def test_what_can_only_be_read_is_not_offered_for_change(stage: GraphStage) -> None:
     await stage.press("E", "enter")
     assert isinstance(stage.app.screen, ParameterDialog)
     assert stage.app.screen.query_one(Input).disabled
@@ -168,7 +170,7 @@ async def test_what_can_only_be_read_is_not_offered_for_change(stage: Stage) -> 
 
 
 async def test_a_node_that_does_not_answer_freezes_nothing(
-    stage: Stage, monkeypatch: pytest.MonkeyPatch
+    stage: GraphStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     future: Future[ParametersResult] = Future()
     monkeypatch.setattr(stage.graph, "parameters", lambda _node: future)
@@ -180,7 +182,7 @@ async def test_a_node_that_does_not_answer_freezes_nothing(
 
 
 async def test_an_answer_that_comes_late_is_not_taken_for_another_node(
-    stage: Stage, monkeypatch: pytest.MonkeyPatch
+    stage: GraphStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     future: Future[ParametersResult] = Future()
     monkeypatch.setattr(stage.graph, "parameters", lambda _node: future)
@@ -194,7 +196,7 @@ async def test_an_answer_that_comes_late_is_not_taken_for_another_node(
     assert "too late" not in stage.seen()
 
 
-async def test_they_are_saved_and_loaded_as_yaml(stage: Stage, tmp_path: Path) -> None:
+async def test_they_are_saved_and_loaded_as_yaml(stage: GraphStage, tmp_path: Path) -> None:
     path = tmp_path / "sonar.yaml"
     await stage.press("E", "W")
     await typed(stage, str(path))
@@ -211,7 +213,7 @@ async def test_they_are_saved_and_loaded_as_yaml(stage: Stage, tmp_path: Path) -
 
 
 async def test_a_file_that_is_there_is_written_over_only_when_enter_is_pressed_again(
-    stage: Stage, tmp_path: Path
+    stage: GraphStage, tmp_path: Path
 ) -> None:
     path = tmp_path / "notes.yaml"
     path.write_text("precious")
@@ -225,7 +227,7 @@ async def test_a_file_that_is_there_is_written_over_only_when_enter_is_pressed_a
 
 
 async def test_a_file_that_is_wrong_is_told_with_its_line(
-    stage: Stage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    stage: GraphStage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Short names: a long one is broken into two lines anywhere.
     monkeypatch.chdir(tmp_path)

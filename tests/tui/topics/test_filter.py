@@ -9,7 +9,7 @@ from textual.widgets import Static
 
 from graph.data import GraphUpdate
 from tests.tui.recorded import lesson_update, sample
-from tests.tui.topics_stage import SONAR, Stage, opened
+from tests.tui.topics_stage import SONAR, TopicsStage, opened
 
 
 def sonar(*metres: float) -> GraphUpdate:
@@ -18,7 +18,7 @@ def sonar(*metres: float) -> GraphUpdate:
     return lesson_update(samples={SONAR: values})
 
 
-async def only_if(stage: Stage, expression: str) -> None:
+async def only_if(stage: TopicsStage, expression: str) -> None:
     """Choose the sonar, and let only messages through for which this holds."""
     await stage.choose(SONAR)
     await stage.pilot.press("f")
@@ -29,18 +29,18 @@ async def only_if(stage: Stage, expression: str) -> None:
     await stage.pilot.pause()
 
 
-def filter_line(stage: Stage) -> str:
+def filter_line(stage: TopicsStage) -> str:
     """What is said beside the expression."""
     return str(stage.screen.query_one(".filter-told", Static).content)
 
 
 @pytest.fixture
-async def stage() -> AsyncIterator[Stage]:
+async def stage() -> AsyncIterator[TopicsStage]:
     async with opened() as stage:
         yield stage
 
 
-async def test_only_messages_are_shown_for_which_the_expression_holds(stage: Stage) -> None:
+async def test_only_messages_are_shown_for_which_the_expression_holds(stage: TopicsStage) -> None:
     await only_if(stage, "m.data > 0.5")
     # Each message is looked at, not the newest of an update alone.
     assert SONAR in stage.graph.followed
@@ -54,7 +54,9 @@ async def test_only_messages_are_shown_for_which_the_expression_holds(stage: Sta
     assert filter_line(stage) == "2 of 5 messages"
 
 
-async def test_a_message_that_does_not_fit_goes_out_of_sight_and_comes_back(stage: Stage) -> None:
+async def test_a_message_that_does_not_fit_goes_out_of_sight_and_comes_back(
+    stage: TopicsStage,
+) -> None:
     await stage.choose(SONAR)
     await stage.show(sonar(0.25))
     assert "0.25" in stage.echo()
@@ -67,7 +69,7 @@ async def test_a_message_that_does_not_fit_goes_out_of_sight_and_comes_back(stag
     assert SONAR not in stage.graph.followed
 
 
-async def test_each_topic_has_its_own_expression(stage: Stage) -> None:
+async def test_each_topic_has_its_own_expression(stage: TopicsStage) -> None:
     await only_if(stage, "m.data > 0.5")
     stage.screen.table.focus()
     await stage.choose("/drive")
@@ -82,7 +84,7 @@ async def test_each_topic_has_its_own_expression(stage: Stage) -> None:
 
 
 async def test_an_expression_that_is_wrong_names_the_place_and_lets_nothing_through(
-    stage: Stage,
+    stage: TopicsStage,
 ) -> None:
     await stage.choose(SONAR)
     await only_if(stage, "m.data > 0.5 and data")
@@ -93,7 +95,7 @@ async def test_an_expression_that_is_wrong_names_the_place_and_lets_nothing_thro
     assert "the expression is wrong" in stage.echo()
 
 
-async def test_a_field_that_is_missing_is_told_once_and_counted(stage: Stage) -> None:
+async def test_a_field_that_is_missing_is_told_once_and_counted(stage: TopicsStage) -> None:
     await only_if(stage, "m.dat > 0.5")
     await stage.show(sonar(0.8, 0.9))
     await stage.show(sonar(0.8))
@@ -103,7 +105,7 @@ async def test_a_field_that_is_missing_is_told_once_and_counted(stage: Stage) ->
 
 
 async def test_what_fits_while_another_screen_is_in_front_is_seen_when_one_comes_back(
-    stage: Stage,
+    stage: TopicsStage,
 ) -> None:
     await only_if(stage, "m.data > 5")
     await stage.app.show_screen("logs")

@@ -16,7 +16,7 @@ from tests.tui.recorded import NOW_S, TOPICS, lesson_update, sample
 from tests.tui.topics_stage import (
     CAMERA,
     SONAR,
-    Stage,
+    TopicsStage,
     depth_message,
     jpeg_message,
     opened,
@@ -28,12 +28,12 @@ from tui.topics.pictures import TopicPictures
 
 
 @pytest.fixture
-async def stage() -> AsyncIterator[Stage]:
+async def stage() -> AsyncIterator[TopicsStage]:
     async with opened() as stage:
         yield stage
 
 
-async def test_an_image_is_a_picture_and_can_be_a_tree(stage: Stage) -> None:
+async def test_an_image_is_a_picture_and_can_be_a_tree(stage: TopicsStage) -> None:
     await stage.choose(CAMERA)
     await stage.show(lesson_update())
     assert stage.as_picture()
@@ -45,7 +45,7 @@ async def test_an_image_is_a_picture_and_can_be_a_tree(stage: Stage) -> None:
     assert not stage.as_picture()
 
 
-async def test_a_picture_that_cannot_be_shown_is_told(stage: Stage) -> None:
+async def test_a_picture_that_cannot_be_shown_is_told(stage: TopicsStage) -> None:
     await stage.choose(CAMERA)
     odd = {"width": 2, "height": 2, "step": 4, "encoding": "nv21", "data": b"1234"}
     await stage.show(
@@ -56,7 +56,7 @@ async def test_a_picture_that_cannot_be_shown_is_told(stage: Stage) -> None:
     assert "rgb8" in detail
 
 
-async def test_depth_has_a_scale_in_metres(stage: Stage) -> None:
+async def test_depth_has_a_scale_in_metres(stage: TopicsStage) -> None:
     await stage.choose(CAMERA)
     await stage.show(with_camera("sensor_msgs/msg/Image", depth_message()))
     view = stage.screen.detail.picture
@@ -66,7 +66,9 @@ async def test_depth_has_a_scale_in_metres(stage: Stage) -> None:
     assert scale.strip().endswith("4 m far")
 
 
-async def test_no_picture_of_the_topic_before_stays_while_the_line_is_busy(stage: Stage) -> None:
+async def test_no_picture_of_the_topic_before_stays_while_the_line_is_busy(
+    stage: TopicsStage,
+) -> None:
     await stage.choose(CAMERA)
     await stage.show(with_camera("sensor_msgs/msg/Image", depth_message()))
     view = stage.screen.detail.picture
@@ -81,14 +83,14 @@ async def test_no_picture_of_the_topic_before_stays_while_the_line_is_busy(stage
     assert view.caption == "jpeg 640×480 · 10.0 Hz"
 
 
-async def test_a_compressed_image_is_decoded_and_shown(stage: Stage) -> None:
+async def test_a_compressed_image_is_decoded_and_shown(stage: TopicsStage) -> None:
     await stage.choose(CAMERA)
     await stage.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message()))
     await stage.decoded()
     assert stage.screen.detail.picture.caption == "jpeg 640×480 · 10.0 Hz"
 
 
-async def test_a_compressed_image_that_is_cut_short_says_so(stage: Stage) -> None:
+async def test_a_compressed_image_that_is_cut_short_says_so(stage: TopicsStage) -> None:
     await stage.choose(CAMERA)
     await stage.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message(5000)))
     await stage.decoded()
@@ -98,7 +100,7 @@ async def test_a_compressed_image_that_is_cut_short_says_so(stage: Stage) -> Non
 
 
 async def test_late_pictures_are_left_out_while_one_is_decoded(
-    stage: Stage, monkeypatch: pytest.MonkeyPatch
+    stage: TopicsStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     release = threading.Event()
     seen: list[object] = []
@@ -139,7 +141,7 @@ async def test_a_picture_that_nobody_wants_any_more_when_it_is_decoded_is_not_sh
 
 
 async def test_a_picture_asks_for_ten_updates_a_second_and_rates_stay_as_they_are(
-    stage: Stage,
+    stage: TopicsStage,
 ) -> None:
     await stage.choose(CAMERA)
     assert stage.graph.period_s == 0.25

@@ -14,7 +14,7 @@ from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
 from launcher.status import NodeState
 from tests.tui.recorded import NOW_S, TOPICS, RecordedSession, lesson_update, sample
 from tests.tui.snapshots import Look, settle
-from tests.tui.topics_stage import CAMERA, SONAR, Stage, opened, row, with_row
+from tests.tui.topics_stage import CAMERA, SONAR, TopicsStage, opened, row, with_row
 from tests.waiting import until
 from tui.frame.key_bar import KeyBar
 from tui.topics.detail import TopicHead
@@ -23,12 +23,12 @@ ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
 
 
 @pytest.fixture
-async def stage() -> AsyncIterator[Stage]:
+async def stage() -> AsyncIterator[TopicsStage]:
     async with opened() as stage:
         yield stage
 
 
-async def test_all_rates_are_measured_while_the_screen_is_in_front(stage: Stage) -> None:
+async def test_all_rates_are_measured_while_the_screen_is_in_front(stage: TopicsStage) -> None:
     assert stage.measures()
     await stage.pilot.press("4")
     await settle(stage.pilot)
@@ -36,7 +36,7 @@ async def test_all_rates_are_measured_while_the_screen_is_in_front(stage: Stage)
     assert stage.graph.watched == set()
 
 
-async def test_only_the_chosen_topic_is_decoded(stage: Stage) -> None:
+async def test_only_the_chosen_topic_is_decoded(stage: TopicsStage) -> None:
     await stage.choose(SONAR)
     await stage.show(lesson_update())
     assert "data:    1.84" in stage.echo()
@@ -46,7 +46,7 @@ async def test_only_the_chosen_topic_is_decoded(stage: Stage) -> None:
     )
 
 
-async def test_what_takes_a_message_is_offered_when_one_is_there(stage: Stage) -> None:
+async def test_what_takes_a_message_is_offered_when_one_is_there(stage: TopicsStage) -> None:
     def offered() -> set[str]:
         keys = stage.screen.query_one(KeyBar).keys()
         return {key.title for key in keys}
@@ -65,7 +65,7 @@ async def test_what_takes_a_message_is_offered_when_one_is_there(stage: Stage) -
 
 
 async def test_walking_past_topics_subscribes_none_of_them(
-    stage: Stage, monkeypatch: pytest.MonkeyPatch
+    stage: TopicsStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The one that is chosen first is asked for at first.
     await until(lambda: stage.graph.watched, "the first topic asked for")
@@ -81,13 +81,13 @@ async def test_walking_past_topics_subscribes_none_of_them(
     assert asked == [{"/drive"}]
 
 
-async def test_nobody_who_publishes_is_told(stage: Stage) -> None:
+async def test_nobody_who_publishes_is_told(stage: TopicsStage) -> None:
     await stage.choose("/emergency_stop")
     assert stage.echo().startswith("nobody publishes this topic\nStart the node")
 
 
 async def test_a_topic_that_only_deck_publishes_is_not_said_to_have_a_silent_publisher(
-    stage: Stage,
+    stage: TopicsStage,
 ) -> None:
     await stage.choose(SONAR)
     quiet = row(SONAR, trouble=Trouble.QUIET, publishers=0, age_s=None, hz=None, bytes_per_s=None)
@@ -95,7 +95,7 @@ async def test_a_topic_that_only_deck_publishes_is_not_said_to_have_a_silent_pub
     assert stage.echo() == "only Deck itself publishes here\nIt has sent nothing yet."
 
 
-async def test_topics_that_only_deck_knows_are_not_listed(stage: Stage) -> None:
+async def test_topics_that_only_deck_knows_are_not_listed(stage: TopicsStage) -> None:
     ours = TopicRow("/llm_result", ("std_msgs/msg/String",), 0, 0, trouble=Trouble.NO_PUBLISHER)
     await stage.show(lesson_update())
     count = stage.count()
@@ -104,7 +104,7 @@ async def test_topics_that_only_deck_knows_are_not_listed(stage: Stage) -> None:
     assert stage.count() == count
 
 
-async def test_the_chosen_topic_stays_when_everybody_has_left_it(stage: Stage) -> None:
+async def test_the_chosen_topic_stays_when_everybody_has_left_it(stage: TopicsStage) -> None:
     await stage.choose(SONAR)
     left = row(SONAR, publishers=0, subscribers=0, trouble=Trouble.NO_PUBLISHER)
     await stage.show(with_row(left))
@@ -127,7 +127,7 @@ async def test_the_chosen_topic_stays_when_everybody_has_left_it(stage: Stage) -
     ],
 )
 async def test_why_there_is_no_topic_is_told(
-    stage: Stage, state: NodeState, topics: tuple[TopicRow, ...], words: list[str]
+    stage: TopicsStage, state: NodeState, topics: tuple[TopicRow, ...], words: list[str]
 ) -> None:
     assert isinstance(stage.app.feed.link, RecordedSession)
     stage.app.feed.link.set_state("camera", state)
@@ -141,7 +141,7 @@ async def test_why_there_is_no_topic_is_told(
     [(0, "11 из 13 топиков"), (7, "11 из 20 топиков"), (8, "11 из 21 топика")],
 )
 async def test_of_how_many_topics_is_told_in_good_russian(
-    stage: Stage, more: int, words: str
+    stage: TopicsStage, more: int, words: str
 ) -> None:
     stage.app.speak("ru")
     hidden = tuple(replace(ROSOUT, name=f"/_hidden/{number}") for number in range(more))
@@ -149,7 +149,7 @@ async def test_of_how_many_topics_is_told_in_good_russian(
     assert stage.count() == words
 
 
-async def test_a_qos_mismatch_names_who_and_what_to_change(stage: Stage) -> None:
+async def test_a_qos_mismatch_names_who_and_what_to_change(stage: TopicsStage) -> None:
     facts = {
         "policy": "reliability", "publisher": "/lidar", "subscriber": "/brain",
         "offered": "best_effort", "requested": "reliable",
@@ -164,7 +164,7 @@ async def test_a_qos_mismatch_names_who_and_what_to_change(stage: Stage) -> None
     assert "Let /lidar offer reliable, or let /brain ask for best_effort." in words
 
 
-async def test_an_unknown_type_names_its_package(stage: Stage) -> None:
+async def test_an_unknown_type_names_its_package(stage: TopicsStage) -> None:
     facts = {"type": "my_msgs/msg/Thing", "package": "my_msgs", "reason": "not installed"}
     await stage.choose(SONAR)
     await stage.show(
@@ -173,7 +173,7 @@ async def test_an_unknown_type_names_its_package(stage: Stage) -> None:
     assert "install the package my_msgs" in " ".join(stage.echo().split())
 
 
-async def test_a_package_that_can_be_had_is_told_by_its_names(stage: Stage) -> None:
+async def test_a_package_that_can_be_had_is_told_by_its_names(stage: TopicsStage) -> None:
     facts = {
         "type": "nav_msgs/msg/Path", "package": "nav_msgs", "reason": "not installed",
         "apt": "ros-jazzy-nav-msgs", "pixi": "ros-jazzy-nav-msgs",
@@ -188,7 +188,9 @@ async def test_a_package_that_can_be_had_is_told_by_its_names(stage: Stage) -> N
     assert "by `pip install ros-jazzy-nav-msgs`, `apt" in " ".join(stage.echo().split())
 
 
-async def test_a_quiet_topic_keeps_its_last_message_and_says_for_how_long(stage: Stage) -> None:
+async def test_a_quiet_topic_keeps_its_last_message_and_says_for_how_long(
+    stage: TopicsStage,
+) -> None:
     await stage.choose(SONAR)
     await stage.show(lesson_update())
     publisher = EndpointInfo("/sonar_front", "std_msgs/msg/Float32", "reliable", "volatile")
@@ -201,13 +203,13 @@ async def test_a_quiet_topic_keeps_its_last_message_and_says_for_how_long(stage:
     assert ends.startswith("sonar_front → ")
 
 
-async def test_what_is_not_measured_says_so(stage: Stage) -> None:
+async def test_what_is_not_measured_says_so(stage: TopicsStage) -> None:
     await stage.show(with_row(row(SONAR, measured=False, hz=None, bytes_per_s=None, age_s=None)))
     await stage.choose(SONAR)
     assert "not measured: Deck is not subscribed" in stage.head()
 
 
-async def test_a_pause_holds_the_message_and_says_so(stage: Stage) -> None:
+async def test_a_pause_holds_the_message_and_says_so(stage: TopicsStage) -> None:
     await stage.choose(SONAR)
     await stage.show(lesson_update())
     await stage.pilot.press("p")
@@ -223,20 +225,20 @@ async def test_a_pause_holds_the_message_and_says_so(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("key", ["y", "н"])
-async def test_the_message_is_copied_as_yaml(stage: Stage, key: str) -> None:
+async def test_the_message_is_copied_as_yaml(stage: TopicsStage, key: str) -> None:
     await stage.choose("/drive")
     await stage.show(lesson_update())
     await stage.pilot.press(key)
     assert "steering_angle: 0.5" in stage.app.clipboard
 
 
-async def test_without_a_message_there_is_nothing_to_copy(stage: Stage) -> None:
+async def test_without_a_message_there_is_nothing_to_copy(stage: TopicsStage) -> None:
     await stage.choose("/emergency_stop")
     await stage.pilot.press("y")
     assert stage.app.clipboard == ""
 
 
-async def test_the_filter_narrows_down_as_one_types_and_escape_ends_it(stage: Stage) -> None:
+async def test_the_filter_narrows_down_as_one_types_and_escape_ends_it(stage: TopicsStage) -> None:
     await stage.pilot.press("slash", *"audio", "space", *"mic")
     await stage.pilot.pause()
     assert [row.name for row in stage.screen.table.shown] == ["/audio/mic_raw"]
@@ -249,7 +251,9 @@ async def test_the_filter_narrows_down_as_one_types_and_escape_ends_it(stage: St
     assert len(stage.screen.table.shown) == 11
 
 
-async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_filter(stage: Stage) -> None:
+async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_filter(
+    stage: TopicsStage,
+) -> None:
     for key in ("slash", *"sonar"):
         stage.app.post_message(Key(key, "/" if key == "slash" else key))
     await stage.pilot.pause()
@@ -258,7 +262,7 @@ async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_filter(stag
     assert stage.screen.filter.value == "sonar/f"
 
 
-async def test_space_stops_the_robot_from_table_and_tree(stage: Stage) -> None:
+async def test_space_stops_the_robot_from_table_and_tree(stage: TopicsStage) -> None:
     for widget in (stage.screen.table, stage.screen.detail.echo):
         stage.app.emergency.forget()
         widget.focus()
@@ -267,7 +271,7 @@ async def test_space_stops_the_robot_from_table_and_tree(stage: Stage) -> None:
         assert stage.app.emergency.state.engaged
 
 
-async def test_keys_sort_turn_round_and_show_the_topics_of_ros_itself(stage: Stage) -> None:
+async def test_keys_sort_turn_round_and_show_the_topics_of_ros_itself(stage: TopicsStage) -> None:
     await stage.pilot.press("greater_than_sign", "greater_than_sign")
     assert stage.screen.table.order.column_id == "publishers"
     await stage.pilot.press("less_than_sign")
@@ -277,14 +281,14 @@ async def test_keys_sort_turn_round_and_show_the_topics_of_ros_itself(stage: Sta
     assert len(stage.screen.table.shown) == 13
 
 
-async def test_an_observer_that_cannot_work_says_why(stage: Stage) -> None:
+async def test_an_observer_that_cannot_work_says_why(stage: TopicsStage) -> None:
     await stage.show(GraphUpdate(0.0, error="rclpy is missing: source ROS 2"))
     text = stage.screen.table.render_line(1).text + stage.screen.table.render_line(2).text
     assert "ROS cannot be observed" in text
     assert "rclpy is missing: source ROS 2" in text
 
 
-async def test_the_language_changes_under_the_screen(stage: Stage) -> None:
+async def test_the_language_changes_under_the_screen(stage: TopicsStage) -> None:
     await stage.choose("/emergency_stop")
     await stage.pilot.press("f9")
     await stage.pilot.pause()
@@ -292,7 +296,7 @@ async def test_the_language_changes_under_the_screen(stage: Stage) -> None:
     assert "Топик" in stage.screen.table.render_line(0).text
 
 
-async def test_any_size_is_survived(stage: Stage) -> None:
+async def test_any_size_is_survived(stage: TopicsStage) -> None:
     for size in ((1, 1), (10, 4), (30, 8), (59, 19)):
         await stage.choose(CAMERA)
         await stage.pilot.resize_terminal(*size)
@@ -301,7 +305,7 @@ async def test_any_size_is_survived(stage: Stage) -> None:
         await stage.show(lesson_update())
 
 
-async def test_five_megabytes_are_shown_with_few_objects_and_cut(stage: Stage) -> None:
+async def test_five_megabytes_are_shown_with_few_objects_and_cut(stage: TopicsStage) -> None:
     cloud = {
         "height": 1, "width": 312_500, "point_step": 16, "row_step": 5_000_000,
         "data": bytes(5_000_000), "ranges": np.zeros(1_250_000, np.float32),
