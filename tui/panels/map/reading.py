@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from robot.motion.odometry import Point, Pose, yaw_from_quaternion
+from space.reading.fields import NotDrawnError, field
+from space.reading.grids import grid_cells
 from tui.panels.map.viewport import Extent
 
 if TYPE_CHECKING:
@@ -20,8 +22,6 @@ FARTHEST_M = 1e6
 """A pose farther away than this is not valid."""
 OCCUPIED_FROM = 50
 """The threshold of 100, in a nav_msgs/OccupancyGrid."""
-_MOST_CELLS = 4_000_000
-"""In a larger room only every second, third, ... cell is read, to keep the screen responsive."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,24 +85,13 @@ def goal_in(value: Mapping[str, Any]) -> Point | None:
 def occupancy_in(value: Mapping[str, Any]) -> OccupancyGrid | None:
     """Read an OccupancyGrid; None for an invalid one."""
     try:
-        info, frame = value["info"], str(value["header"]["frame_id"])
-        rows, columns = int(info["height"]), int(info["width"])
-        cell_m = float(info["resolution"])
-        read = pose_in({"header": value["header"], "pose": info["origin"]})
-        data = value["data"]
-        cells = (
-            np.frombuffer(data, dtype=np.int8)
-            if isinstance(data, bytes)
-            else np.asarray(data, dtype=np.int8)
-        ).reshape(rows, columns)
-    except (KeyError, TypeError, ValueError, AttributeError):
+        found, frame = grid_cells(value), str(field(value, "header.frame_id"))
+    except NotDrawnError:
         return None
-    if read is None or not 0.0 < cell_m <= FARTHEST_M or min(rows, columns) < 1:
-        return None
-    stride = math.ceil(math.sqrt(cells.size / _MOST_CELLS))
-    cells, cell_m = cells[::stride, ::stride], cell_m * stride
-    occupancy = OccupancyGrid(cells, cell_m, read[0], frame, None)
-    return OccupancyGrid(cells, cell_m, read[0], frame, _known(occupancy))
+    x_m, y_m, _ = found.origin.translation
+    origin = Pose(x_m, y_m, yaw_from_quaternion(*found.origin.rotation))
+    occupancy = OccupancyGrid(found.cells, found.cell_m, origin, frame, None)
+    return replace(occupancy, extent=_known(occupancy))
 
 
 def _known(occupancy: OccupancyGrid) -> Extent | None:
