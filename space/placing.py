@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from space.buffer import NoTransformError
 from space.drawing.shapes import Speckles, moved
 from space.drawing.thinning import FEW, thinned
-from space.reading.fields import Drawable
+from space.reading.fields import FARTHEST_FRAME_M, Drawable
 from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 ROOTS = ("map", "odom", "base_link")
 """Frames of REP-105: the tree that has the first of them is the robot's."""
 SMALLEST_CUBE_M = 0.004
-FARTHEST_M = 1e8
-"""Ten times what the frame `earth` of REP-105 can need; what is farther is no place."""
 
 
 def robot_root(buffer: TransformBuffer, others: Iterable[str] = ()) -> str:
@@ -73,8 +71,8 @@ class Placer:
         Raises NoTransformError, also for one that is farther away than the Earth is wide.
         """
         at = self._where(buffer, fixed, frame, stamp_s)
-        if max(map(abs, at.translation)) > FARTHEST_M:
-            km = f"{FARTHEST_M / 1000:g}"
+        if max(map(abs, at.translation)) > FARTHEST_FRAME_M:
+            km = f"{FARTHEST_FRAME_M / 1000:g}"
             raise NoTransformError(
                 say("{frame} is farther than {km} km from {fixed}", frame=frame, km=km, fixed=fixed)
             )

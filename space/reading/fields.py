@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 FARTHEST_M = 1e6
 """A place farther away than this is a mistake."""
+FARTHEST_FRAME_M = 1e8
+"""Ten times what the frame `earth` of REP-105 can need; what is farther is no place."""
 NANOSECONDS = 1e-9
 
 
@@ -96,11 +98,11 @@ def numbers(tree: Any, path: str) -> NDArray[np.float32]:  # noqa: ANN401
     return array.reshape(-1)
 
 
-def vector(tree: Any, path: str) -> Vector:  # noqa: ANN401
+def vector(tree: Any, path: str, farthest_m: float = FARTHEST_M) -> Vector:  # noqa: ANN401
     """Return x, y and z. Raises NotDrawnError."""
     x, y, z = finite(tree, path, "xyz")
-    if max(abs(x), abs(y), abs(z)) > FARTHEST_M:
-        far = f"{FARTHEST_M / 1000:g}"
+    if max(abs(x), abs(y), abs(z)) > farthest_m:
+        far = f"{farthest_m / 1000:g}"
         raise NotDrawnError(say("{field} is farther away than {km} km", field=path, km=far))
     return x, y, z
 
@@ -111,12 +113,9 @@ def pose(tree: Any, path: str) -> Transform:  # noqa: ANN401
 
 
 def transform(tree: Any, path: str) -> Transform:  # noqa: ANN401
-    """Return a geometry_msgs/Transform, however far away: /tf may begin in the middle of the Earth.
-
-    Raises NotDrawnError.
-    """
-    x, y, z = finite(tree, f"{path}.translation", "xyz")
-    return _turned((x, y, z), tree, f"{path}.rotation")
+    """Return a geometry_msgs/Transform. Raises NotDrawnError."""
+    place = vector(tree, f"{path}.translation", FARTHEST_FRAME_M)
+    return _turned(place, tree, f"{path}.rotation")
 
 
 def _turned(place: Vector, tree: Any, path: str) -> Transform:  # noqa: ANN401

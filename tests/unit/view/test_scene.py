@@ -94,6 +94,7 @@ def test_a_root_that_gets_a_parent_is_none_any_more() -> None:
         (moved("a", "a"), "joins no two frames"),
         (moved("", "b"), "joins no two frames"),
         (moved("a", "b", math.nan), "b in a: transform.translation.x is not a finite number"),
+        (moved("a", "b", 1e300), "b in a: transform.translation is farther away than 100000 km"),
         (moved("b", "a"), "closes a loop"),
     ],
 )
