@@ -63,6 +63,12 @@ class Placer:
         """What stands for each frame itself."""
         self._thinned: dict[int, tuple[Speckles, float, Speckles]] = {}
 
+    def root(self, buffer: TransformBuffer, others: Iterable[str]) -> str:
+        """Return the root of the robot's tree; without frames, of that of the first of `others`."""
+        return robot_root(
+            buffer, (self._mounts[one][0] if one in self._mounts else one for one in others)
+        )
+
     def where(
         self, buffer: TransformBuffer, fixed: str, frame: str, stamp_s: float | None = None
     ) -> Transform:

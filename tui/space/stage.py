@@ -17,7 +17,7 @@ from space.drawing.raster import Raster
 from space.drawing.scene import draw
 from space.drawing.shapes import Strokes
 from space.frame_names import FrameNames
-from space.placing import Located, Placer, cube_of, robot_root
+from space.placing import Located, Placer, cube_of
 from space.transform import Transform
 from text.sentences import say
 from tui.space.layers import SpaceLayers
@@ -87,7 +87,7 @@ class Stage:
         """The frame in which everything is drawn; empty while there is none."""
         if self.wanted_fixed in self.buffer.frames:
             return self.wanted_fixed
-        return robot_root(self.buffer, (layer.frame for layer in self.layers if layer.frame))
+        return self._placer.root(self.buffer, (one.frame for one in self.layers if one.frame))
 
     def take(self, update: GraphUpdate, now_s: float) -> bool:
         """Take in an update; return whether layers came or went."""

@@ -114,6 +114,18 @@ def test_a_mount_is_used_until_somebody_publishes_it() -> None:
         placer.where(TransformBuffer(), "odom", "sonar")
 
 
+def test_without_any_frame_what_is_mounted_is_seen_about_the_robot() -> None:
+    placer, nothing = (
+        Placer({"sonar": ("base_link", Transform((0.3, 0.0, 0.0)))}),
+        TransformBuffer(),
+    )
+    assert placer.root(nothing, ["sonar", "odom"]) == "base_link"
+    assert placer.root(nothing, ["odom", "sonar"]) == "odom"
+    found, why = placer.find(nothing, "base_link", [dot("sonar")])
+    assert [one.at.translation[0] for one in found] == [0.3]
+    assert not why
+
+
 def test_a_cloud_is_thinned_once_for_each_size() -> None:
     rng = np.random.default_rng(1)
     cloud = Drawable("map", (Speckles(rng.uniform(0, 1, (9000, 3)).astype(np.float32)),))
