@@ -1,4 +1,4 @@
-"""Clears shared memory of files that would make nodes hang, and reports what was removed."""
+"""Clears shared memory of what would make nodes hang, and reports what was removed."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import os
 from typing import TYPE_CHECKING
 
 from launcher.processes.shared_memory import SHARED_MEMORY
+from launcher.processes.shared_memory_in_hand import release_in_hand
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.status import Severity
 from text.sentences import say
@@ -37,6 +38,7 @@ class SharedMemory:
     def clear(self) -> None:
         """Remove incomplete files; report once the problems that cannot be fixed here."""
         self._look_for_room()
+        release_in_hand(self._folder)
         found = discard_unfinished(self._folder)
         if found.removed:
             words = say(

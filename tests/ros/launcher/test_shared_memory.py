@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import signal
 from typing import TYPE_CHECKING
 
 import pytest
 
 from launcher.status import NodeState
-from tests.ros.supervised import Launch, until_state
+from tests.ros.supervised import Launch, kill, until_state
+from tests.shared_memory_port import ports_of
 from tests.unfinished_shared_memory import make_old
+from tests.waiting import until
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,3 +32,21 @@ async def test_nodes_that_a_killed_process_holds_up_are_let_go(start: Launch) ->
     """The files are young when the nodes start: they may yet be finished, and are waited for."""
     client = await start(NODE)
     await until_state(client, "node", NodeState.READY)
+
+
+@pytest.mark.parametrize("killed", ["node", "supervisor"])
+async def test_a_node_that_dies_with_a_message_in_hand_holds_up_nobody(
+    start: Launch, killed: str
+) -> None:
+    """Whoever sends to it next would try for ever to take its mark away."""
+    client = await start({"node": {**NODE["node"], "restart": "never"}})
+    pid = (await until_state(client, "node", NodeState.READY)).pid
+    assert pid is not None
+    # Not to be finished with this message.
+    kill(pid, signal.SIGSTOP)
+    ports = ports_of(pid)
+    assert ports
+    for port in ports:
+        port.take_in_hand()
+    kill(pid if killed == "node" else client.session.supervisor_pid, signal.SIGKILL)
+    await until(lambda: not any(port.in_hand for port in ports), "the ports without a mark")
