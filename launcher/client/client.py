@@ -245,7 +245,8 @@ class SupervisorClient:
         """
         known: dict[str, int] = {}
         if past:
-            with contextlib.suppress(ConnectionLostError):
+            # Without them, it still has to be heard that the session ends.
+            with contextlib.suppress(ConnectionLostError, ProtocolError):
                 lines = await self.history(None, past)
                 known = {line.node: line.seq for line in lines}
                 yield LogEvent(tuple(lines))
