@@ -99,3 +99,18 @@ def test_leaving_twice_ends_the_screen_of_a_supervisor_that_hangs(line: Line, de
     assert process.wait(30) == 0
     wait_until(lambda: not marked.alive(deck.mark), "every process gone")
     os.close(own)
+
+
+def test_a_screen_that_was_suspended_unasked_gives_the_terminal_back_as_it_was(deck: Deck) -> None:
+    terminal = deck.open("01-hello", "--lang", "en")
+    terminal.wait_for("1/1")
+    held = os.open(f"/proc/{terminal.process.pid}/fd/0", os.O_RDWR | os.O_NOCTTY)
+    terminal.process.send_signal(signal.SIGSTOP)
+    terminal.process.send_signal(signal.SIGCONT)
+    terminal.press("f1")
+    terminal.wait_for("Keys of this screen")
+    terminal.press("ctrl+q")
+    assert terminal.wait_exit() == 0
+    usual = termios.ECHO | termios.ICANON | termios.ISIG
+    assert termios.tcgetattr(held)[3] & usual == usual
+    os.close(held)

@@ -178,6 +178,17 @@ class DeckDriver(LinuxDriver):
         with contextlib.suppress(OSError):
             super().run_input_thread()
 
+    def _sigcont_application(self, *_: object) -> None:
+        """Take the terminal over again, also if SIGSTOP left no time to give it back.
+
+        Textual would then read it in a second thread, and one of both would wait for a key after
+        the other has read `q`.
+        """
+        if self._auto_restart and not self._must_signal_resume:
+            self.suspend_application_mode()
+            self._must_signal_resume = True
+        super()._sigcont_application()
+
     def start_application_mode(self) -> None:
         """Set up the terminal, and report every change of its size to the app, the last one last.
 
