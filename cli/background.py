@@ -22,7 +22,7 @@ from launcher.errors import (
     SessionError,
     UnknownNodeError,
 )
-from launcher.events import LogEvent
+from launcher.events import ClosedEvent, LogEvent
 from launcher.profile.catalog import find_profile
 from text.i18n import _, language, localized, ngettext
 from text.output import RED, Paint, json_text, say_error, write
@@ -170,20 +170,28 @@ async def _logs(options: Namespace) -> int:
             for line in await link.history(options.node, options.lines):
                 report.log(line)
                 last[line.node] = line.seq
-        if not options.follow:
-            return 0
-        async for event in link.events():
-            if isinstance(event, LogEvent):
-                news = newer(event, last)
-                for line in news.lines:
-                    if options.node in (None, line.node):
-                        report.log(line)
-                for node, count in news.skipped.items():
-                    if options.node in (None, node):
-                        report.skipped(node, count)
-        return 0
+        return await _follow(link, options.node, report, last) if options.follow else 0
     finally:
         await link.aclose()
+
+
+async def _follow(
+    link: client.SupervisorClient, node: str | None, report: TextReport, last: dict[str, int]
+) -> int:
+    """Report the lines after the `last` ones, of all nodes or of one, until the session ends."""
+    async for event in link.events():
+        if isinstance(event, ClosedEvent):
+            say_error(localized(event.reason))
+            return int(event.reason == client.GONE)
+        if isinstance(event, LogEvent):
+            news = newer(event, last)
+            for line in news.lines:
+                if node in (None, line.node):
+                    report.log(line)
+            for name, count in news.skipped.items():
+                if node in (None, name):
+                    report.skipped(name, count)
+    return 0
 
 
 async def _down(options: Namespace) -> int:

@@ -59,6 +59,8 @@ HEARD_IN_A_HURRY_S = 5.0
 ENDED_IN_A_HURRY_S = 20.0
 """The supervisor's own time limits, plus the time it takes to close its connections."""
 UNSENT_WITHIN_S = 1.0
+GONE = say("the supervisor is gone")
+"""Why a session has ended whose supervisor did not say it."""
 
 
 async def launch(
@@ -410,7 +412,7 @@ class SupervisorClient:
 
     def _end(self) -> None:
         self._closed.set()
-        self._inbox.close(say("the supervisor is gone"))
+        self._inbox.close(GONE)
         for future in self._replies.values():
             if not future.done():
                 future.set_exception(ConnectionLostError(say("the session has ended")))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import signal
 from collections.abc import AsyncIterator
@@ -96,6 +97,54 @@ def test_logs_follow_without_a_gap_until_ctrl_c(tmp_path: Path) -> None:
     assert logs.errors == []
     numbers = [int(line.split()[-1]) for line in logs.lines if "tick" in line]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+@pytest.mark.parametrize(
+    ("killed", "end"),
+    [(False, (0, ["ended from elsewhere"])), (True, (1, ["the supervisor is gone"]))],
+)
+def test_logs_that_follow_say_why_they_end(
+    tmp_path: Path, killed: bool, end: tuple[int, list[str]]
+) -> None:
+    deck("up", str(written(tmp_path, ONE, "one.yaml")))
+    logs = DeckProcess("logs", "ticker", "-f")
+    wait_until(lambda: logs.lines, "a line")
+    if killed:
+        os.kill(running()[0].supervisor_pid, signal.SIGKILL)
+    else:
+        deck("down")
+    code = logs.finish()
+    assert (code, [line.partition(":")[0] for line in logs.errors]) == end
+
+
+@pytest.mark.parametrize("words", [["ps"], ["logs"], ["logs", "-f"], ["down"]])
+def test_a_command_whose_supervisor_is_killed_meanwhile_says_so(
+    tmp_path: Path, words: list[str]
+) -> None:
+    """It hangs, so that the command is sure to wait for it."""
+    deck("up", str(written(tmp_path, ONE, "one.yaml")))
+    supervisor = running()[0].supervisor_pid
+    os.kill(supervisor, signal.SIGSTOP)
+    command = DeckProcess(*words)
+    wait_until(lambda: is_connected(command.process.pid), "a connection to the supervisor")
+    os.kill(supervisor, signal.SIGKILL)
+    code = command.finish()
+    if words == ["ps"]:
+        assert (code, command.lines) == (0, [])
+        assert command.errors[0].startswith("nothing runs in the background")
+    else:
+        assert (code, command.errors) == (1, ["the supervisor does not answer"])
+
+
+def is_connected(pid: int) -> bool:
+    """Whether a process has a connected Unix socket besides the pair that is asyncio's own."""
+    connected = {
+        words[6]
+        for line in Path("/proc/net/unix").read_text().splitlines()
+        if (words := line.split())[5] == "03"
+    }
+    links = [os.readlink(held) for held in Path(f"/proc/{pid}/fd").iterdir() if held.is_symlink()]  # noqa: PTH115 - no paths
+    return len([link for link in links if link[len("socket:[") : -1] in connected]) > 2
 
 
 def test_up_says_what_did_not_come_up(tmp_path: Path) -> None:
