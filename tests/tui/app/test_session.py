@@ -5,6 +5,8 @@ from __future__ import annotations
 import gc
 import threading
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 from weakref import ref
 
@@ -13,9 +15,11 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from graph.data import GraphUpdate, Sample
+from launcher.client import client
 from launcher.errors import ProfileError, ProfileProblem, SessionError
 from launcher.events import ClosedEvent, LogEvent, StraysEvent
 from launcher.status import NodeState, Severity, Stray, Who
+from tests.dying_supervisor import DyingSupervisor
 from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
     LINES,
@@ -28,6 +32,7 @@ from tests.tui.recorded import (
     line,
 )
 from tests.tui.snapshots import settle
+from tests.waiting import until
 from text.sentences import say
 from tui.app import DeckApp
 from tui.deck.actions import StartAll, WriteCommand
@@ -361,6 +366,32 @@ async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> N
         await pilot.press("f8")
         await settle(pilot)
         assert isinstance(app.screen, PickerScreen)
+
+
+@pytest.mark.parametrize("dies_on", [None, "attend", "history"])
+async def test_a_supervisor_that_dies_while_its_session_opens_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dies_on: str | None
+) -> None:
+    """At each moment at which the screen waits for it."""
+    monkeypatch.setattr(client, "find_running", lambda _name: SimpleNamespace(folder=tmp_path))
+    supervisor = DyingSupervisor(tmp_path, dies_on=dies_on)
+    await supervisor.serve()
+
+    class Opener(RecordedOpener):
+        async def open(self, order: OpenRequest) -> SessionLink:
+            self.orders.append(order)
+            return await client.attach()
+
+    app = DeckApp(Opener(), LESSON_9, "deck")
+    async with app.run_test(size=(120, 40)) as pilot:
+        await until(lambda: app.feed.ended, "the end of the session")
+        await pilot.pause()
+        assert title.states(app)[0] == "the supervisor is gone"
+        assert [note.message for note in app._notifications] == ["the supervisor is gone"]
+        await pilot.press("q")
+        await until(lambda: app._exit, "the end of the screen")
+    assert app.return_code == 0
+    supervisor.stop()
 
 
 async def test_a_session_that_ends_leaves_no_node_ready_and_no_panel_that_seems_alive() -> None:

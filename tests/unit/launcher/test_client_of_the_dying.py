@@ -2,45 +2,26 @@
 
 from __future__ import annotations
 
-import asyncio
-import json
 import socket
 from collections.abc import AsyncIterator, Awaitable, Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
 from launcher.client import client as client_module
 from launcher.client.client import SupervisorClient, attach
-from launcher.consent import Agents, Approval, ConsentAnswer
-from launcher.control.protocol import (
-    VERSION,
-    encode,
-    pack_agents,
-    pack_line,
-    pack_session,
-    pack_status,
-)
+from launcher.consent import Approval, ConsentAnswer
+from launcher.control.protocol import encode, pack_line
 from launcher.control.socket import connect, listen
 from launcher.errors import ConnectionLostError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
-from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity, Stray
+from launcher.status import LogLine, Severity, Stray
+from tests.dying_supervisor import HELLO, DyingSupervisor
 
-HELLO = encode(
-    {
-        "deck": VERSION,
-        "session": pack_session(SessionInfo("run-1", "/p/02.yaml", "02-sonar-safety")),
-        "nodes": [pack_status(NodeStatus("sonar", "x", NodeState.READY))],
-        "strays": [],
-        "agents": pack_agents(Agents()),
-    }
-)
 LINE = LogLine("sonar", 1, 0.0, Severity.INFO, "x")
 NEWS = encode({"event": "log", "lines": [pack_line(LINE)], "skipped": {}})
-GONE = ClosedEvent("the supervisor is gone")
+GONE = ClosedEvent(client_module.GONE)
 
 REQUESTS: dict[str, Callable[[SupervisorClient], Awaitable[object]]] = {
     "start": lambda client: client.start("sonar"),
@@ -59,51 +40,18 @@ REQUESTS: dict[str, Callable[[SupervisorClient], Awaitable[object]]] = {
 }
 
 
-@dataclass
-class Dying:
-    """A supervisor's side of the socket, which does as much as it is told to, and dies."""
-
-    folder: Path
-    says: bytes = HELLO
-    """Before it waits for a request."""
-    last_words: bytes = b""
-    """In answer to the request on which it dies."""
-    dies_on: str | None = None
-    """The request on which it dies; None: it dies as soon as it is greeted."""
-    replies: dict[str, dict[str, Any]] = field(default_factory=lambda: {"history": {"result": []}})
-    """To the requests before."""
-    server: asyncio.AbstractServer | None = None
-
-    async def serve(self) -> None:
-        """Begin to accept."""
-        self.server = await asyncio.start_unix_server(self._welcome, sock=listen(self.folder))
-
-    async def _welcome(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        writer.write(self.says)
-        await reader.readline()
-        while self.dies_on is not None:
-            request = json.loads(await reader.readline())
-            if request["op"] == self.dies_on:
-                break
-            reply = self.replies.get(request["op"], {"result": None})
-            writer.write(encode({"reply": request["id"], **reply}))
-        writer.write(self.last_words)
-        writer.close()
-
-
 @pytest.fixture
-async def dying(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Dying]:
+async def dying(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[DyingSupervisor]:
     """What `attach` finds."""
     found = SimpleNamespace(folder=tmp_path)
     monkeypatch.setattr(client_module, "find_running", lambda _name: found)
-    supervisor = Dying(tmp_path)
+    supervisor = DyingSupervisor(tmp_path)
     yield supervisor
-    if supervisor.server is not None:
-        supervisor.server.close()
+    supervisor.stop()
 
 
 @pytest.mark.parametrize("said", [b"", HELLO[:20]], ids=["nothing", "half a greeting"])
-async def test_one_that_dies_before_it_has_greeted(dying: Dying, said: bytes) -> None:
+async def test_one_that_dies_before_it_has_greeted(dying: DyingSupervisor, said: bytes) -> None:
     dying.says = said
     await dying.serve()
     with pytest.raises(ConnectionLostError):
@@ -111,7 +59,7 @@ async def test_one_that_dies_before_it_has_greeted(dying: Dying, said: bytes) ->
 
 
 async def test_one_that_dies_before_it_has_accepted(
-    dying: Dying, monkeypatch: pytest.MonkeyPatch
+    dying: DyingSupervisor, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As one that was suspended before: the connection stands in its queue."""
     listening = listen(dying.folder)
@@ -130,7 +78,9 @@ async def test_one_that_dies_before_it_has_accepted(
 @pytest.mark.parametrize(
     "rest", [b"", NEWS, NEWS[:20], b"\xff\n"], ids=["", "news", "half of it", "rubbish"]
 )
-async def test_one_that_dies_once_it_has_greeted(dying: Dying, rest: bytes, past: int) -> None:
+async def test_one_that_dies_once_it_has_greeted(
+    dying: DyingSupervisor, rest: bytes, past: int
+) -> None:
     dying.says = HELLO + rest
     await dying.serve()
     client = await attach()
@@ -144,7 +94,9 @@ async def test_one_that_dies_once_it_has_greeted(dying: Dying, rest: bytes, past
 
 @pytest.mark.parametrize("words", [b"", b'{"reply": 1'], ids=["nothing", "half a reply"])
 @pytest.mark.parametrize("op", REQUESTS)
-async def test_one_that_dies_when_it_is_asked(dying: Dying, op: str, words: bytes) -> None:
+async def test_one_that_dies_when_it_is_asked(
+    dying: DyingSupervisor, op: str, words: bytes
+) -> None:
     dying.dies_on, dying.last_words = op, words
     await dying.serve()
     client = await attach()
@@ -156,7 +108,7 @@ async def test_one_that_dies_when_it_is_asked(dying: Dying, op: str, words: byte
     await client.shutdown()
 
 
-async def test_one_that_dies_when_it_is_asked_for_the_past(dying: Dying) -> None:
+async def test_one_that_dies_when_it_is_asked_for_the_past(dying: DyingSupervisor) -> None:
     dying.dies_on = "history"
     await dying.serve()
     client = await attach()
@@ -165,7 +117,7 @@ async def test_one_that_dies_when_it_is_asked_for_the_past(dying: Dying) -> None
     await client.aclose()
 
 
-async def test_one_that_dies_when_it_is_told_to_end(dying: Dying) -> None:
+async def test_one_that_dies_when_it_is_told_to_end(dying: DyingSupervisor) -> None:
     dying.dies_on = "shutdown"
     await dying.serve()
     client = await attach()
@@ -175,7 +127,7 @@ async def test_one_that_dies_when_it_is_told_to_end(dying: Dying) -> None:
     assert [event async for event in events][-1] == GONE
 
 
-async def test_one_that_has_no_past_to_tell_is_heard_all_the_same(dying: Dying) -> None:
+async def test_one_that_has_no_past_to_tell_is_heard_all_the_same(dying: DyingSupervisor) -> None:
     """Else nobody would hear that it dies."""
     dying.replies["history"] = {"error": {"kind": "fault", "message": "KeyError: 'sonar'"}}
     dying.dies_on = "tell"
