@@ -26,7 +26,8 @@ _LOCKS = ("_el", "_sl")
 _LOCK = re.compile(r"\d+: FLOCK .* ([0-9a-f]+):([0-9a-f]+):(\d+) \S+ \S+")
 _NAME = b"port_node_abi5\0"
 _DOMAIN = b"fastrtps\0".ljust(24, b"\0")
-_MOST_BYTES = 1 << 20
+_MOST_BYTES = 1 << 16
+"""What is looked for is at the beginning; the queue of messages comes after it."""
 _SLOTS = 1024
 _SLOT_BYTES = 20
 _IN_USE, _IN_HAND = 0x01, 0x04
@@ -35,13 +36,18 @@ _IN_USE, _IN_HAND = 0x01, 0x04
 
 def release_in_hand(folder: Path = SHARED_MEMORY) -> list[str]:
     """Take away the marks of dead processes; return the names of their ports."""
-    found = [name for name in names(folder) if _PORT.fullmatch(name)]
+    there = set(names(folder))
     try:
         locked = _locked_files()
     except OSError:
         return []
     return [
-        name for name in found if not _is_alive(folder / name, locked) and _release(folder / name)
+        name
+        for name in filter(_PORT.fullmatch, sorted(there))
+        if not any(
+            name + lock in there and _is_one_of(folder / f"{name}{lock}", locked) for lock in _LOCKS
+        )
+        and _release(folder / name)
     ]
 
 
@@ -58,15 +64,12 @@ def _locked_files() -> set[tuple[int, int]]:
     }
 
 
-def _is_alive(port: Path, locked: set[tuple[int, int]]) -> bool:
-    for suffix in _LOCKS:
-        try:
-            found = port.with_name(port.name + suffix).lstat()
-        except OSError:
-            continue
-        if (found.st_dev, found.st_ino) in locked:
-            return True
-    return False
+def _is_one_of(path: Path, files: set[tuple[int, int]]) -> bool:
+    try:
+        found = path.lstat()
+    except OSError:
+        return False
+    return (found.st_dev, found.st_ino) in files
 
 
 def _release(port: Path) -> bool:
