@@ -60,16 +60,21 @@ class SharedMemoryPort:
         """Release it."""
         ctypes.CDLL(None).pthread_mutex_unlock(ctypes.c_void_p(self._address + self._mutex))
 
+    def is_open_in(self, pid: int) -> bool:
+        """Whether this process has met the one that listens here, and sends to it."""
+        return bool(self._places_in(pid))
+
     def is_awaited_by(self, pid: int) -> bool:
         """Whether a thread of this process waits for the lock."""
-        places = {
-            int(line.split("-")[0], 16) + self._mutex
-            for line in Path(f"/proc/{pid}/maps").read_text().splitlines()
-            if line.split()[4:5] == [str(self._inode)]
-        }
+        locks = {place + self._mutex for place in self._places_in(pid)}
         calls = (task / "syscall" for task in Path(f"/proc/{pid}/task").iterdir())
         words = (call.read_text().split() for call in calls)
-        return any(len(word) > 1 and int(word[1], 16) in places for word in words)
+        return any(len(word) > 1 and int(word[1], 16) in locks for word in words)
+
+    def _places_in(self, pid: int) -> list[int]:
+        """Return the addresses at which this process has mapped it."""
+        lines = map(str.split, Path(f"/proc/{pid}/maps").read_text().splitlines())
+        return [int(line[0].split("-")[0], 16) for line in lines if line[4] == str(self._inode)]
 
 
 def ports_of(pid: int) -> list[SharedMemoryPort]:

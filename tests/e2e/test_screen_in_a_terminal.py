@@ -122,14 +122,15 @@ def test_nodes_that_die_with_a_message_in_hand_do_not_freeze_the_screen(deck: De
     """Fast DDS would try for ever to take their marks away, with Python's lock held."""
     terminal = deck.open("02-sonar-safety", "--lang", "en")
     terminal.wait_for("2/2")
+    screen = terminal.process.pid
     ports = [port for node in marked.nodes(deck.mark) for port in ports_of(node)]
+    wait_until(lambda: any(port.is_open_in(screen) for port in ports), "the screen met a node")
     for port in ports:
         port.lock()
         port.take_in_hand()
     (supervisor,) = supervisors(deck.mark)
     os.kill(supervisor, signal.SIGKILL)
     wait_until(lambda: not marked.nodes(deck.mark), "every node gone")
-    screen = terminal.process.pid
     wait_until(lambda: any(port.is_awaited_by(screen) for port in ports), "the screen is sending")
     for port in ports:
         port.break_down()
