@@ -358,7 +358,8 @@ async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> N
         await pilot.pause()
         await pilot.pause()
         assert title.states(app)[0] == "the supervisor is gone"
-        assert opener.graph.stopped
+        # Leaving the graph may take a while, or fail.
+        assert not opener.graph.stopped
         await pilot.press("4")
         await pilot.pause()
         assert isinstance(app.screen, LogsScreen)
@@ -366,6 +367,7 @@ async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> N
         await pilot.press("f8")
         await settle(pilot)
         assert isinstance(app.screen, PickerScreen)
+    await until(lambda: opener.graph.stopped, "the graph left")
 
 
 @pytest.mark.parametrize("dies_on", [None, "attend", "history"])
