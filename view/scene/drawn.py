@@ -37,6 +37,8 @@ class Drawn:
     """Whether it holds for all times, and is kept however long the viewer runs."""
     recursive: bool = False
     """Whether `shapes` is empty and everything below is removed."""
+    lifetime_s: float = 0.0
+    """After so long it is removed; 0 for what is kept."""
 
 
 def frame_name(text: object) -> str:

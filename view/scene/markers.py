@@ -50,7 +50,8 @@ def marker(topic: str, message: Message) -> Iterator[Drawn]:
                 say("there is no shape for markers of type {kind}", kind=kind_name(kind))
             )
         figure = read_figure(message)
-        yield Drawn(path, (_SHAPES[kind](figure),), frame=frame_name(figure.frame))
+        shapes, frame = (_SHAPES[kind](figure),), frame_name(figure.frame)
+        yield Drawn(path, shapes, frame=frame, lifetime_s=figure.lifetime_s)
 
 
 def several(topic: str, message: Message) -> Iterator[Drawn]:

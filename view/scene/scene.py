@@ -53,6 +53,8 @@ class ViewScene:
         self._robot = RobotShapes()
         self._again_at_s = 0.0
         self._faults: dict[str, str] = {}
+        self._ends_s: dict[tuple[str, ...], float] = {}
+        """When what does not last is to be removed, unix time."""
         self._readers: dict[str, tuple[Reader, ...]] = {
             "geometry_msgs/msg/PoseArray": (many,),
             "geometry_msgs/msg/PoseStamped": (posed,),
@@ -103,9 +105,16 @@ class ViewScene:
             self._again_at_s = now_s + AGAIN_EVERY_S
             for drawn in (*self._frames.roots(), *self._robot.again()):
                 yield now_s, drawn
+        for entity in [entity for entity, end_s in self._ends_s.items() if end_s <= now_s]:
+            del self._ends_s[entity]
+            yield now_s, Drawn(entity, (), recursive=True)
         for sample in sorted(_fewer(samples), key=_arrival_s):
             for drawn in self._read(sample):
                 yield _arrival_s(sample), drawn
+                if drawn.lifetime_s > 0:
+                    self._ends_s[drawn.path] = _arrival_s(sample) + drawn.lifetime_s
+                else:
+                    self._ends_s.pop(drawn.path, None)
 
     def _read(self, sample: Sample) -> Iterator[Drawn]:
         own = self._by_name.get(sample.topic)

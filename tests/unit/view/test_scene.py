@@ -329,6 +329,19 @@ def test_a_marker_can_be_removed() -> None:
     assert drawn["markers/marks/things/3"].recursive
 
 
+def test_a_marker_is_removed_when_its_lifetime_is_over() -> None:
+    scene, kind = ViewScene(), "visualization_msgs/msg/MarkerArray"
+    seconds = {1: 1, 2: 2**31 - 1, 3: 0, 4: 1}
+    markers = [
+        {**MARKER, "id": i, "lifetime": {"sec": s, "nanosec": 0}} for i, s in seconds.items()
+    ]
+    drawn = draw(scene, "/marks", kind, {"markers": markers}, {"markers": [{**MARKER, "id": 4}]})
+    assert len([one for one in drawn.values() if one.shapes and one.path[0] == "markers"]) == 4
+    later = draw(scene, "/marks", kind)
+    assert [path for path, one in later.items() if one.recursive] == ["markers/marks/things/1"]
+    assert not draw(scene, "/marks", kind)
+
+
 def test_the_robot_is_drawn_link_by_link() -> None:
     text = """<robot name="r"><link name="base"><visual><geometry><box size="1 2 3"/></geometry>
         </visual></link></robot>"""
