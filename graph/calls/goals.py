@@ -117,11 +117,15 @@ class Goals:
         """Return all goals except forgotten ones, oldest first."""
         return tuple(life.snapshot() for life in self._lives.values() if not life.is_forgotten)
 
-    def close(self) -> None:
-        """Cancel all goals, within a time limit: no robot must drive on with nobody in charge."""
+    def cancel_all(self) -> None:
+        """Cancel all goals that may still be pursued."""
         for life in self._lives.values():
             if life.may_drive:
                 life.cancel()
+
+    def close(self) -> None:
+        """Cancel all goals, within a time limit: no robot must drive on with nobody in charge."""
+        self.cancel_all()
         until_s = time.monotonic() + LEAVE_WITHIN_S
         while self.step() and time.monotonic() < until_s:
             time.sleep(LOOK_S)

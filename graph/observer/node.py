@@ -122,6 +122,12 @@ class ObserverNode:
             return due_s
         return _sooner(due_s, time.monotonic() + PENDING_S)
 
+    def stop_commanding(self) -> None:
+        """Release what is held, stop publishing periodically, cancel goals."""
+        self.dead_man_switch.close()
+        self.publications.close()
+        self.goals.cancel_all()
+
     def close(self, error: Exception) -> None:
         """Cancel goals, let everything else under way fail, and leave the graph."""
         try:

@@ -196,9 +196,15 @@ class Observer:
 
     def stop_publishing_all(self) -> None:
         """Stop all periodic publications, even those asked for a moment ago."""
-        request = Perform(lambda node: node.publications.close())
+        self._now_and_in_turn(Perform(lambda node: node.publications.close()))
+
+    def stop_commanding(self) -> None:
+        """Release what is held, stop all periodic publications and cancel all goals."""
+        self._now_and_in_turn(Perform(lambda node: node.stop_commanding()))
+
+    def _now_and_in_turn(self, request: Perform) -> None:
         self._requests.hurry(request)
-        # Publications asked for but not yet started are started before this request's turn.
+        # What was asked for but has not begun begins before the request's turn.
         self._requests.put(request)
 
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:

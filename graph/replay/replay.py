@@ -180,6 +180,9 @@ class Replay:
     def stop_publishing_all(self) -> None:
         """Do nothing: nothing is published."""
 
+    def stop_commanding(self) -> None:
+        """Do nothing: nothing is commanded."""
+
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
         """Fail."""
         del topic, type_name

@@ -59,6 +59,7 @@ class RecordedGraph:
     """(topic, type, value, hz) that is published again and again."""
     stopped_publications: list[int] = field(default_factory=list)
     stopped_all: int = 0
+    commands_nothing: bool = False
     """How often all that is published again and again was stopped."""
     held: list[tuple[str, str, HeldCommand]] = field(default_factory=list)
     """(topic, type, command) that is published while it is held."""
@@ -175,6 +176,9 @@ class RecordedGraph:
         self.stopped_all += 1
         if self.update is not None and self.update.publications:
             self._change(lambda now: replace(now, publications=()))
+
+    def stop_commanding(self) -> None:
+        self.commands_nothing = True
 
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
         self.prepared.append((topic, type_name, False))

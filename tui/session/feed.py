@@ -251,6 +251,9 @@ class Feed:
             self._app.post_message(AgentsChanged())
             self.tell(AgentsChanged)
         elif isinstance(event, ClosedEvent):
+            if self.graph is not None:
+                # Before anything that takes time: nobody is in charge any more.
+                self.graph.stop_commanding()
             await owner.ended(event.reason)
 
     def take_update(self) -> GraphUpdate | None:

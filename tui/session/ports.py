@@ -166,6 +166,9 @@ class GraphLink(Protocol):
     def stop_publishing_all(self) -> None:
         """Stop all periodic publishing, including what was requested a moment ago."""
 
+    def stop_commanding(self) -> None:
+        """Stop that as well, release what is held, and cancel all goals."""
+
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
         """Create a publisher for what may be held, without publishing anything."""
 

@@ -74,6 +74,22 @@ def test_an_observer_that_ends_rests_with_its_last_word(watcher: Watcher, peer: 
     wait_until(lambda: heard[-1][1] == 0, "rest")
 
 
+def test_all_that_commands_stops_at_once_and_the_observer_goes_on(
+    watcher: Watcher, peer: Peer
+) -> None:
+    heard, numbers = ready(watcher, peer), peer.hear("/out", Float32)
+    watcher.observer.start_publishing("/out", "std_msgs/msg/Float32", {"data": 1.0}, 50.0).result(
+        30
+    )
+    watcher.observer.hold("/drive", DRIVE, command(0.2, 30.0)).result(30)
+    wait_until(lambda: heard and numbers, "both are heard")
+    watcher.observer.stop_commanding()
+    wait_until(lambda: heard[-1][1] == 0, "rest")
+    wait_until(lambda: not peer.node.count_publishers("/out"), "no publisher")
+    watcher.observer.hold("/drive", DRIVE, command(0.3, 0.25)).result(30)
+    wait_until(lambda: heard[-1][1] > 0.25, "it can be driven again")
+
+
 def test_what_cannot_be_held_says_why(watcher: Watcher, peer: Peer) -> None:
     ready(watcher, peer)
     wrong = HeldCommand({"drive": {"speedy": 1.0}}, {}, 20.0, time.monotonic() + 1.0)

@@ -178,6 +178,14 @@ def test_a_goal_that_is_forgotten_while_it_runs_is_cancelled(
     wait_until(lambda: server.cancels(server.action) == 1, "its server is asked to cancel")
 
 
+def test_goals_that_run_are_cancelled_with_all_that_commands(
+    watcher: Watcher, server: Peer
+) -> None:
+    at_work(watcher, server)
+    watcher.observer.stop_commanding()
+    wait_until(lambda: server.cancels(server.action) == 1, "its server is asked to cancel")
+
+
 def test_goals_that_run_are_cancelled_when_the_observer_stops(
     server: Peer, module_domain: int
 ) -> None:

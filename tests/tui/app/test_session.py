@@ -358,7 +358,8 @@ async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> N
         await pilot.pause()
         await pilot.pause()
         assert title.states(app)[0] == "the supervisor is gone"
-        # Leaving the graph may take a while, or fail.
+        # Leaving the graph may take a while, or fail; until then, nothing is to drive.
+        assert opener.graph.commands_nothing
         assert not opener.graph.stopped
         await pilot.press("4")
         await pilot.pause()

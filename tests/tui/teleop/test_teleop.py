@@ -210,7 +210,7 @@ async def test_the_end_of_the_session_takes_it_away() -> None:
         await pilot.press("up")
         opener.link.say(ClosedEvent("gone"))
         await until(lambda: not app.screen.query(TeleopPanel), "the panel gone")
-        assert opener.graph.stopped
+        assert opener.graph.commands_nothing
 
 
 async def test_a_key_that_has_waited_too_long_moves_nothing() -> None:
