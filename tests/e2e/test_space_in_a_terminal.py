@@ -17,7 +17,7 @@ PROFILE = f"""
         cwd: {ROOT}
         ready: {{topic: /map}}
 """
-ALT_G = "\x1bg"
+ALT_G, ALT_V = "\x1bg", "\x1bv"
 
 
 def test_a_goal_is_aimed_at_a_map(deck: Deck, tmp_path: Path) -> None:
@@ -25,6 +25,13 @@ def test_a_goal_is_aimed_at_a_map(deck: Deck, tmp_path: Path) -> None:
     terminal.wait_for("1/1")
     terminal.press("9")
     terminal.wait_until(lambda text: "/map" in text and "in hall" in text, "the map")
+    # As one that is held, over a slow line.
+    terminal.type(ALT_V + ALT_V)
+    terminal.wait_for("perspective")
+    assert "The robot in 3D" not in terminal.text()
+    terminal.press("home")
+    terminal.type(ALT_V)
+    terminal.wait_for("from above")
     terminal.type(ALT_G)
     terminal.wait_for("GOAL → /goal_pose (room)")
     terminal.press("right")

@@ -17,10 +17,12 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from textual.drivers import linux_driver
 from textual.drivers.linux_driver import LinuxDriver
 from textual.events import Resize
 from textual.geometry import Size
 
+from tui.terminal.alt_keys import AltKeyParser
 from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.terminal_diff import TerminalDiff
 
@@ -33,6 +35,9 @@ if TYPE_CHECKING:
         terminal_fd: int
         bandwidth: Bandwidth
 
+
+# Textual has no other way to choose the parser.
+linux_driver.XTermParser = AltKeyParser  # type: ignore[attr-defined]
 
 MOST_WAITING = 1_000_000
 """Bytes that may wait for the terminal; with more it counts as stalled."""
