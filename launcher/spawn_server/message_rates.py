@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import importlib
 import time
-from collections import deque
 from typing import TYPE_CHECKING, Any
 
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+from launcher.spawn_server.arrival_rate import ArrivalRate
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
 KEPT = 50
 """Most messages between two checks; a camera sends one every 30 to 100 ms."""
-COUNTED = 5
-"""The rate is computed over this many recent messages."""
 
 
 class _Counter:
@@ -25,7 +24,7 @@ class _Counter:
         self._subscription = node.create_subscription(
             kind, topic, lambda _message: None, quality, raw=True
         )
-        self._stamps: deque[float] = deque(maxlen=COUNTED)
+        self._rate = ArrivalRate()
 
     def rate_hz(self) -> float:
         """Current messages per second; 0 until enough have arrived to compute it."""
@@ -35,15 +34,9 @@ class _Counter:
                 taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
             if taken is None:
                 break
-            self._stamps.append(taken[1]["received_timestamp"] / 1e9)
-        if len(self._stamps) < COUNTED:
-            return 0.0
-        # A publisher that has fallen silent does not keep its former rate.
-        lasted = max(self._stamps[-1], time.time() - self._period()) - self._stamps[0]
-        return (COUNTED - 1) / lasted if lasted > 0 else 0.0
-
-    def _period(self) -> float:
-        return (self._stamps[-1] - self._stamps[0]) / (COUNTED - 1)
+            info = taken[1]
+            self._rate.add(info["source_timestamp"] / 1e9, info["received_timestamp"] / 1e9)
+        return self._rate.hz(time.time())
 
 
 class MessageRates:
