@@ -22,13 +22,14 @@ endif
 
 ROOMS := agents bench brain bridges cli course deck graph launcher nodes robot ros2 scripts space tests text tui view
 
-.PHONY: help setup run view test lint lock architecture clean
+.PHONY: help setup run view test test-all lint lock architecture clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo 'make run    set up if needed, then open Deck; PROFILE=09-brain ARGS="--lang ru"'
 	@echo 'make view   also install the viewers, Rerun and Foxglove: 700 MB'
 	@echo 'make test   set up if needed, then run the tests; ARGS="-k sonar"'
+	@echo 'make test-all  also the tests that need more of the machine, such as a browser'
 	@echo 'make lint   style, types and who may import whom'
 	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python'
 	@echo 'make lock   ask for newer libraries and write down which, with their hashes'
@@ -60,8 +61,14 @@ run: catalogues
 
 view: catalogues .venv/.view
 
+PYTEST := .venv/bin/python -m pytest -n 5 --dist loadfile --no-loadscope-reorder
+
 test: catalogues .venv/.view
-	@exec .venv/bin/python -m pytest -n 5 --dist loadfile --no-loadscope-reorder $(ARGS)
+	@exec $(PYTEST) --plain-machine $(ARGS)
+
+test-all: catalogues .venv/.view
+	@.venv/bin/python -m tests.machine
+	@exec $(PYTEST) $(ARGS)
 
 lint: .venv/.ready
 	@.venv/bin/ruff check .

@@ -7,9 +7,11 @@ import gc
 import os
 import shutil
 import signal
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 import psutil
@@ -18,6 +20,7 @@ from hypothesis import HealthCheck, settings
 
 from graph.ros import FAST_DDS_VARIABLES, LOCALHOST_ONLY, ONLY_THESE, PEERS
 from tests.domains import DomainPool
+from tests.machine import PLAIN, left_out, needs_of
 from tests.unit.scripts_of_setup import load
 
 # A loaded machine is no failure of the code. Each run takes other examples: half as many as usual
@@ -62,7 +65,29 @@ os.environ[STATE_DIR] = tempfile.mkdtemp(prefix=f"{_STATE}{os.getpid()}-")
 """Set for the whole run: nodes that a module shares, started anew by a test, remember alike."""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+LEFT_OUT = "left_out"
+"""Under this a process of the run tells the first one what the tests need that it has left out."""
+LEFT = pytest.StashKey[list[tuple[str, ...]]]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The option of `make test`."""
+    parser.addoption(PLAIN, action="store_true", help="leave out what `make test-all` adds")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what a plain machine cannot run, if told so; put the others in order."""
+    _order(items)
+    if config.getoption(PLAIN):
+        left = [item for item in items if needs_of(item)]
+        config.stash[LEFT] = [needs_of(item) for item in left]
+        if hasattr(config, "workeroutput"):
+            config.workeroutput[LEFT_OUT] = config.stash[LEFT]
+        config.hook.pytest_deselected(items=left)
+        items[:] = [item for item in items if not needs_of(item)]
+
+
+def _order(items: list[pytest.Item]) -> None:
     """Spread the files of each kind over the run: some wait for processes while others compute.
 
     The proof of the lessons comes last: it keeps all cores busy, and has nodes judged by the clock.
@@ -86,8 +111,20 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(20_000, 20, 20)
 
 
-def pytest_unconfigure() -> None:
-    """Leave nothing behind."""
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Keep what a process of the run has left out: each one collects all tests."""
+    told = getattr(node, "workeroutput", {}).get(LEFT_OUT, ())
+    if told:
+        node.config.stash[LEFT] = [tuple(names) for names in told]
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Leave nothing behind, and say last what was left out."""
+    left: list[tuple[str, ...]] = config.stash.get(LEFT, [])
+    words = left_out(left)
+    if words and not hasattr(config, "workeroutput"):
+        sys.stdout.write(f"{words}\n")
     shutil.rmtree(os.environ[STATE_DIR], ignore_errors=True)
 
 

@@ -82,6 +82,17 @@ class Machine:
         return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
+def can_make_machines() -> bool:
+    """Return whether this user may make networks of his own here."""
+    try:
+        made = subprocess.run(
+            ["unshare", *_rights(), *ALONE, "true"], check=False, capture_output=True
+        )
+    except FileNotFoundError:
+        return False
+    return made.returncode == 0
+
+
 @cache
 def _rights() -> tuple[str, ...]:
     """Return how to become one who may make networks; root of the machine need not become it."""

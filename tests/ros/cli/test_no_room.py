@@ -14,6 +14,7 @@ import pytest
 
 from tests.unit.profile_files import written
 
+pytestmark = pytest.mark.machine("namespaces")
 ROOT = Path(__file__).resolve().parents[3]
 
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
+pytestmark = pytest.mark.machine("ip", "namespaces")
 ROBOT, NEIGHBOUR = "10.99.0.1", "10.99.0.2"
 WHEELS = "electronic_differential"
 PLANTED = """<?xml version="1.0"?>

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import signal
 import struct
-import subprocess
 import tempfile
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import psutil
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import ByteMultiArray, Float32
@@ -72,13 +72,7 @@ def audio(domain: int, **params: object) -> NodeProcess:
 
 def children(node: NodeProcess) -> list[int]:
     """The processes with miniaudio in them."""
-    done = subprocess.run(
-        ["ps", "-o", "pid=", "--ppid", str(node.process.pid)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    return [int(word) for word in done.stdout.split()]
+    return [child.pid for child in psutil.Process(node.process.pid).children()]
 
 
 def levels(told: list[DiagnosticArray], device: str) -> list[bytes]:

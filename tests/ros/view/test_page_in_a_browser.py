@@ -19,6 +19,7 @@ from view.installed import rerun_program
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+pytestmark = pytest.mark.machine("browser")
 PICTURES = 15
 WITHIN_S = 60.0
 

@@ -40,6 +40,7 @@ def test_where_somebody_else_has_planted_the_lock_starts_still_wait_for_each_oth
     assert list(runs.iterdir()) == []
 
 
+@pytest.mark.machine("namespaces")
 def test_who_is_root_in_a_namespace_of_his_own_takes_no_roots_lock() -> None:
     """Else an ordinary user's file would lie where root's Deck looks for its own."""
     shown = "from launcher.runs.record import lock_path; print(lock_path())"

@@ -29,6 +29,16 @@ def readme(request: pytest.FixtureRequest) -> str:
     return (ROOT / name).read_text()
 
 
+def test_a_bare_machine_of_ci_has_what_the_readme_installs_and_no_more(readme: str) -> None:
+    """Else `make test` passes there and fails at a stranger's."""
+    workflow = (ROOT / ".github/workflows/ci.yml").read_text()
+    (line,) = re.findall(r"`apt install ([^`]*)`", readme)
+    (installed,) = re.findall(
+        r"^ +apt-get install -qy --no-install-recommends (.*)$", workflow, re.MULTILINE
+    )
+    assert installed.split() == line.split()
+
+
 def test_the_profile_shown_is_valid_and_starts_what_it_says(readme: str, tmp_path: Path) -> None:
     (text,) = re.findall(r"```yaml\n(.*?)```", readme, re.DOTALL)
     path = tmp_path / "mine.yaml"

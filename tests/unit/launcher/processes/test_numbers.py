@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.own_numbers import run_with_own_numbers
+
+pytestmark = pytest.mark.machine("namespaces")
 
 
 def test_an_end_that_is_kept_is_not_that_of_whoever_gets_the_number() -> None:
