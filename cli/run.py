@@ -13,7 +13,7 @@ from cli.line_writer import LineWriter
 from cli.report import JsonReport, Summary, TextReport
 from cli.shared_domain import in_own_domain
 from cli.stop_in_force import stop_is_kept, stop_words
-from launcher.errors import SilentSupervisorError
+from launcher.errors import SessionError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.profile.catalog import find_profile
 from launcher.profile.load import load_profile
@@ -128,10 +128,11 @@ class Run:
                 self._tell(event)
         partings = await asyncio.gather(*self._stopping, return_exceptions=True)
         await client.aclose()
-        silent = (each for each in partings if isinstance(each, SilentSupervisorError))
-        for problem in (*silent,)[:1]:
-            self.report.note(localized(problem.args[0]))
-        return self._summary(client, reason, time.monotonic() - began)
+        left = next((each.args[0] for each in partings if isinstance(each, SessionError)), "")
+        if left:
+            self.report.note(localized(left))
+        code = self._summary(client, reason, time.monotonic() - began)
+        return code or int(bool(left))
 
     def interrupt(self) -> None:
         """Stop at the user's request; the second time, at once."""

@@ -17,6 +17,7 @@
         ├── StartError              the supervisor ended before it answered (exit 2)
         ├── ConnectionLostError     the supervisor has gone, or does not answer
         ├── SilentSupervisorError   it does not answer, and was left alone or killed
+        ├── StillRunningError       processes that should have ended still run
         └── ProtocolError           the other end speaks another version of the protocol
 """
 
@@ -247,6 +248,10 @@ class ConnectionLostError(SessionError):
 
 class SilentSupervisorError(SessionError):
     """The supervisor does not answer; the client has left it alone, or has killed it."""
+
+
+class StillRunningError(SessionError):
+    """Processes that were to end still run; the argument names them."""
 
 
 class ProtocolError(SessionError):

@@ -9,7 +9,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from launcher.client.hung_supervisor import kill_supervisor
+from launcher.client.hung_supervisor import kill_supervisor, left_behind, left_of
 from launcher.client.inbox import Inbox
 from launcher.client.log_history import newer
 from launcher.client.running import find_running, running_records
@@ -33,6 +33,7 @@ from launcher.errors import (
     ConnectionLostError,
     ProtocolError,
     SilentSupervisorError,
+    StillRunningError,
     UnknownNodeError,
     UsageError,
 )
@@ -40,14 +41,17 @@ from launcher.events import LogEvent
 from launcher.run_id import supervisor_of
 from launcher.rundir import log_dir, run_dir
 from launcher.serial_ports import serial_ports
+from launcher.supervisor.dependencies import stop_waves
 from launcher.supervisor.plan import plan_of
+from launcher.supervisor.words import who
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Iterable
+    from collections.abc import AsyncIterator, Iterable, Sequence
 
     from launcher.consent import Approval, ConsentAnswer
     from launcher.events import Event
+    from launcher.processes.table import Process
     from launcher.profile.load import Profile
     from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
     from text.sentences import Words
@@ -58,6 +62,8 @@ HEARD_WITHIN_S = 30.0
 HEARD_IN_A_HURRY_S = 5.0
 ENDED_IN_A_HURRY_S = 20.0
 """The supervisor's own time limits, plus the time it takes to close its connections."""
+STOPPED_WITHIN_S = 20.0
+"""The same for nodes that do not need each other: its limits for SIGINT, SIGTERM and SIGKILL."""
 UNSENT_WITHIN_S = 1.0
 GONE = say("the supervisor is gone")
 """Why a session has ended whose supervisor did not say it."""
@@ -160,6 +166,15 @@ def _own_file(file: Path) -> str:
 
 def _silent(pid: int) -> Words:
     return say("the supervisor (pid {pid}) does not answer; kill -9 {pid} ends it", pid=pid)
+
+
+def _endless(pid: int, left: Sequence[Process]) -> Words:
+    return say(
+        "the supervisor (pid {pid}) has heard it and does not end; still running: {who}; "
+        "kill -9 {pid} ends it",
+        pid=pid,
+        who=who(left),
+    )
 
 
 async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
@@ -270,6 +285,9 @@ class SupervisorClient:
         """Stop these nodes, dependants first; all if none is named. Return when they have ended.
 
         `now`, or a second call, skips the waits between the signals.
+
+        Raises:
+            StillRunningError: if some of their processes have not ended by SIGKILL.
         """
         await self._ask("stop", nodes=names, now=now)
 
@@ -344,30 +362,41 @@ class SupervisorClient:
         `now`, or a second call, skips the waits, including those of a call in progress.
 
         Raises:
-            SilentSupervisorError: if it does not respond. If this client started it, it and its
-                nodes have then been killed.
+            SilentSupervisorError: if it does not respond, or does not end. If this client started
+                it, it and its nodes have then been killed.
+            StillRunningError: if it has ended, and processes of its nodes have not.
         """
         if self._closed.is_set():
             await self.aclose()
             return
+        waves = len(stop_waves(self.nodes, {name: one.needs for name, one in self.nodes.items()}))
+        patient_s = HEARD_WITHIN_S + waves * STOPPED_WITHIN_S
         asked = self._ask("shutdown", now=now)
+        heard = False
         try:
             with contextlib.suppress(ConnectionLostError):
                 await asyncio.wait_for(asked, HEARD_IN_A_HURRY_S if now else HEARD_WITHIN_S)
-            await asyncio.wait_for(self._closed.wait(), ENDED_IN_A_HURRY_S if now else None)
+            heard = True
+            await asyncio.wait_for(self._closed.wait(), ENDED_IN_A_HURRY_S if now else patient_s)
         except asyncio.TimeoutError:
-            self._parting = self._parting or asyncio.create_task(self._part_with_silent())
+            self._parting = self._parting or asyncio.create_task(self._part(heard=heard))
         if self._parting is not None:
             # An earlier call that is still waiting gets this error as well.
             raise SilentSupervisorError(await asyncio.shield(self._parting))
         await self.aclose()
+        left = await left_behind(self.session.run_id)
+        if left:
+            raise StillRunningError(
+                say("the session has ended, these have not: {who}", who=who(left))
+            )
 
-    async def _part_with_silent(self) -> Words:
+    async def _part(self, *, heard: bool) -> Words:
         """Kill a hung supervisor if we started it, else disconnect from it; say what is left."""
         try:
             if self._lifeline >= 0:
                 return await kill_supervisor(self.session.run_id)
-            return _silent(self.session.supervisor_pid)
+            pid = self.session.supervisor_pid
+            return _endless(pid, left_of(self.session.run_id)) if heard else _silent(pid)
         finally:
             self._end()
             await self.aclose()
@@ -445,5 +474,7 @@ class SupervisorClient:
             future.set_result(message["result"])
         elif error["kind"] == "unknown_node":
             future.set_exception(UnknownNodeError(error["name"], error["known"]))
+        elif error["kind"] == "still_running":
+            future.set_exception(StillRunningError(unpack_text(error["message"])))
         else:
             future.set_exception(ProtocolError(error["message"]))

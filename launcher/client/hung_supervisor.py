@@ -1,8 +1,9 @@
-"""Ending a hung supervisor: it is killed, and everything it has started ends with it."""
+"""What is left of a run; a hung supervisor is killed, and what it has started ends with it."""
 
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 import time
 
@@ -23,9 +24,7 @@ async def kill_supervisor(run_id: str) -> Words:
     supervisor = living_supervisor(run_id)
     if supervisor is not None:
         send(supervisor, signal.SIGKILL)
-    deadline = time.monotonic() + GONE_WITHIN_S
-    while (left := _left_of(run_id)) and time.monotonic() < deadline:  # noqa: ASYNC110 - not ours
-        await asyncio.sleep(_LOOK_EVERY_S)
+    left = await left_behind(run_id)
     pid = supervisor_of(run_id)
     if not left:
         return say(
@@ -38,7 +37,20 @@ async def kill_supervisor(run_id: str) -> Words:
     )
 
 
-def _left_of(run_id: str) -> list[Process]:
+async def left_behind(run_id: str) -> list[Process]:
+    """Return what a supervisor that has said its last word leaves; it has 3 s to be gone itself."""
+    deadline = time.monotonic() + GONE_WITHIN_S
+    while (left := left_of(run_id)) and time.monotonic() < deadline:  # noqa: ASYNC110 - not ours
+        await asyncio.sleep(_LOOK_EVERY_S)
+    return left
+
+
+def left_of(run_id: str) -> list[Process]:
+    """Return the processes of a run that are alive, its supervisor first."""
     supervisor = living_supervisor(run_id)
-    marked = [each for each in processes() if not each.zombie and is_marked(each, run_id)]
+    marked = [
+        each
+        for each in processes()
+        if each.pid != os.getpid() and not each.zombie and is_marked(each, run_id)
+    ]
     return marked if supervisor is None else [supervisor, *marked]

@@ -29,7 +29,7 @@ from launcher.control.protocol import (
     pack_text,
     unpack_stray,
 )
-from launcher.errors import UnknownNodeError
+from launcher.errors import StillRunningError, UnknownNodeError
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ class Controlled(Protocol):
         """Start nodes; raises `UnknownNodeError`."""
 
     async def stop(self, names: Iterable[str], *, now: bool) -> None:
-        """Stop nodes; raises `UnknownNodeError`."""
+        """Stop nodes; raises `UnknownNodeError`, and `StillRunningError` if they do not end."""
 
     def restart(self, names: Iterable[str]) -> None:
         """Restart nodes; raises `UnknownNodeError`."""
@@ -250,6 +250,8 @@ class ControlServer:
             client.refuse(
                 request_id, "unknown_node", str(error), name=error.name, known=error.known
             )
+        except StillRunningError as error:
+            client.refuse(request_id, "still_running", pack_text(error.args[0]))
         except BadRequestError as error:
             client.refuse(request_id, "bad_request", str(error))
         except TooManyError:

@@ -31,6 +31,10 @@ class Exit:
         return self.code == 0
 
 
+UNSEEN = Exit(None)
+"""The end of a process that is gone, and that somebody else has reaped."""
+
+
 def signal_name(number: int) -> str:
     """Return `SIGINT` for 2; real-time signals only have numbers."""
     try:
@@ -72,6 +76,15 @@ class Reaper:
             _pid, status = os.waitpid(ended.si_pid, 0)
             started_ticks = process.started_ticks if process else 0
             self._ended((ended.si_pid, started_ticks), Exit.from_wait_status(status))
+
+    def look_for(self, pid: int, started_ticks: int) -> None:
+        """Look anew for the end of a child of which nobody has told: the signal may be lost."""
+        self.collect()
+        key = (pid, started_ticks)
+        if key in self._awaited:
+            process = read_process(pid)
+            if process is None or process.started_ticks != started_ticks:
+                self._ended(key, UNSEEN)
 
     def exit_of(self, pid: int, started_ticks: int) -> asyncio.Future[Exit]:
         """Return a future for the end of a child; call it once for each."""

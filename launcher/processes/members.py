@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
-from launcher.processes.table import NODE_MARK, RUN_MARK, TICKS_PER_S, processes, read_marks
+from launcher.processes.table import NODE_MARK, RUN_MARK, processes, read_marks
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from launcher.processes.signal import Identified
     from launcher.processes.table import Process
-
-_SETTLED_TICKS = 3 * TICKS_PER_S
-"""By this age a process has its marks, if it gets any: it has exec'd or set its title."""
-
-_NOBODY = ""
 
 
 class Members:
@@ -31,7 +25,11 @@ class Members:
         """The start of each leader, which distinguishes it from a later process with its number."""
         self._names: set[str] = set()
         self._known: dict[tuple[int, int], str] = {}
-        """Number and start of a process to the node it belongs to, or to `_NOBODY`."""
+        """Number and start of a process to the node it belongs to.
+
+        That a process belongs to nobody is looked up each time: it may have been seen before its
+        node was added, or before it had its marks, however long ago it was started.
+        """
 
     def add(self, name: str, leader: Identified) -> None:
         """Add a node that was started; `leader` is the leader of its group and session."""
@@ -49,19 +47,15 @@ class Members:
         everybody = {process.pid: process for process in processes()}
         self._forget_replaced(everybody)
         table = {pid: process for pid, process in everybody.items() if not process.zombie}
-        settled = time.clock_gettime(time.CLOCK_BOOTTIME) * TICKS_PER_S - _SETTLED_TICKS
         found: dict[str, list[Process]] = {}
         known = {}
         for process in table.values():
             key = (process.pid, process.started_ticks)
-            name = self._known.get(key)
-            if name is None:
-                name = self._by_descent(process, table) or self._by_marks(process)
-                if name is None and process.started_ticks < settled:
-                    name = _NOBODY
-            if name is not None:
-                known[key] = name
+            name = (
+                self._known.get(key) or self._by_descent(process, table) or self._by_marks(process)
+            )
             if name:
+                known[key] = name
                 found.setdefault(name, []).append(process)
         self._known = known
         return found

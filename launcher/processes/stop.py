@@ -37,6 +37,11 @@ QUICK = StopTimeouts(KILLED_AFTER_S, 0.4)
 STAGES = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 _LOOK_EVERY_S = 0.1
 _SPEAK_AFTER_S = 0.5
+_KILLED_LOOKS = 50
+"""So many looks after SIGKILL, 5 s, a process does not end by it: it is stuck in the kernel.
+
+Looks and not seconds, which also pass while this process itself is starved.
+"""
 
 
 class Target(Protocol):
@@ -58,8 +63,13 @@ class StagedStop:
         clock: Clock,
         on_holdup: Callable[[Sequence[Process], signal.Signals], None],
         pace: StopTimeouts = PATIENT,
+        on_stuck: Callable[[Sequence[Process]], None] = lambda _left: None,
     ) -> None:
-        """`on_holdup` is called with what is left and the last signal, whenever these change."""
+        """`on_holdup` is called with what is left and the last signal, whenever these change.
+
+        `on_stuck` is called once, with what has not ended 5 s after SIGKILL.
+        """
+        self._on_stuck = on_stuck
         self._target = target
         self._clock = clock
         self._on_holdup = on_holdup
@@ -80,6 +90,7 @@ class StagedStop:
         began = self._clock.now()
         told: dict[int, int] = {}
         shown: object = None
+        killed_looks = 0
         while True:
             left = self._target.left()
             if not left:
@@ -94,6 +105,9 @@ class StagedStop:
             if elapsed >= _SPEAK_AFTER_S and view != shown:
                 shown = view
                 self._on_holdup(left, STAGES[stage])
+            killed_looks += STAGES[stage] == signal.SIGKILL
+            if killed_looks == _KILLED_LOOKS:
+                self._on_stuck(left)
             await self._clock.wait(self._wake, _LOOK_EVERY_S)
             self._wake.clear()
 

@@ -45,11 +45,15 @@ class Process:
     started_ticks: int
     cpu_ticks: int
     """CPU time used so far, user and system."""
+    threads: int = 1
 
     @property
     def zombie(self) -> bool:
-        """Whether it has ended and is only waiting to be reaped."""
-        return self.state in "ZX"
+        """Whether it has ended and is only waiting to be reaped.
+
+        A process whose first thread alone has ended looks the same, but for its threads.
+        """
+        return self.state in "ZX" and self.threads <= 1
 
 
 def read_process(pid: int) -> Process | None:
@@ -69,6 +73,7 @@ def read_process(pid: int) -> Process | None:
         session=int(fields[3]),
         started_ticks=int(fields[19]),
         cpu_ticks=int(fields[11]) + int(fields[12]),
+        threads=int(fields[17]),
     )
 
 

@@ -9,7 +9,7 @@ import asyncio
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from launcher.processes.exit import Exit
+from launcher.processes.exit import UNSEEN, Exit
 from launcher.processes.stop import PATIENT, QUICK, StagedStop
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import NodeFault, NodeState, NodeStatus, Severity
@@ -40,6 +40,9 @@ UNREADY = Exit(1)
 """The end of a process that could not be brought up."""
 USAGE_WITHIN_S = 10.0
 """A program that rejects its arguments, or does not compile, ends within this time."""
+END_LOOK_EVERY_S = 0.1
+END_LOOKS = 30
+"""How often an end is looked up anew of which nobody has told though no process is left."""
 ASKED_TWICE_S = 0.3
 """Two stop requests closer together than this count as one."""
 
@@ -81,6 +84,9 @@ class SupervisedNode:
         self._forced = False
         self._hurried = False
         self._asked_at = 0.0
+        self._stuck = asyncio.Event()
+        self.outlived: Sequence[Process] = ()
+        """The processes that have not ended by SIGKILL, while that is so."""
 
     @property
     def at_work(self) -> bool:
@@ -121,14 +127,16 @@ class SupervisedNode:
             self._nudge.set()
 
     async def stop(self, *, now: bool = False) -> None:
-        """Stop it; return when none of its processes is left.
+        """Stop it; return when none of its processes is left, or not even SIGKILL ends them.
 
         `now`, or a second call, skips the waits between the signals.
         """
         self._again = False
         if self.at_work and self._task is not None:
             self._go_down(now=now or self._asked_before())
-            await asyncio.wait([self._task])
+            stuck = asyncio.create_task(self._stuck.wait())
+            await asyncio.wait([self._task, stuck], return_when=asyncio.FIRST_COMPLETED)
+            stuck.cancel()
         elif self.state in (NodeState.WAITING, NodeState.BACKOFF):
             self.become(NodeState.EXITED, say("stopped"))
 
@@ -293,7 +301,7 @@ class SupervisedNode:
         if self._down or now.failure:
             self.become(NodeState.STOPPING, now.failure)
         await self._end_all_of_it(now)
-        end = await process.ended
+        end = await self._end_of(process)
         await process.close()
         self._now, self._last = None, end
         asked = self._down or bool(now.failure)
@@ -320,7 +328,11 @@ class SupervisedNode:
     async def _end_all_of_it(self, now: _Now) -> None:
         """Stop what is left: everything if the node is to stop, else what its process left."""
         now.stop = StagedStop(
-            now.process, self._around.clock, self._held_up, QUICK if self._hurried else PATIENT
+            now.process,
+            self._around.clock,
+            self._held_up,
+            QUICK if self._hurried else PATIENT,
+            self._outlived,
         )
         if now.process.ended.done() and not self._down:
             left = now.process.left()
@@ -330,6 +342,26 @@ class SupervisedNode:
         stop = now.stop
         now.process.ended.add_done_callback(lambda _ended: stop.look())
         await stop.run()
+        self._stuck.clear()
+        self.outlived = ()
+
+    async def _end_of(self, process: RunningProcess) -> Exit:
+        """Return how the process ended, of whose node nothing is left."""
+        look = asyncio.Event()
+        process.ended.add_done_callback(lambda _ended: look.set())
+        for _look in range(END_LOOKS):
+            if process.ended.done():
+                return process.ended.result()
+            process.look_for_end()
+            await self._around.clock.wait(look, END_LOOK_EVERY_S)
+        return UNSEEN
+
+    def _outlived(self, left: Sequence[Process]) -> None:
+        self.outlived = left
+        words = say("still running after SIGKILL: {who}", who=who(left))
+        self.become(NodeState.STOPPING, words)
+        self._around.say(self.plan.name, Severity.ERROR, words)
+        self._stuck.set()
 
     def _held_up(self, left: Sequence[Process], number: signal.Signals) -> None:
         words = say("{signal} sent, waiting for {who}", signal=number.name, who=who(left))

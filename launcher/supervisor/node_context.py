@@ -29,6 +29,9 @@ class RunningProcess(Protocol):
     def signal(self, process: Process, number: Signals) -> None:
         """Send one of them a signal."""
 
+    def look_for_end(self) -> None:
+        """Look anew for the end of the process itself, of which nobody has told."""
+
     async def close(self) -> None:
         """Read its last output and release it; none of its processes is left."""
 

@@ -71,8 +71,13 @@ class NodeProcess:
         self._readers = readers
 
     def left(self) -> Sequence[Process]:
-        """Return its living processes."""
-        return self._launcher.scan.look().get(self.name, ())
+        """Return its living processes; that there are none is not taken from an earlier look."""
+        scan = self._launcher.scan
+        return scan.look().get(self.name) or scan.look(0.0).get(self.name, ())
+
+    def look_for_end(self) -> None:
+        """Look anew for the end of the process itself, of which nobody has told."""
+        self._launcher.reaper.look_for(self.pid, self.started_ticks)
 
     def signal(self, process: Process, number: signal.Signals) -> None:
         """Send one of them a signal, and wake it if it is suspended, so that it handles it."""

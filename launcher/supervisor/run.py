@@ -14,6 +14,7 @@ from launcher.control.protocol import MAX_MESSAGE_BYTES, encode, pack_session, p
 from launcher.control.server import ControlServer
 from launcher.domain.discovery import why_open
 from launcher.domain.ports import other_users
+from launcher.errors import StillRunningError
 from launcher.logs.files import LogFiles
 from launcher.logs.folder import make_log_folder, prune_runs
 from launcher.logs.session_log import AGENT, DECK, SessionLog
@@ -285,11 +286,11 @@ class Supervisor:
 
     async def _stop_all(self) -> None:
         """Stop all nodes and what they left behind; kill what hangs, within a time limit."""
-        stopping = [asyncio.create_task(self._session.stop(now=self._hurry.is_set()))]
+        stopping = [asyncio.create_task(self._stop_nodes(now=self._hurry.is_set()))]
         hurry = asyncio.create_task(self._hurry.wait())
         await asyncio.wait([*stopping, hurry], return_when=asyncio.FIRST_COMPLETED)
         if not stopping[0].done():
-            stopping.append(asyncio.create_task(self._session.stop(now=True)))
+            stopping.append(asyncio.create_task(self._stop_nodes(now=True)))
             await asyncio.wait(stopping, timeout=HURRIED_S)
         hurry.cancel()
         # Processes that can no longer be attributed to their node.
@@ -299,6 +300,11 @@ class Supervisor:
             words = say("{reason}; still running: {who}", reason=self._reason, who=who(left))
             self._reason = words
             self._log.say(DECK, Severity.ERROR, words)
+
+    async def _stop_nodes(self, *, now: bool) -> None:
+        # What is still running is looked up, and told, once all nodes have been stopped.
+        with contextlib.suppress(StillRunningError):
+            await self._session.stop(now=now)
 
     def _install_signals(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

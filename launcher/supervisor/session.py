@@ -6,7 +6,7 @@ import asyncio
 from typing import TYPE_CHECKING
 
 from launcher.clock import MonotonicClock
-from launcher.errors import UnknownNodeError
+from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.crash import crash_of, warning_in
 from launcher.faults.source import look_at, unspun
 from launcher.logs.session_log import DECK
@@ -19,6 +19,7 @@ from launcher.supervisor.lifecycle import LIFECYCLE, LifecycleWaits
 from launcher.supervisor.node import SupervisedNode
 from launcher.supervisor.readiness import Readiness
 from launcher.supervisor.shared_memory import SharedMemory
+from launcher.supervisor.words import who
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -89,10 +90,17 @@ class Session:
                 self.nodes[name].start()
 
     async def stop(self, names: Iterable[str] = (), *, now: bool = False) -> None:
-        """Stop these nodes, dependants first; all nodes if none is named."""
+        """Stop these nodes, dependants first; all nodes if none is named.
+
+        Raises:
+            StillRunningError: if some of their processes have not ended by SIGKILL.
+        """
         chosen = self._chosen(names)
         self._to_return.difference_update(chosen)
         await self._stop(chosen, now=now)
+        left = [process for name in chosen for process in self.nodes[name].outlived]
+        if left:
+            raise StillRunningError(say("still running after SIGKILL: {who}", who=who(left)))
 
     async def _stop(self, chosen: list[str], *, now: bool = False) -> None:
         if now:

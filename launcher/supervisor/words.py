@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from launcher.processes.exit import UNSEEN
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
                 "{program} is not installed; the lesson continues without it", program=program
             )
         return say("{program} is not installed", program=program)
+    if end == UNSEEN:
+        return say("gone, nobody saw how it ended")
     how = (
         say("killed by {signal}", signal=end.signal)
         if end.signal is not None

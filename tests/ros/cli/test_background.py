@@ -11,7 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from cli.main import main
 from launcher.client.client import running
+from launcher.processes.table import Process, read_process
 from nodes.parts.stop_memory import KeptStop, StopMemory
 from tests.deck_process import DeckProcess, alive, deck
 from tests.ros.supervised import end_sessions
@@ -65,6 +67,24 @@ def test_from_up_to_down(tmp_path: Path, ros_domain: int) -> None:
     assert (down.process.returncode, down.lines) == (0, ["one stopped, 2 nodes"])
     assert not any(map(alive, pids))
     assert deck("ps").errors[0].startswith("nothing runs in the background")
+
+
+def test_down_does_not_say_stopped_of_what_still_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As if a process of the session could not be killed, which takes a broken device."""
+    left = read_process(os.getpid())
+    assert left is not None
+
+    async def outliving(_run_id: str) -> list[Process]:
+        return [left]
+
+    monkeypatch.setattr("launcher.client.client.left_behind", outliving)
+    deck("up", str(written(tmp_path, ONE, "one.yaml")))
+    assert main(["down"]) == 1
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err == f"the session has ended, these have not: {left.pid} ({left.name})\n"
 
 
 def test_a_stop_that_is_remembered_is_told_with_the_way_to_release_it(

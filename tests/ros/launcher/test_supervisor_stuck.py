@@ -6,15 +6,24 @@ import asyncio
 import contextlib
 import os
 import signal
+import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from launcher.client.client import attach
 from launcher.errors import SilentSupervisorError
-from launcher.processes.table import NODE_MARK, RUN_MARK, processes, read_marks
+from launcher.processes.table import (
+    NODE_MARK,
+    RUN_MARK,
+    TICKS_PER_S,
+    Process,
+    processes,
+    read_marks,
+)
 from launcher.status import NodeState
 from tests.ros.supervised import (
+    DEAF,
     SLEEPER,
     Launch,
     alive,
@@ -77,15 +86,10 @@ async def test_a_start_that_hangs_can_be_stopped(stuck: tuple[SupervisorClient, 
     await client.start("node")
     pid = await running_pid(client, "node")
 
-    def of_the_node() -> list[int]:
-        marked = ((each, read_marks(each.pid) or {}) for each in processes() if not each.zombie)
-        return [
-            each.pid
-            for each, marks in marked
-            if marks.get(RUN_MARK) == client.session.run_id and marks.get(NODE_MARK) == "node"
-        ]
+    def numbers() -> list[int]:
+        return [each.pid for each in of_node(client.session.run_id, "node")]
 
-    await until(lambda: of_the_node() == [pid], "no process but the one that is known")
+    await until(lambda: numbers() == [pid], "no process but the one that is known")
 
 
 @pytest.mark.parametrize("now", [False, True])
@@ -110,6 +114,68 @@ async def test_a_signal_ends_a_session_though_a_start_hangs(
     events = await asyncio.wait_for(end(), SOON_S)
     assert events[-1].reason == f"{number.name} received"
     await until(lambda: not alive(server), "the end of the spawn server that hung")
+
+
+def of_node(run_id: str, name: str) -> list[Process]:
+    """Return the living processes of a node of this run."""
+    marked = ((each, read_marks(each.pid) or {}) for each in processes() if not each.zombie)
+    return [
+        each
+        for each, marks in marked
+        if (marks.get(RUN_MARK), marks.get(NODE_MARK)) == (run_id, name)
+    ]
+
+
+@pytest.mark.parametrize("ending", ["stop", "shutdown"])
+async def test_a_node_whose_start_a_starved_supervisor_heard_of_late_is_stopped(
+    start: Launch, ending: str
+) -> None:
+    """The process is old, and nobody's, before the supervisor learns that it is there."""
+    client = await start(
+        {
+            "other": {"exec": SLEEPER, "ready": {"topic": "/never", "type": "std_msgs/msg/Bool"}},
+            "node": {"exec": SLEEPER, "needs": ["other"]},
+        }
+    )
+    await running_pid(client, "other")
+    run_id = client.session.run_id
+    server = await spawn_server_of(run_id)
+    kill(server, signal.SIGSTOP)
+    await client.start("node")
+    await until_state(client, "node", NodeState.STARTING)
+    kill(client.session.supervisor_pid, signal.SIGSTOP)
+    kill(server, signal.SIGCONT)
+
+    def old() -> Process | None:
+        now = time.clock_gettime(time.CLOCK_BOOTTIME) * TICKS_PER_S
+        found = of_node(run_id, "node")
+        return found[0] if found and found[0].started_ticks < now - 4 * TICKS_PER_S else None
+
+    node = await until(old, "a process that has been there for four seconds", 60.0)
+    kill(client.session.supervisor_pid, signal.SIGCONT)
+    assert await running_pid(client, "node") == node.pid
+    await soon(client.stop("node") if ending == "stop" else client.shutdown())
+    assert not alive(node.pid)
+
+
+async def test_a_session_that_does_not_end_is_not_waited_for_without_a_bound(
+    start: Launch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The supervisor has heard the request, and hangs in the middle of the stop."""
+    monkeypatch.setattr("launcher.client.client.STOPPED_WITHIN_S", 0.5)
+    monkeypatch.setattr("launcher.client.client.HEARD_WITHIN_S", 1.0)
+    client = await start({"node": {"exec": script(DEAF + "print('deaf'); time.sleep(1000)")}})
+    assert await said(client, "node", "deaf") == ""
+    other = await attach()
+    pid, node = client.session.supervisor_pid, client.nodes["node"].pid
+    down = asyncio.ensure_future(other.shutdown())
+    await until_state(other, "node", NodeState.STOPPING)
+    kill(pid, signal.SIGSTOP)
+    with pytest.raises(SilentSupervisorError) as error:
+        await soon(down)
+    kill(pid, signal.SIGCONT)
+    assert f"{node} (" in str(error.value)
+    assert f"kill -9 {pid} ends it" in str(error.value)
 
 
 async def test_a_command_line_may_be_longer_than_a_packet(start: Launch) -> None:

@@ -26,6 +26,9 @@ class FakeProcess:
     """A process, perhaps with a grandchild, and the signals that each of them ends by."""
 
     def __init__(self, pid: int, ends_by: set[int], grandchild_ends_by: set[int] | None) -> None:
+        self.immortal = False
+        self.told = True
+        self.looked = 0
         self.pid = pid
         self.ended: asyncio.Future[Exit] = asyncio.get_running_loop().create_future()
         self.heard: list[tuple[int, int]] = []
@@ -39,13 +42,17 @@ class FakeProcess:
 
     def signal(self, process: Process, number: signal.Signals) -> None:
         self.heard.append((process.pid, number))
-        if number in self._living[process.pid] or number == signal.SIGKILL:
+        kills = number == signal.SIGKILL and not self.immortal
+        if number in self._living[process.pid] or kills:
             self.end(process.pid, Exit(None, number.name))
 
     def end(self, pid: int, how: Exit) -> None:
         del self._living[pid]
-        if pid == self.pid:
+        if pid == self.pid and self.told:
             self.ended.set_result(how)
+
+    def look_for_end(self) -> None:
+        self.looked += 1
 
     async def close(self) -> None:
         assert not self._living, "let go of while something of it was alive"

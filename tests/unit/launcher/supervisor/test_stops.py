@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from launcher.status import NodeState
+from launcher.status import NodeState, Severity
 from tests.unit.launcher.supervisor.fake_session import (
     PLAN,
     FakeProcess,
@@ -141,3 +141,38 @@ async def test_what_a_crashed_node_leaves_is_stopped_before_it_returns(
     assert node.state is NodeState.BACKOFF
     await session.clock.advance(1)
     assert (node.state, len(session.started)) == (NodeState.RUNNING, 2)
+
+
+async def test_who_outlives_sigkill_is_named_and_not_called_stopped(session: FakeSession) -> None:
+    """A process that is stuck in the kernel: the stop comes back, the node is still stopping."""
+    session.ends_by = set()
+    node = await started(session)
+    session.process.immortal = True
+    stopping = asyncio.ensure_future(node.stop())
+    await session.clock.advance(14)
+    assert not stopping.done()
+    await session.clock.advance(2)
+    await stopping
+    assert [process.pid for process in node.outlived] == [100]
+    assert (node.state, node.detail) == (
+        NodeState.STOPPING,
+        "still running after SIGKILL: 100 (fake)",
+    )
+    assert session.gravest is Severity.ERROR
+    # It is killed as soon as that is possible, and only then has it stopped.
+    session.process.immortal = False
+    await session.clock.advance(1)
+    assert (node.state, node.outlived) == (NodeState.EXITED, ())
+
+
+async def test_an_end_of_which_nobody_tells_is_looked_up_and_not_waited_for(
+    session: FakeSession,
+) -> None:
+    node = await started(session)
+    session.process.told = False
+    stopping = asyncio.ensure_future(node.stop())
+    await session.clock.advance(5)
+    await stopping
+    assert (node.state, session.process.closed) == (NodeState.EXITED, True)
+    assert session.process.looked > 0
+    assert "gone, nobody saw how it ended" in session.lines
