@@ -15,7 +15,6 @@ import signal
 import socket
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,10 +31,6 @@ if TYPE_CHECKING:
 
     from course.results import StepResult
     from graph.recording.recorder import Recorder
-    from launcher.profile.spec import Profile
-
-PARTING_S = 12.0
-"""How long the nodes may take to end when all has been judged."""
 
 
 class Examiner:
@@ -79,12 +74,10 @@ class Examiner:
 
     async def _once(self) -> None:
         from course.judge.functions import preloaded
-        from course.judge.judge import judging
         from course.lessons.lesson import LessonFolder
-        from launcher.client.client import launch
+        from course.proof.places import Places
+        from course.proof.trial import trial
         from launcher.client.start import StartingSupervisor
-        from launcher.profile.defaults import FOLDERS_OWN
-        from launcher.profile.load import load_profile
 
         request = self._request
         # It has more to import than this process, so it is started at once.
@@ -92,23 +85,20 @@ class Examiner:
             lesson = LessonFolder(Path(request.lesson))
             # Read before anything of the learner's runs, which might change it.
             functions = await preloaded(lesson)
-            profile = load_profile(Path(request.folder, FOLDERS_OWN), domain=request.domain)
-            async with self._recording(profile.domain):
-                client = await launch(
-                    _at_home(profile, Path(request.folder)),
-                    node_lang=request.language,
-                    supervisor=supervisor,
-                    confined_to=request.writable,
-                )
-                try:
-                    async with judging(lesson, client, request.seed, functions) as judge:
-                        self._tell(event="values", values=dict(judge.evidence.values))
-                        self._step_began_s = time.monotonic()
-                        await judge.once(on_step=self._tell_step)
-                finally:
-                    # Nobody needs to wait for nodes that do not want to end.
-                    with contextlib.suppress(LauncherError, asyncio.TimeoutError):
-                        await asyncio.wait_for(client.shutdown(now=True), PARTING_S)
+            run = trial(
+                lesson,
+                Places(Path(request.place), lesson.name),
+                seed=request.seed,
+                domain=request.domain,
+                confined=request.confined,
+                language=request.language,
+                functions=functions,
+                supervisor=supervisor,
+            )
+            async with self._recording(request.domain), run as judge:
+                self._tell(event="values", values=dict(judge.evidence.values))
+                self._step_began_s = time.monotonic()
+                await judge.once(on_step=self._tell_step)
 
     @contextlib.asynccontextmanager
     async def _recording(self, domain: int) -> AsyncIterator[None]:
@@ -139,15 +129,6 @@ class Examiner:
             self._channel.setblocking(True)
             self._channel.sendall(data)
             self._channel.setblocking(False)
-
-
-def _at_home(profile: Profile, folder: Path) -> Profile:
-    """Return the profile for nodes that work in this folder, and meet nobody on the network."""
-    return replace(
-        profile,
-        document=profile.document.model_copy(update={"discovery": "localhost"}),
-        nodes={name: replace(node, cwd=node.cwd or folder) for name, node in profile.nodes.items()},
-    )
 
 
 def _request(channel: socket.socket) -> ExamRequest | None:

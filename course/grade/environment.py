@@ -22,16 +22,18 @@ KEPT_BEGINNINGS = (
 LEFT_OUT = ("PYTHONPYCACHEPREFIX", "ROS_DOMAIN_ID", "ROS_STATIC_PEERS")
 
 
-def places_of(place: Path, lesson: str) -> list[Path]:
-    """Return the folders in which nodes may write; the first one is that of their files.
-
-    Their logs are not in them: the supervisor writes those, and keeps them small.
-    """
-    return [place / "files" / lesson, place / "tmp", place / "ros", place / "state"]
+def own_places(place: Path) -> dict[str, Path]:
+    """Return the folders of the judge and of Deck's nodes, by the variables that say so."""
+    own = place / "own"
+    return {"DECK_STATE_DIR": own / "state", "ROS_LOG_DIR": own / "ros", "TMPDIR": own / "tmp"}
 
 
 def environment_of(place: Path, environ: Mapping[str, str]) -> dict[str, str]:
-    """Return the environment for one grading, whose files are all in this place."""
+    """Return the environment for one grading, whose files are all in this place.
+
+    The learner's nodes have some of it replaced, see `course.proof.places`.
+    """
+    own = own_places(place)
     kept = {
         name: value
         for name, value in environ.items()
@@ -41,9 +43,7 @@ def environment_of(place: Path, environ: Mapping[str, str]) -> dict[str, str]:
         **kept,
         OWN_RUN_DIR: str(place / "run"),
         "DECK_LOG_DIR": str(place / "logs"),
-        "DECK_STATE_DIR": str(place / "state"),
-        "ROS_LOG_DIR": str(place / "ros"),
-        "TMPDIR": str(place / "tmp"),
+        **{variable: str(folder) for variable, folder in own.items()},
         "PYTHONDONTWRITEBYTECODE": "1",
         "OPENBLAS_THREAD_TIMEOUT": "4",
     }

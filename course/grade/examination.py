@@ -13,10 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import course
-from course.grade.environment import environment_of, places_of
+from course.grade.environment import environment_of
 from course.grade.leftovers import end_adopted, end_marked, kill_descendants
 from course.grade.limits import taken
 from course.grade.protocol import MOST_BYTES
+from course.proof.places import Places
 from launcher.control.protocol import unpack_text
 from text.sentences import say
 
@@ -123,7 +124,7 @@ class Examination:
     async def _watch(self, process: asyncio.subprocess.Process) -> None:
         """End it when it takes too much of anything."""
         deadline_s = time.monotonic() + self._request.within_s + GRACE_S
-        places = places_of(self._place, Path(self._request.folder).name)
+        places = Places(self._place, Path(self._request.lesson).name).writable
         while process.returncode is None:
             await asyncio.sleep(LOOK_EVERY_S)
             excess = (await asyncio.to_thread(taken, process.pid, places)).excess()

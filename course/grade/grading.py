@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.grade.defaults import WITHIN_S
-from course.grade.environment import places_of
+from course.grade.environment import own_places
 from course.grade.examination import Examination, Examiners
 from course.grade.grades import Grade, StepGrade, filled_up
 from course.grade.protocol import ExamRequest
@@ -26,6 +26,7 @@ from course.grade.submission import (
     files_of,
 )
 from course.proof.domains import unused_domains
+from course.proof.places import Places
 from course.protocol import unpack_step
 from course.results import State
 from launcher.control.protocol import unpack_text
@@ -255,17 +256,17 @@ class _Grading:
 
     def _prepared(self, place: Path, domain: int) -> ExamRequest:
         lesson = self._terms.lesson
-        places = places_of(place, lesson.name)
-        for each in places:
-            each.mkdir(parents=True)
-        folder = places[0]
-        self._starter.write(folder)
-        self._files.write(folder, without=[FOLDERS_OWN])
+        places = Places(place, lesson.name)
+        places.make()
+        for own in own_places(place).values():
+            own.mkdir(parents=True)
+        self._starter.write(places.files)
+        self._files.write(places.files, without=[FOLDERS_OWN])
         bag = self._bag()
         return ExamRequest(
             lesson=str(lesson.path),
-            folder=str(folder),
-            writable=tuple(map(str, places)) if self._terms.confined else (),
+            place=str(place),
+            confined=self._terms.confined,
             domain=domain,
             seed=self._seed,
             within_s=self._terms.within_s,

@@ -24,10 +24,10 @@ class ExamRequest:
 
     lesson: str
     """The folder of the lesson."""
-    folder: str
-    """The copy of the learner's folder, with a lesson.yaml in it."""
-    writable: tuple[str, ...]
-    """The folders in which the nodes may write."""
+    place: str
+    """The folder in which all of it happens, see `course.proof.places`."""
+    confined: bool
+    """Whether the learner's nodes are kept in it."""
     domain: int
     seed: int
     within_s: float
@@ -44,5 +44,4 @@ class ExamRequest:
     @classmethod
     def from_json(cls, line: bytes) -> Self:
         """Read the output of `to_json`."""
-        fields = json.loads(line)
-        return cls(**{**fields, "writable": tuple(fields["writable"])})
+        return cls(**json.loads(line))

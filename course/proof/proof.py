@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from course.proof.places import Places
 from course.proof.trial import layered, trial
 from course.results import LessonResult, State
 from launcher.errors import LauncherError
@@ -153,9 +154,11 @@ def _steps(variant: Variant) -> int:
 
 async def _proven(variant: Variant, domain: int, seed: int) -> ProofVerdict:
     with tempfile.TemporaryDirectory(prefix="deck-lesson-", ignore_cleanup_errors=True) as place:
-        folder = layered(Path(place) / variant.lesson.name, variant.layers)
+        places = Places(Path(place), variant.lesson.name)
+        places.make()
+        layered(places.files, variant.layers)
         try:
-            result = await _until_it_fails(variant, folder, domain, seed)
+            result = await _until_it_fails(variant, places, domain, seed)
         except (LauncherError, OSError) as error:
             return ProofVerdict(variant, reason_of(error))
     return ProofVerdict(variant, _complaint(variant, result.steps), result)
@@ -165,7 +168,7 @@ class _DecidedError(Exception):
     """A step has failed: what comes after it proves nothing."""
 
 
-async def _until_it_fails(variant: Variant, folder: Path, domain: int, seed: int) -> LessonResult:
+async def _until_it_fails(variant: Variant, places: Places, domain: int, seed: int) -> LessonResult:
     """Judge a variant up to the first step that does not pass, or to the one that must not."""
     steps: list[StepResult] = []
 
@@ -176,7 +179,8 @@ async def _until_it_fails(variant: Variant, folder: Path, domain: int, seed: int
 
     with suppress(_DecidedError):
         until = variant.fails_at or ""
-        await trial(variant.lesson, folder, seed=seed, domain=domain, until=until, on_step=take)
+        async with trial(variant.lesson, places, seed=seed, domain=domain) as judge:
+            await judge.once(until=until, on_step=take)
     values = draw(variant.lesson.profile.document.values, seed)
     return LessonResult(seed, values, tuple(steps))
 

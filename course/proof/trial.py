@@ -1,25 +1,33 @@
-"""One run of a lesson on a folder of files, in a domain and a run of its own, to the end."""
+"""One run of a lesson on a folder of files: what a proof and a grading have in common."""
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
 import shutil
-from contextlib import asynccontextmanager
-from pathlib import Path
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from course.judge.judge import judging
 from course.lessons.lesson import IGNORED
 from launcher.client.client import launch
+from launcher.errors import LauncherError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable, Iterable
+    from collections.abc import AsyncIterator, Callable, Iterable, Mapping
+    from pathlib import Path
+    from typing import Any
 
+    from course.judge.judge import Judge
     from course.lessons.lesson import LessonFolder
-    from course.results import LessonResult, StepResult
-    from launcher.client.client import SupervisorClient
+    from course.proof.places import Places
     from launcher.client.start import StartingSupervisor
+    from launcher.profile.spec import NodeSpec, Profile
+
+PARTING_S = 12.0
+"""How long the nodes may take to end when all has been judged."""
 
 
 def layered(folder: Path, layers: Iterable[Path]) -> Path:
@@ -32,35 +40,52 @@ def layered(folder: Path, layers: Iterable[Path]) -> Path:
     return folder
 
 
+@contextlib.asynccontextmanager
 async def trial(
     lesson: LessonFolder,
-    folder: Path,
+    places: Places,
     *,
     seed: int,
-    domain: int | None = None,
-    until: str = "",
-    on_step: Callable[[StepResult], object] = lambda _: None,
+    domain: int,
+    confined: bool = True,
+    language: str = "",
+    functions: Mapping[str, Callable[[Any], object]] | None = None,
     supervisor: StartingSupervisor | None = None,
-) -> LessonResult:
-    """Run the lesson.yaml of a folder, judge it once by the steps of the lesson, and end it.
+) -> AsyncIterator[Judge]:
+    """Run the lesson.yaml of `places.files`, with a judge; all of it ends when this is left.
+
+    Nodes of Deck run as always, all others confined to `places`, unless `confined` is false.
 
     Raises what `launch` raises.
     """
-    async with (
-        running(folder, domain, supervisor) as client,
-        judging(lesson, client, seed) as judge,
-    ):
-        return await judge.once(until=until, on_step=on_step)
-
-
-@asynccontextmanager
-async def running(
-    folder: Path, domain: int | None, supervisor: StartingSupervisor | None = None
-) -> AsyncIterator[SupervisorClient]:
-    """Have the lesson.yaml of a folder run; its nodes have ended when this is left."""
-    profile = load_profile(folder / FOLDERS_OWN, domain=domain)
-    client = await launch(profile, supervisor=supervisor)
+    profile = _at_home(load_profile(places.files / FOLDERS_OWN, domain=domain), lesson, places)
+    client = await launch(
+        profile,
+        node_lang=language,
+        supervisor=supervisor,
+        confined_to=map(str, places.writable) if confined else (),
+    )
     try:
-        yield client
+        async with judging(lesson, client, seed, functions) as judge:
+            yield judge
     finally:
-        await client.shutdown()
+        # Nobody needs to wait for nodes that do not want to end.
+        with contextlib.suppress(LauncherError, asyncio.TimeoutError):
+            await asyncio.wait_for(client.shutdown(now=True), PARTING_S)
+
+
+def _at_home(profile: Profile, lesson: LessonFolder, places: Places) -> Profile:
+    """Return the profile for nodes that work in these folders, and meet nobody on the network."""
+
+    def at_home(node: NodeSpec) -> NodeSpec:
+        if node.is_ours:
+            return replace(node, cwd=node.cwd or lesson.starter)
+        env = {**places.environment, **node.document.env}
+        document = node.document.model_copy(update={"env": env})
+        return replace(node, cwd=node.cwd or places.files, document=document)
+
+    return replace(
+        profile,
+        document=profile.document.model_copy(update={"discovery": "localhost"}),
+        nodes={name: at_home(node) for name, node in profile.nodes.items()},
+    )

@@ -90,7 +90,7 @@ async def launch(
         foreground: whether the nodes end with this process, or with `aclose`
         node_lang: the language the nodes log in, `en` or `ru`; empty: as the environment says
         supervisor: one that was started in advance, for this call only
-        confined_to: the only folders in which the nodes may write, see
+        confined_to: the only folders in which nodes other than Deck's may write, see
             `launcher.processes.confinement`; none: they are not confined
 
     Raises:

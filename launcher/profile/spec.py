@@ -78,6 +78,11 @@ class NodeSpec:
         return bool(self.document.exec) and (self.document.exec or ("",))[0] in PYTHONS
 
     @property
+    def is_ours(self) -> bool:
+        """Whether it is a module of Deck."""
+        return self.document.run is not None and node_program.is_ours(self.document.run)
+
+    @property
     def own_file(self) -> str:
         """The Python file of one's own that it runs, absolute; empty if it runs none."""
         run = self.document.run

@@ -24,6 +24,7 @@ def exchanged(plan: NodePlan, program: str) -> NodePlan:
         module=(program, *ros_args) if plan.module else (),
         env={CHECK_FIELDS: "1", **plan.env} if own else env,
         file=program if own else "",
+        ours=node_program.is_ours(program),
     )
 
 

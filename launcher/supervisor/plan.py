@@ -52,6 +52,8 @@ class NodePlan:
     optional: bool = False
     file: str = ""
     """The learner's own file that it runs, absolute."""
+    ours: bool = False
+    """Whether it is a module of Deck, which is never confined."""
 
     @property
     def conditions(self) -> tuple[ReadyCondition, ...]:
@@ -78,7 +80,7 @@ class Plan:
     panels: tuple[str, ...] = ()
     foreground: bool = True
     confined_to: tuple[str, ...] = ()
-    """The only folders in which nodes may write; empty: they are not confined."""
+    """The only folders in which nodes other than Deck's may write; empty: they are not confined."""
     agents: AgentRules = DEFAULT_RULES
     """What agents may do."""
 
@@ -204,6 +206,7 @@ def _node_plan(node: NodeSpec) -> NodePlan:
         restart=said.restart,
         optional=said.optional,
         file=node.own_file,
+        ours=node.is_ours,
     )
 
 

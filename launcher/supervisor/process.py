@@ -132,7 +132,7 @@ class ProcessLauncher:
             argv=node.module or node.argv,
             cwd=node.cwd,
             env={**self._plan.env, **node.env},
-            confined_to=self._plan.confined_to,
+            confined_to=() if node.ours else self._plan.confined_to,
         )
         out, out_write = node_pipe()
         err, err_write = node_pipe()
