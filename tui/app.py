@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
+from contextvars import copy_context
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.events import Key, Paste
+from textual.keys import key_to_character
 
 from text.i18n import LANGUAGES, _, language, set_language
 from text.plain import plain, plain_lines
@@ -19,7 +22,7 @@ from tui.emergency.messages import EmergencyChanged
 from tui.emergency.state import FOLLOWED
 from tui.faults import Faults
 from tui.frame.actions.agents import AGENT_ACTIONS
-from tui.frame.actions.app import APP_ACTIONS, EmergencyStop
+from tui.frame.actions.app import APP_ACTIONS, EmergencyRelease, EmergencyStop
 from tui.frame.actions.recording import RECORDING_ACTIONS, RecordToggle
 from tui.frame.actions.replay import REPLAY_ACTIONS
 from tui.frame.actions.ros2 import CopyAsRos2
@@ -73,6 +76,9 @@ class AppEnvironment(Protocol):
 
     def arrive(self, app: DeckApp) -> None:
         """Record that the app is now running."""
+
+    def desert(self) -> None:
+        """Begin to end, because the terminal is gone."""
 
     def remember(self, **values: str) -> None:
         """Save what was chosen, such as theme, language and lesson, for the next run."""
@@ -136,6 +142,10 @@ class DeckApp(App[int], Acting):
         self.stall_detector = KeyStallDetector()
         self.bandwidth = bandwidth or Bandwidth()
         """Counts what is written to the terminal, and limits the share of pictures."""
+        self.stopped_s = -math.inf
+        """Keys up to this time of the monotonic clock were typed before the last stop."""
+        self._own_context = copy_context()
+        """What Textual expects of whoever calls it."""
         self._harmless = Harmless()
         self._key_queue = KeyQueue(self)
         self._first_screen = "picker" if self.sessions.picking else first_screen or request.screen
@@ -152,6 +162,7 @@ class DeckApp(App[int], Acting):
         if self._environment is not None:
             self._environment.arrive(self)
         self.stall_detector.watch()
+        self._own_context = copy_context()
         # A short pause lets the threads that write to the terminal run.
         self.call_after_refresh(self.set_timer, 0.01, self._begin)
 
@@ -161,6 +172,8 @@ class DeckApp(App[int], Acting):
 
     async def on_event(self, event: Event) -> None:
         """Handle keys one at a time; only the emergency stop does not wait its turn."""
+        if self._is_outdated(event):
+            return
         if not isinstance(event, (Key, Paste)) or event.is_forwarded:
             await super().on_event(event)
         elif not self._key_queue.must_wait(event):
@@ -172,12 +185,54 @@ class DeckApp(App[int], Acting):
 
     async def _stopped_by(self, event: Key | Paste) -> bool:
         """Stop the wheels if this key means that where it was pressed; return whether it did."""
-        keys = self._keymap.get(EmergencyStop.id, EmergencyStop.key).split(",")
         return (
             isinstance(event, Key)
-            and event.key in map(str.strip, keys)
+            and self._is_key_of(EmergencyStop, event.key)
             and await self._check_bindings(event.key, priority=True)
         )
+
+    def _is_key_of(self, action: type[Action[Any]], key: str) -> bool:
+        keys = self._keymap.get(action.id, action.key).split(",")
+        return key in map(str.strip, keys)
+
+    def _is_outdated(self, event: Event) -> bool:
+        """Whether this key would release a stop that was pressed after it: the stop wins."""
+        return (
+            isinstance(event, Key)
+            and event.time <= self.stopped_s
+            and self._is_key_of(EmergencyRelease, event.key)
+        )
+
+    def is_stop(self, key: str) -> bool:
+        """Whether this key, pressed now, is the emergency stop; may be asked on any thread."""
+        feed = self.feed
+        if feed.link is None or feed.replay is not None or not self._is_key_of(EmergencyStop, key):
+            return False
+        try:
+            focused = self.focused
+            nodes = () if focused is None else focused.ancestors_with_self
+            character = key_to_character(key)
+            return not any(node.check_consume_key(key, character) for node in nodes)
+        except Exception:  # noqa: BLE001 - the screen is just changing: when in doubt, it is
+            return True
+
+    def stop_wheels(self) -> None:
+        """Engage the emergency stop without waiting for the event loop; on any thread."""
+        press = self.emergency.publish_now()
+        self._soon(lambda: self.emergency.pressed(press))
+
+    def terminal_lost(self) -> None:
+        """Command nothing any more, and begin to end; on any thread."""
+        graph = self.feed.graph
+        if graph is not None:
+            graph.stop_commanding()
+        if self._environment is not None:
+            self._soon(self._environment.desert)
+
+    def _soon(self, act: Callable[[], object]) -> None:
+        """Act on the event loop, before any message that waits; on any thread."""
+        if self._loop is not None:
+            self._loop.call_soon_threadsafe(act, context=self._own_context)
 
     async def _begin(self) -> None:
         """Show the lesson, or the picker if none was named, and open what was requested."""

@@ -81,10 +81,12 @@ class RealTerminal:
         """File descriptor that the terminal is written to."""
         return self._stray.terminal_fd
 
-    def desert(self, code: int) -> None:
+    def desert(self, code: int = 128 + signal.SIGHUP) -> None:
         """Exit because the terminal is gone, or because a signal says so."""
         if self._deserted:
-            self.app.sessions.stop_now()
+            # A terminal that goes is noticed in several ways.
+            if code != 128 + signal.SIGHUP:
+                self.app.sessions.stop_now()
             return
         self._deserted = True
         self.app.sessions.leave(code)
@@ -108,8 +110,8 @@ class RealTerminal:
 
     def _look(self) -> None:
         self._settle()
-        if self.app.terminal_is_gone() and not self._deserted:
-            self.desert(128 + signal.SIGHUP)
+        if self.app.terminal_is_gone():
+            self.desert()
         self._note(self._stray.new_lines(), Severity.INFO)
 
     def _note(self, texts: Sequence[str], severity: Severity) -> None:

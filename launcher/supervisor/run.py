@@ -337,7 +337,8 @@ class Supervisor:
         while await stdin.read(65536):
             pass
         if self.info.foreground:
-            self._finish(say("the screen that started it is gone"), now=True)
+            # An end that it had begun is carried out as it was asked for.
+            self._finish(say("the screen that started it is gone"), now=not self._end.is_set())
 
     def _status_changed(self, name: str) -> None:
         status = self._session.nodes[name].status()

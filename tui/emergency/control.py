@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robot.topics import EMERGENCY_STOP
 from text.i18n import _
@@ -32,6 +32,15 @@ WHY_S = 20.0
 """How long a notification says what else the stop has ended, and why."""
 
 
+class Pressed(NamedTuple):
+    """A stop that was published from here."""
+
+    at_s: float
+    """Unix time."""
+    sent: Future[int] | None
+    """Says whether ROS accepted it; None without a graph."""
+
+
 class EmergencyControl:
     """Engages and releases the stop; the banner shows its `state`."""
 
@@ -47,10 +56,21 @@ class EmergencyControl:
     def engage(self) -> None:
         """Stop the wheels: publish the stop, or stop the nodes if nobody listens."""
         # Published before anything is drawn or queued.
+        self.pressed(self.publish_now())
+
+    def publish_now(self) -> Pressed:
+        """Publish the stop, on any thread; `pressed` has to follow, on the app's."""
         sent = self._publish(engaged=True)
+        graph = self._feed.graph
+        if graph is not None:
+            graph.stop_publishing_all()
+        return Pressed(clock.now(), sent)
+
+    def pressed(self, press: Pressed) -> None:
+        """Show a stop that has been published, and stop the nodes if nobody listens."""
         self._end_publications()
-        self._set(self.state.pressed(clock.now()))
-        self._app.run_worker(self._stop(sent), group="emergency")
+        self._set(self.state.pressed(press.at_s))
+        self._app.run_worker(self._stop(press.sent), group="emergency")
 
     def release(self) -> None:
         """Let the wheels turn again, but let nothing start them automatically."""

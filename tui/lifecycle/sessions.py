@@ -226,6 +226,9 @@ class Sessions:
 
     async def _leave(self) -> None:
         try:
+            if self._code:
+                # Without its terminal, this process does not outlive nodes that take their time.
+                await self._recording.end()
             await self._end()
         finally:
             # Even if something has failed, the user wants to leave.

@@ -1,8 +1,9 @@
 """The terminal as it really is: sometimes slow, and sometimes gone.
 
 Textual writes to it through a short queue and blocks when that is full, reads it in a thread that
-spins at the end of input, and ignores a hang-up. Here writing never blocks, and the app is notified
-when the terminal has gone.
+spins at the end of input, ignores a hang-up, and takes the terminal over in signal handlers, which
+may have interrupted the holder of the very lock that they need. Here writing never blocks, signals
+are obeyed between two steps of the event loop, and without its terminal the process ends.
 """
 
 from __future__ import annotations
@@ -12,149 +13,49 @@ import contextlib
 import os
 import select
 import signal
-import threading
-from collections import deque
-from collections.abc import Callable
+from codecs import getincrementaldecoder
 from typing import TYPE_CHECKING
 
-from textual.drivers import linux_driver
+from textual._time import get_time
 from textual.drivers.linux_driver import LinuxDriver
-from textual.events import Resize
+from textual.events import Key, Resize
 from textual.geometry import Size
 
 from tui.terminal.alt_keys import AltKeyParser
-from tui.terminal.bandwidth import Bandwidth
-from tui.terminal.terminal_diff import TerminalDiff
+from tui.terminal.hang_up import end_when_gone, hung_up
+from tui.terminal.output import Terminal
+from tui.terminal.stop_scan import PASTE_END, StopScan
 
 if TYPE_CHECKING:
     from textual.app import App
+    from textual.message import Message
+
+    from tui.terminal.bandwidth import Bandwidth
 
     class OnTerminal(App[int]):
-        """An app that has a terminal."""
+        """An app that has a terminal. Its methods here are called on threads of the driver."""
 
         terminal_fd: int
         bandwidth: Bandwidth
+        stopped_s: float
+        """Keys up to this time of the monotonic clock were typed before the last stop."""
+
+        def is_stop(self, key: str) -> bool:
+            """Whether this key, pressed now, is the emergency stop."""
+
+        def stop_wheels(self) -> None:
+            """Engage the emergency stop, without waiting for anything."""
+
+        def terminal_lost(self) -> None:
+            """Stop what is commanded from here, and begin to end."""
 
 
-# Textual has no other way to choose the parser.
-linux_driver.XTermParser = AltKeyParser  # type: ignore[attr-defined]
-
-MOST_WAITING = 1_000_000
-"""Bytes that may wait for the terminal; with more it counts as stalled."""
-LAST_WORDS_S = 1.0
-"""How long exiting waits for a terminal that takes no output."""
-
-
-class Terminal:
-    """A file to which Textual can write without ever blocking.
-
-    When the terminal takes nothing, waiting and further output is dropped until it takes output
-    again: then `on_caught_up` is called, on another thread, for a full repaint.
-    """
-
-    def __init__(
-        self, fd: int, on_caught_up: Callable[[], object], bandwidth: Bandwidth | None = None
-    ) -> None:
-        """Write to `fd` on a separate thread, and report all output to `bandwidth`."""
-        self._fd = fd
-        self._bandwidth = bandwidth or Bandwidth()
-        self._diff = TerminalDiff()
-        self._terminal_size = (0, 0)
-        self._on_caught_up = on_caught_up
-        self._lock = threading.Condition()
-        self._waiting: deque[bytes] = deque()
-        self._size = 0
-        self._busy = False
-        self._stalled = False
-        self.gone = False
-        """Whether writing to it has become impossible."""
-        self.leaving = False
-        """Once set, nothing is dropped any more: the state of the terminal must be restored."""
-        threading.Thread(target=self._run, name="terminal-output", daemon=True).start()
-
-    def write(self, text: str) -> None:
-        """Queue `text` for writing; it is dropped if the terminal is stalled."""
-        with self._lock:
-            if self.gone or (self._stalled and not self.leaving):
-                return
-            data = self._changes(text).encode("utf-8", "replace")
-            self._waiting.append(data)
-            self._size += len(data)
-            self._bandwidth.written(len(data))
-            self._bandwidth.behind = True
-            if self._size > MOST_WAITING:
-                self._stalled = True
-                self._terminal_size = (0, 0)
-                self._waiting.clear()
-                self._size = 0
-            self._lock.notify_all()
-
-    def _changes(self, text: str) -> str:
-        size = self.size()
-        if size != self._terminal_size:
-            self._terminal_size = size
-            self._diff.forget(*size)
-        return self._diff.changes(text)
-
-    def forget(self) -> None:
-        """Assume nothing about what the terminal shows: another program may have written to it."""
-        with self._lock:
-            self._terminal_size = (0, 0)
-
-    def size(self) -> tuple[int, int]:
-        """Return columns and lines, or default values if the terminal does not report them."""
-        try:
-            columns, lines = os.get_terminal_size(self._fd)
-        except OSError:
-            return 80, 24
-        return columns or 80, lines or 24
-
-    def flush(self) -> None:
-        """Do nothing: output is already on its way."""
-
-    def isatty(self) -> bool:
-        """Return that it is a terminal."""
-        return True
-
-    def fileno(self) -> int:
-        """Return the descriptor."""
-        return self._fd
-
-    def finish(self) -> None:
-        """Wait until everything has been written, for a limited time."""
-        with self._lock:
-            self._lock.wait_for(
-                lambda: self.gone or not (self._waiting or self._busy), LAST_WORDS_S
-            )
-
-    def _run(self) -> None:
-        while not self.gone:
-            with self._lock:
-                self._lock.wait_for(lambda: self._waiting or self._stalled)
-                data = b"".join(self._waiting)
-                self._waiting.clear()
-                self._size = 0
-                self._busy = True
-            self._put(data)
-            with self._lock:
-                self._busy = False
-                self._bandwidth.behind = bool(self._waiting)
-                caught_up, self._stalled = self._stalled, False
-                self._lock.notify_all()
-            if caught_up:
-                self._on_caught_up()
-
-    def _put(self, data: bytes) -> None:
-        view = memoryview(data)
-        try:
-            while True:
-                # Another program may have left the terminal in non-blocking mode.
-                select.select([], [self._fd], [])
-                view = view[os.write(self._fd, view[:4096]) :]
-                if not view:
-                    return
-        except OSError:
-            self.gone = True
+READ_BYTES = 1024
+"""Bytes that are read at once: a stop key behind them waits until they are parsed."""
+LOOK_MS = 100
+"""How often to check for keys that wait for more of a sequence."""
+PASTE_ENDS_S = 2.0
+"""When nothing has come of a paste for this long, its end was lost: then keys are keys again."""
 
 
 class DeckDriver(LinuxDriver):
@@ -163,25 +64,109 @@ class DeckDriver(LinuxDriver):
     def __init__(self, app: OnTerminal, **options: bool | tuple[int, int] | None) -> None:
         """Write to the app's terminal: descriptors 1 and 2 may be redirected."""
         super().__init__(app, **options)  # type: ignore[arg-type]
+        self._deck = app
         fd = app.terminal_fd
         self._terminal = Terminal(
             fd, lambda: app.call_later(app.refresh, layout=True), app.bandwidth
         )
         self._file = self._terminal  # type: ignore[assignment]
+        self._signals: set[int] = set()
+        """Those that wait for the event loop."""
+        self._read: list[Message] = []
+        """What was typed, on its way to the app."""
+        for number in (signal.SIGTSTP, signal.SIGCONT):
+            signal.signal(number, self._on_signal)
+        end_when_gone({self.fileno, fd}, app.terminal_lost)
 
     @property
     def gone(self) -> bool:
         """Whether the terminal has hung up."""
-        return self._terminal.gone or _hung_up(self.fileno)
+        return self._terminal.gone or hung_up(self.fileno)
 
     def give_up(self) -> None:
         """Stop reading: a terminal that has hung up is always ready to be read, and empty."""
         self.exit_event.set()
 
+    # Input, on a thread of its own
+
     def run_input_thread(self) -> None:
         """Read until the app ends or the terminal is gone."""
+        self._scan = StopScan(self._deck.is_stop)
+        self._parser = AltKeyParser()
+        self._decode = getincrementaldecoder("utf-8")("replace").decode
+        poll = select.poll()
+        poll.register(self.fileno, select.POLLIN)
         with contextlib.suppress(OSError):
-            super().run_input_thread()
+            while not self.exit_event.is_set():
+                if poll.poll(LOOK_MS) and not self._take(os.read(self.fileno, READ_BYTES)):
+                    return
+                self._look()
+                self._hand_over()
+
+    def _take(self, data: bytes) -> bool:
+        """Take what was typed; return whether there will be more."""
+        if not data:
+            # Another program may have left the terminal in a mode in which Ctrl+D ends a line.
+            return not hung_up(self.fileno, LOOK_MS)
+        pieces = list(self._scan.cut(data))
+        if any(stops for _piece, stops in pieces):
+            self._deck.stop_wheels()
+        for piece, stops in pieces:
+            self._parse(self._decode(piece), stopped=stops)
+        return True
+
+    def _parse(self, text: str, *, stopped: bool = False) -> None:
+        """Parse what was typed; a key that has stopped the wheels already is left out."""
+        for event in self._parser.feed(text) if text else ():
+            if not (stopped and isinstance(event, Key) and self._deck.is_stop(event.key)):
+                self.process_message(event)
+        if stopped:
+            self._deck.stopped_s = get_time()
+
+    def _look(self) -> None:
+        """Take for keys what has waited for more of a sequence, or of a paste, for long enough."""
+        if self._scan.overdue():
+            self._deck.stop_wheels()
+            self._deck.stopped_s = get_time()
+        if self._scan.pasting_s > PASTE_ENDS_S:
+            self._scan.end_paste()
+            self._parse(PASTE_END)
+        for event in self._parser.tick():
+            self.process_message(event)
+
+    def send_message(self, message: Message) -> None:
+        """Keep a message for `_hand_over`; one by one, each would cost a switch of threads."""
+        self._read.append(message)
+
+    def _hand_over(self) -> None:
+        if self._read:
+            read, self._read = self._read, []
+            with contextlib.suppress(RuntimeError):  # The loop may have been closed.
+                self._loop.call_soon_threadsafe(self._post, read)
+
+    def _post(self, messages: list[Message]) -> None:
+        for message in messages:
+            self._app.post_message(message)
+
+    # Signals
+
+    def _on_signal(self, number: int, _frame: object) -> None:
+        """Note a signal. What was interrupted may hold any lock, so nothing else is done here."""
+        if not self._auto_restart:
+            # The terminal is an editor's, and the event loop waits for it.
+            if number == signal.SIGTSTP:
+                os.kill(os.getpid(), signal.SIGSTOP)
+        elif number not in self._signals:
+            self._signals.add(number)
+            with contextlib.suppress(RuntimeError):  # The app has ended.
+                self._loop.call_soon_threadsafe(self._obey, number)
+
+    def _obey(self, number: int) -> None:
+        self._signals.discard(number)
+        if number == signal.SIGTSTP:
+            self._sigtstp_application()
+        else:
+            self._sigcont_application()
 
     def _sigcont_application(self, *_: object) -> None:
         """Take the terminal over again, also if SIGSTOP left no time to give it back.
@@ -200,6 +185,7 @@ class DeckDriver(LinuxDriver):
         Textual does that in a Python signal handler. A second signal may interrupt it after it has
         read a size but before it has reported it; then the app keeps the second-to-last size.
         """
+        self._terminal.leaving = False
         super().start_application_mode()  # type: ignore[no-untyped-call]
         asyncio.get_running_loop().add_signal_handler(signal.SIGWINCH, self._tell_size)
 
@@ -208,6 +194,8 @@ class DeckDriver(LinuxDriver):
         if not self._in_band_window_resize:
             size = Size(*self._get_terminal_size())
             self._app.post_message(Resize(size, size))
+
+    # Output
 
     def _get_terminal_size(self) -> tuple[int, int]:
         return self._terminal.size()
@@ -225,9 +213,3 @@ class DeckDriver(LinuxDriver):
         """Write the remaining output."""
         super().close()
         self._terminal.finish()
-
-
-def _hung_up(fd: int) -> bool:
-    poll = select.poll()
-    poll.register(fd, 0)
-    return bool(poll.poll(0))

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
+import threading
+import time
+
 import pytest
 from textual.color import Color
+from textual.events import Key
 from textual.widgets import Input
 
 from launcher.status import NodeState
@@ -25,6 +30,7 @@ from tui.emergency.state import TOPIC_TYPE
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
+from tui.session.requests import OpenRequest
 
 STOP = (EMERGENCY_STOP, TOPIC_TYPE, {"data": True}, True)
 GO = (EMERGENCY_STOP, TOPIC_TYPE, {"data": False}, True)
@@ -250,3 +256,65 @@ async def test_another_session_begins_without_the_stop_of_the_one_before() -> No
         await pilot.pause()
         await pilot.pause()
         assert not app.emergency.state.engaged
+
+
+async def test_the_stop_waits_neither_for_the_event_loop_nor_for_keys() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        assert app.is_stop("space")
+        pressed = threading.Thread(target=app.stop_wheels)
+        pressed.start()
+        # The event loop does not run meanwhile.
+        pressed.join(20)
+        assert opener.graph.published == [STOP]
+        assert not app.emergency.state.engaged
+        await pilot.pause()
+        assert "■ EMERGENCY STOP" in app.screen.query_one(TitleBar).text
+
+
+async def test_a_stop_that_nobody_hears_stops_the_nodes_whichever_thread_it_came_from() -> None:
+    deaf = tuple(row for row in TOPICS if row.name != EMERGENCY_STOP)
+    opener = RecordedOpener(graph=RecordedGraph(lesson_update(topics=deaf)))
+    async with opened(opener) as (app, pilot):
+        await asyncio.to_thread(app.stop_wheels)
+        await pilot.pause()
+        assert ("stop",) in opener.link.asked
+        assert app.emergency.state.fallback
+
+
+async def test_a_space_is_a_letter_in_a_text_field_and_stops_nothing_without_a_session() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        await pilot.press("c")
+        assert isinstance(app.focused, Input)
+        assert not app.is_stop("space")
+        assert app.is_stop("ctrl+x")
+        assert not app.is_stop("a")
+        await pilot.press("escape")
+        app.set_keymap({"emergency.stop": "f12"})
+        assert app.is_stop("f12")
+        assert not app.is_stop("space")
+    async with opened(order=OpenRequest()) as (app, _pilot):
+        assert not app.is_stop("ctrl+x")
+
+
+async def test_a_release_that_was_typed_before_the_stop_does_not_release_it() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        await pilot.press("space")
+        release = Key("ctrl+r", None)
+        await asyncio.to_thread(app.stop_wheels)
+        app.stopped_s = time.monotonic()
+        app.post_message(release)
+        await pilot.pause()
+        assert GO not in opener.graph.published
+        assert app.emergency.state.engaged
+        await pilot.press("ctrl+r")
+        assert opener.graph.published[-1] == GO
+
+
+async def test_without_its_terminal_it_commands_nothing_any_more() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, _pilot):
+        await asyncio.to_thread(app.terminal_lost)
+        assert opener.graph.commands_nothing

@@ -15,7 +15,7 @@ import pytest
 
 from tests.waiting import wait_until
 from tui.terminal.bandwidth import Bandwidth
-from tui.terminal.driver import MOST_WAITING, Terminal
+from tui.terminal.output import MOST_WAITING, Terminal
 from tui.terminal.stray_output import StrayOutput
 
 

@@ -1,0 +1,221 @@
+"""Deck's driver on real pseudo-terminals: signals, stalls, the end of the terminal, and stops."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import select
+import signal
+import struct
+import subprocess
+import sys
+import termios
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.waiting import comes, wait_until
+
+ROOT = Path(__file__).resolve().parents[3]
+PASTE, END = b"\x1b[200~", b"\x1b[201~"
+
+
+class Stuck:
+    """The app in a terminal: `own` is the terminal's end, `program` keeps the other one open."""
+
+    def __init__(self, how: str, file: Path) -> None:
+        self.own, self.program = pty.openpty()
+        fcntl.ioctl(self.own, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 120, 0, 0))
+        self._file = file
+        self._reading = threading.Event()
+        self._closed = False
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "tests.tui.terminal.stuck_app", how, str(file)],
+            stdin=self.program,
+            stdout=self.program,
+            cwd=ROOT,
+            env={**os.environ, "TERM": "xterm-256color"},
+            start_new_session=True,
+        )
+        self.read()
+        self.wait_for("ready")
+
+    def read(self) -> None:
+        """Take what it writes, from now on."""
+        self._reading.clear()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def stall(self) -> None:
+        """Take nothing, and wait until it has noticed."""
+        self._reading.set()
+        self._reader.join()
+        wait_until(lambda: not select.select([], [self.program], [], 0)[1], "the terminal full")
+
+    def type(self, data: bytes) -> None:
+        """Send these bytes as they are."""
+        os.write(self.own, data)
+
+    def told(self) -> list[str]:
+        """Return what it has been told so far."""
+        return self._file.read_text().split("\n")[:-1] if self._file.exists() else []
+
+    def wait_for(self, line: str, times: int = 1) -> None:
+        """Wait until it has been told this."""
+        wait_until(lambda: self.told().count(line) >= times, lambda: f"{line}: {self.told()}")
+
+    def wait_for_a_key(self) -> None:
+        """Press a key until it is seen: while the terminal is taken over, keys are thrown away."""
+
+        def seen() -> bool:
+            self.type(b"k")
+            return comes(lambda: "key k" in self.told(), within_s=4)
+
+        wait_until(seen, lambda: f"a key seen: {self.told()}")
+
+    def hang_up(self) -> None:
+        """Close the terminal."""
+        if not self._closed:
+            self._closed = True
+            self._reading.set()
+            self._reader.join()
+            os.close(self.own)
+
+    def cpu_s(self) -> float:
+        """Return how much processor time it has taken."""
+        fields = Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def close(self) -> None:
+        """End it."""
+        self.process.kill()
+        self.process.wait()
+        self.hang_up()
+        os.close(self.program)
+
+    def _read(self) -> None:
+        while not self._reading.is_set():
+            if select.select([self.own], [], [], 0.05)[0]:
+                os.read(self.own, 65536)
+
+
+@pytest.fixture
+def stuck(tmp_path: Path) -> Iterator[Callable[[str], Stuck]]:
+    """Start the app that hangs in this way."""
+    started: list[Stuck] = []
+
+    def start(how: str) -> Stuck:
+        started.append(Stuck(how, tmp_path / "told"))
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.close()
+
+
+@pytest.mark.parametrize("how", ["lock", "busy", "write", "rest"])
+def test_whatever_the_main_thread_does_it_does_not_outlive_its_terminal(
+    stuck: Callable[[str], Stuck], how: str
+) -> None:
+    app = stuck(how)
+    if how != "rest":
+        app.type(b"h")
+        app.wait_for("key h")
+    app.hang_up()
+    assert app.process.wait(30) == 128 + signal.SIGHUP
+    assert "lost" in app.told()
+
+
+def test_no_thread_spins_at_the_end_of_input(stuck: Callable[[str], Stuck]) -> None:
+    app = stuck("outlive")
+    app.hang_up()
+    app.wait_for("lost")
+    before_s, began_s = app.cpu_s(), time.monotonic()
+    time.sleep(3)  # The claim is about a time.
+    assert app.cpu_s() - before_s < 0.1 * (time.monotonic() - began_s)
+    assert app.process.poll() is None
+
+
+def test_the_end_of_a_line_is_not_the_end_of_the_terminal(stuck: Callable[[str], Stuck]) -> None:
+    app = stuck("rest")
+    ours = termios.tcgetattr(app.program)
+    theirs = termios.tcgetattr(app.program)
+    theirs[3] |= termios.ICANON
+    theirs[6][termios.VEOF] = b"\x04"
+    termios.tcsetattr(app.program, termios.TCSANOW, theirs)
+    app.type(b"\x04")
+    wait_until(lambda: not select.select([app.program], [], [], 0)[0], "the end read")
+    termios.tcsetattr(app.program, termios.TCSANOW, ours)
+    app.type(b"k")
+    app.wait_for("key k")
+
+
+def test_it_survives_a_storm_of_signals_while_it_draws_on_a_stalled_terminal(
+    stuck: Callable[[str], Stuck],
+) -> None:
+    app = stuck("draw")
+    app.stall()
+    for number in range(400):
+        app.process.send_signal(signal.SIGSTOP if number % 10 == 0 else signal.SIGCONT)
+        if number % 10 == 0:
+            app.process.send_signal(signal.SIGCONT)
+        if number % 7 == 0:
+            app.process.send_signal(signal.SIGWINCH)
+        time.sleep(0.002)  # Signals of one kind that come together are one.
+    app.process.send_signal(signal.SIGCONT)
+    app.read()
+    app.wait_for_a_key()
+    app.type(b"\x18")
+    app.wait_for("stop")
+
+
+def test_suspended_by_the_user_it_comes_back(stuck: Callable[[str], Stuck]) -> None:
+    app = stuck("rest")
+    app.process.send_signal(signal.SIGTSTP)
+    state = Path(f"/proc/{app.process.pid}/stat")
+    wait_until(lambda: ") T " in state.read_text(), "stopped")
+    app.process.send_signal(signal.SIGCONT)
+    app.wait_for_a_key()
+
+
+@pytest.mark.parametrize("how", ["lock", "busy", "write"])
+@pytest.mark.parametrize("key", [b" ", b"\x18", b"\x1b[32u"])
+def test_a_stop_is_told_while_the_main_thread_hangs(
+    stuck: Callable[[str], Stuck], how: str, key: bytes
+) -> None:
+    app = stuck(how)
+    app.type(b"h")
+    app.wait_for("key h")
+    app.type(1000 * b"\x1b[A" + key)
+    app.wait_for("stop")
+
+
+@pytest.mark.parametrize("begun", [PASTE + b"words", b"\x1b]0;words"])
+def test_nothing_unfinished_keeps_stops_or_keys_for_ever(
+    stuck: Callable[[str], Stuck], begun: bytes
+) -> None:
+    app = stuck("rest")
+    app.type(begun + b" ")
+    app.wait_for("stop")
+    app.wait_for_a_key()
+
+
+def test_a_whole_paste_is_no_stop_and_a_key_that_has_stopped_is_not_told_twice(
+    stuck: Callable[[str], Stuck],
+) -> None:
+    app = stuck("rest")
+    app.type(PASTE + b"a b\x18" + END + b"k")
+    app.wait_for("key k")
+    assert "stop" not in app.told()
+    app.type(b"a b")
+    app.wait_for("key b")
+    assert app.told()[-3:] == ["key a", "stop", "key b"] or app.told()[-3:] == [
+        "stop",
+        "key a",
+        "key b",
+    ]
+    assert "key space" not in app.told()
