@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING
 
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, JointState
-from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
 from nodes.drivers.chassis_messages import DeadReckoning, battery
@@ -46,7 +45,7 @@ from nodes.parts.stall_detector import StallDetector
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
 from robot.limits import STEERING, wheel_limits
-from robot.topics import BATTERY, EMERGENCY_STOP, JOINT_STATES, ODOMETRY, TF, WHEEL_COMMANDS
+from robot.topics import BATTERY, JOINT_STATES, ODOMETRY, TF, WHEEL_COMMANDS
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
@@ -110,9 +109,8 @@ class ChassisNode(LessonNode):
         self._odometry = self.quick_publisher(Odometry, ODOMETRY)
         self._transforms = self.quick_publisher(TFMessage, TF)
         self._battery = self.quick_publisher(BatteryState, BATTERY)
-        self._emergency = EmergencyStopListener(self, self._emergency_changed)
-        # Obeyed even if this node never saw the stop: the Pico may have kept it.
-        self.create_subscription(Bool, EMERGENCY_STOP, self._hear_release, DEPTH)
+        # Released even if this node never saw the stop: the Pico may have kept it.
+        self._emergency = EmergencyStopListener(self, self._emergency_changed, self._hear_release)
         self.create_subscription(JointState, WHEEL_COMMANDS, self._obey, DEPTH)
         self._pace = PeriodicThread(1.0 / self.number("rate"), self._drive)
         self.every(_BATTERY_EVERY_S, self._publish_battery)
@@ -183,9 +181,9 @@ class ChassisNode(LessonNode):
         else:
             self.say.warn(RELEASED)
 
-    def _hear_release(self, message: Bool) -> None:
+    def _hear_release(self) -> None:
         with self._sending:
-            self._want_release(not message.data)
+            self._want_release(True)
 
     def _want_release(self, wanted: bool) -> None:
         self._release_wanted = wanted

@@ -1,25 +1,31 @@
 """The emergency stop as a node obeys it: latched until it is released by an explicit false.
 
-A stop takes effect first; then it is published on /emergency_stop_state, and then saved to disk,
-from where the node restores it at its next start.
+A stop takes effect first; then it is published on /emergency_stop_state, and then saved to disk. A
+stop that one node has heard is a stop of all: each of them takes what it has not heard itself from
+the state that the others publish, and from the disk, whichever is sooner, and so it does with a
+release. `robot.safety.stop_record` says what follows if these contradict each other.
 """
 
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
 from nodes.parts.qos import DEPTH, LATCHED
-from nodes.parts.stop_memory import KeptStop, StopMemory
+from nodes.parts.stop_reports import FREE, HELD, read_reports, report_message
+from nodes.parts.stop_watch import StopWatch
+from robot.safety.stop_file import KeptStop, StopFile
+from robot.safety.stop_record import Insistence, Stop, StopRecord, is_outdated
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
 from text.i18n import N_
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from rclpy.topic_endpoint_info import TopicEndpointInfo
 
@@ -28,6 +34,13 @@ if TYPE_CHECKING:
 TOPIC, PICO = "topic", "pico"
 """What engaged it."""
 _TOLD_EVERY_S = 1.0
+_AGAIN_S = 0.1
+"""What others need not know at once is told with what follows within this time."""
+_MOST_NAMES = 16
+_CONTRADICTED_S = 10.0
+"""So long after a release that had no effect it is said that there was one."""
+_OF_MANY = QoSProfile(depth=64, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""Every node publishes its state, and all of them at once."""
 _UNKNOWN = "_UNKNOWN_"
 """In the names of a node whose endpoint is known but whose name is not yet (rmw)."""
 
@@ -45,12 +58,14 @@ _NOT_KEPT = N_(
 _NOT_FORGOTTEN = N_(
     "The emergency stop is released, but stays on disk ({problem}): the next start will be stopped"
 )
-_HELD = N_("emergency stop until it is released")
-_FREE = N_("no emergency stop")
+_CONTRADICTED = N_(
+    "The emergency stop is not released: somebody releases it while another keeps giving it"
+    " ({publishers})"
+)
 
 
 class EmergencyStopListener:
-    """Subscribes to /emergency_stop, and remembers its state.
+    """Subscribes to /emergency_stop, shares what it hears, and remembers it.
 
     There are two subscriptions: the latched one receives a stop from before this node, but ROS does
     not match it with a volatile publisher such as `ros2 topic pub`, which must stop the robot too.
@@ -58,26 +73,41 @@ class EmergencyStopListener:
     long before the other sent the current one, and their messages arrive in any order.
     """
 
-    def __init__(self, node: LessonNode, changed: Callable[[bool], None]) -> None:
-        """Start with the saved stop, for which `changed` is not called."""
-        self._node, self._changed = node, changed
+    def __init__(
+        self,
+        node: LessonNode,
+        changed: Callable[[bool], None],
+        released: Callable[[], None] | None = None,
+    ) -> None:
+        """Start with the saved stop, for which `changed` is not called.
+
+        `released` is called at each release, even if this node knows of no stop.
+        """
+        self._node, self._changed, self._was_released = node, changed, released
         name = node.get_fully_qualified_name()
-        self._memory = StopMemory(node.context.get_domain_id(), name)
+        self._file = StopFile(node.context.get_domain_id(), name)
         self._status = DiagnosticStatus(name=name)
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
         self._publisher = node.create_publisher(
             DiagnosticArray, EMERGENCY_STATE, LATCHED, event_callbacks=quiet
         )
-        self._released_s = 0.0
+        self._released_s = self._contradicted_s = self._suspected_s = 0.0
+        self._insistence = Insistence()
         self._suspects: set[bytes] = set()
         """Publishers of the topic at the time of the stop whose names are not known yet."""
-        self._stop = self._memory.recall()
+        self._watch = StopWatch(node, self._file, self._look_around)
+        self._record, self._stop = self._file.read()
         if self._stop is not None:
             self._tell_remembered(self._stop)
         self._publish()
-        node.create_subscription(Bool, EMERGENCY_STOP, self._hear_old, LATCHED)
-        node.create_subscription(Bool, EMERGENCY_STOP, self._hear, DEPTH)
+        # With what the middleware says of a message, of which the types of rclpy do not know.
+        hear_old: Any = self._hear_old
+        hear: Any = self._hear
+        node.create_subscription(Bool, EMERGENCY_STOP, hear_old, LATCHED)
+        node.create_subscription(Bool, EMERGENCY_STOP, hear, DEPTH)
+        node.create_subscription(DiagnosticArray, EMERGENCY_STATE, self._hear_of, _OF_MANY)
         node.every(_TOLD_EVERY_S, self._repeat)
+        self._watch.start()
 
     @property
     def active(self) -> bool:
@@ -86,49 +116,93 @@ class EmergencyStopListener:
 
     def engage(self, by: str) -> None:
         """Stop until released, whatever the cause; call this on the node's own thread."""
-        if self._stop is not None:
-            return
-        self._stop = KeptStop(time.time(), by)
-        self._changed(True)
-        if by == TOPIC:
-            self._suspects = {bytes(one.endpoint_gid) for one in self._publishers()}
-            self._name_suspects(self._stop)
-        self._publish()
-        self._keep(self._stop)
+        if self._stop is None:
+            stopped = self._record.stopped(Stop(time.time_ns()))
+            self._take(stopped, KeptStop(time.time(), by))
 
-    def _release(self) -> None:
-        stop, self._stop = self._stop, None
-        self._suspects = set()
-        if stop is not None:
-            self._released_s = time.time()
-            self._changed(False)
-            self._publish()
-        # Also the file of another node that could not receive the release any more.
-        problem = self._memory.forget()
-        if problem:
-            self._node.say.error(_NOT_FORGOTTEN, every_s=10.0, problem=problem)
+    # ---------------------------------------------------------------- what comes in
 
-    def _hear_old(self, message: Bool) -> None:
+    def _hear_old(self, message: Bool, info: dict[str, Any]) -> None:
         if message.data:
-            self.engage(TOPIC)
+            self._hear_stop(info)
 
-    def _hear(self, message: Bool) -> None:
+    def _hear(self, message: Bool, info: dict[str, Any]) -> None:
         if message.data:
-            self.engage(TOPIC)
+            self._hear_stop(info)
         else:
-            self._release()
+            self._hear_release(info)
+
+    def _hear_stop(self, info: dict[str, Any]) -> None:
+        was_free, record = self._stop is None, self._record.stopped(_named(info))
+        is_news = record != self._record
+        self._take(record, KeptStop(time.time(), TOPIC))
+        now_s = time.monotonic()
+        if is_news and self._stop is not None and (was_free or now_s > self._suspected_s + 1.0):
+            self._suspected_s = now_s
+            self._suspects = {bytes(one.endpoint_gid) for one in self._publishers()}
+            self._name_suspects()
+            self._watch.call_later(_AGAIN_S)
+
+    def _hear_release(self, info: dict[str, Any]) -> None:
+        release, now_s = _named(info), time.monotonic()
+        known = self._record.merged(self._file.read().record)
+        if self._insistence.lasts(now_s, release.number):
+            self._contradicted_s = now_s
+            self._tell_contradicted()
+        elif not is_outdated(release.said_ns, known, time.time_ns()):
+            self._take(known.freed(), None)
+            if self._was_released is not None:
+                self._was_released()
+
+    def _hear_of(self, message: DiagnosticArray) -> None:
+        """Take in what another node obeys, and tell it if that is not all."""
+        for report in read_reports(message):
+            if report.node == self._status.name:
+                continue
+            self._take(self._record.merged(report.record), report.stop)
+            if report.stop is not None and report.record.held & self._record.held:
+                self._name(report.stop.publishers.split())
+            if not report.is_of_old and self._record != report.record:
+                self._watch.call_later(_AGAIN_S)
+
+    def _look_around(self, *, whole: bool = False) -> None:
+        """Take in what the disk says, and save and tell what this node knows."""
+        saved = self._file.read()
+        self._take(self._record.merged(saved.record), saved.stop)
+        self._save(whole=whole)
+        self._publish()
+
+    def _take(self, record: StopRecord, stop: KeptStop | None) -> None:
+        """Obey what is known now; `stop` says where it is known from."""
+        before, self._record = self._record, record
+        if record == before:
+            return
+        self._insistence.hear(record.held - before.held, time.monotonic())
+        if record.engaged == (self._stop is not None):
+            self._watch.call_later(_AGAIN_S)
+            return
+        if record.engaged:
+            stop = stop or KeptStop(time.time(), "")
+            self._stop = stop._replace(since_s=time.time(), remembered=False)
+        else:
+            self._stop, self._suspects = None, set()
+            self._released_s, self._contradicted_s = time.time(), 0.0
+        self._changed(record.engaged)
+        self._publish()
+        self._save()
+        if self._stop is not None and self._stop.unreadable:
+            self._tell_remembered(self._stop)
+
+    # ---------------------------------------------------------------- what goes out
 
     def _repeat(self) -> None:
         if self._stop is not None and self._suspects:
-            self._name_suspects(self._stop)
-        self._publish()
-        if self._stop is not None and not self._stop.unreadable:
-            self._keep(self._stop)
+            self._name_suspects()
+        self._look_around(whole=True)
 
-    def _name_suspects(self, stop: KeptStop) -> None:
+    def _name_suspects(self) -> None:
         """Report who may have sent it; the name of a new publisher is known a little later."""
-        names = set(stop.publishers.split())
-        unnamed = set()
+        names, unnamed = set(), set()
         for one in self._publishers():
             gid = bytes(one.endpoint_gid)
             if gid in self._suspects and _UNKNOWN in one.node_name:
@@ -136,15 +210,31 @@ class EmergencyStopListener:
             elif gid in self._suspects:
                 names.add(f"{one.node_namespace.rstrip('/')}/{one.node_name}")
         self._suspects = unnamed
-        self._stop = stop._replace(publishers=" ".join(sorted(names)))
+        self._name(names)
+
+    def _name(self, names: Iterable[str]) -> None:
+        """Add to those who may have sent it."""
+        if self._stop is not None:
+            known = sorted({*self._stop.publishers.split(), *names})[:_MOST_NAMES]
+            self._stop = self._stop._replace(publishers=" ".join(known))
 
     def _publishers(self) -> list[TopicEndpointInfo]:
         return list(self._node.get_publishers_info_by_topic(EMERGENCY_STOP))
 
-    def _keep(self, stop: KeptStop) -> None:
-        problem = self._memory.keep(stop)
-        if problem:
-            self._node.say.error(_NOT_KEPT, every_s=10.0, problem=problem)
+    def _save(self, *, whole: bool = True) -> None:
+        if self._stop is None:
+            problem = self._file.forget(self._record) if self._record.released else ""
+            if problem:
+                self._node.say.error(_NOT_FORGOTTEN, every_s=10.0, problem=problem)
+        elif not self._stop.unreadable:
+            problem = self._file.keep(self._stop, self._record, whole=whole)
+            if problem:
+                self._node.say.error(_NOT_KEPT, every_s=10.0, problem=problem)
+
+    def _tell_contradicted(self) -> None:
+        names = "" if self._stop is None else self._stop.publishers.replace(" ", ", ")
+        self._node.say.error(_CONTRADICTED, every_s=10.0, publishers=names or "?")
+        self._watch.call_later(_AGAIN_S)
 
     def _tell_remembered(self, stop: KeptStop) -> None:
         if stop.unreadable:
@@ -154,25 +244,20 @@ class EmergencyStopListener:
             self._node.say.error(_REMEMBERED, at=at)
 
     def _publish(self) -> None:
-        stop, status = self._stop, self._status
-        status.level = DiagnosticStatus.OK if stop is None else DiagnosticStatus.ERROR
-        status.message = self._node.say.text(_FREE if stop is None else _HELD)
-        values = _free(self._released_s) if stop is None else _held(stop)
-        status.values = [KeyValue(key=key, value=value) for key, value in values.items()]
-        message = DiagnosticArray(status=[status])
+        self._status.message = self._node.say.text(FREE if self._stop is None else HELD)
+        said_s = time.monotonic() - self._contradicted_s
+        contradicted = bool(self._contradicted_s) and said_s < _CONTRADICTED_S
+        message = report_message(
+            self._status, self._record, self._stop, self._released_s, contradicted=contradicted
+        )
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 
 
-def _free(since_s: float) -> dict[str, str]:
-    return {"engaged": "false", "since": f"{since_s:.3f}"}
+def _named(info: dict[str, Any]) -> Stop:
+    """Return by what all hearers know a message; by its arrival where the middleware says nothing.
 
-
-def _held(stop: KeptStop) -> dict[str, str]:
-    return {
-        "engaged": "true",
-        "since": f"{stop.since_s:.3f}",
-        "by": stop.by,
-        "publishers": stop.publishers,
-        "remembered": str(stop.remembered).lower(),
-    }
+    Source: rmw/types.h, `rmw_message_info_t`.
+    """
+    said_ns, number = info.get("source_timestamp"), info.get("publication_sequence_number")
+    return Stop(said_ns or time.time_ns(), number or 0)

@@ -36,6 +36,8 @@ class NodeStop:
     """What engaged it: `topic`, `pico`, empty if unknown."""
     publishers: tuple[str, ...] = ()
     """Full names of the nodes that may have published it on the topic."""
+    contradicted: bool = False
+    """Whether somebody releases it in vain, because another keeps giving it."""
     before: bool = False
     """Whether it already held when it started, or when it was first heard."""
 
@@ -88,6 +90,7 @@ def _read(values: Mapping[str, str], sample: Sample, last: NodeStop | None) -> N
         min(heard_s, sample.sent_s or heard_s),
         values.get("by", ""),
         tuple(values.get("publishers", "").split()),
+        values.get("contradicted") == "true",
         before,
     )
 

@@ -41,6 +41,11 @@ def shown_of(state: Emergency) -> tuple[object, ...]:
 def differing_words(state: Emergency) -> str:
     """Say which nodes deviate from the others, or from what was asked; empty if none does."""
     held, free = state.holders, state.free
+    contradicted = [state.nodes[name] for name in held if state.nodes[name].contradicted]
+    if contradicted:
+        others = {name for node in contradicted for name in node.publishers if not _is_own(name)}
+        words = _("not released: others keep stopping ({nodes})")
+        return words.format(nodes=_names(others) or "?")
     if state.overdue:
         return _("released here, still held by {nodes}").format(nodes=_names(state.overdue))
     if held and free:

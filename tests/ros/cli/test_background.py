@@ -14,7 +14,8 @@ import pytest
 from cli.main import main
 from launcher.client.client import running
 from launcher.processes.table import Process, read_process
-from nodes.parts.stop_memory import KeptStop, StopMemory
+from robot.safety.stop_file import KeptStop, StopFile
+from robot.safety.stop_record import Stop, StopRecord
 from tests.deck_process import DeckProcess, alive, deck
 from tests.ros.supervised import end_sessions
 from tests.unit.profile_files import written
@@ -95,14 +96,14 @@ def test_a_stop_that_is_remembered_is_told_with_the_way_to_release_it(
         f"■ EMERGENCY STOP in domain {ros_domain}: its robot does not move until the stop is"
         f" released; `deck watch --domain {ros_domain}`, then Ctrl+R"
     )
-    memory = StopMemory(ros_domain, "/safety_stop")
-    assert memory.keep(KeptStop(1.0, "topic")) == ""
+    file, record = StopFile(ros_domain, "/safety_stop"), StopRecord().stopped(Stop(1))
+    assert file.keep(KeptStop(1.0, "topic"), record) == ""
     assert told in deck("run", path, "--for", "0").errors
     assert told in deck("up", path).errors
     assert told in deck("ps").lines
     (session,) = json.loads("\n".join(deck("ps", "--json").lines))
     assert session["emergency_stop"] is True
-    assert memory.forget() == ""
+    assert file.forget(record.freed()) == ""
     assert told not in deck("ps").lines
     (session,) = json.loads("\n".join(deck("ps", "--json").lines))
     assert session["emergency_stop"] is False

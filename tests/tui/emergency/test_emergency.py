@@ -103,6 +103,13 @@ def test_where_nodes_differ_the_banner_says_so_when_they_have_had_the_time() -> 
         assert (differing in stop_words(state, "^r")[0]) == (seconds > 12)
 
 
+def test_who_stops_again_while_another_releases_is_named() -> None:
+    who = "/forgotten /script"
+    told = word(GATE, True, NOW_S, contradicted="true", publishers=who)
+    words = stop_words(after(obeyed(told, at_s=NOW_S + 0.1)), "^r")[0]
+    assert "not released: others keep stopping (forgotten, script)" in words
+
+
 def test_our_release_is_awaited_of_each_node_and_told_of_who_is_late() -> None:
     state = Emergency().pressed(NOW_S)
     both = (word(GATE, True, NOW_S + 0.1), word(CHASSIS, True, NOW_S + 0.1))

@@ -1,0 +1,208 @@
+"""The emergency stop on disk: one small file per domain, from the stop until its release.
+
+Every node that obeys the stop writes it, reads it at its start, and watches it, and so does the
+supervisor for a screen: a stop outlives its sender, every node and a power failure, and needs no
+middleware to reach the nodes of this computer. What was released stays in a second file beside it
+(`7.released` beside `7`), so that a file that is removed by anything else releases nothing. Both
+are replaced as a whole, through a temporary file beside them. A stop that cannot be read is a stop:
+when in doubt nothing moves.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+from robot.safety.stop_place import stop_place
+from robot.safety.stop_record import Stop, StopRecord, read_record
+from text.os_words import os_reason
+
+_LONGEST = 8192
+_NO_SENSE = (
+    OSError,
+    ValueError,
+    TypeError,
+    KeyError,
+    AttributeError,
+    ArithmeticError,
+    RecursionError,
+)
+
+
+class KeptStop(NamedTuple):
+    """What is known of an emergency stop that is in effect."""
+
+    since_s: float
+    """Unix time."""
+    by: str
+    """What engaged it: `topic`, `pico` or `screen`."""
+    publishers: str = ""
+    """Full names of the nodes that could have sent it on the topic, separated by blanks."""
+    remembered: bool = False
+    """Whether it comes from before the start of this node."""
+    unreadable: str = ""
+    """Why nothing more is known about it."""
+
+
+class SavedStop(NamedTuple):
+    """What the disk says."""
+
+    record: StopRecord
+    stop: KeptStop | None
+    """The stop that is in effect, None if there is none."""
+
+
+class StopFile:
+    """The saved stop of one domain."""
+
+    def __init__(self, domain: int, writer: str) -> None:
+        """`writer` is the full name of the node."""
+        self._domain = domain
+        self._paths: tuple[str, str] | None = None
+        self._draft = f".{domain}{writer.replace('/', '.')}"
+        self._unknown: Stop | None = None
+        """Stands for the stop that may be in a file of which nothing is known."""
+
+    def signature(self) -> tuple[object, ...]:
+        """Return what changes with every change of the files; costs no reading."""
+        if self._paths is None:
+            try:
+                place = self._place()
+            except RuntimeError:
+                return ()
+            self._paths = (str(place), str(_released(place)))
+        return tuple(map(_look, self._paths))
+
+    def read(self) -> SavedStop:
+        """Return what is saved; nothing if this user has no place for it."""
+        try:
+            place = self._place()
+        except RuntimeError:
+            return SavedStop(StopRecord(), None)
+        record = _parse_released(_released(place))
+        try:
+            stops, stop = _parse(_bytes(place))
+        except FileNotFoundError:
+            self._unknown = None
+            return SavedStop(record, None)
+        except _NO_SENSE as error:
+            stops = frozenset({self._unread(place)})
+            stop = KeptStop(time.time(), "", remembered=True, unreadable=os_reason(error))
+        record = record.stopped(*stops)
+        return SavedStop(record, stop if record.engaged else None)
+
+    def keep(self, stop: KeptStop, record: StopRecord, *, whole: bool = True) -> str:
+        """Save what `record` holds; return why that failed.
+
+        Not if it is saved already, or, unless it is to be saved as a `whole`, some of it.
+        """
+        saved = self.read()
+        missing = record.held - saved.record.held
+        if not missing or (not whole and missing != record.held):
+            return ""
+        known = record.merged(saved.record)
+        first = stop if saved.stop is None or saved.stop.unreadable else saved.stop
+        details = {"since": first.since_s, "by": first.by, "publishers": first.publishers}
+        try:
+            self._write(known, details, "")
+        except (OSError, RuntimeError) as error:
+            return os_reason(error)
+        return ""
+
+    def forget(self, record: StopRecord) -> str:
+        """Save what is released, and remove the stop unless it is a newer one; say why not."""
+        known = record.merged(self.read().record)
+        try:
+            place = self._place()
+            if known.released != _parse_released(_released(place)).released:
+                self._write(known, {}, ".released")
+            if not known.engaged:
+                place.unlink()
+                _flush(place.parent)
+        except FileNotFoundError:
+            pass
+        except (OSError, RuntimeError) as error:
+            return os_reason(error)
+        return ""
+
+    def _place(self) -> Path:
+        return stop_place(self._domain)
+
+    def _write(self, record: StopRecord, details: dict[str, object], ending: str) -> None:
+        place = self._place()
+        folder = place.parent
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        data = json.dumps({**details, **record.texts()}).encode()
+        _replace(folder, f"{self._draft}{ending}", f"{place.name}{ending}", data)
+
+    def _unread(self, place: Path) -> Stop:
+        """Return the name of a stop of which nothing can be read, the same for all who see it."""
+        with contextlib.suppress(OSError):
+            return Stop(place.lstat().st_mtime_ns)
+        self._unknown = self._unknown or Stop(time.time_ns())
+        return self._unknown
+
+
+def _released(place: Path) -> Path:
+    return place.with_name(f"{place.name}.released")
+
+
+def _look(path: str) -> tuple[int, ...]:
+    try:
+        seen = os.lstat(path)
+    except FileNotFoundError:
+        return ()
+    except OSError as error:
+        return (error.errno or -1,)
+    return (seen.st_ino, seen.st_mtime_ns, seen.st_ctime_ns, seen.st_size)
+
+
+def _bytes(place: Path) -> bytes:
+    with place.open("rb") as file:
+        return file.read(_LONGEST)
+
+
+def _parse(text: bytes) -> tuple[frozenset[Stop], KeptStop]:
+    """Read the file of a stop; one of an older Deck has no name for it but its time."""
+    document = json.loads(text)
+    since_s = float(document["since"])
+    stop = KeptStop(
+        since_s, str(document["by"]), str(document.get("publishers", "")), remembered=True
+    )
+    held = read_record(str(document.get("stops", "")), "").held
+    return held or frozenset({Stop(int(since_s * 1e9))}), stop
+
+
+def _parse_released(place: Path) -> StopRecord:
+    """Read what was released; what cannot be read releases nothing."""
+    try:
+        return read_record("", str(json.loads(_bytes(place))["released"]))
+    except _NO_SENSE:
+        return StopRecord()
+
+
+def _replace(folder: Path, draft: str, name: str, data: bytes) -> None:
+    """Replace a file as a whole: seen at once by who watches it, and then flushed to disk.
+
+    After a loss of power before that it may be empty, which is a stop, or releases nothing.
+    """
+    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW | os.O_CLOEXEC
+    with os.fdopen(os.open(folder / draft, flags, 0o600), "wb") as file:
+        file.write(data)
+        file.flush()
+        (folder / draft).replace(folder / name)
+        os.fsync(file.fileno())
+    _flush(folder)
+
+
+def _flush(folder: Path) -> None:
+    """Flush it to disk: the power may fail at any moment."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
