@@ -14,9 +14,15 @@ from ros2.joining import joined
 if TYPE_CHECKING:
     from rclpy.publisher import Publisher
 
+    from ros2.joining import Guest
+
 SUMMARY = "Publish a message to a topic"
 LOOK_S = 0.1
 LOOKS_A_LINE = 10
+FOR_ALL = "/emergency_stop"
+"""Goes out as soon as one listens, and once more when all who listen are found, up to 3 s later."""
+ARRIVES_S = 1.0
+"""So long is waited for those who have not confirmed it."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -119,14 +125,27 @@ def main(args: argparse.Namespace) -> int | str | None:
                 set_stamp(now)
             if args.print and count % args.print == 0:
                 print(f"publishing #{count}: {message!r}\n", flush=True)
+            reached = publisher.get_subscription_count()
             publisher.publish(message)
             if times and count >= times:
                 break
             due += 1 / args.rate
             while (left := due - time.monotonic()) > 0:
                 me.spin_once(min(left, LOOK_S))
+        if publisher.topic_name == FOR_ALL:
+            _reach_the_rest(me, publisher, message, reached)
         time.sleep(args.keep_alive)
     return None
+
+
+def _reach_the_rest(me: Guest, publisher: Publisher, message: Any, reached: int) -> None:  # noqa: ANN401 - any type of message
+    """Publish it again for those who were not found yet, and wait until it has arrived."""
+    from rclpy.duration import Duration
+
+    me.settle()
+    if publisher.get_subscription_count() > reached:
+        publisher.publish(message)
+    publisher.wait_for_all_acked(Duration(seconds=ARRIVES_S))
 
 
 def _await_subscriptions(args: argparse.Namespace, publisher: Publisher, times: int) -> str:

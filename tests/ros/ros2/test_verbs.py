@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import signal
 import subprocess
@@ -9,9 +10,10 @@ import sys
 from typing import TYPE_CHECKING
 
 import yaml
+from std_msgs.msg import Bool
 
 from tests.middleware_words import own_words
-from tests.ros.peer import ROOT
+from tests.ros.peer import ROOT, Peer
 from tests.ros.ros2.typed import typed
 from tests.waiting import wait_until
 
@@ -186,6 +188,14 @@ def test_pub(world: World) -> None:
     )  # fmt: skip
     assert stamped.code == signal.SIGINT
     assert re.search(r"sec=[1-9]\d+.*velocity=\[1\.0, 2\.0\]", stamped.out)
+
+
+def test_a_stop_reaches_all_who_listen_not_only_the_first(module_domain: int) -> None:
+    with contextlib.ExitStack() as stack:
+        peers = [stack.enter_context(Peer(module_domain, f"listener{n}")) for n in range(5)]
+        heard = [peer.hear("/emergency_stop", Bool) for peer in peers]
+        out("topic", "pub", "--once", "/emergency_stop", "std_msgs/msg/Bool", "{data: true}")
+        wait_until(lambda: all(heard), "the stop at every listener")
 
 
 def test_service_call() -> None:
