@@ -1,17 +1,23 @@
 """The node of one command: joins the domain of the environment, and waits until it sees the others.
 
-There is no daemon that knows the graph already. A command waits until nothing new has been found
-for a moment, or, if it needs one thing, until that is there.
+There is no daemon that knows the graph already. A command waits until all who are there have told
+what they have, or, if it needs one thing, until that is found. Who has not told in time is named,
+and the command ends with the exit code 1: what it has printed may not be all.
 """
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from graph.participants.roll import Roll
 from graph.ros import FAST_DDS_VARIABLES, RANGE, announcing
+from launcher.domain.participants import LocalParticipants
+from ros2.presence import NETWORK_S, Missing, is_off, is_wide, missing, stopped, words
+from text.i18n import localized
 
 if TYPE_CHECKING:
     import argparse
@@ -21,17 +27,21 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.task import Future
 
-QUIET_S = 0.3
-"""Without news for so long, the graph is taken to be complete: Deck's nodes announce each 0.2 s."""
+    from launcher.domain.participants import LocalParticipant
+
+QUIET_S = 0.1
+"""Without news for so long, what has just been told is taken to be all."""
 ALONE_S = 0.8
 """So long must nobody else be found for the graph to be taken as empty."""
-LONGEST_S = 3.0
+SILENT_S = 6.5
+"""So long is waited without any news from those who are there: more than two announcements."""
+LONGEST_S = 20.0
 """A graph that never comes to rest is taken as it is."""
-MISSING_S = 1.2
-"""So long is one thing waited for that is named on the command line."""
 READY_S = 5.0
 """So long may a service of a node that is there take to be found."""
-LOOK_S = 0.01
+LOOK_S = 0.05
+KERNEL_S = 0.1
+"""The kernel is asked so often who is there."""
 SPIN_S = 0.1
 """How late Ctrl-C may be noticed: the middleware does not wake up for signals."""
 
@@ -43,6 +53,15 @@ class Guest:
         """Take both, open."""
         self.node = node
         self._executor = executor
+        self._roll = Roll(node)
+        self._kernel = LocalParticipants(node.context.get_domain_id())
+        self._since = self._news_at = time.monotonic()
+        self._asked_at = -math.inf
+        self._here: list[LocalParticipant] = []
+        self._known: object = None
+        self._is_alone = True
+        self.missing = Missing()
+        """Who has not told all, for which reason something may not have been found."""
 
     def spin_once(self, timeout_s: float = SPIN_S) -> None:
         """Take in what has come, or wait a moment for it."""
@@ -57,7 +76,8 @@ class Guest:
         """Call a service of the node `owner` and return the answer; RuntimeError without one."""
         client = self.node.create_client(kind, service)
         try:
-            if not client.wait_for_service(timeout_sec=READY_S):
+            found = client.wait_for_service(timeout_sec=READY_S)
+            if not found and not self.await_until(client.service_is_ready):
                 raise RuntimeError("Wait for service timed out")
             future = client.call_async(kind.Request(**fields))
             self.finish(future)
@@ -69,37 +89,55 @@ class Guest:
         finally:
             self.node.destroy_client(client)
 
-    def settle(self) -> None:
-        """Wait until nothing new has been found for a moment."""
-        alone = known = self._known()
-        since = time.monotonic()
-        end = since + LONGEST_S
-        while (now := time.monotonic()) < min(
-            since + (ALONE_S if known == alone else QUIET_S), end
-        ):
-            time.sleep(LOOK_S)
-            found = self._known()
-            if found != known:
-                known, since = found, now
+    def settle(self) -> bool:
+        """Wait until all who are there have told all; return whether they have."""
+        self._await(lambda: False)
+        return not self.missing
 
     def await_until(self, there: Callable[[], bool]) -> bool:
-        """Wait for one thing, not for ever; return whether it is there."""
-        end = time.monotonic() + MISSING_S
-        while not (found := there()) and time.monotonic() < end:
-            time.sleep(LOOK_S)
-        return found
+        """Wait for one thing until it is there, or would be; return whether it is there."""
+        return there() or self._await(there)
 
-    def _known(self) -> tuple[object, ...]:
-        node = self.node
-        topics = node.get_topic_names_and_types()
-        return (
-            node.get_node_names_and_namespaces(),
-            [
-                (name, node.count_publishers(name), node.count_subscribers(name))
-                for name, _ in topics
-            ],
-            node.get_service_names_and_types(),
-        )
+    def look(self) -> None:
+        """See who is missing at this moment."""
+        attendance = self._roll.look()
+        now = time.monotonic()
+        if now >= self._asked_at + KERNEL_S:
+            self._asked_at = now
+            self._here = [] if is_off() else self._kernel.look()
+        self.missing = missing(attendance, self._here)
+        if (attendance, self.missing) != self._known:
+            self._known, self._news_at = (attendance, self.missing), now
+        self._is_alone = len(attendance.found) <= 1 and len(self._here) <= 1
+
+    def _await(self, there: Callable[[], bool]) -> bool:
+        while True:
+            self.look()
+            if there():
+                self.missing = Missing()
+                return True
+            if self._is_over(time.monotonic()):
+                return False
+            time.sleep(LOOK_S)
+
+    def _is_over(self, now: float) -> bool:
+        """Return whether waiting on would bring nothing."""
+        age_s, quiet_s = now - self._since, now - self._news_at
+        if self.missing.without(stopped(self.missing.pids)):
+            return quiet_s >= SILENT_S or age_s >= LONGEST_S
+        return quiet_s >= QUIET_S and age_s >= self._least_s()
+
+    def _least_s(self) -> float:
+        """Return for how long others may be there who have not announced themselves yet."""
+        if is_wide():
+            return NETWORK_S
+        return ALONE_S if self._is_alone else 0.0
+
+    def leave(self) -> None:
+        """Take leave of the domain."""
+        self._roll.close()
+        self._executor.shutdown()
+        self.node.destroy_node()
 
 
 @contextmanager
@@ -132,15 +170,17 @@ def joined(args: argparse.Namespace, name: str = "", *, settled: bool = False) -
         raise RuntimeError(str(error)) from error
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
+    me = Guest(node, executor)
     try:
-        me = Guest(node, executor)
         spin_s = getattr(args, "spin_time", None)
         if spin_s is not None:
             time.sleep(spin_s)
+            me.look()
         elif settled:
             me.settle()
         yield me
+        if me.missing:
+            args.missing = localized(words(me.missing, context.get_domain_id()))
     finally:
-        executor.shutdown()
-        node.destroy_node()
+        me.leave()
         context.try_shutdown()

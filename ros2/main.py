@@ -93,7 +93,13 @@ def _call(module: str, program: str, argv: list[str]) -> int | str | None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     verb.arguments(parser)
-    return verb.main(parser.parse_args(argv))
+    args = parser.parse_args(argv)
+    code = verb.main(args)
+    if missing := getattr(args, "missing", ""):
+        sys.stdout.flush()
+        print(f"ros2: {missing}", file=sys.stderr)
+        return code or 1
+    return code
 
 
 def _load(module: str) -> Verb:

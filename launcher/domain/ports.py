@@ -7,38 +7,65 @@ The kernel shows who owns them, even where nothing else of another user's proces
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from launcher.processes.owner import user_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
-_FIRST_PORT, _PORTS_OF_A_DOMAIN = 7400, 250
+FIRST_PORT, PORTS_OF_A_DOMAIN = 7400, 250
 _TABLES = ("/proc/net/udp", "/proc/net/udp6")
+_NOBODY = "0000"
+"""The port at the other end of a socket that hears everybody."""
+
+
+@dataclass(frozen=True)
+class Socket:
+    """A UDP socket."""
+
+    port: int
+    uid: int
+    inode: int
+    is_listening: bool
+    """Whether it is not connected to anybody."""
+    unread: int = 0
+    """Bytes that have arrived and that nobody has taken."""
+
+
+def first_port(domain: int) -> int:
+    """Return the first port of a domain."""
+    return FIRST_PORT + PORTS_OF_A_DOMAIN * domain
 
 
 def other_users(domain: int, us: int | None = None) -> tuple[str, ...]:
     """Return the names of users other than `us` (default: this one) with ports of the domain."""
     ours = os.getuid() if us is None else us
-    found: set[int] = set()
+    found = owners(udp_sockets(), domain)
+    return tuple(sorted(user_name(uid) for uid in found - {ours}))
+
+
+def owners(sockets: Iterable[Socket], domain: int) -> set[int]:
+    """Return the uids that own ports of this domain."""
+    ports = range(first_port(domain), first_port(domain) + PORTS_OF_A_DOMAIN)
+    return {socket.uid for socket in sockets if socket.port in ports}
+
+
+def udp_sockets() -> Iterator[Socket]:
+    """Yield the UDP sockets of this machine, or of this container; none if the kernel is silent."""
     for table in _TABLES:
         try:
             lines = Path(table).read_text(encoding="ascii").splitlines()[1:]
         except OSError:
             continue
-        found |= owners(lines, domain)
-    return tuple(sorted(user_name(uid) for uid in found - {ours}))
+        yield from map(read_socket, lines)
 
 
-def owners(lines: Iterable[str], domain: int) -> set[int]:
-    """Return the uids that own ports of this domain, from lines of /proc/net/udp."""
-    first = _FIRST_PORT + _PORTS_OF_A_DOMAIN * domain
-    found = set()
-    for line in lines:
-        fields = line.split()
-        port = int(fields[1].rpartition(":")[2], 16)
-        if first <= port < first + _PORTS_OF_A_DOMAIN:
-            found.add(int(fields[7]))
-    return found
+def read_socket(line: str) -> Socket:
+    """Read a line of /proc/net/udp."""
+    fields = line.split()
+    here, there = (fields[number].rpartition(":")[2] for number in (1, 2))
+    unread = int(fields[4].rpartition(":")[2], 16)
+    return Socket(int(here, 16), int(fields[7]), int(fields[9]), there == _NOBODY, unread)

@@ -52,6 +52,14 @@ def port_numbers(names: Iterable[str]) -> list[int]:
     return sorted(int(name.removeprefix(_PORT)) for name in names if name.startswith(_PORT))
 
 
+def lock_of_port(name: str) -> int | None:
+    """Return the number of the port whose lock has this name; None if it is no such lock."""
+    match = _LOCK.fullmatch(name)
+    if match is None or not match[1].startswith(_PORT):
+        return None
+    return int(match[1].removeprefix(_PORT))
+
+
 def sweep(segments: Iterable[str], folder: Path = SHARED_MEMORY) -> list[str]:
     """Remove those of these segments that nobody has locked any more; return their names."""
     return [name for name in segments if _remove(folder / name)]

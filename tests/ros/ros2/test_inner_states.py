@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import pytest
@@ -26,12 +25,6 @@ def _managed(module_domain: int) -> Iterator[None]:
         yield
 
 
-@pytest.fixture
-def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every command finds its node anew, which on a busy machine takes its time."""
-    monkeypatch.setattr("ros2.joining.MISSING_S", 20.0)
-
-
 def out(*words: str) -> str:
     done = typed(*words)
     assert (done.code, done.err) == (0, ""), done
@@ -46,13 +39,10 @@ def failed(*words: str) -> str:
 
 def test_nodes_with_a_lifecycle_are_listed_and_not_who_is_only_called(world: World) -> None:
     world.node.create_client(GetState, "/nobody/get_state")
-    # On a busy machine it takes longer than it looks to find them all.
-    listed = partial(out, "lifecycle", "nodes", "--spin-time", "2")
-    wait_until(lambda: listed() == NODES, listed)
-    wait_until(lambda: listed("-c") == "5\n", "their number")
+    wait_until(lambda: out("lifecycle", "nodes") == NODES, "their program to start")
+    assert out("lifecycle", "nodes", "-c") == "5\n"
 
 
-@pytest.mark.usefixtures("patient")
 def test_states_are_got_and_transitions_made() -> None:
     assert out("lifecycle", "get", "/good") == "unconfigured [1]\n"
     assert out("lifecycle", "list", "good") == (
@@ -63,8 +53,7 @@ def test_states_are_got_and_transitions_made() -> None:
     assert out("lifecycle", "set", "/good", "configure") == "Transitioning successful\n"
     assert out("lifecycle", "set", "good", "3") == "Transitioning successful\n"
     states = ["/good: active [3]", *(f"{name}: unconfigured [1]" for name in NODES.split()[1:])]
-    told = partial(out, "lifecycle", "get", "--spin-time", "2")
-    wait_until(lambda: told().splitlines() == states, told)
+    assert out("lifecycle", "get").splitlines() == states
 
 
 def test_who_is_not_there_is_not_waited_for_long() -> None:
@@ -73,7 +62,6 @@ def test_who_is_not_there_is_not_waited_for_long() -> None:
     assert failed("component", "list", "/good") == "Unable to find container node '/good'\n"
 
 
-@pytest.mark.usefixtures("patient")
 def test_what_fails_says_so_to_a_script() -> None:
     assert failed("lifecycle", "set", "/refusing", "configure") == "Transitioning failed\n"
     assert failed("lifecycle", "set", "/refusing", "activate") == (
@@ -83,12 +71,8 @@ def test_what_fails_says_so_to_a_script() -> None:
     assert typed("component", "unload", "/arm/container", "1").code == 2
 
 
-@pytest.mark.usefixtures("patient")
 def test_components_are_listed_below_their_container() -> None:
-    assert (
-        out("component", "list", "--spin-time", "2")
-        == "/arm/container\n  2  /arm/gripper\n  1  /good\n"
-    )
+    assert out("component", "list") == "/arm/container\n  2  /arm/gripper\n  1  /good\n"
     assert out("component", "list", "/arm/container") == "2  /arm/gripper\n1  /good\n"
-    only = out("component", "list", "--containers-only", "--spin-time", "2")
+    only = out("component", "list", "--containers-only")
     assert only == "/arm/container\n"

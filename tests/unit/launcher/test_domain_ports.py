@@ -6,7 +6,7 @@ import os
 import pwd
 import socket
 
-from launcher.domain.ports import other_users, owners
+from launcher.domain.ports import other_users, owners, read_socket
 
 TABLE = [
     "  512: 0100007F:1CF2 00000000:0000 07 00000000:00000000 00:00000000 00000000  1000 0 7 2 0 0",
@@ -16,9 +16,10 @@ TABLE = [
 
 
 def test_ports_are_those_of_one_domain() -> None:
-    assert owners(TABLE, 0) == {1000, 1001}
-    assert owners(TABLE, 1) == {1002}
-    assert owners(TABLE, 2) == set()
+    sockets = list(map(read_socket, TABLE))
+    assert owners(sockets, 0) == {1000, 1001}
+    assert owners(sockets, 1) == {1002}
+    assert owners(sockets, 2) == set()
 
 
 def test_a_socket_of_somebody_elses_is_seen_by_its_owner(ros_domain: int) -> None:

@@ -1,0 +1,136 @@
+"""Reads what participants tell on `ros_discovery_info`, which rclpy cannot subscribe to.
+
+rcl puts a slash before every name; this topic has none, since it is none of ROS's. So the
+subscription is made by the functions that rcl itself calls, by ctypes, in the library that rclpy
+has loaded; and messages are made and converted by the functions that rclpy calls for that.
+
+Sources: rmw/rmw.h (`rmw_create_subscription`, `rmw_take`), rmw/types.h (`rmw_qos_profile_t`),
+rmw/subscription_options.h, rcl/node.h (`rcl_node_get_rmw_handle`), rclpy/src/rclpy/utils.cpp,
+rmw_dds_common/msg/ParticipantEntitiesInfo.msg, as Jazzy has them. Whoever finds another library
+gets no `Telling`.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rclpy.node import Node
+    from rmw_dds_common.msg import ParticipantEntitiesInfo
+    from typing_extensions import Self
+
+TOPIC = "ros_discovery_info"
+KEEP_ALL, RELIABLE, TRANSIENT_LOCAL = 2, 1, 1
+"""Source: rmw/types.h, `rmw_qos_history_policy_e` and its like."""
+ROOM = 256
+"""Bytes for what a library of another version may fill in: three times as much as this one does."""
+_POINTER = ctypes.c_void_p
+
+
+class _Time(ctypes.Structure):
+    _fields_ = (("sec", ctypes.c_uint64), ("nsec", ctypes.c_uint64))
+
+
+class _Qos(ctypes.Structure):
+    _fields_ = (
+        ("history", ctypes.c_int),
+        ("depth", ctypes.c_size_t),
+        ("reliability", ctypes.c_int),
+        ("durability", ctypes.c_int),
+        ("deadline", _Time),
+        ("lifespan", _Time),
+        ("liveliness", ctypes.c_int),
+        ("liveliness_lease_duration", _Time),
+        ("avoid_ros_namespace_conventions", ctypes.c_bool),
+        ("room", ctypes.c_ubyte * ROOM),
+    )
+
+
+class _Options(ctypes.Structure):
+    _fields_ = (("room", ctypes.c_ubyte * ROOM),)
+
+
+class Telling:
+    """A subscription to the topic; create it by `load`, close it before its node."""
+
+    def __init__(self, library: ctypes.CDLL, node: Node) -> None:
+        """Subscribe; raises AttributeError and ValueError for a library that is not Jazzy's."""
+        from rmw_dds_common.msg import ParticipantEntitiesInfo
+
+        ParticipantEntitiesInfo()  # Loads what its class needs of C.
+        kind: Any = type(ParticipantEntitiesInfo)
+        self._take = _function(library, "rmw_take", ctypes.c_int, 4)
+        self._destroy = _function(library, "rmw_destroy_subscription", ctypes.c_int, 2)
+        self._forget_error = library.rcutils_reset_error
+        self._to_python = ctypes.PYFUNCTYPE(ctypes.py_object, _POINTER)(
+            _held(kind._CONVERT_TO_PY)  # noqa: SLF001 - rclpy takes it from there too
+        )
+        self._forget = ctypes.PYFUNCTYPE(None, _POINTER)(
+            _held(kind._DESTROY_ROS_MESSAGE)  # noqa: SLF001
+        )
+        self._new = ctypes.PYFUNCTYPE(_POINTER)(_held(kind._CREATE_ROS_MESSAGE))  # noqa: SLF001
+        handle_of = _function(library, "rcl_node_get_rmw_handle", _POINTER, 1)
+        usual = library.rmw_get_default_subscription_options
+        usual.restype = _Options
+        create = _function(library, "rmw_create_subscription", _POINTER, 5)
+        qos = _Qos(KEEP_ALL, 0, RELIABLE, TRANSIENT_LOCAL, avoid_ros_namespace_conventions=True)
+        with node.handle:
+            self._node = handle_of(node.handle.pointer)
+            self._subscription = create(
+                self._node,
+                _held(kind._TYPE_SUPPORT),  # noqa: SLF001
+                TOPIC.encode(),
+                ctypes.byref(qos),
+                ctypes.byref(usual()),
+            )
+        if not self._subscription:
+            self._forget_error()
+            raise ValueError(f"no subscription to {TOPIC}")
+
+    @classmethod
+    def load(cls, node: Node) -> Self | None:
+        """Subscribe beside this node; None if the middleware does not know the topic."""
+        from rclpy.impl.implementation_singleton import rclpy_implementation as rclpy_c
+
+        try:
+            return cls(ctypes.PyDLL(rclpy_c.__file__), node)
+        except (AttributeError, ImportError, OSError, ValueError):
+            return None
+
+    def take(self) -> Iterator[ParticipantEntitiesInfo]:
+        """Yield what has arrived: of each participant its nodes with all their endpoints."""
+        taken = ctypes.c_bool()
+        message = self._new()
+        try:
+            while True:
+                taken.value = False
+                failed = self._take(self._subscription, message, ctypes.byref(taken), None)
+                if failed:
+                    self._forget_error()
+                if failed or not taken.value:
+                    return
+                yield self._to_python(message)
+        finally:
+            self._forget(message)
+
+    def close(self) -> None:
+        """Unsubscribe."""
+        self._destroy(self._node, self._subscription)
+
+
+def _function(library: ctypes.CDLL, name: str, result: Any, arguments: int) -> Any:  # noqa: ANN401
+    found = getattr(library, name)
+    found.restype, found.argtypes = result, [_POINTER] * arguments
+    return found
+
+
+def _held(capsule: object) -> int:
+    """Return the pointer in a capsule of Python's C API."""
+    name = ctypes.pythonapi.PyCapsule_GetName
+    name.restype, name.argtypes = ctypes.c_char_p, [ctypes.py_object]
+    pointer = ctypes.pythonapi.PyCapsule_GetPointer
+    pointer.restype, pointer.argtypes = _POINTER, [ctypes.py_object, ctypes.c_char_p]
+    return int(pointer(capsule, name(capsule)))

@@ -1,0 +1,1 @@
+"""Tests of the command `ros2` that need no ROS."""
