@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from textual.app import App
 from textual.binding import Binding, BindingType
-from textual.events import Key, Paste
+from textual.events import InputEvent, Key, Paste
 from textual.keys import key_to_character
 
 from text.i18n import LANGUAGES, _, language, set_language
@@ -172,7 +172,8 @@ class DeckApp(App[int], Acting):
 
     async def on_event(self, event: Event) -> None:
         """Handle keys one at a time; only the emergency stop does not wait its turn."""
-        if self._is_outdated(event):
+        # Before the first screen and after the last one there is nobody whom it could be for.
+        if self._is_outdated(event) or (isinstance(event, InputEvent) and not self.screen_stack):
             return
         if not isinstance(event, (Key, Paste)) or event.is_forwarded:
             await super().on_event(event)

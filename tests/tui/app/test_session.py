@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import ref
 
 import pytest
+from textual.events import Key, Paste
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -477,3 +478,11 @@ async def test_a_graph_that_cannot_be_observed_says_so_and_the_rest_works() -> N
         await pilot.press("x")
         await pilot.pause()
         assert opener.link.asked == [("stop", "sonar_front")]
+
+
+@pytest.mark.parametrize("event", [Key("a", "a"), Paste("abc")])
+async def test_what_is_typed_when_there_is_no_screen_ends_nothing(event: Key | Paste) -> None:
+    """Typed before the first screen has come, or after the last one has gone."""
+    app = DeckApp(RecordedOpener(), LESSON_9, "deck")
+    assert not app.screen_stack
+    await app.on_event(event)
