@@ -5,14 +5,18 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
+from graph.messages.making import to_message
+from graph.messages.yaml_reading import value_of
 from ros2.joining import joined
 from ros2.naming import absolute, nodes
+from text.i18n import localized
+from text.yaml_faults import YamlError
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
 
-    from rcl_interfaces.msg import Parameter
+    from rcl_interfaces.msg import Parameter, ParameterValue
 
     from ros2.joining import Guest
 
@@ -65,6 +69,30 @@ def write(
         else:
             print(f"{failed.format(name=parameter.name)}{reason}", file=sys.stderr)
     return None
+
+
+def typed_value(name: str, given: Any) -> ParameterValue:  # noqa: ANN401 - plain values
+    """Return a value with the type it has itself; RuntimeError if a parameter cannot have it."""
+    from rcl_interfaces.msg import ParameterValue
+
+    from graph.calls.parameters_values import WrongValueError, carried
+
+    if isinstance(given, list) and not given:
+        # It has no type; ROS's own tool sends this one.
+        return ParameterValue(type=FIELDS.index("bool_array_value"))
+    try:
+        return to_message(ParameterValue, carried("not_set", given))
+    except WrongValueError as error:
+        raise RuntimeError(f"{name}: {localized(error.words)}") from error
+
+
+def written_value(name: str, text: str) -> ParameterValue:
+    """Return the value that a word of a command line means, as YAML or else as it stands."""
+    try:
+        meant = value_of(text)
+    except YamlError:
+        meant = text
+    return typed_value(name, text if meant is None or isinstance(meant, dict) else meant)
 
 
 def plain(value: Any) -> Any:  # noqa: ANN401 - a ParameterValue, and what it holds

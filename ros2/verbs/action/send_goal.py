@@ -6,7 +6,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from ros2 import naming, options
-from ros2.filling import fill, read
+from ros2.filling import filled, read
 from ros2.joining import SPIN_S, joined
 from ros2.printing import to_yaml
 
@@ -49,11 +49,9 @@ def main(args: argparse.Namespace) -> int | str | None:
     """Send it, and wait for its result; Ctrl-C cancels it."""
     kind = naming.action_class(args.action_type)
     values = read(sys.stdin.read() if args.stdin else args.goal)
-    goal = kind.Goal()
-    try:
-        fill(goal, values)
-    except Exception as error:  # noqa: BLE001 - whatever a generated class raises
-        return f"Failed to populate message fields: {error!r}"
+    if values is None:
+        return "The passed value needs to be a dictionary in YAML format"
+    goal = filled(kind.Goal, values, "message fields").dated()
     with joined(args) as me:
         return _drive(me, args, kind, goal)
 

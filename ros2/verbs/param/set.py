@@ -25,9 +25,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int | str | None:
     """Set it; that the node refuses it goes to standard error, with the exit code 0."""
     from rcl_interfaces.msg import Parameter
-    from rclpy.parameter import get_parameter_value
 
-    value = get_parameter_value(args.value)
+    value = parameters.written_value(args.parameter_name, args.value)
     wanted = Parameter(name=args.parameter_name, value=value)
     done, failed = "Set parameter successful", "Setting parameter failed"
     return parameters.write(args, [wanted], done=done, failed=failed)

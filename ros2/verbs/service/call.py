@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING
 
 from ros2 import naming, options
-from ros2.filling import fill, read
+from ros2.filling import filled, read
 from ros2.joining import SPIN_S, joined
 
 if TYPE_CHECKING:
@@ -50,11 +50,7 @@ def main(args: argparse.Namespace) -> int | str | None:
     values = read(sys.stdin.read() if args.stdin else args.values)
     if values is None:
         return "The passed value needs to be a dictionary in YAML format"
-    request = kind.Request()
-    try:
-        fill(request, values)
-    except Exception as error:  # noqa: BLE001 - whatever a generated class raises
-        return f"Failed to populate field: {error}"
+    draft = filled(kind.Request, values)
     with joined(args) as me:
         client = me.node.create_client(kind, args.service_name)
         if not client.wait_for_service(timeout_sec=WORTH_SAYING_S):
@@ -62,6 +58,7 @@ def main(args: argparse.Namespace) -> int | str | None:
             while not client.wait_for_service(timeout_sec=SPIN_S):
                 pass
         while True:
+            request = draft.dated()
             print(f"requester: making request: {request!r}\n", flush=True)
             asked = time.monotonic()
             future = client.call_async(request)

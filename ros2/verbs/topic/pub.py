@@ -8,7 +8,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from ros2 import naming, options
-from ros2.filling import fill, read
+from ros2.filling import filled, read
 from ros2.joining import joined
 
 if TYPE_CHECKING:
@@ -99,11 +99,7 @@ def main(args: argparse.Namespace) -> int | str | None:
     values = read(sys.stdin.read() if args.stdin else args.values)
     if values is None:
         return "The passed value needs to be a dictionary in YAML format"
-    message = kind()
-    try:
-        stamps = fill(message, values)
-    except Exception as error:  # noqa: BLE001 - whatever a generated class raises
-        return f"Failed to populate field: {error}"
+    draft = filled(kind, values)
     default = QoSProfile(
         depth=1,
         reliability=ReliabilityPolicy.RELIABLE,
@@ -120,9 +116,7 @@ def main(args: argparse.Namespace) -> int | str | None:
         due, count = time.monotonic(), 0
         while True:
             count += 1
-            now: Any = me.node.get_clock().now().to_msg()
-            for set_stamp in stamps:
-                set_stamp(now)
+            message = draft.dated(me.node.get_clock().now().nanoseconds)
             if args.print and count % args.print == 0:
                 print(f"publishing #{count}: {message!r}\n", flush=True)
             reached = publisher.get_subscription_count()
