@@ -173,7 +173,9 @@ class DeckApp(App[int], Acting):
     async def on_event(self, event: Event) -> None:
         """Handle keys one at a time; only the emergency stop does not wait its turn."""
         # Before the first screen and after the last one there is nobody whom it could be for.
-        if self._is_outdated(event) or (isinstance(event, InputEvent) and not self.screen_stack):
+        if self._is_outdated(event) or (
+            isinstance(event, (InputEvent, Paste)) and not self.screen_stack
+        ):
             return
         if not isinstance(event, (Key, Paste)) or event.is_forwarded:
             await super().on_event(event)

@@ -69,6 +69,9 @@ class AppEnvironment:
     def arrive(self, app: DeckApp) -> None:
         del app
 
+    def desert(self) -> None:
+        """Its terminal stays."""
+
     def remember(self, **values: str) -> None:
         self.kept.update(values)
 

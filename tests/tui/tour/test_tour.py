@@ -30,6 +30,9 @@ class Environment:
     def arrive(self, app: DeckApp) -> None:
         app.tour_is_due = self.due
 
+    def desert(self) -> None:
+        """Its terminal stays."""
+
     def remember(self, **values: str) -> None:
         self.kept.update(values)
 
