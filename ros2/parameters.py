@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from graph.messages.making import to_message
+from graph.messages.values import to_tree
 from graph.messages.yaml_reading import value_of
 from ros2.joining import joined
 from ros2.naming import absolute, nodes
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
     from rcl_interfaces.msg import Parameter, ParameterValue
 
+    from graph.calls.exchanges import Exchange
     from ros2.joining import Guest
 
 NOT_FOUND = "Node not found"
@@ -47,6 +50,20 @@ def call(me: Guest, node_name: str, service: str, **fields: object) -> Any:  # n
     kind = getattr(srv, service)
     name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in service)
     return me.call(f"{node_name}/{name[1:]}", kind, node_name, **fields)
+
+
+def carry_out(me: Guest, node_name: str, exchange: Exchange) -> None:
+    """Put an exchange's requests to a node's parameter services, and hand it the answers."""
+    from rcl_interfaces import srv
+
+    with suppress(StopIteration):
+        asked = next(exchange)
+        while True:
+            kind = getattr(srv, "".join(map(str.title, asked.service.split("_"))))
+            request = to_message(kind.Request, asked.value)
+            fields = {name: getattr(request, name) for name in asked.value}
+            answer = me.call(f"{node_name}/{asked.service}", kind, node_name, **fields)
+            asked = exchange.send(to_tree(answer))
 
 
 def write(
@@ -93,11 +110,3 @@ def written_value(name: str, text: str) -> ParameterValue:
     except YamlError:
         meant = text
     return typed_value(name, text if meant is None or isinstance(meant, dict) else meant)
-
-
-def plain(value: Any) -> Any:  # noqa: ANN401 - a ParameterValue, and what it holds
-    """Return the value in a ParameterValue, None for one that is not set."""
-    if not 0 < value.type < len(FIELDS):
-        return None
-    held = getattr(value, FIELDS[value.type])
-    return list(held) if value.type > FIELDS.index("string_value") else held

@@ -47,6 +47,8 @@ class Rules:
     """Levels of nesting."""
     most: int = sys.maxsize
     """Values, with all aliases written out: aliases make many of few bytes."""
+    joins: bool = False
+    """Whether a name may appear again: its mappings are joined, else the last value counts."""
 
 
 def read(text: str, rules: Rules, file: str = "", tell: Tell | None = None) -> Tree | None:
@@ -197,6 +199,10 @@ class _Builder:
             if not all(isinstance(source, Branch) for source in sources):
                 words = say("expected a mapping to merge")
                 self._tell(fault(key.place, words, self._where(key.text)))
+        elif self._rules.joins:
+            there = top.entries.get(key.text)
+            value = value if there is None else _joined(there.value, value)
+            top.entries[key.text] = MappingEntry(there.key_place if there else key.place, value)
         elif key.text in top.entries:
             words = say(
                 "{name} appears a second time, first on line {line}: join them or rename one",
@@ -231,6 +237,17 @@ class _Builder:
         mark = event.start_mark
         assert mark is not None  # Events that a text was parsed to have one.
         return FilePlace(self._file, mark.line + 1, mark.column + 1)
+
+
+def _joined(first: Tree, again: Tree) -> Tree:
+    if not isinstance(first, Branch) or not isinstance(again, Branch):
+        return again
+    entries = dict(first.entries)
+    for name, entry in again.entries.items():
+        there = entries.get(name)
+        value = entry.value if there is None else _joined(there.value, entry.value)
+        entries[name] = MappingEntry(entry.key_place, value)
+    return Branch(entries, first.place, first.size + again.size)
 
 
 def _closed(opened: _Open) -> Tree:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.messages.yaml_reading import read
+from graph.messages.yaml_reading import RULES, read
 from text.sentences import say
 from text.yaml_faults import YamlError, character_error, fault
 from text.yaml_reading import mapping
@@ -25,6 +26,7 @@ DEEPEST = 16
 """Levels of nested names; a name with more parts is written with dots."""
 LONGEST_KEY = 1024
 """Characters of a key that may stand before its colon without a `?` (YAML 1.1, section 5.1)."""
+AGAIN = replace(RULES, joins=True)
 NOT_WRITTEN = "bytes, which a file of parameters cannot hold"
 
 
@@ -44,16 +46,17 @@ def dump(node: str, parameters: Iterable[ParameterRow]) -> str:
     return "\n".join([f"{written(node)}:", f"  {KEY}:", *_lines(tree, "    ")]) + "\n"
 
 
-def load(text: str, node: str) -> dict[str, Value]:
+def load(text: str, node: str, *, wildcards: bool = True) -> dict[str, Value]:
     """Return the parameters that a file's text has for a node; later entries take precedence.
 
-    Takes what `dump` writes, several nodes in a file, and ROS's own wildcards (`/**`, `/*/arm`).
-    Raises YamlError, with line and column.
+    Takes what `dump` writes, several nodes in a file, and ROS's own wildcards (`/**`, `/*/arm`),
+    unless without `wildcards`. A name that appears again is taken as rcl_yaml_param_parser does: it
+    stays where it was first, and what is in it is added. Raises YamlError, with line and column.
     """
-    root = read(text)
+    root = read(text, AGAIN)
     if root is None:
         raise YamlError(1, 1, say("the file is empty"))
-    found = list(_nodes(root, ""))
+    found = [each for each in _nodes(root, "") if wildcards or "*" not in each[0]]
     values = {
         name: value
         for pattern, parameters in found
@@ -87,7 +90,7 @@ def save_file(
             beside.unlink(missing_ok=True)
 
 
-def load_file(path: Path, node: str) -> dict[str, Value]:
+def load_file(path: Path, node: str, *, wildcards: bool = True) -> dict[str, Value]:
     """Return what a file has for a node. Raises OSError, YamlError."""
     raw = path.read_bytes()
     try:
@@ -97,7 +100,7 @@ def load_file(path: Path, node: str) -> dict[str, Value]:
         raise YamlError(line, 1, say("this is not UTF-8 text")) from error
     if "\0" in text:
         raise character_error(text, text.index("\0"))
-    return load(text, node)
+    return load(text, node, wildcards=wildcards)
 
 
 def _place(
@@ -168,9 +171,6 @@ def _flatten(branch: Branch, prefix: str, found: dict[str, Value]) -> None:
         name = f"{prefix}{key}"
         if isinstance(entry.value, Branch):
             _flatten(entry.value, f"{name}.", found)
-        elif name in found:
-            words = say("the parameter {name} appears a second time", name=repr(name))
-            raise fault(entry.key_place, words)
         elif isinstance(entry.value, Listing):
             found[name] = _list(entry.value, name)
         else:
@@ -201,7 +201,13 @@ def _list(listing: Listing, name: str) -> Value:
 
 
 def _pattern(pattern: str) -> re.Pattern[str]:
-    """Return a pattern for the full names of the nodes that a key of a file applies to."""
-    tokens = {"*": "/[^/]+", "**": "(?:/[^/]+)*"}
-    parts = pattern.strip("/").split("/")
-    return re.compile("".join(tokens.get(part, "/" + re.escape(part)) for part in parts))
+    r"""Return a pattern for the full names of the nodes that a key of a file applies to.
+
+    As rclcpp makes it: `/*` stands for `(/\w+)`, and any other `*` is one of regular expressions.
+    Source: rclcpp/src/rclcpp/parameter_map.cpp.
+    """
+    text = re.escape("/" + pattern.strip("/")).replace(r"/\*", r"(?:/\w+)").replace(r"\*", "*")
+    try:
+        return re.compile(text)
+    except re.error:
+        return re.compile(re.escape(pattern))

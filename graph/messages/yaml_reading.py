@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 RULES = Rules(shares=False, longest=1024 * 1024, deepest=64)
 
 
-def read(text: str) -> Branch | None:
+def read(text: str, rules: Rules = RULES) -> Branch | None:
     """Return the only document of `text`, a mapping, None if there is nothing. Raises YamlError."""
-    root = read_tree(text, RULES)
+    root = read_tree(text, rules)
     return None if root is None or empty(root) else mapping(root)
 
 

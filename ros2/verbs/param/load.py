@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ros2 import options, parameters
+from ros2.naming import absolute
+from text.i18n import localized
 
 if TYPE_CHECKING:
     import argparse
@@ -28,14 +31,21 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int | str | None:
     """Set them, and say of each whether the node took it."""
-    from rclpy.parameter import parameter_dict_from_yaml_file
+    from rcl_interfaces.msg import Parameter
 
-    full = args.node_name if args.node_name.startswith("/") else f"/{args.node_name}"
+    from graph.calls.parameters_file import load_file
+    from text.yaml_faults import YamlError
+
+    file = Path(args.parameter_file)
     try:
-        wanted = parameter_dict_from_yaml_file(
-            args.parameter_file, use_wildcard=not args.no_use_wildcard, target_nodes=[full]
-        )
-    except (OSError, RuntimeError, ValueError) as error:
+        found = load_file(file, absolute(args.node_name), wildcards=not args.no_use_wildcard)
+    except OSError as error:
         return str(error)
+    except YamlError as error:
+        return f"{file}:{error.line}:{error.column}: {localized(error.message)}"
+    wanted = [
+        Parameter(name=name, value=parameters.typed_value(name, value))
+        for name, value in found.items()
+    ]
     done, failed = "Set parameter {name} successful", "Set parameter {name} failed"
-    return parameters.write(args, list(wanted.values()), done=done, failed=failed)
+    return parameters.write(args, wanted, done=done, failed=failed)

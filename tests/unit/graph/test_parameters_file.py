@@ -133,13 +133,77 @@ arm:
     assert load(text, node) == expected
 
 
+TWICE = """\
+/**:
+  left:
+    ros__parameters: {wheels: {separation: 0.16}, a: 1}
+/robot:
+  ros__parameters: {a: 5, b.c: 1}
+/**:
+  robot:
+    ros__parameters: {publish_tf: true, a: 1, a: 2}
+  left:
+    ros__parameters: {wheels: {radius: 0.03}, a: [1, 2]}
+/robot:
+  ros__parameters:
+    b: {c: 2, d: 3}
+"""
+
+
+@pytest.mark.parametrize(
+    ("node", "expected"),
+    [
+        ("/robot", {"publish_tf": True, "a": 5, "b.c": 2, "b.d": 3}),
+        ("/far/away/robot", {"publish_tf": True, "a": 2}),
+        ("/left", {"wheels.separation": 0.16, "wheels.radius": 0.03, "a": [1, 2]}),
+    ],
+)
+def test_what_appears_again_is_added_where_it_was_first(
+    node: str, expected: dict[str, object]
+) -> None:
+    """As in ROS, where TurtleBot3 has such a file."""
+    assert load(TWICE, node) == expected
+
+
+@pytest.mark.parametrize(
+    ("pattern", "node", "fits"),
+    [
+        ("/*", "/robot", True),
+        ("/*", "/arm/robot", False),
+        ("/*/robot", "/arm/robot", True),
+        ("/**/robot", "/robot", True),
+        ("/**/robot", "/a/b/robot", True),
+        ("/**/robot", "/a/b/robots", False),
+        ("/arm/**", "/arm", True),
+        ("/arm/**", "/arm/left/hand", True),
+        ("/arm/*/hand", "/arm/hand", False),
+        # As std::regex has it: one that is not after a slash repeats the letter before it.
+        ("/robot*", "/robott", True),
+        ("/robot*", "/robot_1", False),
+        ("/***", "/robot", False),
+        ("/ro.ot", "/robot", False),
+        ("robot", "/robot", True),
+    ],
+)
+def test_wildcards_fit_as_in_ros(pattern: str, node: str, fits: bool) -> None:
+    text = f'"{pattern}":\n  ros__parameters: {{a: 1}}\n'
+    if fits:
+        assert load(text, node) == {"a": 1}
+    else:
+        with pytest.raises(YamlError, match="the file has nothing for"):
+            load(text, node)
+
+
+def test_wildcards_can_be_left_out() -> None:
+    text = "/**:\n  ros__parameters: {a: 1}\nrobot:\n  ros__parameters: {b: 2}\n"
+    assert load(text, "/robot", wildcards=False) == {"b": 2}
+
+
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
         ("", 1, "the file is empty"),
         ("# nothing\n", 1, "the file is empty"),
-        ("/robot:\n  ros__parameters:\n    a: 1\n    a: 2\n", 4, "second time"),
-        ("/robot:\n  ros__parameters:\n    a.b: 1\n    a: {b: 2}\n", 4, "'a.b' appears a sec"),
         ("/robot:\n  speed: 1\n", 2, "expected `ros__parameters:` under the name of a node"),
         ("ros__parameters:\n  a: 1\n", 1, "is not under any node"),
         ("/robot:\n  ros__parameters:\n    - a\n", 3, "expected `name: value`, found a list"),
