@@ -20,6 +20,7 @@ from launcher.consent import Approval, ConsentVerdict
 from launcher.errors import LauncherError
 from launcher.status import Severity
 from robot.topics import LLM_RAW_JSON, LLM_RESULT, ODOMETRY
+from text.nested import read_json
 from text.plain import plain
 from text.sentences import say
 
@@ -168,7 +169,7 @@ class AgentDriving:
             words = " · ".join(str(line) for line in checked.lines("")[:1])
             told = say("{agent} does {id}: {words}", agent=caller.name, id=proposal.id, words=words)
             # Written before anything moves: if that fails, nothing does.
-            arguments = {"proposal": proposal.id, "commands": json.loads(_thought(proposal, ""))}
+            arguments = {"proposal": proposal.id, "commands": read_json(_thought(proposal, ""))}
             session.audit.write(caller.name, "execute", arguments, "begins", 0.0)
             await session.link.tell(Severity.INFO, told)
             return await self._carry_out(session, proposal, checked)
@@ -270,8 +271,8 @@ class _Answers:
     def hear(self, sample: Sample) -> None:
         """Take in a message."""
         try:
-            report = json.loads(str(sample.value.get("data", "")))
-        except (ValueError, RecursionError):
+            report = read_json(str(sample.value.get("data", "")))
+        except ValueError:
             return
         if not isinstance(report, dict):
             return

@@ -16,6 +16,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, TextIO
 
 from brain.faults import FaultKind, ModelError
+from text.nested import read_json
 from text.os_words import os_reason
 from text.run_path import MODEL_USAGE
 from text.sentences import say
@@ -164,7 +165,7 @@ class Ledger:
 def _parsed(text: str) -> dict[str, Any] | None:
     """Return a line of the ledger; None for one that a killed process left incomplete."""
     try:
-        line = json.loads(text)
+        line = read_json(text)
     except ValueError:
         return None
     return line if isinstance(line, dict) else None

@@ -71,22 +71,22 @@ class _Received:
     def take(self, chunk: Any, now_s: float) -> str:  # noqa: ANN401 - a server may send anything
         """Add a piece of the stream; return what it added to the text."""
         if (usage := getattr(chunk, "usage", None)) is not None:
-            self.tokens = usage.prompt_tokens or 0, usage.completion_tokens or 0
+            self.tokens = int(usage.prompt_tokens or 0), int(usage.completion_tokens or 0)
         piece = ""
         for choice in getattr(chunk, "choices", None) or ():
-            self.finish = choice.finish_reason or self.finish
+            self.finish = _text(choice.finish_reason) or self.finish
             if (delta := choice.delta) is None:
                 continue
             if self.first_s is None and (delta.model_fields_set - {"role"}):
                 self.first_s = now_s
-            self.refusal.append(delta.refusal or "")
-            piece = delta.content or ""
+            self.refusal.append(_text(delta.refusal))
+            piece = _text(delta.content)
             self.text.append(piece)
             for call in delta.tool_calls or ():
                 # Of several calls only the first counts: one form was asked for, once.
                 if call.function is not None and call.index == 0:
-                    self.arguments.append(call.function.arguments or "")
-                    piece += call.function.arguments or ""
+                    self.arguments.append(_text(call.function.arguments))
+                    piece += self.arguments[-1]
             self.length += len(piece)
         return piece
 
@@ -150,7 +150,7 @@ class ModelClient:
         with anyio.move_on_after(limit_s) as beginning:
             async with self._open(request) as stream:
                 async for chunk in stream:
-                    if piece := received.take(chunk, time.monotonic()):
+                    if piece := _taken(received, chunk):
                         on_text(piece)
                     if received.first_s is not None:
                         beginning.deadline = math.inf
@@ -205,6 +205,22 @@ class ModelClient:
                 self._not_before_s = time.monotonic() + (fault.retry_after_s or _FIRST_BUSY_S)
             # Not `from error`: its text and its request hold what must not be shown.
             raise fault from None
+
+
+def _text(value: object) -> str:
+    if value is not None and not isinstance(value, str):
+        raise TypeError
+    return value or ""
+
+
+def _taken(received: _Received, chunk: Any) -> str:  # noqa: ANN401 - a server may send anything
+    """Return what a piece of the stream adds; the client checks no types, so that is done here."""
+    try:
+        piece = received.take(chunk, time.monotonic())
+    except (AttributeError, TypeError, ValueError, OverflowError):
+        words = say("what the server sent cannot be read")
+        raise ModelError(FaultKind.NOT_AN_API, words) from None
+    return piece
 
 
 def _not_an_api(base_url: str, kind: str) -> ModelError:

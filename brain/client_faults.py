@@ -40,8 +40,9 @@ def fault_of(
         return _of_api(error, settings, key)
     if isinstance(error, httpx2.HTTPError):
         return cut_off()
-    if isinstance(error, UnicodeDecodeError | ValueError):
-        # What came is not what the protocol says: broken JSON in the stream, or no UTF-8.
+    if isinstance(error, UnicodeDecodeError | ValueError | RecursionError):
+        # What came is not what the protocol says: broken JSON in the stream, or no UTF-8, or
+        # brackets without end.
         words = say("what the server sent cannot be read")
         return ModelError(FaultKind.NOT_AN_API, words)
     return None

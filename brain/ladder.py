@@ -23,6 +23,7 @@ from platformdirs import user_cache_path
 
 from brain.client import Answer, Message, ModelRequest
 from brain.faults import FaultKind, ModelError
+from text.nested import read_json
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -148,7 +149,7 @@ class Ladder:
         ]
         answer = await self._client.ask(request_for(rung, schema, messages, self._model))
         try:
-            found = json.loads(bare(answer.text))
+            found = read_json(bare(answer.text))
         except ValueError:
             return False
         return bool(found == {"word": word, "number": number})
@@ -157,14 +158,14 @@ class Ladder:
 
     def _remembered(self) -> Rung | None:
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-            return Rung(json.loads(self._path.read_text(encoding="utf-8"))[self._name])
+            return Rung(read_json(self._path.read_text(encoding="utf-8"))[self._name])
         return None
 
     def _remember(self, rung: Rung | None) -> None:
         """Write it down; without a cache it is found out by every process."""
         with contextlib.suppress(OSError):
             try:
-                known = json.loads(self._path.read_text(encoding="utf-8"))
+                known = read_json(self._path.read_text(encoding="utf-8"))
             except (OSError, ValueError):
                 known = {}
             known = dict(known) if isinstance(known, dict) else {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -10,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from brain.situation import picture_part
 from brain.thinking import think
 from robot.commands.problems import CommandError, Problem
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from brain.client import Message
@@ -70,12 +70,12 @@ def parse_seen(text: str) -> PictureSeen:
         CommandError: if it is no such answer. A box from right to left is one.
     """
     try:
-        found: Any = json.loads(text)
+        found: Any = read_json(text)
         seen = PictureSeen.model_validate(found)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         raise CommandError([Problem.of("invalid", first["loc"])]) from None
-    except (ValueError, RecursionError):
+    except ValueError:
         raise CommandError([Problem.of("value_expected")]) from None
     for index, thing in enumerate(seen.things):
         box = thing.box

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import asyncio
 import base64
-import binascii
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -40,6 +39,9 @@ ACT, SENSE = "act", "sense"
 _WAITING = 50
 """Blocks of sound that may wait for the connection; beyond that the oldest is dropped."""
 _LONGEST_EVENT = 4 << 20
+"""Bytes of an event; of packed ones, which are not asked for, a few would make many."""
+_MOST_EVENTS = 8
+"""Events that may wait: sound comes in blocks of a few kilobytes."""
 _STOPPED = "not done: wait until somebody speaks"
 
 
@@ -135,7 +137,11 @@ class RealtimeTalk:
     async def _talk(self, client: openai.AsyncOpenAI) -> None:
         async with client.realtime.connect(
             model=self._settings.realtime_model,
-            websocket_connection_options={"max_size": _LONGEST_EVENT},
+            websocket_connection_options={
+                "max_size": _LONGEST_EVENT,
+                "max_queue": _MOST_EVENTS,
+                "compression": None,
+            },
         ) as self._connection:
             await self._send({"type": "session.update", "session": self._session()})
             sending = asyncio.create_task(self._send_sound())
@@ -193,36 +199,40 @@ class RealtimeTalk:
     # ---------------------------------------------------------------- what the server sends
 
     async def _take(self, event: Any) -> None:  # noqa: ANN401 - a server may send anything
-        kind = event.type
+        kind = _part(event, "type")
         if kind == "response.output_audio.delta":
             self._first_s = self._first_s or time.monotonic()
-            self._play(event.delta)
+            self._play(_part(event, "delta"))
         elif kind == "input_audio_buffer.speech_started":
             self._stopped = False
             self._handlers.interrupted()
         elif kind == "conversation.item.input_audio_transcription.completed":
-            self._handlers.heard(str(event.transcript))
-            if asks_to_stop(str(event.transcript)):
+            self._handlers.heard(str(_part(event, "transcript")))
+            if asks_to_stop(str(_part(event, "transcript"))):
                 await self.stop()
         elif kind == "response.output_audio_transcript.done":
-            self._handlers.said(str(event.transcript))
+            self._handlers.said(str(_part(event, "transcript")))
         elif kind == "response.function_call_arguments.done":
-            await self._call(str(event.name), str(event.call_id), str(event.arguments))
+            await self._call(
+                str(_part(event, "name")),
+                str(_part(event, "call_id")),
+                str(_part(event, "arguments")),
+            )
         elif kind == "response.created":
             self._asked_s, self._first_s = time.monotonic(), 0.0
             self._ledger.begin(self._who, self._settings.budget)
         elif kind == "response.done":
-            self._count(event.response)
+            self._count(_part(event, "response"))
         elif kind == "error":
-            words = words_of(str(event.error.message), self._key)
+            words = words_of(str(_part(_part(event, "error"), "message")), self._key)
             raise ModelError(FaultKind.SERVER, say("the server broke off: {words}", words=words))
 
     def _play(self, delta: str) -> None:
         try:
-            self._handlers.sound(base64.b64decode(delta, validate=True))
-        except binascii.Error:
-            words = say("what the server sent cannot be read")
-            raise ModelError(FaultKind.NOT_AN_API, words) from None
+            sound = base64.b64decode(delta, validate=True)
+        except (TypeError, ValueError):
+            raise _unreadable() from None
+        self._handlers.sound(sound)
 
     async def _call(self, name: str, call: str, arguments: str) -> None:
         if call in self._done:
@@ -248,8 +258,8 @@ class RealtimeTalk:
         return "accepted"
 
     def _count(self, response: Any) -> None:  # noqa: ANN401 - a server may send anything
-        usage, now_s = response.usage, time.monotonic()
-        taken = (usage.input_tokens or 0, usage.output_tokens or 0) if usage else (0, 0)
+        usage, now_s = _part(response, "usage"), time.monotonic()
+        taken = (_count_in(usage, "input_tokens"), _count_in(usage, "output_tokens"))
         first_s = (self._first_s or now_s) - self._asked_s
         used = TokenUsage(
             self._settings.realtime_model, *taken, first_s, now_s - self._asked_s, bool(usage)
@@ -264,6 +274,23 @@ class RealtimeTalk:
 
 
 _NOTHING = {"type": "object", "properties": {}, "required": [], "additionalProperties": False}
+
+
+def _part(event: Any, name: str) -> Any:  # noqa: ANN401 - a server may send anything
+    """Return a part of an event, which the client has not checked."""
+    try:
+        return getattr(event, name)
+    except AttributeError:
+        raise _unreadable() from None
+
+
+def _count_in(usage: object, name: str) -> int:
+    found = getattr(usage, name, None)
+    return found if isinstance(found, int) else 0
+
+
+def _unreadable() -> ModelError:
+    return ModelError(FaultKind.NOT_AN_API, say("what the server sent cannot be read"))
 
 
 def _function(name: str, about: str, schema: dict[str, Any]) -> dict[str, Any]:

@@ -7,11 +7,12 @@ What was heard comes last, and is marked as what it is: somebody's words.
 from __future__ import annotations
 
 import base64
-import json
 import math
 from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from brain.client import Message
@@ -113,9 +114,9 @@ def refusal(report: str, before: str = "") -> str:
     `before` is what is known from the messages before it.
     """
     try:
-        found = json.loads(report)
+        found = read_json(report)
         event = found["event"]
-    except (ValueError, KeyError, TypeError, RecursionError):
+    except (ValueError, KeyError, TypeError):
         return before
     if event == "accepted":
         return ""

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import os
 import sys
 from dataclasses import dataclass, field
@@ -21,6 +20,7 @@ import course
 from course.protocol import MOST_BYTES, unpack_step
 from course.results import StepResult
 from launcher.control.protocol import encode, unpack_text
+from text.nested import read_json
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ class RemoteJudge:
         assert self._process.stdout is not None
         async for line in self._process.stdout:
             try:
-                event = _unpacked(json.loads(line))
+                event = _unpacked(read_json(line))
             except (ValueError, KeyError, TypeError):
                 break
             yield event

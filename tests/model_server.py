@@ -68,10 +68,12 @@ class Exchange:
 
     # ---------------------------------------------------------------- a stream, step by step
 
-    def begins(self) -> None:
+    def begins(self, packed_by: str = "") -> None:
         """Send the head of a stream."""
         self._handler.send_response(200)
         self._handler.send_header("Content-Type", "text/event-stream")
+        if packed_by:
+            self._handler.send_header("Content-Encoding", packed_by)
         self._handler.send_header("Transfer-Encoding", "chunked")
         self._handler.end_headers()
 
@@ -82,7 +84,7 @@ class Exchange:
 
     def event(self, data: str) -> None:
         """Send a line of the stream, whatever is in it."""
-        self._send(f"data: {data}\n\n".encode())
+        self.bytes(f"data: {data}\n\n".encode())
 
     def ends(self, finish: str = "stop", usage: tuple[int, int] | None = None) -> None:
         """Send what ends a stream."""
@@ -94,7 +96,8 @@ class Exchange:
         self.event("[DONE]")
         self._handler.wfile.write(b"0\r\n\r\n")
 
-    def _send(self, data: bytes) -> None:
+    def bytes(self, data: bytes) -> None:
+        """Send a piece of the stream's body, whatever is in it."""
         self._handler.wfile.write(f"{len(data):x}\r\n".encode() + data + b"\r\n")
         self._handler.wfile.flush()
 

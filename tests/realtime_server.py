@@ -35,7 +35,11 @@ class Talk:
     async def send(self, kind: str, **fields: Any) -> None:
         """Send an event."""
         event = {"type": kind, "event_id": "e", **fields}
-        await self._connection.send(json.dumps(event))
+        await self.text(json.dumps(event))
+
+    async def text(self, text: str) -> None:
+        """Send a message, whatever is in it."""
+        await self._connection.send(text)
 
     async def says(self, *sounds: bytes, words: str = "") -> None:
         """Answer with sound, and with its words."""

@@ -15,6 +15,7 @@ from typing import Any, TypeAlias
 
 import yaml
 
+from text.nested import read_yaml
 from text.plain import is_plain, replaced
 
 Scalar: TypeAlias = "bool | int | float | str | None"
@@ -117,8 +118,8 @@ def unquoted(text: str) -> str | None:
     if len(text) < 2 or not (text.startswith('"') and text.endswith('"')):
         return None
     try:
-        value = yaml.safe_load(text)
-    except yaml.YAMLError:
+        value = read_yaml(text)
+    except (yaml.YAMLError, ValueError):
         return None
     return value if isinstance(value, str) else None
 

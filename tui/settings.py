@@ -15,6 +15,7 @@ from platformdirs import user_config_path
 
 from graph.heavy_types import HEAVY_TYPES
 from text.i18n import LANGUAGES, N_, _, localized
+from text.nested import NestedTooDeeplyError, read_json
 from text.os_words import os_reason
 
 SEEN = "seen"
@@ -68,9 +69,11 @@ def load(path: Path, themes: Collection[str], actions: Callable[[], Collection[s
     import json
 
     try:
-        raw = json.loads(text)
+        raw = read_json(text)
     except json.JSONDecodeError as error:
         raise SettingsError(f"{path}:{error.lineno}:{error.colno}: {error.msg}") from error
+    except NestedTooDeeplyError as error:
+        raise SettingsError(f"{path}: {error}") from error
     problem = _problem(raw, themes, actions)
     if problem:
         raise SettingsError(f"{path}: {problem}")

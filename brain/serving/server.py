@@ -7,7 +7,6 @@ input does, and so with whoever has started it.
 
 from __future__ import annotations
 
-import json
 import os
 import resource
 import signal
@@ -15,6 +14,8 @@ import sys
 import time
 from dataclasses import dataclass
 from typing import Any
+
+from text.nested import read_json
 
 POLITENESS = 5
 """Added to its niceness: on a robot's own computer, the nodes that stop the wheels come first."""
@@ -41,7 +42,7 @@ class Order:
 
 def main(argument: str) -> None:
     """Serve until standard input ends; exit with 1 if that is impossible."""
-    order = Order(**json.loads(argument))
+    order = Order(**read_json(argument))
     # The terminal's Ctrl-C is for whoever has started this, and then ends this as well.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

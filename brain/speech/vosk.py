@@ -5,12 +5,12 @@ Models: https://alphacephei.com/vosk/models, for example vosk-model-small-ru-0.2
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 from brain.speech.faults import SpeechError, missing
 from brain.speech.folders import folder_of
 from robot.sound import RATE_HZ
+from text.nested import read_json
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -42,5 +42,5 @@ class VoskRecogniser:
     def transcribe(self, said: Sound) -> str:
         """Return the words, empty if there are none."""
         self._recogniser.AcceptWaveform(said.at(RATE_HZ).pcm)
-        found = json.loads(self._recogniser.FinalResult())
+        found = read_json(self._recogniser.FinalResult())
         return str(found.get("text", "")).strip()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import subprocess
@@ -14,6 +13,7 @@ from cli.child_python import python
 from cli.doctor.finding import fail, ok, warn
 from launcher.domain.discovery import set_discovery
 from text.i18n import _
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -181,7 +181,7 @@ def _probe() -> dict[str, Any]:
     except (OSError, subprocess.TimeoutExpired) as error:
         return {"error": str(error)}
     try:
-        found: dict[str, Any] = json.loads(done.stdout.decode(errors="replace").splitlines()[-1])
+        found: dict[str, Any] = read_json(done.stdout.decode(errors="replace").splitlines()[-1])
     except (ValueError, IndexError):
         words = done.stderr.decode(errors="replace").strip().splitlines()
         last = words[-1] if words else _("no reason given")

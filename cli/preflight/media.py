@@ -6,7 +6,6 @@ nothing is recorded or played.
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -20,6 +19,7 @@ from cli.preflight.answers import DeviceAnswer
 from cli.preflight.holders import holders
 from launcher.profile.device_variables import variable
 from text.i18n import _
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -94,7 +94,7 @@ def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAnsw
 def _sound_devices() -> tuple[Sequence[str], Sequence[str]]:
     """Return the names of the microphones and of the loudspeakers."""
     try:
-        microphones, speakers = json.loads(_run([sys.executable, str(SOUND), "list"]))
+        microphones, speakers = read_json(_run([sys.executable, str(SOUND), "list"]))
     except ValueError:
         return (), ()
     return microphones, speakers

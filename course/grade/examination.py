@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import os
 import socket
 import sys
@@ -19,6 +18,7 @@ from course.grade.limits import taken
 from course.grade.protocol import MOST_BYTES
 from course.proof.places import Places
 from launcher.control.protocol import unpack_text
+from text.nested import read_json
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class Examination:
         while not self._ended:
             try:
                 line = await reader.readline()
-                event = json.loads(line)
+                event = read_json(line)
             except (OSError, ValueError):
                 return
             if event["event"] == "end":

@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 from course.protocol import MOST_BYTES
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -44,4 +45,4 @@ class ExamRequest:
     @classmethod
     def from_json(cls, line: bytes) -> Self:
         """Read the output of `to_json`."""
-        return cls(**json.loads(line))
+        return cls(**read_json(line))

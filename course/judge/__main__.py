@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import os
 import sys
 from pathlib import Path
@@ -23,6 +22,7 @@ from launcher.client.client import attach
 from launcher.control.protocol import encode, pack_text
 from launcher.errors import LauncherError
 from launcher.profile.steps.draw import new_seed
+from text.nested import read_json
 from text.sentences import reason_of
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class JudgeServer:
         """Return the next request; None once there will be none."""
         try:
             line = await self._requests.readline()
-            request: dict[str, Any] | None = json.loads(line) if line else None
+            request: dict[str, Any] | None = read_json(line) if line else None
         except ValueError:
             return None
         return request

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TypedDict
 
 from course.lessons.catalog import course_dir
+from text.nested import read_json
 
 NAME = "progress.json"
 MOST_BYTES = 1 << 20
@@ -114,10 +115,10 @@ def _read(path: Path) -> tuple[Progress, bool]:
     try:
         with path.open("rb") as file:
             text = file.read(MOST_BYTES + 1)
-        raw = json.loads(text) if len(text) <= MOST_BYTES else None
+        raw = read_json(text) if len(text) <= MOST_BYTES else None
     except FileNotFoundError:
         return Progress(), True
-    except (OSError, ValueError, RecursionError):
+    except (OSError, ValueError):
         return Progress(), False
     if not isinstance(raw, dict):
         return Progress(), False

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from graph.bag.decoding import TypeText
 from graph.bag.defects import defect_of
 from graph.bag.errors import BagError, no_bag, unreadable
+from text.nested import read_yaml
 from text.sentences import Words, say
 
 if TYPE_CHECKING:
@@ -203,9 +204,9 @@ def metadata_of(folder: Path) -> Mapping[str, Any]:
     import yaml
 
     try:
-        found = yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))
+        found = read_yaml((folder / METADATA).read_text(encoding="utf-8"))
         inner = found["rosbag2_bagfile_information"]
-    except (OSError, yaml.YAMLError, KeyError, TypeError, UnicodeDecodeError):
+    except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError):
         return {}
     return inner if isinstance(inner, Mapping) else {}
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -44,6 +43,7 @@ from launcher.serial_ports import serial_ports
 from launcher.supervisor.dependencies import stop_waves
 from launcher.supervisor.plan import plan_of
 from launcher.supervisor.words import who
+from text.nested import read_json
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -201,9 +201,7 @@ async def _greeted(
     """Announce our protocol version; return the greeting of a supervisor with the same version."""
     try:
         writer.write(encode({"deck": VERSION}))
-        hello: dict[str, Any] = json.loads(
-            await asyncio.wait_for(reader.readline(), HELLO_WITHIN_S)
-        )
+        hello: dict[str, Any] = read_json(await asyncio.wait_for(reader.readline(), HELLO_WITHIN_S))
     except asyncio.TimeoutError as problem:
         raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
     except (OSError, ValueError) as problem:
@@ -433,7 +431,7 @@ class SupervisorClient:
                 line = await self._reader.readline()
                 if not line:
                     break
-                self._hear(json.loads(line))
+                self._hear(read_json(line))
         except (OSError, ValueError):
             pass
         finally:

@@ -21,6 +21,7 @@ import launcher
 from launcher.processes.signal import send
 from launcher.processes.table import processes
 from launcher.processes.title import ROOM_ARGUMENT, room_for_marks
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -160,14 +161,13 @@ class StartingSupervisor:
 
     async def _answer(self) -> dict[str, Any]:
         import asyncio
-        import json
 
         reader = asyncio.StreamReader()
         transport, _protocol = await asyncio.get_running_loop().connect_read_pipe(
             lambda: asyncio.StreamReaderProtocol(reader), self._process.stdout
         )
         try:
-            answer: dict[str, Any] = json.loads(await reader.readline())
+            answer: dict[str, Any] = read_json(await reader.readline())
         finally:
             transport.close()
         return answer

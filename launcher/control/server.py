@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import os
 import re
 import socket
@@ -30,6 +29,7 @@ from launcher.control.protocol import (
     unpack_stray,
 )
 from launcher.errors import StillRunningError, UnknownNodeError
+from text.nested import read_json
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -367,8 +367,8 @@ def _peer(writer: asyncio.StreamWriter) -> tuple[int, int]:
 
 def _read(line: bytes) -> dict[str, Any]:
     try:
-        request = json.loads(line)
-    except (ValueError, RecursionError):
+        request = read_json(line)
+    except ValueError:
         raise BadRequestError(say("not a line of JSON")) from None
     if not isinstance(request, dict):
         raise BadRequestError(say("expected a JSON object"))

@@ -16,6 +16,7 @@ from launcher.consent import AUDIT_FILE
 from launcher.logs.files import MAX_OLD_FILES
 from launcher.private_files import make_folder, open_file, open_own_folder, remove_files
 from launcher.run_id import supervisor_runs
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -82,7 +83,7 @@ def _marked_logs(run_id: str, folder: int) -> list[str] | None:
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
         descriptor = open_file(MARK, os.O_RDONLY | os.O_NONBLOCK, folder)
         with os.fdopen(descriptor, encoding="utf-8") as file:
-            mark = json.loads(file.read(_LONGEST_MARK))
+            mark = read_json(file.read(_LONGEST_MARK))
         if mark["run"] == run_id:
             return [log for log in map(str, mark["logs"]) if "/" not in log]
     return None

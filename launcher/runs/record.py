@@ -18,6 +18,7 @@ from launcher.control.protocol import pack_session, unpack_session
 from launcher.control.socket import SOCKET_NAME
 from launcher.private_files import make_folder, open_file, open_own_folder, remove_files
 from launcher.run_id import supervisor_runs
+from text.nested import read_json
 from text.run_path import MODEL_USAGE
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ def read_records(run_dir: Path) -> list[RunRecord]:
 def read_record(folder: Path) -> RunRecord | None:
     """Return the record of the run in this folder; None if it is missing or broken."""
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
-        fields = json.loads((folder / RECORD_NAME).read_text(encoding="utf-8"))
+        fields = read_json((folder / RECORD_NAME).read_text(encoding="utf-8"))
         processes = {
             str(node): (int(pid), int(started))
             for node, (pid, started) in fields["processes"].items()

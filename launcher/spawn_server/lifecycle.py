@@ -14,6 +14,8 @@ import select
 import time
 from typing import TYPE_CHECKING, Any
 
+from text.nested import read_json
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -54,7 +56,7 @@ def watch_lifecycle(argv: Sequence[str]) -> None:
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.signals import SignalHandlerOptions
 
-    name, wanted, goes = json.loads(argv[0])
+    name, wanted, goes = read_json(argv[0])
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     # A leading underscore hides a node from the usual lists.
     node = rclpy.create_node(

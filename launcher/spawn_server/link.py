@@ -13,6 +13,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any
 
 from launcher.processes.signal import send
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -94,7 +95,7 @@ class SpawnServerLink:
             packet = b""
         if packet:
             self.answered = True
-            self._on_answer(json.loads(packet))
+            self._on_answer(read_json(packet))
         else:
             self.drop()
             self._on_end(self)

@@ -17,6 +17,8 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
+from text.nested import read_json
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -75,7 +77,7 @@ def probe(argv: Sequence[str]) -> None:
 
     from launcher.spawn_server.message_rates import MessageRates
 
-    conditions = [_Wanted(*fields) for fields in json.loads(argv[0])]
+    conditions = [_Wanted(*fields) for fields in read_json(argv[0])]
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     # A leading underscore hides a node from the usual lists.
     node = rclpy.create_node(

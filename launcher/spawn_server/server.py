@@ -29,6 +29,7 @@ from launcher.processes.table import RUN_MARK, read_process
 from launcher.spawn_server.cleanup import end_survivors
 from launcher.spawn_server.node import ENDING, ForkSpec, become
 from launcher.spawn_server.preload import Preload
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -117,7 +118,7 @@ class SpawnServer:
 def _read(fd: int) -> dict[str, Any]:
     with open(fd, "rb") as file:
         file.seek(0)
-        message: dict[str, Any] = json.load(file)
+        message: dict[str, Any] = read_json(file.read())
     return message
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from launcher.spawn_server.spawner import SpawnError, SpawnRequest
 from launcher.supervisor.helper import helping
 from launcher.supervisor.readiness import Seen, UnwatchableError
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -63,7 +64,7 @@ class LifecycleWaits:
         with contextlib.suppress(SpawnError, ValueError):
             async with helping(self._spawner, self._reaper, request) as reports:
                 async for line in reports:
-                    told = json.loads(line)
+                    told = read_json(line)
                     if told["state"] == condition.type:
                         return True
                     if "failed" in told:

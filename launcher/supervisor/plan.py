@@ -20,6 +20,7 @@ from launcher.profile.defaults import READY_WITHIN_S
 from launcher.profile.driving import drives
 from launcher.ros_tools import ros_tools, without_wheels
 from launcher.supervisor.readiness import ReadyCondition
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -112,7 +113,7 @@ class Plan:
     @classmethod
     def from_json(cls, line: str | bytes) -> Plan:
         """Read the output of `to_json`."""
-        fields: dict[str, Any] = json.loads(line)
+        fields: dict[str, Any] = read_json(line)
         fields["nodes"] = tuple(_node_from(node) for node in fields["nodes"])
         fields["panels"] = tuple(fields["panels"])
         fields["confined_to"] = tuple(fields["confined_to"])

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from launcher.spawn_server.spawner import SpawnError, SpawnRequest
 from launcher.supervisor.helper import helping
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -154,7 +155,7 @@ class Readiness:
         """Start a probe and listen to it until it ends."""
         async with helping(self._spawner, self._reaper, self._request()) as reports:
             async for line in reports:
-                told = json.loads(line)
+                told = read_json(line)
                 self._learn(
                     frozenset(self._conditions[position] for position in told["met"]),
                     {

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import fcntl
-import json
 import os
 import select
 import subprocess
@@ -14,6 +13,7 @@ import threading
 from pathlib import Path
 
 from nodes.drivers.sound_device import IN, OUT
+from text.nested import read_json
 
 PROGRAM = Path(__file__).with_name("sound_device.py")
 _CHUNK = 65_536
@@ -76,7 +76,7 @@ class SoundChild:
 
     def _message(self, line: bytes) -> dict[str, object] | None:
         with contextlib.suppress(ValueError):
-            told = json.loads(line)
+            told = read_json(line)
             if isinstance(told, dict):
                 return told
         self.last_words = line[:_LONGEST_LINE].decode("utf-8", "replace").strip()

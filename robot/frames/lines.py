@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robot.frames.protocols import FrameKind
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -70,11 +71,11 @@ def decode(text: str) -> tuple[list[FrameLine], int]:
 
 def _decoded(line: str) -> FrameLine | None:
     try:
-        fields = json.loads(line[:10_000])
+        fields = read_json(line[:10_000])
         time_s, way, text = float(fields["t"]), fields["way"], fields["text"]
         octets = bytes.fromhex(fields.get("hex", ""))
         kind, count = FrameKind(fields.get("kind", "frame")), int(fields.get("count", 0))
-    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
         return None
     if way not in WAYS or not isinstance(text, str) or not math.isfinite(time_s):
         return None

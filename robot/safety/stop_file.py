@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 from robot.safety.stop_place import stop_place
 from robot.safety.stop_record import Stop, StopRecord, read_record
+from text.nested import read_json
 from text.os_words import os_reason
 
 _LONGEST = 8192
@@ -168,7 +169,7 @@ def _bytes(place: Path) -> bytes:
 
 def _parse(text: bytes) -> tuple[frozenset[Stop], KeptStop]:
     """Read the file of a stop; one of an older Deck has no name for it but its time."""
-    document = json.loads(text)
+    document = read_json(text)
     since_s = float(document["since"])
     stop = KeptStop(
         since_s, str(document["by"]), str(document.get("publishers", "")), remembered=True
@@ -180,7 +181,7 @@ def _parse(text: bytes) -> tuple[frozenset[Stop], KeptStop]:
 def _parse_released(place: Path) -> StopRecord:
     """Read what was released; what cannot be read releases nothing."""
     try:
-        return read_record("", str(json.loads(_bytes(place))["released"]))
+        return read_record("", str(read_json(_bytes(place))["released"]))
     except _NO_SENSE:
         return StopRecord()
 

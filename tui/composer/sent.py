@@ -12,6 +12,8 @@ from pathlib import Path
 
 from platformdirs import user_state_path
 
+from text.nested import read_json
+
 KEPT = 50
 LONGEST = 64 * 1024
 
@@ -58,8 +60,8 @@ class Sent:
 
 def _read(path: Path) -> list[str]:
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
+        found = read_json(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
         return []
     texts = found if isinstance(found, list) else []
     return [text for text in texts if isinstance(text, str) and len(text) <= LONGEST][-KEPT:]

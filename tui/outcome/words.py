@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import TYPE_CHECKING, Any
 
 from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL
 from text.figures import figure, whole
 from text.i18n import _
+from text.nested import read_json
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -77,8 +77,8 @@ def joint(value: Mapping[str, Value], name: str, field: str = "position") -> flo
 def event_of(value: Mapping[str, Value]) -> dict[str, Any]:
     """The JSON object in a std_msgs/String, empty if there is none."""
     try:
-        found = json.loads(str(value.get("data")))
-    except (ValueError, RecursionError):
+        found = read_json(str(value.get("data")))
+    except ValueError:
         return {}
     return found if isinstance(found, dict) else {}
 

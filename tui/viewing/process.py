@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import sys
 from asyncio.subprocess import PIPE, Process
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from text.i18n import language
+from text.nested import read_json
 from text.plain import plain_lines
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ async def start_view(domain: int, options: Sequence[str] = ()) -> ViewProcess:
     if not line:
         await process.wait()
         raise NotOpenedError(await words)
-    told = json.loads(line)
+    told = read_json(line)
     opened = OpenedView(str(told["url"]), tuple(told["ports"]), str(told["ssh"]))
     return ViewProcess(process, opened, words)
 

@@ -69,7 +69,7 @@ class InPieces:
         try:
             while not gate.wait(0.02):
                 # A comment, which says nothing: it fails once the other end has hung up.
-                exchange._send(b": \n\n")
+                exchange.bytes(b": \n\n")
         except OSError:
             self.hung_up.set()
             raise

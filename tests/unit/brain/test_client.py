@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 import json
 import socket
+import tracemalloc
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -189,10 +191,14 @@ async def test_silence_before_and_after_the_first_word_ends() -> None:
         servers[0].closing.wait(20)
 
     servers: list[ModelServer] = []
-    for script, setting in ((silent, "first_token_s"), (stuck, "timeout_s")):
+    cases: tuple[tuple[Script, str, dict[str, Any]], ...] = (
+        (silent, "first_token_s", {"first_token_s": 0.3, "timeout_s": 60.0}),
+        (stuck, "timeout_s", {"first_token_s": 60.0, "timeout_s": 0.8}),
+    )
+    for script, setting, limits in cases:
         with ModelServer(script) as server:
             servers[:] = [server]
-            async with client_of(server, first_token_s=0.3, timeout_s=0.8) as client:
+            async with client_of(server, **limits) as client:
                 with pytest.raises(ModelError) as raised:
                     await client.ask(ASKED)
         assert raised.value.kind is FaultKind.TIMEOUT
@@ -247,6 +253,73 @@ async def test_an_answer_without_end_is_cut_off() -> None:
         fault = await fault_with(script)
         assert fault.kind is FaultKind.TOO_LONG
         assert "has no end" in str(fault)
+
+
+async def test_a_packed_answer_is_not_asked_for_and_bounded_as_unpacked() -> None:
+    """A megabyte of a bomb would be a gigabyte."""
+    packed_bomb = gzip.compress(b"data: " + bytes(64 << 20))
+
+    def bomb(exchange: Exchange) -> None:
+        assert exchange.headers["accept-encoding"] == "identity"
+        exchange.begins("gzip")
+        exchange.bytes(packed_bomb)
+
+    tracemalloc.start()
+    try:
+        fault = await fault_with(bomb)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert (fault.kind, str(fault)) == (FaultKind.TOO_LONG, "the answer has no end: cut off")
+    assert peak < 32 << 20
+
+    def honest(exchange: Exchange) -> None:
+        whole = {"id": "c", "object": "chat.completion.chunk", "created": 0, "model": "m"}
+        choice = {"index": 0, "delta": {"content": "packed"}, "finish_reason": "stop"}
+        event = f"data: {json.dumps({**whole, 'choices': [choice]})}\n\ndata: [DONE]\n\n"
+        packed = gzip.compress(event.encode())
+        exchange.begins("gzip")
+        exchange.bytes(packed[:20])
+        exchange.bytes(packed[20:] + b"\r\n0")
+
+    with ModelServer(honest) as server:
+        async with client_of(server) as client:
+            assert (await client.ask(ASKED)).text == "packed"
+
+    def no_gzip(exchange: Exchange) -> None:
+        exchange.begins("gzip")
+        exchange.bytes(b"data: {}")
+
+    assert (await fault_with(no_gzip)).kind is FaultKind.NOT_AN_API
+    fault = await fault_with(lambda exchange: exchange.begins("br"))
+    assert str(fault) == "the server packs its answers by br"
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        "[" * 200_000,
+        '{"choices":' + "[" * 900 + "]" * 900 + "}",
+        '{"choices": [5]}',
+        '{"choices": 5}',
+        '{"choices": [{"index": 0, "delta": {"content": 5}}]}',
+        '{"choices": [{"index": 0, "delta": {"content": [["x"]]}}]}',
+        '{"choices": [{"index": 0, "delta": "x"}]}',
+        '{"choices": [{"index": 0, "delta": {}, "finish_reason": ["stop"]}]}',
+        '{"choices": [], "usage": {"prompt_tokens": [1], "completion_tokens": "many"}}',
+        '{"choices": [], "usage": 7}',
+    ],
+)
+async def test_an_event_of_another_shape_is_told_and_does_not_get_out(event: str) -> None:
+    """Whatever a server puts into its stream, the end is in words."""
+
+    def shaped(exchange: Exchange) -> None:
+        exchange.begins()
+        exchange.event(event)
+        exchange.ends()
+
+    fault = await fault_with(shaped)
+    assert fault.kind in (FaultKind.NOT_AN_API, FaultKind.EMPTY, FaultKind.CUT)
 
 
 async def test_a_web_page_is_no_model() -> None:

@@ -222,7 +222,20 @@ async def test_however_a_talk_ends_it_is_told() -> None:
         await talk.begins()
         await talk.send("response.output_audio.delta", delta="!", response_id="r", item_id="i")
 
+    async def deep(talk: Talk) -> None:
+        await talk.text("[" * 200_000)
+
+    async def no_event(talk: Talk) -> None:
+        await talk.text("[1]")
+
+    async def empty(talk: Talk) -> None:
+        await talk.begins()
+        await talk.send("response.done")
+
     cases = [
+        (deep, FaultKind.NOT_AN_API, "cannot be read"),
+        (no_event, FaultKind.NOT_AN_API, "cannot be read"),
+        (empty, FaultKind.NOT_AN_API, "cannot be read"),
         (Talk.hang_up, FaultKind.CUT, "lost"),
         (fails, FaultKind.SERVER, "overloaded ***"),
         (error, FaultKind.SERVER, "bad ***"),

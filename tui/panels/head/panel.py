@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.topics import HEAD_STATE, LLM_RESULT
 from text.i18n import N_, _
+from text.nested import read_json
 from tui.panels.head.reading import HeadReading, head_in
 from tui.panels.head.widget import HeadView
 from tui.panels.joints import Joints
@@ -57,7 +57,7 @@ class HeadPanel(Panel):
 
     def _hear(self, text: str) -> None:
         try:
-            said: Any = json.loads(text)
+            said: Any = read_json(text)
             if said["event"] == "head":
                 drawing = self.query_one(HeadView)
                 drawing.command(HeadReading(float(said["pan"]), float(said["tilt"])))
@@ -65,7 +65,7 @@ class HeadPanel(Panel):
                     drawing.answer(str(said["error"]))
                 else:
                     drawing.answer(_("done") if said.get("sum") == 1 else _("refused"))
-        except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
+        except (ValueError, KeyError, TypeError, OverflowError):
             # Anybody may publish there; messages in another format are ignored.
             return
 
