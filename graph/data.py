@@ -414,3 +414,6 @@ class GraphUpdate:
     """Every container of components, likewise."""
     error: str = ""
     """Set when the observer cannot work at all: rclpy is missing, the domain is refused."""
+    old_since_s: float | None = None
+    """Unix time from which on nothing has been heard of the graph: the observer does not answer, or
+    is being made anew. The rest is what was known then. None as a rule."""

@@ -74,12 +74,14 @@ class Ros:
             time.sleep(_LOOK_S)
 
 
-def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observer") -> Ros:
+def open_ros(
+    domain: int, discovery: str | tuple[str, ...], role: str = "observer", owner: int = 0
+) -> Ros:
     """Join the domain; takes a tenth of a second or more, most of it the import of rclpy.
 
-    `discovery` is `localhost`, `subnet`, or the addresses of the peers to be found; `role` is
-    part of the node's name. Raises ImportError without ROS, ValueError for a domain that does not
-    exist, and what rclpy raises.
+    `discovery` is `localhost`, `subnet`, or the addresses of the peers to be found; `role` and
+    `owner`, a process, if it is not this one, are part of the node's name. Raises ImportError
+    without ROS, ValueError for a domain that does not exist, and what rclpy raises.
     """
     if domain not in DOMAINS:
         raise ValueError(f"domain {domain} is not between {DOMAINS[0]} and {DOMAINS[-1]}")
@@ -97,7 +99,7 @@ def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observe
         context.init(args=[], initialize_logging=False, domain_id=domain)
         set_logger_level("", LoggingSeverity.FATAL)
         node = Node(
-            f"{NAME_PREFIX}{role}_{os.getpid()}",
+            f"{NAME_PREFIX}{role}_{owner or os.getpid()}",
             context=context,
             use_global_arguments=False,
             enable_rosout=False,

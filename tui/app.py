@@ -364,8 +364,10 @@ class DeckApp(App[int], Acting):
         finally:
             self.feed.hand_over(update)
         front = self.feed.front
-        if self.feed.watching and front and (before is None or before.nodes != update.nodes):
-            # The title shows how many there are.
+        grown_old = update.old_since_s != (None if before is None else before.old_since_s)
+        counted = self.feed.watching and (before is None or before.nodes != update.nodes)
+        if front and (grown_old or counted):
+            # The title shows how many there are, and from when that is.
             front.show_frame()
         if self.bypass.see(update, self.feed.nodes):
             self._tell_of_bypass()

@@ -40,9 +40,10 @@ class GoalError(Exception):
 class Goals:
     """All goals that have been sent, until they are forgotten."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, first_number: int = 1) -> None:
+        """Count them from `first_number` on."""
         self._node = node
-        self._numbers = itertools.count(1)
+        self._numbers = itertools.count(first_number)
         self._lives: dict[int, GoalLife] = {}
         self._clients: dict[tuple[str, str], PolledActionClient] = {}
         self._sent: set[bytes] = set()

@@ -197,11 +197,16 @@ class SeenGoals:
         """Ask for a goal that has not ended to be cancelled, if its action is watched."""
         seen = self._actions.get(action)
         status = None if seen is None else seen.status_of(goal_id)
-        if seen is None or status is None or status.ended or goal_id in self._cancelling:
+        if seen is not None and status is not None and not status.ended:
+            self.cancel_lost(action, seen.type_name, goal_id)
+
+    def cancel_lost(self, action: str, type_name: str, goal_id: str) -> None:
+        """Ask for a goal to be cancelled, whether anything is known of it or not."""
+        if goal_id in self._cancelling:
             return
         self._errors.pop(goal_id, None)
         try:
-            self._cancelling[goal_id] = Cancelling(self._node, action, seen.type_name, goal_id)
+            self._cancelling[goal_id] = Cancelling(self._node, action, type_name, goal_id)
         except Exception as error:  # noqa: BLE001 - an unknown type, or what rclpy raises
             self._errors[goal_id] = say("it cannot be cancelled: {error}", error=str(error))
 

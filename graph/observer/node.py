@@ -1,4 +1,4 @@
-"""Everything that the observer's thread owns: the node, the last known graph, the subscriptions."""
+"""Everything that the observer's loop owns: the node, the last known graph, the subscriptions."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from graph.frames.book import FRAME_TOPICS, FrameBook
 from graph.frames.reading import TF_MESSAGE
 from graph.messages.decoding import decoder
 from graph.observer.interest import Interest
+from graph.observer.settings import LOOK_AT_GRAPH_S
 from graph.observer.taps import Taps
 from graph.publishing.dead_man_switch import DeadManSwitch
 from graph.publishing.outbox import Outbox
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
     from graph.ros import Ros
     from graph.scan.endpoints import TopicEnds
 
-LOOK_AT_GRAPH_S = 0.25
-"""Often enough for a reader of the screen."""
 PENDING_S = 0.01
 """How often calls and messages under way are polled."""
 RESCAN_S = 3.0
@@ -42,14 +41,17 @@ RESCAN_S = 3.0
 class ObserverNode:
     """One open node at work; no method blocks."""
 
-    def __init__(self, ros: Ros, graph_s: float = LOOK_AT_GRAPH_S) -> None:
-        """Take a node; it looks at the graph every `graph_s` seconds."""
+    def __init__(self, ros: Ros, graph_s: float = LOOK_AT_GRAPH_S, first_number: int = 1) -> None:
+        """Take a node; it looks at the graph every `graph_s` seconds.
+
+        `first_number`: of its goals and of its publications.
+        """
         self.graph_s = graph_s
         self.calls = Calls(ros.node)
         self.outbox = Outbox(ros.node)
-        self.goals = Goals(ros.node)
+        self.goals = Goals(ros.node, first_number)
         self.seen_goals = SeenGoals(ros.node, self.goals.has_sent)
-        self.publications = RepeatedPublications(ros.node)
+        self.publications = RepeatedPublications(ros.node, first_number)
         self.dead_man_switch = DeadManSwitch(ros.node)
         self.exchanges = Exchanges(self.calls, self._known_node, self._known_service)
         self.parameters = ParameterCalls(self.exchanges)

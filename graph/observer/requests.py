@@ -1,4 +1,4 @@
-"""Requests from other threads to the observer, and the queue that carries them to its thread."""
+"""Requests to the observer, and the queue that they wait in until its loop carries them out."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class ObserverError(Exception):
 
 
 class Request(Protocol):
-    """Something to be done on the observer's thread."""
+    """Something to be done in the observer's loop."""
 
     def carry_out(self, node: ObserverNode) -> None:
         """Perform it; may raise anything."""
@@ -145,7 +145,7 @@ class Begin(Generic[T]):
     """Start something whose end a future reports."""
 
     begin: Callable[[ObserverNode, Future[T]], None]
-    """Called on the observer's thread; may raise anything."""
+    """Called in the observer's loop; may raise anything."""
     refusal: Callable[[Exception], T] | None = None
     """Makes the result that says why not, for a future that must never raise."""
     future: Future[T] = field(default_factory=Future)
@@ -166,11 +166,9 @@ class Begin(Generic[T]):
 
 
 class RequestQueue:
-    """Takes requests on any thread; the observer's own carries them out."""
+    """Takes requests on any thread; the observer's loop carries them out."""
 
-    def __init__(self, wake: threading.Event) -> None:
-        """`wake` is set when there is something to do."""
-        self._wake = wake
+    def __init__(self) -> None:
         self._requests: deque[Request] = deque()
         self._urgent: deque[UrgentRequest] = deque()
         self._lock = threading.Lock()
@@ -211,7 +209,6 @@ class RequestQueue:
                 queue.append(entry)
         if failure is not None:
             request.fail(failure)
-        self._wake.set()
 
 
 def _always(_node: ObserverNode) -> bool:

@@ -75,9 +75,10 @@ class _Repeated:
 class RepeatedPublications:
     """Everything that is being published, each with a publisher of its own."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, first_number: int = 1) -> None:
+        """Count them from `first_number` on."""
         self._node = node
-        self._numbers = itertools.count(1)
+        self._numbers = itertools.count(first_number)
         self._repeated: dict[int, _Repeated] = {}
 
     def start(

@@ -15,6 +15,7 @@ from graph.data import GraphUpdate, NodeRow, Sample, TopicRow
 from graph.observer.observer import Observer
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
 from tests import ports
+from tests.ros.observer_thread import ObserverThread
 from tests.waiting import wait_until
 
 ROOT = Path(__file__).parents[2]
@@ -90,10 +91,15 @@ class Peer:
 
 
 class Watcher:
-    """An observer and all that it has handed over."""
+    """An observer and all that it has handed over.
 
-    def __init__(self, domain: int, **settings: Any) -> None:
+    `apart`: in a process of its own, as everywhere but here.
+    """
+
+    def __init__(self, domain: int, *, apart: bool = False, **settings: Any) -> None:
         self.observer = Observer(domain, "localhost", **settings)
+        if not apart:
+            self.observer._client.started = ObserverThread
         self.update = GraphUpdate(0.0)
         self.updates = 0
         self.samples: dict[str, list[Sample]] = {}

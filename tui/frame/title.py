@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from text.i18n import _, localized, ngettext, pick
 from text.plain import plain
+from tui.clock import time_of_day
 from tui.emergency.state import held_reason
 from tui.emergency.words import stop_words
 from tui.frame.actions.app import TABS, EmergencyRelease
@@ -39,12 +40,14 @@ def look(app: Host) -> str:
     """Return the style of the title.
 
     `stop` while stopped, `danger` while somebody drives past the gate, `alarm` while the gate
-    holds.
+    holds, or what is shown of the graph is old.
     """
     if app.feed.link is None:
         return "state"
     if app.emergency.state.engaged:
         return "stop"
+    if _old_since_s(app) is not None:
+        return "alarm"
     if app.bypass.now:
         return "danger"
     return "alarm" if app.emergency.state.blocked else "state"
@@ -63,13 +66,23 @@ def states(app: Host) -> Sequence[str]:
             return (localized(app.feed.ended), _("ended"))
         opening = app.sessions.opening
         return (_("opening {name}…").format(name=plain(opening)),) if opening else ()
-    if app.emergency.state.engaged:
-        return _where(session, stop_words(app.emergency.state, app.keys_of(EmergencyRelease)[0]))
-    if app.bypass.now:
-        return _where(session, app.bypass.words())
-    if app.emergency.state.blocked:
-        return _where(session, _held(app.emergency.state))
+    alarm = _alarm(app)
+    if alarm:
+        return _where(session, alarm)
     return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
+
+
+def _alarm(app: Host) -> Sequence[str]:
+    """Return the texts of what `look` is about; none if nothing is amiss."""
+    if app.emergency.state.engaged:
+        return stop_words(app.emergency.state, app.keys_of(EmergencyRelease)[0])
+    old_since_s = _old_since_s(app)
+    if old_since_s is not None:
+        # Whatever else there is to say was true then.
+        return _old(old_since_s)
+    if app.bypass.now:
+        return app.bypass.words()
+    return _held(app.emergency.state) if app.emergency.state.blocked else ()
 
 
 def aside(app: Host) -> str:
@@ -86,6 +99,20 @@ def _where(session: SessionInfo, alarm: Sequence[str]) -> Sequence[str]:
 def domain_words(session: SessionInfo) -> str:
     """Return the ROS domain, which is in the title at every size."""
     return _("domain {domain}").format(domain=session.domain)
+
+
+def _old_since_s(app: Host) -> float | None:
+    update = app.feed.update
+    return None if update is None else update.old_since_s
+
+
+def _old(since_s: float) -> Sequence[str]:
+    """Return that nothing is heard of the graph, and since when."""
+    time = time_of_day(since_s)
+    return (
+        _("⚠ No word of the ROS graph since {time}: what is shown is from then").format(time=time),
+        _("⚠ graph of {time}").format(time=time),
+    )
 
 
 def _held(state: Emergency) -> Sequence[str]:

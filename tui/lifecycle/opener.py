@@ -1,13 +1,12 @@
 """Live sessions: the supervisor and the observer behind the screen's two ports.
 
 Neither is imported before the first frame has been drawn, and then in a thread: importing pydantic
-and rclpy takes time.
+takes time. rclpy is imported by the observer's process alone.
 """
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import os
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -35,8 +34,6 @@ if TYPE_CHECKING:
     from tui.session.ports import GraphLink, JudgeLink, SessionLink
     from tui.session.requests import OpenRequest, ReplayRequest
 
-OF_ROS = ("rclpy.node", "rclpy.event_handler", "rclpy.serialization", "sensor_msgs.msg")
-"""Modules that the observer needs in nearly every lesson."""
 OF_SCREEN = ("tui.deck.screen", "tui.widgets.half_blocks")
 """Modules that show a lesson, besides its panels."""
 
@@ -73,14 +70,16 @@ class LiveOpener:
         return choose_domain(asked, None, os.environ)
 
     async def prepare(self) -> None:
-        """Import, here and in a supervisor, the modules that every profile needs."""
+        """Import what every profile needs, here, in a supervisor, and in an observer's process."""
         await self._start_ahead()
+        await _imported("graph.observer.process.started")
+        from graph.observer.process.started import start_ahead
+
+        # If ROS is missing, the nodes and the observer report that later.
+        start_ahead()
         await _imported(
             "launcher.client.client", "launcher.runs.shared_domain", "graph.observer.observer"
         )
-        # If ROS is missing, the nodes and the observer report that later.
-        with contextlib.suppress(ImportError):
-            await _imported(*OF_ROS)
         # Done now, because after a lesson is chosen its nodes need the processors.
         await _imported(*OF_SCREEN, *(entry.module for entry in PANELS.values()))
 

@@ -8,15 +8,12 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from graph.data import GraphUpdate, Sample
+from graph.observer.merging import merged
 
-KEPT_SAMPLES = 256
-KEPT_BYTES = 32 * 1024 * 1024
-"""Limit for one topic while the app does not take them; the newest sample is always kept."""
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate
 
 
 class GraphInbox:
@@ -41,22 +38,3 @@ class GraphInbox:
         with self._lock:
             update, self._waiting = self._waiting, None
         return update
-
-
-def merged(older: GraphUpdate, newer: GraphUpdate) -> GraphUpdate:
-    """Return `newer` with the samples of both, each topic's in order and limited in size."""
-    samples: dict[str, tuple[Sample, ...]] = dict(older.samples)
-    for topic, fresh in newer.samples.items():
-        samples[topic] = _newest((*samples.get(topic, ()), *fresh))
-    return replace(newer, samples=samples)
-
-
-def _newest(samples: tuple[Sample, ...]) -> tuple[Sample, ...]:
-    """Return as many of the newest samples as the limit allows."""
-    kept = samples[-KEPT_SAMPLES:]
-    room = KEPT_BYTES
-    for count, sample in enumerate(reversed(kept)):
-        room -= sample.size_bytes
-        if room < 0 and count:
-            return kept[-count:]
-    return kept

@@ -145,7 +145,8 @@ def test_a_server_that_dies_during_the_call_ends_in_a_time_out(
     dying.serve("/dying", after_s=60.0)
     wait_until(lambda: watcher.serves("/dying"), "the service")
     future = watcher.observer.call("/dying", ADD, {"a": 1, "b": 2}, timeout_s=2.0)
-    wait_until(future.running, "the call is under way")
+    # Orders are carried out in turn: when this one is done, the call is under way.
+    watcher.observer.prepare_publisher("/later", "std_msgs/msg/Bool").result(20)
     dying.kill()
     assert "no answer" in future.result(30).error
     dying.close()

@@ -14,9 +14,11 @@ import pytest
 
 from graph.data import GraphUpdate
 from graph.observer.interest import Interest
+from graph.observer.loop import ObserverLoop
 from graph.observer.node import ObserverNode
 from graph.observer.observer import Observer
 from graph.observer.requests import ObserverError
+from graph.observer.settings import Settings
 from tests.middleware_words import own_words
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
@@ -133,9 +135,10 @@ def test_a_domain_that_is_refused_is_told_and_so_is_every_order(
     observer.stop()
 
 
-def test_a_machine_without_ros_is_told_in_words(ros_domain: int) -> None:
+def test_a_machine_without_ros_is_told_in_words(ros_domain: int, tmp_path: Path) -> None:
+    (tmp_path / "rclpy.py").write_text("raise ImportError('no rclpy')")
     program = (
-        "import sys, threading; sys.modules['rclpy'] = None\n"
+        f"import sys, threading; sys.path.insert(0, {str(tmp_path)!r})\n"
         "from graph.observer.observer import Observer\n"
         f"told = threading.Event(); observer = Observer({ros_domain})\n"
         "observer.start(lambda update: (print(update.error), told.set()))\n"
@@ -163,6 +166,25 @@ def test_a_screen_that_fails_to_take_an_update_gets_the_next(ros_domain: int) ->
     peer.close()
 
 
+class Listener:
+    """Whom a loop works for in this process; it has it stop once it has seen the graph."""
+
+    def __init__(self, domain: int) -> None:
+        self.updates: list[GraphUpdate] = []
+        self.loop = ObserverLoop(Settings(domain), self)
+
+    def tell(self, update: GraphUpdate) -> None:
+        self.updates.append(update)
+        if update.nodes:
+            self.loop.stop()
+
+    def wait(self, within_s: float) -> None:
+        time.sleep(within_s)
+
+    def look(self) -> bool:
+        return False
+
+
 def test_one_look_that_fails_is_told_and_the_next_has_another_chance(
     ros_domain: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -174,16 +196,13 @@ def test_one_look_that_fails_is_told_and_the_next_has_another_chance(
         return look(node, interest)
 
     monkeypatch.setattr(ObserverNode, "look", failing)
-    updates: list[GraphUpdate] = []
-    peer, observer = Peer("talker", ros_domain), Observer(ros_domain)
-    observer.start(updates.append)
-    wait_until(lambda: any(u.nodes for u in updates), "the graph")
-    assert [u.error for u in updates[:2]] == [
+    peer, listener = Peer("talker", ros_domain), Listener(ros_domain)
+    listener.loop.run()
+    assert [u.error for u in listener.updates[:2]] == [
         "the ROS graph: and another",
         "the ROS graph: the node went",
     ]
-    assert updates[-1].error == ""
-    observer.stop()
+    assert listener.updates[-1].error == ""
     peer.close()
 
 

@@ -211,7 +211,8 @@ def test_a_node_that_leaves_in_mid_talk_is_told_at_once(
     assert "use_sim_time" in rows(watcher, "/leaving")
     os.kill(leaving.process.pid, signal.SIGSTOP)
     read = watcher.observer.parameters("/leaving", timeout_s=60)
-    wait_until(read.running, "the question is under way")
+    # Orders are carried out in turn: when this one is done, the question is under way.
+    watcher.observer.prepare_publisher("/later", "std_msgs/msg/Bool").result(20)
     os.kill(leaving.process.pid, signal.SIGCONT)
     leaving.close()
     # It may have answered before it went; if not, nobody waits for a minute.

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from graph.data import GraphUpdate, Sample
-from tui.session.inbox import KEPT_BYTES, KEPT_SAMPLES, GraphInbox
+from graph.observer.merging import KEPT_BYTES, KEPT_SAMPLES
+from tui.session.inbox import GraphInbox
 
 
 def put(inbox: GraphInbox, number: int, size_bytes: int = 8) -> None:

@@ -8,9 +8,11 @@ from typing import Any, cast
 
 import pytest
 
+from graph.data import GraphUpdate
+from graph.observer.loop import ObserverLoop
 from graph.observer.node import ObserverNode
-from graph.observer.observer import Observer
 from graph.observer.requests import ObserverError
+from graph.observer.settings import Settings
 from graph.publishing.dead_man_switch import HeldCommand
 from text.i18n import localized
 from text.sentences import say
@@ -66,30 +68,47 @@ def command() -> HeldCommand:
     return HeldCommand({}, {}, 20.0, time.monotonic() + 1.0)
 
 
+class Nobody:
+    """Nobody gives orders while these requests are carried out."""
+
+    def tell(self, update: GraphUpdate) -> None:
+        raise AssertionError(update)
+
+    def wait(self, within_s: float) -> None:
+        raise AssertionError(within_s)
+
+    def look(self) -> bool:
+        return False
+
+
+def a_loop() -> ObserverLoop:
+    return ObserverLoop(Settings(1), Nobody())
+
+
 def test_what_cannot_wait_is_done_in_the_middle_of_a_look() -> None:
-    observer, desk = Observer(1), Desk("/stop", "/drive")
+    loop, desk = a_loop(), Desk("/stop", "/drive")
     node = cast("ObserverNode", desk)
-    chatter = observer.publish("/chatter", BOOL, STOP)
-    held = observer.hold("/drive", BOOL, command())
-    stop = observer.publish("/stop", BOOL, STOP, latched=True)
-    observer.let_go("/drive")
-    observer._serve_urgent(node)
+    chatter = loop.orders.publish("/chatter", BOOL, STOP, False)
+    held = loop.orders.hold("/drive", BOOL, command())
+    stop = loop.orders.publish("/stop", BOOL, STOP, True)
+    loop.orders.let_go("/drive")
+    loop.serve_urgent(node)
     assert desk.done == ["hold /drive", "publish /stop True", "let go of /drive", "step"]
     assert stop.done()
     assert held.done()
     assert not chatter.done()
-    observer._requests.carry_out(node)
+    loop._requests.carry_out(node)
     assert desk.done[4:] == ["look for /chatter", "publish /chatter False"]
 
 
 def test_what_needs_a_look_itself_waits_for_the_end_of_this_one() -> None:
-    observer, desk = Observer(1), Desk()
+    loop, desk = a_loop(), Desk()
     node = cast("ObserverNode", desk)
-    observer.hold("/drive", BOOL, command())
-    observer.publish("/stop", BOOL, STOP, latched=True)
-    observer._serve_urgent(node)
+    loop.orders.hold("/drive", BOOL, command())
+    loop.orders.publish("/stop", BOOL, STOP, True)
+    loop.serve_urgent(node)
     assert desk.done == ["step"]
-    observer._requests.carry_out(node)
+    loop._requests.carry_out(node)
     assert desk.done[1:] == [
         "look for /drive",
         "hold /drive",
@@ -99,21 +118,21 @@ def test_what_needs_a_look_itself_waits_for_the_end_of_this_one() -> None:
 
 
 def test_what_cannot_be_done_any_more_says_so() -> None:
-    observer = Observer(1)
-    before = observer.publish("/stop", BOOL, STOP, latched=True)
-    observer._requests.refuse(ObserverError("over"))
-    for future in (before, observer.publish("/stop", BOOL, STOP, latched=True)):
+    loop = a_loop()
+    before = loop.orders.publish("/stop", BOOL, STOP, True)
+    loop._requests.refuse(ObserverError("over"))
+    for future in (before, loop.orders.publish("/stop", BOOL, STOP, True)):
         with pytest.raises(ObserverError, match="over"):
             future.result(0)
 
 
 def test_why_ros_cannot_be_used_is_told_so_that_it_can_be_translated() -> None:
-    observer = Observer(1)
-    observer._requests.refuse(ObserverError(say("ROS cannot be used: {error}", error="no rclpy")))
+    loop = a_loop()
+    loop._requests.refuse(ObserverError(say("ROS cannot be used: {error}", error="no rclpy")))
     reasons = (
-        observer.parameters("/node").result(0).error,
-        observer.set_parameters("/node", {}).result(0).error,
-        observer.call("/service", "std_srvs/srv/Empty", {}).result(0).error,
+        loop.orders.parameters("/node", 1.0).result(0).error,
+        loop.orders.set_parameters("/node", {}, 1.0).result(0).error,
+        loop.orders.call("/service", "std_srvs/srv/Empty", {}, 1.0).result(0).error,
     )
     for reason in reasons:
         assert localized(reason, "ru") == "ROS не работает: no rclpy"
