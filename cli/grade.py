@@ -16,6 +16,7 @@ from course.grade.formats.words import look, message, remarks, title
 from course.grade.grades import GradeState
 from course.grade.grading import Domains, Terms, grade_all
 from course.grade.submission import check_gradable, default_folder, submissions
+from course.grade.walls import Walls, walls_for
 from course.lessons.catalog import find_lesson
 from course.results import State
 from launcher.errors import UsageError
@@ -55,8 +56,10 @@ def grade_command(options: Namespace) -> int:
     check_gradable(lesson)
     folders = [Path(name) for name in options.folders]
     chosen = submissions(lesson, folders or [default_folder(lesson, folder_of(lesson))])
+    walls = walls_for(lesson)
     terms = Terms(
         lesson,
+        walls=walls,
         seed=options.seed,
         bags=_bags(options.bag, chosen),
         within_s=options.within,
@@ -66,7 +69,7 @@ def grade_command(options: Namespace) -> int:
     domains = _domains(options)
     writer = writer_of(options.format, len(chosen)) if options.format else None
     output = _writable(options.output) if options.output else None
-    _tell_of_confinement()
+    _tell_of_confinement(walls)
     # What escapes from an examiner that was killed becomes a child of this process, and is ended.
     become_subreaper()
     report = _GradeReport(len(chosen), aloud=writer is None or output is not None)
@@ -133,8 +136,15 @@ def _put(text: str, output: Path | None) -> None:
     sys.stdout.flush()
 
 
-def _tell_of_confinement() -> None:
+def _tell_of_confinement(walls: Walls) -> None:
     kind = confinement()
+    if walls is Walls.NONE:
+        say_error(
+            _(
+                "deck: here, what is graded cannot be kept in a room of its own (neither by "
+                "bubblewrap nor by user namespaces): it sees your files and this machine's network"
+            )
+        )
     if kind is Confinement.NONE:
         say_error(
             _(

@@ -22,10 +22,11 @@ from text.nested import read_json
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, AsyncIterator, Mapping
+    from collections.abc import AsyncGenerator, AsyncIterator, Mapping, Sequence
 
     from course.grade.protocol import ExamRequest
 
+EXAMINER = (sys.executable, "-m", "course.grade")
 GRACE_S = 15.0
 """How much longer an examiner may take than its nodes."""
 ENDED_WITHIN_S = 15.0
@@ -42,13 +43,17 @@ class Examiners:
         """Held while there is a child that is not yet known to be an examiner."""
 
     async def start(
-        self, channel: socket.socket, log: Path, environ: Mapping[str, str]
+        self,
+        command: Sequence[str],
+        channel: socket.socket,
+        log: Path,
+        environ: Mapping[str, str],
     ) -> asyncio.subprocess.Process:
-        """Start one that talks on this channel."""
+        """Start one by this command; it talks on this channel."""
         async with self._starting:
             with log.open("wb") as words:
                 process = await asyncio.create_subprocess_exec(
-                    *(sys.executable, "-m", "course.grade", str(channel.fileno())),
+                    *(*command, str(channel.fileno())),
                     # In that folder `course` is this package, whatever the user's contains.
                     cwd=Path(course.__file__).parent.parent,
                     stdin=asyncio.subprocess.DEVNULL,
@@ -75,7 +80,14 @@ class Examiners:
 class Examination:
     """One examiner, from start to end, with all that it leaves behind."""
 
-    def __init__(self, place: Path, request: ExamRequest, examiners: Examiners) -> None:
+    def __init__(
+        self,
+        place: Path,
+        request: ExamRequest,
+        examiners: Examiners,
+        command: Sequence[str],
+    ) -> None:
+        """`command`: EXAMINER, or what runs it behind walls."""
         self.reason = ""
         """Why it did not come to its end; empty if it did."""
         self.taken = False
@@ -83,6 +95,7 @@ class Examination:
         self._place = place
         self._request = request
         self._examiners = examiners
+        self._command = command
         self._ended = False
 
     async def events(self) -> AsyncGenerator[dict[str, Any], None]:
@@ -90,7 +103,7 @@ class Examination:
         ours, theirs = socket.socketpair()
         words = self._place / "examiner.log"
         environ = environment_of(self._place, os.environ)
-        process = await self._examiners.start(theirs, words, environ)
+        process = await self._examiners.start(self._command, theirs, words, environ)
         theirs.close()
         reader, writer = await asyncio.open_connection(sock=ours, limit=MOST_BYTES)
         watching = asyncio.ensure_future(self._watch(process))

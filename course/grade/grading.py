@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from course.grade.defaults import WITHIN_S
 from course.grade.environment import own_places
-from course.grade.examination import Examination, Examiners
+from course.grade.examination import EXAMINER, Examination, Examiners
 from course.grade.grades import Grade, StepGrade, filled_up
 from course.grade.protocol import ExamRequest
 from course.grade.submission import (
@@ -25,6 +25,7 @@ from course.grade.submission import (
     check_gradable,
     files_of,
 )
+from course.grade.walls import Walls, within
 from course.proof.domains import unused_domains
 from course.proof.places import Places
 from course.protocol import unpack_step
@@ -56,6 +57,8 @@ class Terms:
     language: str = "en"
     confined: bool = True
     """Whether to confine the nodes, where the kernel can."""
+    walls: Walls = Walls.NONE
+    """What is around each examiner."""
     adopting: bool = False
     """Whether this process does nothing else, and adopts what examiners leave behind: then its
     other children are ended."""
@@ -239,7 +242,10 @@ class _Grading:
         """Grade it in this domain; also return whether somebody else is there."""
         place = Path(await asyncio.to_thread(tempfile.mkdtemp, prefix="deck-grade-"))
         try:
-            examination = Examination(place, self._prepared(place, domain), self._examiners)
+            request = self._prepared(place, domain)
+            # Found out before: they can be had.
+            shut_in = within(self._terms.walls, self._terms.lesson, place, EXAMINER) or EXAMINER
+            examination = Examination(place, request, self._examiners, shut_in)
             async with aclosing(examination.events()) as events:
                 async for event in events:
                     self._take(event)
@@ -249,6 +255,7 @@ class _Grading:
                 State.UNJUDGED,
                 examination.reason or say("it was not judged"),
             )
+            await asyncio.to_thread(self._keep_bag, place)
             grade = replace(self._grade, steps=steps, seed=self._seed, reason=examination.reason)
             return grade, examination.taken and not self._grade.steps
         finally:
@@ -262,7 +269,6 @@ class _Grading:
             own.mkdir(parents=True)
         self._starter.write(places.files)
         self._files.write(places.files, without=[FOLDERS_OWN])
-        bag = self._bag()
         return ExamRequest(
             lesson=str(lesson.path),
             place=str(place),
@@ -271,17 +277,19 @@ class _Grading:
             seed=self._seed,
             within_s=self._terms.within_s,
             language=self._terms.language,
-            bag=str(bag) if bag else "",
+            bag=str(_bag_in(place)) if self._terms.bags is not None else "",
         )
 
-    def _bag(self) -> Path | None:
-        if self._terms.bags is None:
-            return None
+    def _keep_bag(self, place: Path) -> None:
+        """Move the recording to where it was asked for: an examiner writes nowhere else."""
+        made = _bag_in(place)
+        if self._terms.bags is None or not made.is_dir():
+            return
         folder = self._terms.bags.absolute() / self._submission.student.replace("/", "-")
-        if self._grade.bag is not None:
-            shutil.rmtree(folder, ignore_errors=True)  # Of an attempt in another domain
+        shutil.rmtree(folder, ignore_errors=True)  # Of an attempt in another domain
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        shutil.move(made, folder)
         self._grade = replace(self._grade, bag=folder)
-        return folder
 
     def _take(self, event: dict[str, Any]) -> None:
         if event["event"] == "values":
@@ -296,3 +304,7 @@ class _Grading:
             step = StepGrade(document, result, float(event["seconds"]))
             self._grade = replace(self._grade, steps=(*self._grade.steps, step))
             self._on_step(self._submission, step)
+
+
+def _bag_in(place: Path) -> Path:
+    return place / "own" / "bag"

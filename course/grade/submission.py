@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from course.grade.metadata import Metadata
 from course.lessons.lesson import IGNORED
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
@@ -44,11 +45,14 @@ class Files:
     folder: Path
     contents: dict[Path, bytes] = field(default_factory=dict)
     """By path within the folder."""
+    metadata: dict[Path, Metadata] = field(default_factory=dict)
+    """Of the files and their folders; a folder comes before what is in it."""
 
     @classmethod
     def read(cls, folder: Path) -> Files:
         """Read a folder. Raises UnreadableError."""
         contents: dict[Path, bytes] = {}
+        metadata: dict[Path, Metadata] = {}
         size = 0
         try:
             for path in _files(folder):
@@ -63,7 +67,11 @@ class Files:
                             mb=MOST_BYTES // 1_000_000,
                         )
                     )
-                contents[path.relative_to(folder)] = data
+                name = path.relative_to(folder)
+                contents[name] = data
+                for each in (*reversed(name.parents), name):
+                    if each not in metadata:
+                        metadata[each] = Metadata.read(folder / each)
         except OSError as error:
             raise UnreadableError(
                 say(
@@ -72,7 +80,7 @@ class Files:
                     why=error.strerror or str(error),
                 )
             ) from error
-        return cls(folder, contents)
+        return cls(folder, contents, metadata)
 
     def below(self, name: str) -> Files:
         """Return those in a folder of it."""
@@ -94,18 +102,35 @@ class Files:
             target.write_bytes(data)
 
     def put_back(self) -> list[str]:
-        """Write those again that have been changed meanwhile; return their names."""
-        changed = []
+        """Make those again as they were that have been changed meanwhile; return their names."""
+        changed = [
+            str(name)
+            for name, metadata in self.metadata.items()
+            if name not in self.contents and _again(metadata, self.folder / name)
+        ]
         for name, data in self.contents.items():
             path = self.folder / name
+            # First, for it may not be readable any more.
+            other = name in self.metadata and _again(self.metadata[name], path)
             try:
                 same = stat.S_ISREG(path.lstat().st_mode) and _content(path, len(data)) == data
             except OSError:
                 same = False
             if not same:
-                changed.append(str(name))
                 _replace(path, data)
+                if name in self.metadata:
+                    _again(self.metadata[name], path)
+            if other or not same:
+                changed.append(str(name))
         return changed
+
+
+def _again(metadata: Metadata, path: Path) -> bool:
+    """Put it back as far as can be; a folder that is gone is made with its files."""
+    try:
+        return metadata.put_back(path)
+    except FileNotFoundError:
+        return False
 
 
 def _files(folder: Path) -> Iterator[Path]:

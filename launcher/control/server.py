@@ -29,6 +29,7 @@ from launcher.control.protocol import (
     unpack_stray,
 )
 from launcher.errors import StillRunningError, UnknownNodeError
+from launcher.processes.confinement import is_confined, is_elsewhere
 from text.nested import read_json
 from text.sentences import say
 
@@ -181,7 +182,9 @@ class ControlServer:
 
     async def _welcome(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         pid, uid = _peer(writer)
-        if uid != os.getuid() or not self._has_room():
+        # What a learner's file does in a grading is not what its teacher asks for.
+        strange = uid != os.getuid() or is_confined(pid) or is_elsewhere(pid)
+        if strange or not self._has_room():
             writer.close()
             return
         client = _Client(writer, ClientFeed(self._controlled.rings()))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import stat
+import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -78,6 +79,37 @@ async def test_only_the_user_can_reach_it(start: Launch) -> None:
     folder = run_dir() / client.session.run_id
     assert stat.S_IMODE((folder / "control.sock").stat().st_mode) == 0o600
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+
+
+CONFINED = """
+import os, sys
+from launcher.processes import system_calls
+from launcher.processes.confinement import confine
+
+# The first barrier is out of the way: this is about the second.
+system_calls._FAMILIES = (1, *system_calls._FAMILIES)
+confine([])
+from pathlib import Path
+from launcher.control.socket import connect
+try:
+    client = connect(Path(sys.argv[1]))
+    client.setblocking(True)
+    client.sendall(b'{"deck": %s}' + bytes([10]))
+    print("greeted" if client.recv(1) else "refused")
+except OSError:
+    print("refused")
+"""
+
+
+async def test_what_is_graded_cannot_reach_it(start: Launch) -> None:
+    client = await start(NODE)
+    program = CONFINED.replace("%s", str(VERSION))
+    folder = str(run_dir() / client.session.run_id)
+    graded = await asyncio.create_subprocess_exec(
+        *(sys.executable, "-c", program, folder), stdout=asyncio.subprocess.PIPE
+    )
+    out, _ = await graded.communicate()
+    assert out == b"refused\n"
 
 
 async def test_a_path_too_long_for_a_socket_is_none_for_a_session(

@@ -76,6 +76,33 @@ def test_a_gigabyte_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         Files.read(place)
 
 
+def test_mode_time_and_attributes_are_put_back(tmp_path: Path) -> None:
+    place = folder(tmp_path / "anna", mine="text", other="text")
+    (place / "inner").mkdir()
+    (place / "inner" / "more.py").write_text("text")
+    files = Files.read(place)
+    before = {path: path.stat() for path in place.rglob("*.py")}
+    (place / "mine.py").chmod(0)
+    (place / "inner").chmod(0)
+    os.utime(place / "other.py", (1, 1))
+    attributes = _can_mark(place / "other.py")
+    assert sorted(files.put_back()) == ["inner", "mine.py", "other.py"]
+    for path, info in before.items():
+        now = path.stat()
+        assert (now.st_mode, now.st_mtime_ns) == (info.st_mode, info.st_mtime_ns), path
+    assert attributes is False or os.listxattr(place / "other.py") == []
+    assert files.put_back() == []
+
+
+def _can_mark(path: Path) -> bool:
+    """Add an attribute, where the file system has them."""
+    try:
+        os.setxattr(path, "user.deck", b"x")
+    except OSError:
+        return False
+    return True
+
+
 def test_what_was_changed_is_put_back(tmp_path: Path) -> None:
     place = folder(tmp_path / "anna", mine="1", gone="2", kept="3", linked="4")
     files = Files.read(place)

@@ -1,63 +1,196 @@
-"""A confined process writes and signals no further than it may, and neither do its children."""
+"""A confined process reaches no further than it may, and neither do its children.
+
+All that it tries to harm is the test's own.
+"""
 
 from __future__ import annotations
 
 import json
+import os
+import socket
+import stat
 import subprocess
 import sys
+import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
-from launcher.processes.confinement import Confinement, confinement
+import pytest
+
+from launcher.processes.confinement import Confinement, confinement, is_confined
 
 TRIES = """
-import json, os, subprocess, sys
+import ctypes, fcntl, json, os, resource, shutil, socket, subprocess, sys, termios, threading
 from launcher.processes.confinement import confine
 
-own, other = sys.argv[1:]
+own, other, victim, terminal = sys.argv[1:]
 confine([own])
+libc = ctypes.CDLL(None, use_errno=True)
+there = f"{other}/there"
+victim = int(victim)
 
 def told(act):
     try:
         act()
-    except PermissionError:
-        return "refused"
+    except (OSError, ValueError) as error:
+        return f"refused: {type(error).__name__}"
     return "done"
+
+def call(number, *arguments):
+    if libc.syscall(number, *arguments) != 0:
+        raise OSError(ctypes.get_errno(), "refused")
 
 def write(path):
     open(path, "w").close()
+
+def connect():
+    with socket.socket(socket.AF_UNIX) as client:
+        client.connect(f"{other}/socket")
+
+def datagram():
+    for one in socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM):
+        one.sendto(b"x", f"{other}/datagrams")
+
+def typed():
+    fcntl.ioctl(os.open(terminal, os.O_RDONLY | os.O_NOCTTY), termios.TIOCSTI, b"x")
 
 child = "import os; os.kill(os.getppid(), 0); open(%r, 'w')" % f"{other}/child"
 print(json.dumps({
     "write": told(lambda: write(f"{own}/new")),
     "rename": told(lambda: os.rename(f"{own}/new", f"{own}/newer")),
+    "copy": told(lambda: shutil.copy2(f"{own}/newer", f"{own}/copy")),
     "null": told(lambda: write("/dev/null")),
+    "pair": told(socket.socketpair),
+    "udp": told(lambda: socket.socket(socket.AF_INET, socket.SOCK_DGRAM).bind(("127.0.0.1", 0))),
+    "own limit": told(lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0))),
+    "own priority": told(lambda: os.nice(1)),
+    "thread": told(threading.Thread(target=int).start),
     "write elsewhere": told(lambda: write(f"{other}/new")),
-    "remove elsewhere": told(lambda: os.unlink(f"{other}/there")),
-    "truncate elsewhere": told(lambda: os.truncate(f"{other}/there", 0)),
+    "remove elsewhere": told(lambda: os.unlink(there)),
+    "truncate elsewhere": told(lambda: os.truncate(there, 0)),
     "child": subprocess.run([sys.executable, "-c", child], stderr=-1).stderr.decode(),
-    "signal": told(lambda: os.kill(os.getppid(), 0)),
-    "read": open(f"{other}/there").read(),
+    "signal": told(lambda: os.kill(victim, 0)),
+    "read": open(there).read(),
+    "mode": told(lambda: os.chmod(there, 0)),
+    "mode by descriptor": told(lambda: os.fchmod(os.open(there, os.O_RDONLY), 0)),
+    "owner": told(lambda: os.chown(there, os.getuid(), os.getgid())),
+    "times": told(lambda: os.utime(there, (1, 1))),
+    "attribute": told(lambda: os.setxattr(there, "user.deck", b"x")),
+    "limit": told(lambda: resource.prlimit(victim, resource.RLIMIT_CPU, (1, 1))),
+    "priority": told(lambda: os.setpriority(os.PRIO_PROCESS, victim, 19)),
+    "priority of all": told(lambda: os.setpriority(os.PRIO_USER, 0, 19)),
+    "affinity": told(lambda: os.sched_setaffinity(victim, {0})),
+    "scheduler": told(lambda: os.sched_setscheduler(victim, os.SCHED_IDLE, os.sched_param(0))),
+    "idle disk": told(lambda: call(IOPRIO_SET, 1, victim, 3 << 13)),
+    "trace": told(lambda: call(PTRACE, 0x4206, victim, 0, 0)),
+    "namespace": told(lambda: call(UNSHARE, 0x10000000)),
+    "socket": told(connect),
+    "datagram": told(datagram),
+    "terminal": told(typed),
 }))
 """
+CALLS = {
+    "x86_64": {"IOPRIO_SET": 251, "PTRACE": 101, "UNSHARE": 272},
+    "aarch64": {"IOPRIO_SET": 30, "PTRACE": 117, "UNSHARE": 97},
+}
+OWN = ("write", "rename", "copy", "null", "pair", "udp", "own limit", "own priority", "thread")
 
 
-def tried(tmp_path: Path) -> dict[str, str]:
-    own, other = tmp_path / "own", tmp_path / "other"
-    own.mkdir()
-    other.mkdir()
-    (other / "there").write_text("text")
-    done = subprocess.run(
-        [sys.executable, "-c", TRIES, str(own), str(other)], capture_output=True, check=True
+@dataclass(frozen=True)
+class Tried:
+    """What a confined process could do, and what became of what it tried to harm."""
+
+    told: dict[str, str]
+    before: object
+    after: object
+
+
+def state(there: Path, victim: int) -> object:
+    """Everything of a file and a process that could have been changed."""
+    info = there.stat()
+    process = Path(f"/proc/{victim}")
+    numbers = process.joinpath("stat").read_text().rpartition(")")[2].split()
+    attributes = os.listxattr(there)
+    return (
+        (stat.S_IMODE(info.st_mode), info.st_uid, info.st_gid, info.st_mtime_ns, attributes),
+        (numbers[0] in "SR", numbers[16]),
+        process.joinpath("limits").read_text(),
+        sorted(os.sched_getaffinity(victim)),
+        os.sched_getscheduler(victim),
     )
-    found: dict[str, str] = json.loads(done.stdout)
-    return found
 
 
-def test_what_a_confined_process_may_do(tmp_path: Path) -> None:
-    found, kind = tried(tmp_path), confinement()
-    assert (found["write"], found["rename"], found["null"]) == ("done", "done", "done")
-    if kind is not Confinement.NONE:
-        assert found["write elsewhere"] == found["remove elsewhere"] == "refused"
-        assert found["read"] == "text"
-        assert "Permission denied" in found["child"]
-    assert (found["signal"] == "refused") == (kind is Confinement.FULL)
+@pytest.fixture(scope="module")
+def tried() -> Tried:
+    """Try everything once."""
+    with tempfile.TemporaryDirectory(dir="/tmp") as place:
+        own, other = Path(place, "own"), Path(place, "other")
+        own.mkdir()
+        other.mkdir()
+        there = other / "there"
+        there.write_text("text")
+        sleeping = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+        listening = socket.socket(socket.AF_UNIX)
+        listening.bind(str(other / "socket"))
+        listening.listen()
+        hearing = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        hearing.bind(str(other / "datagrams"))
+        ours, terminal = os.openpty()
+        before = state(there, sleeping.pid)
+        text = TRIES
+        for name, number in CALLS[os.uname().machine].items():
+            text = text.replace(name, str(number))
+        arguments = [str(own), str(other), str(sleeping.pid), os.ttyname(terminal)]
+        done = subprocess.run([sys.executable, "-c", text, *arguments], stdout=-1, check=True)
+        after = state(there, sleeping.pid)
+        sleeping.communicate(b"\n")
+        for one in (listening, hearing):
+            one.close()
+        os.close(ours)
+        os.close(terminal)
+        return Tried(json.loads(done.stdout), before, after)
+
+
+def test_what_a_confined_process_may_do(tried: Tried) -> None:
+    assert {name: tried.told[name] for name in OWN} == dict.fromkeys(OWN, "done")
+
+
+def test_what_it_may_not(tried: Tried) -> None:
+    kind = confinement()
+    if kind is Confinement.NONE:
+        return
+    for elsewhere in ("write elsewhere", "remove elsewhere", "truncate elsewhere"):
+        assert tried.told[elsewhere] == "refused: PermissionError"
+    assert tried.told["read"] == "text"
+    assert "Permission" in tried.told["child"] or "not permitted" in tried.told["child"]
+    assert tried.told["signal"].startswith("refused") == (kind is Confinement.FULL)
+
+
+@pytest.mark.parametrize(
+    "way",
+    [
+        "attribute", "limit", "priority", "priority of all", "affinity", "scheduler", "idle disk",
+        "trace", "namespace", "socket", "datagram", "terminal",
+    ],
+)  # fmt: skip
+def test_no_way_out(way: str, tried: Tried) -> None:
+    assert tried.told[way].startswith("refused")
+
+
+def test_nothing_else_is_harmed(tried: Tried) -> None:
+    assert tried.after == tried.before
+
+
+def test_a_confined_process_can_be_told(tmp_path: Path) -> None:
+    text = (
+        "import sys; from launcher.processes.confinement import confine; "
+        "confine([sys.argv[1]]); print('ready', flush=True); input()"
+    )
+    confined = subprocess.Popen(
+        [sys.executable, "-c", text, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    assert confined.stdout is not None
+    assert confined.stdout.readline() == b"ready\n"
+    told = is_confined(confined.pid), is_confined(os.getpid())
+    confined.communicate(b"\n")
+    assert told == (True, False)

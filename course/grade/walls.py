@@ -1,0 +1,144 @@
+"""Walls around a grading: namespaces of its own, in which the rest of this machine is not.
+
+All of it is inside, the judge and Deck's nodes too, so that they meet the learner's over a loopback
+interface and a shared memory of their own. What the learner's nodes may do to the others inside is
+the affair of `launcher.processes.confinement`.
+
+bubblewrap (bwrap) makes them where it is installed, since it may where programs in general may not;
+`course.grade.walled` does elsewhere.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import course
+from launcher.node_program import INSTALLATION
+from launcher.profile.defaults import FOLDERS_OWN
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from course.lessons.lesson import LessonFolder
+
+HIDDEN = ("/tmp", "/var/tmp", "/run")
+"""Empty inside, as is the home: where programs have their sockets."""
+_LISTS_OF_FOLDERS = (
+    "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH",
+)  # fmt: skip
+_PROFILES_OF_DDS = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+_TRIED_WITHIN_S = 30.0
+_TRIAL = "import sys; from launcher.profile.load import load_profile; load_profile(sys.argv[1])"
+
+
+class Walls(Enum):
+    """What they are made by."""
+
+    BUBBLEWRAP = "bubblewrap"
+    NAMESPACES = "namespaces"
+    NONE = "none"
+    """By nothing: the grading is among all that its user runs."""
+
+
+@dataclass(frozen=True)
+class Inside:
+    """What there is inside, beside the system's own folders: nothing else of these."""
+
+    hidden: tuple[str, ...]
+    readable: tuple[str, ...]
+    writable: tuple[str, ...]
+
+    @classmethod
+    def of(cls, lesson: LessonFolder, *places: Path) -> Inside:
+        """What a grading needs: Deck, Python, ROS, the lesson, and folders to write in."""
+        home = Path.home()
+        hidden = [*HIDDEN, *([] if home == Path("/") else [str(home)])]
+        wanted = [
+            *(INSTALLATION, sys.prefix, sys.base_prefix, *sys.path, str(lesson.path)),
+            *(part for name in _LISTS_OF_FOLDERS for part in os.environ.get(name, "").split(":")),
+            *(os.environ.get(name, "") for name in _PROFILES_OF_DDS),
+        ]
+        out_of_sight = [Path(each).resolve() for each in hidden if Path(each).is_dir()]
+        return cls(
+            tuple(map(str, out_of_sight)),
+            tuple(map(str, _brought_back(filter(None, wanted), out_of_sight))),
+            tuple(str(place.resolve()) for place in places),
+        )
+
+
+def _brought_back(wanted: Iterable[str], hidden: Sequence[Path]) -> list[Path]:
+    """Return what of it would be hidden, each by the uppermost that is wanted itself."""
+    there = {Path(os.path.abspath(each)) for each in wanted if Path(each).exists()}  # noqa: PTH100
+    there |= {each.resolve() for each in there}
+    inside = [each for each in there if any(place in each.parents for place in hidden)]
+    return sorted(each for each in inside if not there & {*each.parents} & {*inside})
+
+
+def walls_for(lesson: LessonFolder) -> Walls:
+    """Return the best that can be had here; tried, in full, with this lesson."""
+    kinds = (Walls.BUBBLEWRAP, Walls.NAMESPACES)
+    return next((kind for kind in kinds if _hold(kind, lesson)), Walls.NONE)
+
+
+def _hold(kind: Walls, lesson: LessonFolder) -> bool:
+    """Whether they can be made, and the lesson be read inside."""
+    trial = (sys.executable, "-c", _TRIAL, str(lesson.path / FOLDERS_OWN))
+    with tempfile.TemporaryDirectory(prefix="deck-grade-") as place:
+        command = within(kind, lesson, Path(place), trial)
+        return command is not None and _runs(command)
+
+
+def _runs(command: Sequence[str]) -> bool:
+    try:
+        done = subprocess.run(
+            command,
+            cwd=Path(course.__file__).parent.parent,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_TRIED_WITHIN_S,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return done.returncode == 0
+
+
+def within(
+    kind: Walls, lesson: LessonFolder, place: Path, command: Sequence[str]
+) -> Sequence[str] | None:
+    """Return the command that runs another one inside, where it writes in `place` only.
+
+    None if there is none on this machine.
+    """
+    if kind is Walls.NONE:
+        return command
+    inside = Inside.of(lesson, place)
+    if kind is Walls.NAMESPACES:
+        root = place / "root"
+        root.mkdir(exist_ok=True)
+        described = json.dumps(vars(inside))
+        return (sys.executable, "-m", "course.grade.walled", str(root), described, *command)
+    bubblewrap = shutil.which("bwrap")
+    return None if bubblewrap is None else (bubblewrap, *_options(inside), "--", *command)
+
+
+def _options(inside: Inside) -> list[str]:
+    options = ["--unshare-user", "--unshare-pid", "--unshare-net", "--unshare-ipc"]
+    options += ["--as-pid-1", "--die-with-parent", "--cap-drop", "ALL", "--ro-bind", "/", "/"]
+    options += ["--dev", "/dev", "--proc", "/proc"]
+    for folder in inside.hidden:
+        options += ["--tmpfs", folder]
+    for path in inside.readable:
+        options += ["--ro-bind", path, path]
+    for path in inside.writable:
+        options += ["--bind", path, path]
+    return options
