@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ctypes
 import fcntl
-import json
 import os
 import platform
 import signal
@@ -19,6 +18,7 @@ import sys
 from pathlib import Path
 
 from launcher.processes.confinement import give_up_privileges
+from text.nested import read_json
 
 _NAMESPACES = 0x10000000 | 0x00020000 | 0x20000000 | 0x40000000 | 0x08000000
 """CLONE_NEWUSER, NEWNS, NEWPID, NEWNET, NEWIPC."""
@@ -124,7 +124,7 @@ def _wait_for(child: int) -> int:
 
 def main() -> None:
     """Run the command inside."""
-    root, inside, command = Path(sys.argv[1]), json.loads(sys.argv[2]), sys.argv[3:]
+    root, inside, command = Path(sys.argv[1]), read_json(sys.argv[2]), sys.argv[3:]
     _new_namespaces()
     parent = os.getpid()
     child = os.fork()
