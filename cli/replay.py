@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from cli.recordings import find_recording, list_recordings
 from cli.screen import has_terminal
 from launcher.errors import UsageError
-from text.i18n import _
+from text.i18n import _, localized
 from text.output import say_error
 from text.sentences import say
 from tui.session.requests import OpenRequest, ReplayRequest
@@ -44,11 +44,14 @@ def _check(bag: Path, *, whole: bool) -> None:
     `whole`: check its contents too, which may take a while; the screen does this itself.
     """
     from graph.bag.errors import BagError
-    from graph.bag.reading import files_of, open_bag
+    from graph.bag.files import files_of
+    from graph.bag.reading import open_bag
 
     try:
         if whole:
-            open_bag(bag).close()
+            with open_bag(bag) as opened:
+                for words in opened.notes:
+                    say_error(localized(words))
         else:
             files_of(bag)
     except BagError as error:

@@ -33,7 +33,10 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def publish_bag(path: Path, options: Namespace) -> int:
-    """Publish until the end or until stopped; return 1 if nothing could be published."""
+    """Publish until the end or until stopped.
+
+    Return 1 if nothing could be published, or if messages are missing in the bag.
+    """
     from graph.bag.reading import open_bag
 
     _name, domain, discovery = running_domain(options.domain)
@@ -85,7 +88,7 @@ def _publish(
         # The end is known only after reading everything.
         _tell(bag.damage)
         write(_("published: {words}").format(words=_words(publisher.progress, bag)))
-        return 0
+        return int(bag.is_incomplete or bag.damage is not None)
     finally:
         ros.close()
 
@@ -104,7 +107,8 @@ def _begin(bag: Bag, publisher: BagPublisher, domain: int) -> None:
     words = _("publishing {name} in domain {domain}: {topics}, {length}; Ctrl-C ends it")
     length = length_words(bag.length_s)
     write(words.format(name=plain(bag.name), domain=domain, topics=topics, length=length))
-    _tell(bag.cut)
+    for words in bag.notes:
+        _tell(words)
 
 
 def _tell(sentence: str | None) -> None:

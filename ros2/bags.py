@@ -6,11 +6,18 @@ import argparse
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from graph.ros import PEERS, RANGE
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from graph.bag.reading import Bag
+
 STORAGES = ("mcap", "sqlite3")
+LONGEST = 600
+"""Of what is said of a bag, in characters."""
 
 
 class _Refused(argparse.Action):
@@ -66,3 +73,23 @@ def place() -> tuple[int, str | tuple[str, ...]]:
         return int(domain), peers
     near = os.environ.get(RANGE, "").upper() == "LOCALHOST"
     return int(domain), "localhost" if near else "subnet"
+
+
+def tell(bag: Bag, warn: Callable[[str], None]) -> None:
+    """Warn of what is missing in a bag, or differs from what it says of itself."""
+    from text.i18n import localized
+    from text.plain import plain
+
+    for words in bag.notes:
+        warn(plain(localized(words), LONGEST))
+
+
+def verdict(bag: Bag, warn: Callable[[str], None]) -> int | None:
+    """Warn of damage that was met; return the exit code, 1 for a bag that lacks messages."""
+    from text.i18n import localized
+    from text.plain import plain
+
+    damage = bag.damage
+    if damage is not None:
+        warn(plain(localized(damage), LONGEST))
+    return 1 if damage is not None or bag.is_incomplete else None

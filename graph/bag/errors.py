@@ -56,12 +56,11 @@ def no_bag(path: Path, reason: Words) -> BagError:
 def unreadable(path: Path, error: Exception) -> BagError:
     """Return the error for a bag that exists but cannot be read."""
     if isinstance(error, BagError):
-        return error
-    return BagError(
-        say(
-            "{path} cannot be read: {reason}. It may be damaged: `ros2 bag reindex` repairs "
-            "many bags",
-            path=path,
-            reason=say(os_reason(error).rstrip(".")),
-        )
-    )
+        reason = error.words
+        if str(path) in reason:
+            return error
+    elif isinstance(error, OSError):
+        reason = os_reason(error)
+    else:
+        reason = say("it is damaged: {reason}", reason=say(os_reason(error).rstrip(".")))
+    return BagError(say("{path} cannot be read: {reason}", path=path, reason=reason))

@@ -1,174 +1,161 @@
-"""The files of a bag, whole or cut short, behind one interface for reading them."""
+"""Which files make up a bag, and opening them: by what is in them, not by what they are called."""
 
 from __future__ import annotations
 
-import heapq
-from collections import Counter
-from collections.abc import Collection, Iterator
-from contextlib import ExitStack, suppress
-from typing import TYPE_CHECKING, Protocol
+import re
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
-from graph.bag.mcap import Lost, TolerantMcap, TolerantReader, sound_parts
-from text.sentences import Words, say
+from graph.bag import kinds
+from graph.bag.errors import BagError, no_bag, unreadable
+from graph.bag.packed import unpack
+from graph.bag.stated import METADATA, Stated, stated_in
+from text.sentences import say
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from graph.bag.part import Part
 
-    from rosbags.interfaces import Connection
-
-OUT_OF_ORDER_NS = 3_000_000_000
-"""How far out of order the messages of a cut bag may be: it was written topic by topic."""
-Raw = tuple["Connection", int, bytes]
+_DIGITS = re.compile(r"(\d+)")
 
 
-class BagReader(Protocol):
-    """The interface of everything that reads a bag."""
+@dataclass(frozen=True)
+class Files:
+    """The files of a bag, before any is opened."""
 
-    connections: list[Connection]
-    start_ns: int
-    end_ns: int
-    message_count: int
-    distro: str
-
-    @property
-    def lost(self) -> list[Lost]:
-        """What has turned out to be damaged so far."""
-
-    def messages(self, start_ns: int | None, wanted: Collection[Connection]) -> Iterator[Raw]:
-        """Yield messages of these connections in the order of their times."""
-
-    def close(self) -> None:
-        """Let go of the files."""
+    path: Path
+    """The folder, or the only file."""
+    stated: Stated | None
+    """What the folder's metadata.yaml says, None without one."""
+    named: tuple[Path, ...]
+    """What is read: the files that the metadata name, or all of a folder without them."""
+    others: tuple[Path, ...] = ()
+    """Files beside them that the metadata do not name."""
+    missing: tuple[str, ...] = ()
+    """Names in the metadata of files that are not there."""
 
 
-class WholeBag:
-    """A bag with an index, read by the library's reader."""
+def files_of(path: Path) -> Files:
+    """Return the files that hold messages, without opening any.
 
-    def __init__(self, path: Path) -> None:
-        """Open the bag. Raises what the library raises for a bag that it cannot read."""
-        self._reader = TolerantReader(path)
-        self._reader.open()
-        self.connections = list(self._reader.connections)
-        self.message_count = self._reader.message_count
-        self.start_ns = self._reader.start_time if self.message_count else 0
-        self.end_ns = self._reader.end_time - 1 if self.message_count else 0
-        self.distro = self._reader.ros_distro or ""
-
-    @property
-    def lost(self) -> list[Lost]:
-        """What has turned out to be damaged so far."""
-        return self._reader.lost
-
-    def messages(self, start_ns: int | None, wanted: Collection[Connection]) -> Iterator[Raw]:
-        """Yield messages of these connections in the order of their times."""
-        return self._reader.messages(wanted, start_ns) if wanted else iter(())
-
-    def close(self) -> None:
-        """Let go of the files."""
-        self._reader.close()
+    Raises BagError if there are none, or none that can be read.
+    """
+    try:
+        return _files(path)
+    except OSError as error:
+        raise unreadable(path, error) from error
 
 
-class _CutFile:
-    """One MCAP file without an end, scanned once."""
-
-    def __init__(self, path: Path, stack: ExitStack) -> None:
-        """Raises ValueError and what the library raises."""
-        self._reader = reader = TolerantMcap(path)
-        reader.bio = stack.enter_context(path.open("rb"))
-        self._sound, self.lost, end, size = sound_parts(path)
-        self.lost_bytes = size - end
-        self.counts: Counter[int] = Counter()
-        spans = []
-        for reader.data_start, reader.data_end in self._sound:
-            reader.meta_scan()
-            assert reader.statistics is not None
-            self.counts.update(reader.statistics.channel_message_counts)
-            if reader.statistics.message_count:
-                spans.append((reader.statistics.start_time, reader.statistics.end_time))
-        self.start_ns = min((first for first, _last in spans), default=0)
-        self.end_ns = max((last for _first, last in spans), default=0)
-        self.connections = [
-            each._replace(msgcount=self.counts[each.id]) for each in reader.connections
-        ]
-        nameless = self.counts.total() - sum(each.msgcount for each in self.connections)
-        if nameless:
-            # They were described in a chunk that is damaged.
-            self.lost.append(Lost(self.start_ns, nameless))
-
-    def messages(self, wanted: Collection[Connection], start_ns: int | None) -> Iterator[Raw]:
-        reader = self._reader
-        for reader.data_start, reader.data_end in self._sound:
-            yield from reader.messages_scan(wanted, start_ns)
+def opened(file: Path) -> Part:
+    """Open a file of a bag. Raises BagError that says why it cannot be read."""
+    stack = ExitStack()
+    try:
+        return _opened(file, stack)
+    except BaseException as error:
+        stack.close()
+        if isinstance(error, Exception) and not isinstance(error, BagError):
+            raise unreadable(file, error) from error
+        raise
 
 
-class CutFiles:
-    """MCAP files, the last one cut short: read up to the last whole record."""
+def _opened(file: Path, stack: ExitStack) -> Part:
+    from graph.bag.mcap import McapPart
+    from graph.bag.sqlite import SqlitePart
 
-    distro = ""
+    content = file
+    if kinds.storage_of(file) == kinds.ZSTD:
+        folder = stack.enter_context(TemporaryDirectory(prefix="deck-bag-"))
+        content = Path(folder, file.stem)
+        unpack(file, content)
+    if (defect := kinds.defect_of(content)) is not None:
+        raise BagError(defect)
+    is_sqlite = kinds.storage_of(content) == kinds.SQLITE
+    return (SqlitePart if is_sqlite else McapPart)(file, content, stack)
 
-    def __init__(self, paths: list[Path]) -> None:
-        """Scan the files once. Raises ValueError and what the library raises."""
-        self._stack = ExitStack()
-        self._files: list[WholeBag | _CutFile] = []
-        try:
-            for path in paths:
-                self._files.append(self._opened(path))
-        except BaseException:
-            self._stack.close()
-            raise
-        self.connections = [each for file in self._files for each in file.connections]
-        self.message_count = sum(each.msgcount for each in self.connections)
-        spoken = [file for file in self._files if file.end_ns]
-        self.start_ns = min((each.start_ns for each in spoken), default=0)
-        self.end_ns = max((each.end_ns for each in spoken), default=0)
 
-    @property
-    def lost(self) -> list[Lost]:
-        """What has turned out to be damaged so far."""
-        return [lost for file in self._files for lost in file.lost]
-
-    def missing(self, path: Path) -> Words | None:
-        """Return what is missing, and how to repair the bag for other programs."""
-        cut = [file for file in self._files if isinstance(file, _CutFile)]
-        if not cut:
-            return None
-        return say(
-            "{path} was cut short: the recording was not ended properly. {messages} messages "
-            "are intact, the last {bytes} bytes are damaged, and nothing follows them. "
-            "`ros2 bag reindex` repairs the index",
-            path=path,
-            messages=self.message_count,
-            bytes=sum(file.lost_bytes for file in cut),
+def _files(path: Path) -> Files:
+    path = path.parent if path.name == METADATA else path
+    if not path.exists():
+        raise no_bag(path, say("there is no such file or folder"))
+    if path.is_file():
+        _refuse_foreign(path, [path])
+        if not kinds.is_bag_file(path) and not kinds.storage_of(path):
+            raise no_bag(path, say("the name ends neither in .mcap nor in .db3"))
+        return Files(path, None, (path,))
+    if not path.is_dir():
+        raise no_bag(path, say("it is neither a file nor a folder"))
+    stated = stated_in(path)
+    found = {file.name: file for file in sorted(path.iterdir(), key=_natural) if file.is_file()}
+    named, missing = _named(found, stated.files if stated else ())
+    others = [file for file in found.values() if kinds.is_bag_file(file) and file not in named]
+    if not named:
+        named, others = _unpacked_first(others), []
+    if not named and not missing:
+        _refuse_foreign(path, [*(found.values())])
+        raise no_bag(path, say("it has neither metadata.yaml nor an .mcap file"))
+    if not named:
+        raise BagError(
+            say(
+                "{path} cannot be read: metadata.yaml names {file}, which is not there",
+                path=path,
+                file=", ".join(missing),
+            )
         )
-
-    def messages(self, start_ns: int | None, wanted: Collection[Connection]) -> Iterator[Raw]:
-        """Yield messages of these connections in the order of their times."""
-        for file in self._files:
-            own = [each for each in file.connections if each in wanted]
-            if isinstance(file, WholeBag):
-                yield from file.messages(start_ns, own)
-            else:
-                yield from in_order(file.messages(own, start_ns))
-
-    def close(self) -> None:
-        """Let go of the files."""
-        self._stack.close()
-
-    def _opened(self, path: Path) -> WholeBag | _CutFile:
-        with suppress(Exception):
-            whole = WholeBag(path)
-            self._stack.callback(whole.close)
-            return whole
-        return _CutFile(path, self._stack)
+    if stated is not None and stated.storage not in {"", kinds.MCAP, kinds.SQLITE}:
+        _refuse_unknown(path, stated.storage, named)
+    return Files(path, stated, tuple(named), tuple(others), tuple(missing))
 
 
-def in_order(messages: Iterator[Raw]) -> Iterator[Raw]:
-    """Sort messages that are nearly in order."""
-    waiting: list[tuple[int, int, Raw]] = []
-    for number, message in enumerate(messages):
-        stamp_ns = message[1]
-        heapq.heappush(waiting, (stamp_ns, number, message))
-        while waiting[0][0] < stamp_ns - OUT_OF_ORDER_NS:
-            yield heapq.heappop(waiting)[2]
-    while waiting:
-        yield heapq.heappop(waiting)[2]
+def _named(found: dict[str, Path], names: tuple[str, ...]) -> tuple[list[Path], list[str]]:
+    """Return the files that metadata name, packed or unpacked since, and the names without one."""
+    named, missing = [], []
+    for name in dict.fromkeys(names):
+        packed = (name + suffix for suffix in sorted(kinds.PACKED_SUFFIXES))
+        unpacked = (name.removesuffix(suffix) for suffix in kinds.PACKED_SUFFIXES)
+        file = next((found[each] for each in (name, *unpacked, *packed) if each in found), None)
+        if file is None:
+            missing.append(name)
+        elif file not in named:
+            named.append(file)
+    return named, missing
+
+
+def _unpacked_first(files: list[Path]) -> list[Path]:
+    """Leave out packed files that are there unpacked, too."""
+    names = {file.name for file in files}
+    return [
+        file
+        for file in files
+        if file.suffix not in kinds.PACKED_SUFFIXES or file.with_suffix("").name not in names
+    ]
+
+
+def _natural(file: Path) -> list[tuple[int, str]]:
+    """Sort `walk_2` before `walk_10`."""
+    return [
+        (int(part), "") if part.isdecimal() else (-1, part) for part in _DIGITS.split(file.name)
+    ]
+
+
+def _refuse_foreign(path: Path, files: list[Path]) -> None:
+    """Raise BagError if one of the files is a recording in another form."""
+    for file in files:
+        other = kinds.foreign(file)
+        if other is not None:
+            raise BagError(say("{path} cannot be read: {reason}", path=path, reason=other))
+
+
+def _refuse_unknown(path: Path, storage: str, files: list[Path]) -> None:
+    """Raise BagError for a storage that Deck does not read, unless the files are of one it does."""
+    if any(kinds.storage_of(file) for file in files):
+        return
+    raise BagError(
+        say(
+            "{path}: storage {storage!r} is not known, only mcap and sqlite3; where ROS is "
+            "installed with its plugin, `ros2 bag convert` makes one of the other",
+            path=path,
+            storage=storage,
+        )
+    )

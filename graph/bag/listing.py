@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from graph.bag.defects import defect_of, endless
-from graph.bag.reading import SUFFIXES, metadata_of
+from graph.bag import kinds
+from graph.bag.stated import Stated, stated_in
 from text.os_words import os_reason
-from text.sentences import say
+from text.sentences import Words, say
 
 
 @dataclass(frozen=True)
@@ -55,25 +53,35 @@ def _listed_or_refused(path: Path) -> ListedBag | None:
 
 def _listed(path: Path) -> ListedBag | None:
     files = sorted(path.iterdir()) if path.is_dir() else [path]
-    parts = [file for file in files if file.suffix in SUFFIXES]
+    parts = [file for file in files if kinds.is_bag_file(file) or file.suffix == kinds.ROS1_SUFFIX]
     if not parts:
         return None
     stats = [file.stat() for file in parts]
     size, changed_s = sum(one.st_size for one in stats), max(one.st_mtime for one in stats)
-    metadata = metadata_of(path) if path.is_dir() else {}
-    broken = defect_of(path, parts, metadata) or endless(parts) or ""
+    stated = stated_in(path) if path.is_dir() else None
+    names = {file.name for file in files}
+    broken = _missing(stated, names) or _broken(parts) or ""
     if not path.is_dir() or broken:
         return ListedBag(path.name, path, size, changed_s, trouble=broken)
-    try:
-        known = _known(metadata)
-    except (KeyError, TypeError, ValueError):
+    if stated is None or stated.seconds is None or stated.messages is None:
         broken = say("its metadata.yaml is missing or damaged")
         return ListedBag(path.name, path, size, changed_s, trouble=broken)
-    return ListedBag(path.name, path, size, changed_s, *known)
+    figures = stated.seconds, len(stated.topics), stated.messages
+    return ListedBag(path.name, path, size, changed_s, *figures)
 
 
-def _known(metadata: Mapping[str, Any]) -> tuple[float, int, int]:
-    """Return seconds, topics and messages; raises KeyError, TypeError or ValueError."""
-    seconds = int(metadata["duration"]["nanoseconds"]) / 1e9
-    topics = metadata["topics_with_message_count"]
-    return seconds, len(topics), int(metadata["message_count"])
+def _missing(stated: Stated | None, names: set[str]) -> Words | None:
+    """Return which of the files that the metadata name is not there, None if all are."""
+    absent = [name for name in (stated.files if stated else ()) if name not in names]
+    if not absent:
+        return None
+    return say("metadata.yaml names {file}, which is not there", file=", ".join(absent))
+
+
+def _broken(parts: list[Path]) -> Words | None:
+    """Return what is wrong with the first file that is no file of a bag, or has no end."""
+    for judged in (kinds.defect_of, kinds.endless):
+        for file in parts:
+            if (words := judged(file)) is not None:
+                return words
+    return None

@@ -189,6 +189,7 @@ class BagPublisher:
         from rclpy.validate_full_topic_name import validate_full_topic_name
 
         if topic.name in self._publishers:
+            self._leave_other_type(topic, self._publishers[topic.name][0])
             return
         qos = Qos(topic.reliability or "reliable", topic.durability or "volatile")
         try:
@@ -203,6 +204,13 @@ class BagPublisher:
             self.progress.left_out[topic.name] = say("not a valid name of a ROS topic")
         else:
             self._publishers[topic.name] = (topic, publisher)
+
+    def _leave_other_type(self, topic: TopicInBag, published: TopicInBag) -> None:
+        """Say that a topic is left out since the bag has it with another type, too."""
+        if topic.kind.name != published.kind.name:
+            self.progress.left_out[f"{topic.name} ({topic.kind.name})"] = say(
+                "the bag has it as {type}, too, and that is published", type=published.kind.name
+            )
 
     def _found(self) -> tuple[int, ...]:
         """Return what changes as long as something is discovered."""

@@ -1,32 +1,34 @@
-"""Reads recorded bags: a rosbag2 directory (MCAP, sqlite3) or a bare MCAP file.
+"""Reads recorded bags: a rosbag2 directory (MCAP, sqlite3), or one of its files.
 
-A bag that was cut short, by a crash or a full disk, is read as far as it goes, and says so.
+What is read is what the files hold, whatever metadata.yaml says of them; all differences are told.
+A bag that was cut short, by a crash or a full disk, is read as far as it goes.
 """
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Collection, Iterator, Mapping
-from contextlib import suppress
-from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+import heapq
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from operator import itemgetter
+from typing import TYPE_CHECKING, NamedTuple
 
+from graph.bag import kinds
 from graph.bag.decoding import TypeText
-from graph.bag.defects import defect_of
-from graph.bag.errors import BagError, no_bag, unreadable
-from text.nested import read_yaml
+from graph.bag.differences import Note, notes_on
+from graph.bag.errors import BagError, unreadable
+from graph.bag.files import Files, files_of, opened
+from graph.bag.offers import Offer
+from graph.bag.packed import unpacked
+from graph.bag.part import CDR, Lost
 from text.sentences import Words, say
 
 if TYPE_CHECKING:
-    from rosbags.interfaces import Connection
+    from pathlib import Path
+
     from typing_extensions import Self
 
-    from graph.bag.files import BagReader
-
-METADATA = "metadata.yaml"
-STORAGES = ("mcap", "sqlite3")
-SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
+    from graph.bag.part import Channel, Part
 
 
 @dataclass(frozen=True)
@@ -39,36 +41,60 @@ class TopicInBag:
     reliability: str = ""
     durability: str = ""
     """QoS offered by its first publisher: `reliable`, `volatile`; empty if the bag does not say."""
+    encoding: str = CDR
+    """Serialization format."""
+
+
+class _Place(NamedTuple):
+    """Where a message is, for one that cannot be unpacked."""
+
+    part: int
+    number: int
+    stamp_ns: int
 
 
 class Bag:
     """An open bag; close it, or use it in a `with`."""
 
-    def __init__(self, path: Path, reader: BagReader, cut: Words | None) -> None:
+    def __init__(self, files: Files, parts: Sequence[Part], notes: Sequence[Note]) -> None:
         """Use `open_bag` to make one."""
-        self.path = path
-        self.cut = cut
-        """What is missing, None for a whole bag."""
-        self.start_ns = reader.start_ns
-        self.end_ns = reader.end_ns
+        self.path = files.path
+        self.files = tuple(part.file for part in parts)
+        """What is read."""
+        self.notes = tuple(note.words for note in notes)
+        """All that differs from what the bag says of itself, and what is missing."""
+        self.is_incomplete = any(note.incomplete for note in notes)
+        """Whether messages are known to be missing."""
+        self.is_cut = any(part.cut_bytes is not None for part in parts)
+        """Whether a file was not ended properly."""
+        self.distro = _distro(files, parts)
+        """ROS distribution that wrote it, empty if that is not known."""
+        self._parts = parts
+        self._topics = _topics(files, parts)
+        self.all_topics = tuple(sorted(set(self._topics.values()), key=lambda topic: topic.name))
+        """Every topic, sorted by name, those in other serialization formats too."""
+        self.topics = tuple(topic for topic in self.all_topics if topic.encoding == CDR)
+        """Every topic of ROS 2, sorted by name."""
+        self._not_unpacked: set[_Place] = set()
+        self._fewer: Words | None = None
+        with_messages = [part for part in parts if part.end_ns]
+        self.start_ns = min((part.start_ns for part in with_messages), default=0)
+        self.end_ns = max((part.end_ns for part in with_messages), default=0)
         """Unix time of the first and of the last message; equal in an empty bag."""
-        self.messages_count = reader.message_count
-        self._reader = reader
-        self._topics = {
-            (each.topic, each.msgtype): _topic(each, reader.distro) for each in reader.connections
-        }
+        self.messages_count = sum(topic.messages for topic in self.topics)
 
     @property
     def name(self) -> str:
         """The name of the folder or file."""
-        return self.path.stem if self.path.suffix in SUFFIXES else self.path.name
+        return self.path.stem if self.path.suffix in kinds.SUFFIXES else self.path.name
 
     @property
     def damage(self) -> Words | None:
         """What has been left out so far as unreadable; grows while messages are read."""
-        lost = self._reader.lost
+        lost = [lost for part in self._parts for lost in part.lost]
+        lost += (Lost(place.stamp_ns, 1) for place in self._not_unpacked)
         if not lost:
-            return None
+            return self._fewer
         first_ns = min(each.at_ns for each in lost)
         return say(
             "{path} is damaged: messages lost: {messages}, damaged places: {places}, the first "
@@ -80,11 +106,6 @@ class Bag:
         )
 
     @property
-    def topics(self) -> tuple[TopicInBag, ...]:
-        """Every topic, sorted by name."""
-        return tuple(sorted(self._topics.values(), key=lambda topic: topic.name))
-
-    @property
     def length_s(self) -> float:
         """Seconds from the first message to the last."""
         return (self.end_ns - self.start_ns) / 1e9
@@ -94,28 +115,50 @@ class Bag:
     ) -> Iterator[tuple[TopicInBag, int, bytes]]:
         """Yield topic, unix time in nanoseconds and raw message in the order of their times.
 
-        `names`: of which topics, all if empty. Damaged chunks of an MCAP file are left out, see
-        `damage`; raises BagError if a bag of another kind turns out to be damaged.
+        `names`: of which topics, all if empty. What is damaged is left out, see `damage`.
         """
-        wanted = [each for each in self._reader.connections if not names or each.topic in names]
-        try:
-            for connection, stamp_ns, raw in self._reader.messages(start_ns, wanted):
-                yield self._topics[connection.topic, connection.msgtype], stamp_ns, bytes(raw)
-        except GeneratorExit:
-            raise
-        except Exception as error:
-            raise unreadable(self.path, error) from error
+        wanted = [topic for topic in self.topics if not names or topic.name in names]
+        parts = (self._of_part(n, start_ns, frozenset(wanted)) for n in range(len(self._parts)))
+        read = 0
+        for topic, stamp_ns, raw in heapq.merge(*parts, key=itemgetter(1)):
+            if topic is not None:
+                yield topic, stamp_ns, raw
+                read += 1
+        if start_ns is None or start_ns <= self.start_ns:
+            self._count(read, sum(topic.messages for topic in wanted))
 
-    def on_this_thread(self) -> Bag:
-        """Return a bag that this thread may read: sqlite3 is bound to the thread that opened it."""
-        if not any(self.path.glob("*.db3")) and self.path.suffix != ".db3":
-            return self
-        self.close()
-        return open_bag(self.path)
+    def _count(self, read: int, said: int) -> None:
+        """Compare what has been read of some topics with what the files say they hold."""
+        lost = sum(lost.messages for part in self._parts for lost in part.lost)
+        if read + lost + len(self._not_unpacked) < said:
+            self._fewer = say(
+                "{path} is damaged: of {said} messages only {read} could be read",
+                path=self.path,
+                said=said,
+                read=read,
+            )
+
+    def _of_part(
+        self, part_number: int, start_ns: int | None, wanted: frozenset[TopicInBag]
+    ) -> Iterator[tuple[TopicInBag | None, int, bytes]]:
+        part = self._parts[part_number]
+        # The merge takes one from each before it begins; not all files should be read by then.
+        yield None, part.start_ns, b""
+        numbers = {
+            channel.number: topic
+            for channel in part.channels
+            if (topic := self._topics[part_number, channel.number]) in wanted
+        }
+        for stamp_ns, number, raw in part.messages(start_ns, numbers):
+            message = unpacked(raw)
+            if message is None:
+                self._not_unpacked.add(_Place(part_number, number, stamp_ns))
+            else:
+                yield numbers[number], stamp_ns, message
 
     def close(self) -> None:
         """Let go of the files."""
-        self._reader.close()
+        _close(self._parts)
 
     def __enter__(self) -> Self:
         return self
@@ -126,102 +169,103 @@ class Bag:
 
 def open_bag(path: Path) -> Bag:
     """Open a bag. Raises BagError with words that name the file and the fix."""
-    from graph.bag.files import CutFiles, WholeBag
-
     files = files_of(path)
-    path = path.parent if path.name == METADATA else path
-    mcaps = [file for file in files if file.suffix == ".mcap"]
-    reason: Exception | None = None
-    if (path / METADATA).exists() or len(mcaps) < 2:
-        try:
-            return Bag(path, WholeBag(path if (path / METADATA).exists() else files[0]), None)
-        except Exception as error:
-            if not mcaps or isinstance(error, PermissionError):
-                raise _unreadable(path, files, error) from error
-            reason = error
-    try:
-        cut = CutFiles(mcaps)
-    except Exception as error:
-        foreign = isinstance(error, (OSError, ValueError, struct.error))
-        raise _unreadable(path, files, reason if reason and foreign else error) from error
-    return Bag(path, cut, cut.missing(path))
+    _refuse_packed(files)
+    with ExitStack() as stack:
+        parts: list[Part] = []
+        stack.callback(_close, parts)
+        errors = _open_all(files.named, parts)
+        left_out = _open_others(files, parts, errors)
+        if not parts:
+            raise unreadable(path, errors[0])
+        bag = Bag(files, parts, notes_on(files, parts, errors, left_out))
+        if not bag.topics and bag.all_topics:
+            reason = bag.notes[-1]
+            raise BagError(say("{path} cannot be read: {reason}", path=path, reason=reason))
+        stack.pop_all()
+    return bag
 
 
-def _unreadable(path: Path, files: list[Path], error: Exception) -> BagError:
-    """Return why no reader accepts the files, judged by their first bytes if possible."""
-    with suppress(OSError):
-        reason = defect_of(path, files, metadata_of(path))
-        if reason:
-            return BagError(say("{path} cannot be read: {reason}", path=path, reason=reason))
-    return unreadable(path, error)
+def _close(parts: Sequence[Part]) -> None:
+    for part in parts:
+        part.close()
 
 
-def files_of(path: Path) -> list[Path]:
-    """Return the files that hold messages, without opening any.
-
-    Raises BagError if there are none, or none that can be read.
-    """
-    try:
-        return _files(path)
-    except OSError as error:
-        raise unreadable(path, error) from error
-
-
-def _files(path: Path) -> list[Path]:
-    path = path.parent if path.name == METADATA else path
-    if not path.exists():
-        raise no_bag(path, say("there is no such file or folder"))
-    if path.is_file():
-        if path.suffix not in SUFFIXES:
-            raise no_bag(path, say("the name ends neither in .mcap nor in .db3"))
-        return [path]
-    if not path.is_dir():
-        raise no_bag(path, say("it is neither a file nor a folder"))
-    metadata = metadata_of(path)
-    storage = metadata.get("storage_identifier", "mcap")
-    if storage not in STORAGES:
-        raise unknown_storage(path, storage)
-    found = sorted(file for file in path.iterdir() if file.suffix in SUFFIXES)
-    if not found and not metadata.get("relative_file_paths"):
-        raise no_bag(path, say("it has neither metadata.yaml nor an .mcap file"))
-    return found
-
-
-def unknown_storage(path: Path, storage: object) -> BagError:
-    """Return the error for a kind of storage that Deck does not read."""
-    return BagError(
-        say(
-            "{path}: storage {storage!r} is not known, only mcap and sqlite3; convert it: "
-            "`ros2 bag convert`",
-            path=path,
-            storage=str(storage),
+def _refuse_packed(files: Files) -> None:
+    """Raise BagError for a bag that is packed by something that Deck does not know."""
+    packed_by = files.stated.compression if files.stated else ""
+    if packed_by.lower() not in {"", kinds.ZSTD}:
+        raise BagError(
+            say(
+                "{path} cannot be read: it is packed by {kind}, and only zstd is known",
+                path=files.path,
+                kind=packed_by,
+            )
         )
+
+
+def _open_all(files: Sequence[Path], parts: list[Part]) -> list[BagError]:
+    """Append what can be opened to `parts`; return why the others cannot."""
+    errors = []
+    for file in files:
+        try:
+            parts.append(opened(file))
+        except BagError as error:  # noqa: PERF203 - one broken file does not cost the others
+            errors.append(error)
+    return errors
+
+
+def _open_others(files: Files, parts: list[Part], errors: list[BagError]) -> list[Path]:
+    """Open files that the metadata do not name, but none that is a copy; return those left out."""
+    spans = [(part.start_ns, part.end_ns) for part in parts if part.end_ns]
+    others: list[Part] = []
+    errors += _open_all(files.others, others)
+    left_out = []
+    for part in others:
+        if any(part.start_ns <= end_ns and begin_ns <= part.end_ns for begin_ns, end_ns in spans):
+            left_out.append(part.file)
+            part.close()
+        else:
+            parts.append(part)
+    return left_out
+
+
+def _topics(files: Files, parts: Sequence[Part]) -> Mapping[tuple[int, int], TopicInBag]:
+    """Return for part and channel the topic that it belongs to."""
+    channels = {
+        (place, channel.number): channel
+        for place, part in enumerate(parts)
+        for channel in part.channels
+    }
+    stated, distro = files.stated, _distro(files, parts)
+    texts = {each.kind.name: each.kind for each in channels.values() if each.kind.text}
+    offers = {topic.name: topic.offer for topic in stated.topics} if stated else {}
+    merged: dict[tuple[str, TypeText, str], TopicInBag] = {}
+    keys = {}
+    for place, channel in channels.items():
+        kind = channel.kind
+        if not kind.text:
+            # Another file of the bag may have it.
+            kind = texts.get(kind.name, kind._replace(distro=distro))
+        key = keys[place] = (channel.topic, kind, channel.encoding)
+        merged[key] = _with(merged.get(key), channel, kind, offers.get(channel.topic, Offer()))
+    return {place: merged[key] for place, key in keys.items()}
+
+
+def _distro(files: Files, parts: Sequence[Part]) -> str:
+    stated = files.stated.distro if files.stated else ""
+    return stated or next((part.distro for part in parts if part.distro), "")
+
+
+def _with(topic: TopicInBag | None, channel: Channel, kind: TypeText, stated: Offer) -> TopicInBag:
+    """Return a topic with another channel of its own; without QoS in the file the metadata's."""
+    if topic is not None:
+        return replace(topic, messages=topic.messages + channel.messages)
+    return TopicInBag(
+        channel.topic,
+        kind,
+        channel.messages,
+        channel.reliability or stated.reliability,
+        channel.durability or stated.durability,
+        channel.encoding,
     )
-
-
-def metadata_of(folder: Path) -> Mapping[str, Any]:
-    """Return the content of metadata.yaml; nothing if it is missing or broken: readers say more."""
-    import yaml
-
-    try:
-        found = read_yaml((folder / METADATA).read_text(encoding="utf-8"))
-        inner = found["rosbag2_bagfile_information"]
-    except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError):
-        return {}
-    return inner if isinstance(inner, Mapping) else {}
-
-
-def _topic(connection: Connection, distro: str) -> TopicInBag:
-    from rosbags.interfaces import MessageDefinitionFormat
-
-    definition = connection.msgdef
-    kind = TypeText(
-        connection.msgtype,
-        definition.data,
-        definition.format is MessageDefinitionFormat.IDL,
-        "" if definition.data else distro,
-    )
-    offers = getattr(connection.ext, "offered_qos_profiles", ())
-    reliability = offers[0].reliability.name.lower() if offers else ""
-    durability = offers[0].durability.name.lower() if offers else ""
-    return TopicInBag(connection.topic, kind, connection.msgcount, reliability, durability)

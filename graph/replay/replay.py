@@ -56,7 +56,9 @@ class Replay:
             rate=min(max(rate, RATES[0]), RATES[-1]),
             loop=loop,
             messages=self.bag.messages_count,
-            cut=self.bag.cut or "",
+            is_cut=self.bag.is_cut,
+            is_incomplete=self.bag.is_incomplete,
+            notes=self.bag.notes,
         )
         self._start_s = start_s
         self._interest = Interest()
@@ -253,7 +255,6 @@ class Replay:
     def _run(self, on_update: Callable[[GraphUpdate], None]) -> None:
         bag = self.bag
         try:
-            bag = bag.on_this_thread()
             player = Player(bag, lambda: self._stopping)
             if self._start_s:
                 player.seek(self._start_s)

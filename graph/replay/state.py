@@ -25,8 +25,12 @@ class ReplayState:
     """Whether it has stopped at the end."""
     messages: int = 0
     """All topics in the bag."""
-    cut: str = ""
-    """What is missing from a bag that was cut short, as translatable words."""
+    is_cut: bool = False
+    """Whether the bag was cut short."""
+    is_incomplete: bool = False
+    """Whether messages are missing that the bag should have."""
+    notes: tuple[str, ...] = ()
+    """What differs from what the bag says of itself, and what is missing: translatable words."""
     damage: str = ""
     """What has been left out so far as unreadable, as translatable words."""
     error: str = ""

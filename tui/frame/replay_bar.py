@@ -149,8 +149,10 @@ class ReplayBar(Widget):
             parts.append((" " + _("⚠ cannot be played any further") + " ", warning))
         elif state.damage:
             parts.append((" " + _("⚠ damaged") + " ", warning))
-        elif state.cut:
+        elif state.is_cut:
             parts.append((" " + _("⚠ cut short") + " ", warning))
+        elif state.is_incomplete:
+            parts.append((" " + _("⚠ incomplete") + " ", warning))
         return Content.assemble(*parts)
 
     def _drawn_track(self, state: ReplayState) -> Content:

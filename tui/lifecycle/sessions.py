@@ -167,8 +167,8 @@ class Sessions:
         if not session.panels:
             await self._screens.show("topics")
         replay = self._feed.replay
-        if replay is not None and replay.state.cut:
-            self._warn(replay.state.cut)
+        for words in replay.state.notes if replay is not None else ():
+            self._warn(words)
 
     def tell_damage(self, words: str) -> None:
         """Report that part of the recording cannot be read, when playback first gets there."""

@@ -6,14 +6,17 @@ import time
 from typing import TYPE_CHECKING
 
 from ros2 import bags
+from ros2.log_lines import log
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Sequence
     from pathlib import Path
 
     from graph.bag.reading import Bag, TopicInBag
 
 SUMMARY = "Print information about a bag to the screen"
+NODE = "ros2bag"
 EVENTS = "/_service_event"
 EVENT_TYPE = "_Event"
 NEXT = "\n" + " " * 19
@@ -36,15 +39,20 @@ def main(args: argparse.Namespace) -> int | str | None:
 
     try:
         with open_bag(args.bag_path) as bag:
-            topics = [topic for topic in bag.topics if not _is_event(topic)]
+            bags.tell(bag, _warn)
+            topics = [topic for topic in bag.all_topics if not _is_event(topic)]
             if args.topic_name:
                 for topic in topics:
                     print(topic.name)
             else:
                 print(_all_of(bag, topics))
+            return bags.verdict(bag, _warn)
     except BagError as error:
         return localized(error.words)
-    return None
+
+
+def _warn(words: str) -> None:
+    log(NODE, words, "WARN")
 
 
 def _is_event(topic: TopicInBag) -> bool:
@@ -52,30 +60,27 @@ def _is_event(topic: TopicInBag) -> bool:
 
 
 def _all_of(bag: Bag, topics: list[TopicInBag]) -> str:
-    from graph.bag.reading import SUFFIXES, files_of, metadata_of
+    from graph.bag.kinds import storage_of_name
 
-    files = files_of(bag.path)
-    found = metadata_of(bag.path) if bag.path.is_dir() else {}
     start_ns = bag.start_ns if bag.messages_count else 0
     end_ns = bag.end_ns if bag.messages_count else 0
-    events = [topic for topic in bag.topics if _is_event(topic)]
-    storage = found.get("storage_identifier") or SUFFIXES[files[0].suffix]
+    events = [topic for topic in bag.all_topics if _is_event(topic)]
     services = (
         f"Service: {topic.name.removesuffix(EVENTS)} | "
         f"Type: {topic.kind.name.removesuffix(EVENT_TYPE)} | "
-        f"Event Count: {topic.messages} | Serialization Format: cdr\n"
+        f"Event Count: {topic.messages} | Serialization Format: {topic.encoding}\n"
         for topic in events
     )
     lines = (
         f"Topic: {topic.name} | Type: {topic.kind.name} | Count: {topic.messages} | "
-        "Serialization Format: cdr"
+        f"Serialization Format: {topic.encoding}"
         for topic in topics
     )
     return (
-        f"\nFiles:             {NEXT.join(file.name for file in files)}\n"
-        f"Bag size:          {_size(files)}\n"
-        f"Storage id:        {storage}\n"
-        f"ROS Distro:        {found.get('ros_distro') or 'unknown'}\n"
+        f"\nFiles:             {NEXT.join(file.name for file in bag.files)}\n"
+        f"Bag size:          {_size(bag.files)}\n"
+        f"Storage id:        {storage_of_name(bag.files[0])}\n"
+        f"ROS Distro:        {bag.distro or 'unknown'}\n"
         f"Duration:          {_seconds(end_ns - start_ns)}s\n"
         f"Start:             {_moment(start_ns)}\n"
         f"End:               {_moment(end_ns)}\n"
@@ -86,7 +91,7 @@ def _all_of(bag: Bag, topics: list[TopicInBag]) -> str:
     )
 
 
-def _size(files: list[Path]) -> str:
+def _size(files: Sequence[Path]) -> str:
     size, unit = float(sum(file.stat().st_size for file in files)), 0
     while size >= STEP and unit < len(UNITS) - 1:
         size, unit = size / STEP, unit + 1

@@ -79,10 +79,15 @@ def main(args: argparse.Namespace) -> int | str | None:
             return f"'{rule}' is not a remapping: write old_topic:=new_topic"
     try:
         with open_bag(args.bag_path) as bag:
+            bags.tell(bag, _warn)
             _play(bag, args)
+            return bags.verdict(bag, _warn)
     except BagError as error:
         return localized(error.words)
-    return None
+
+
+def _warn(words: str) -> None:
+    log(NODE, words, "WARN")
 
 
 def _play(bag: Bag, args: argparse.Namespace) -> None:

@@ -16,6 +16,7 @@ from tests.middleware_words import own_words
 from tests.ros.observing import Peer as ProcessPeer
 from tests.ros.peer import Peer
 from tests.unit.bags import BEGIN_NS, SECOND_NS, store, write_bag, write_robot_bag
+from tests.unit.odd_bags import NUMBERED_QOS, write_mcap, write_metadata
 from tests.waiting import wait_until
 
 
@@ -185,8 +186,35 @@ def test_what_is_damaged_is_told_at_the_end(tmp_path: Path) -> None:
     wrong[place : place + 200] = b"\xff" * 200
     file.write_bytes(wrong)
     run = DeckProcess("replay", str(tmp_path / "walk"), "--publish")
-    assert run.finish() == 0
+    assert run.finish() == 1
     assert any("walk is damaged: messages lost: 13, " in line for line in run.lines)
+
+
+def test_qos_that_the_metadata_have_otherwise_costs_no_message(
+    ros_domain: int, tmp_path: Path
+) -> None:
+    reliable = NUMBERED_QOS.replace("reliability: 2", "reliability: 1")
+    write_mcap(tmp_path / "walk" / "walk_0.mcap", qos=reliable)
+    write_metadata(tmp_path / "walk", ["walk_0.mcap"])
+    with Peer(ros_domain) as peer:
+        heard = peer.hear("/chatter", String)
+        run = DeckProcess("replay", str(tmp_path / "walk"), "--publish")
+        assert run.finish() == 0
+        wait_until(lambda: len(heard) == 20, lambda: f"20 texts; there are {len(heard)}")
+    assert run.lines[-1] == "published: 1 s of 1 s · 20 messages"
+
+
+def test_what_is_missing_is_told_and_the_exit_code_says_so(tmp_path: Path) -> None:
+    write_mcap(tmp_path / "walk" / "walk_0.mcap", foreign=("json", "Log", "jsonschema"))
+    write_metadata(tmp_path / "walk", ["walk_0.mcap", "walk_1.mcap"], 40)
+    run = DeckProcess("replay", str(tmp_path / "walk"), "--publish")
+    assert run.finish() == 1
+    assert run.lines[1:4] == [
+        "metadata.yaml names walk_1.mcap, which is not there",
+        "metadata.yaml counts 40 messages, the files hold 20: /chatter 40 → 20",
+        "left out, since their serialization format is not ROS 2's: /extra (json: 20)",
+    ]
+    assert run.lines[-1] == "published: 1 s of 1 s · 20 messages"
 
 
 def test_with_nothing_left_to_publish_it_fails(tmp_path: Path, ros_domain: int) -> None:

@@ -15,6 +15,7 @@ from std_msgs.msg import String
 from graph.bag.reading import open_bag
 from tests.ros.peer import LATCHED
 from tests.ros.ros2.typed import Typed, typed
+from tests.unit.odd_bags import write_mcap, write_metadata, write_sqlite
 from tests.waiting import comes, wait_until
 from text import ros2_words
 
@@ -112,3 +113,37 @@ def test_what_cannot_be_done_is_said(tmp_path: Path, line: str, code: int, words
     done = typed("bag", *(word.format(here=tmp_path) for word in line.split()))
     assert done.code == code, done
     assert words.format(here=tmp_path) in done.err
+
+
+@pytest.mark.parametrize("ending", ["mcap", "db3"])
+def test_all_files_of_a_bag_are_counted(tmp_path: Path, ending: str) -> None:
+    write = write_mcap if ending == "mcap" else write_sqlite
+    for part, (count, first) in enumerate(((30, 0), (12, 30))):
+        write(tmp_path / f"walk_{part}.{ending}", count, first)
+    done = typed("bag", "info", f"{tmp_path}/")
+    assert (done.code, done.err) == (0, ""), done
+    assert f"walk_0.{ending}\n                   walk_1.{ending}\n" in done.out
+    assert "Messages:          42\n" in done.out
+    assert "Topic: /chatter | Type: std_msgs/msg/String | Count: 42 |" in done.out
+
+
+def test_what_is_missing_is_told_and_the_rest_is_shown_and_played(
+    tmp_path: Path, world: World
+) -> None:
+    write_mcap(tmp_path / "walk_0.mcap", foreign=("protobuf", "demo.Pose", "protobuf"))
+    write_metadata(tmp_path, ["walk_0.mcap", "walk_1.mcap"], 40)
+    told = (
+        "metadata.yaml names walk_1.mcap, which is not there",
+        "metadata.yaml counts 40 messages, the files hold 20: /chatter 40 → 20",
+        "left out, since their serialization format is not ROS 2's: /extra (protobuf: 20)",
+    )
+    info = typed("bag", "info", str(tmp_path))
+    assert info.code == 1, info
+    assert all(f"[ros2bag]: {words}\n" in info.err for words in told), info.err
+    assert "Topic: /chatter | Type: std_msgs/msg/String | Count: 20 |" in info.out
+    assert "Type: demo.Pose | Count: 20 | Serialization Format: protobuf" in info.out
+    heard = world.hear("/played", String)
+    played = typed("bag", "play", str(tmp_path), "-m", "/chatter:=/played", "--rate", "10")
+    assert played.code == 1, played
+    assert all(f"[rosbag2_player]: {words}\n" in played.err for words in told), played.err
+    wait_until(lambda: len(heard) == 20, lambda: f"20 texts; there are {len(heard)}")

@@ -1,0 +1,161 @@
+"""Bags as other programs, versions and accidents leave them."""
+
+from __future__ import annotations
+
+import sqlite3
+import struct
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import yaml
+from mcap.writer import CompressionType, IndexType, Writer
+
+from tests.unit.bags import BEGIN_NS
+
+TENTH_NS = 100_000_000
+TEXT = "std_msgs/msg/String"
+DEFINITION = b"string data\n"
+TOPIC = "/chatter"
+NUMBERED_QOS = (
+    "- history: 1\n  depth: 10\n  reliability: 2\n  durability: 1\n  deadline:\n    sec: 0\n"
+    "    nsec: 0\n"
+)
+"""Best effort and transient local, as rosbag2 wrote it until Iron."""
+
+
+def text_in_cdr(text: str) -> bytes:
+    raw = text.encode() + b"\0"
+    return b"\0\1\0\0" + struct.pack("<I", len(raw)) + raw
+
+
+def times(first: int, count: int) -> Sequence[int]:
+    return [BEGIN_NS + number * TENTH_NS for number in range(first, first + count)]
+
+
+def write_mcap(
+    file: Path,
+    count: int = 20,
+    first: int = 0,
+    *,
+    qos: str = "",
+    foreign: tuple[str, str, str] | None = None,
+    profile: str = "ros2",
+    stamps: Sequence[int] = (),
+    chunked: bool = True,
+    statistics: bool = True,
+    indexes: IndexType = IndexType.ALL,
+) -> Path:
+    """A file with `count` texts on /chatter, and as many of a foreign channel if there is one.
+
+    `foreign`: message encoding, name of the schema, and its encoding.
+    """
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with file.open("wb") as stream:
+        writer = Writer(
+            stream,
+            use_chunking=chunked,
+            use_statistics=statistics,
+            index_types=indexes,
+            compression=CompressionType.ZSTD,
+        )
+        writer.start(profile, "a test")
+        schema = writer.register_schema(TEXT, "ros2msg", DEFINITION)
+        facts = {"offered_qos_profiles": qos} if qos else {}
+        texts = writer.register_channel(TOPIC, "cdr", schema, facts)
+        other = None
+        if foreign is not None:
+            encoding, name, of_schema = foreign
+            other = writer.register_channel(
+                "/extra", encoding, writer.register_schema(name, of_schema, b"{}")
+            )
+        for number, at_ns in enumerate(stamps or times(first, count), first):
+            writer.add_message(texts, at_ns, text_in_cdr(f"m{number}"), at_ns)
+            if other is not None:
+                writer.add_message(other, at_ns, b'{"a": 1}', at_ns)
+        writer.finish()  # type: ignore[no-untyped-call]
+    return file
+
+
+def write_sqlite(
+    file: Path,
+    count: int = 20,
+    first: int = 0,
+    *,
+    encoding: str = "cdr",
+    qos: str | None = "",
+    definitions: tuple[str, str] | None = None,
+    contents: Sequence[bytes] = (),
+) -> Path:
+    """A file with `count` texts on /chatter.
+
+    `qos`: None for the first version, which has no such column; `definitions`: the encoding and
+    the text of the type's definition, in versions that have it.
+    """
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with sqlite3.connect(file) as base:
+        offered = "" if qos is None else ", offered_qos_profiles text"
+        base.execute(
+            "create table topics(id integer primary key, name text, type text, "
+            f"serialization_format text{offered})"
+        )
+        base.execute(
+            "create table messages(id integer primary key, topic_id integer, timestamp integer, "
+            "data blob)"
+        )
+        row = (1, TOPIC, TEXT, encoding, *(() if qos is None else (qos,)))
+        base.execute(f"insert into topics values({','.join('?' * len(row))})", row)
+        if definitions is not None:
+            base.execute(
+                "create table message_definitions(id integer primary key, topic_type text, "
+                "encoding text, encoded_message_definition text, type_description_hash text)"
+            )
+            base.execute("insert into message_definitions values(1,?,?,?,'')", (TEXT, *definitions))
+        put(base, count, first, contents)
+    base.close()
+    return file
+
+
+def put(
+    base: sqlite3.Connection, count: int, first: int = 0, contents: Sequence[bytes] = ()
+) -> None:
+    """Add messages."""
+    raws = contents or [text_in_cdr(f"m{number}") for number in range(first, first + count)]
+    for at_ns, raw in zip(times(first, count), raws, strict=True):
+        base.execute(
+            "insert into messages(topic_id, timestamp, data) values(1, ?, ?)", (at_ns, raw)
+        )
+
+
+def write_metadata(
+    folder: Path,
+    named: Sequence[str],
+    count: int = 20,
+    *,
+    topics: Mapping[str, object] | None = None,
+    **facts: object,
+) -> Path:
+    """The metadata of a folder; `topics` and `facts` replace what is right of /chatter and all."""
+    about = {
+        "name": TOPIC,
+        "type": TEXT,
+        "serialization_format": "cdr",
+        "offered_qos_profiles": "",
+        **(topics or {}),
+    }
+    content = {
+        "version": 5,
+        "storage_identifier": "mcap",
+        "duration": {"nanoseconds": (count - 1) * TENTH_NS},
+        "starting_time": {"nanoseconds_since_epoch": BEGIN_NS},
+        "message_count": count,
+        "topics_with_message_count": [{"topic_metadata": about, "message_count": count}],
+        "compression_format": "",
+        "compression_mode": "",
+        "relative_file_paths": list(named),
+        "files": [],
+        **facts,
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    text = yaml.safe_dump({"rosbag2_bagfile_information": content}, sort_keys=False)
+    (folder / "metadata.yaml").write_text(text)
+    return folder
