@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Protocol, cast
 
 from ros2.table import COMMANDS, ELSEWHERE, VERBS, VERBS_ELSEWHERE
+from text.output import harmless_output
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,7 +33,16 @@ class Verb(Protocol):
 
 
 def main(argv: Sequence[str]) -> int:
-    """Run one command line; return the exit code."""
+    """Run one command line; return the exit code.
+
+    Whatever others have named, published or answered is printed without what could control the
+    terminal or hide in it.
+    """
+    with harmless_output():
+        return _ended(argv)
+
+
+def _ended(argv: Sequence[str]) -> int:
     try:
         code = _run(list(argv))
         sys.stdout.flush()

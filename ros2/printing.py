@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import yaml
 
+from text.plain import plain
+
 Tree = Any
 """What a message becomes: mappings, lists, numbers, strings."""
 MANY = (list, tuple, array.array, np.ndarray)
@@ -127,7 +129,8 @@ def _csv(value: Any, shape: Shape, kind: object = None) -> str:  # noqa: ANN401
         parts = [_csv(each, shape) for each in value[:longest]]
         return ",".join([*parts, "..."] if len(value) > longest else parts)
     if isinstance(value, str):
-        return f"<string length: <{len(value)}>>" if not shape.strings else _cut(value, shape)
+        # A line break would begin another row.
+        return plain(_cut(value, shape)) if shape.strings else f"<string length: <{len(value)}>>"
     if isinstance(value, bytes):
         cut = shape.longest is not None and len(value) > shape.longest
         return str(value[: shape.longest] + b"..." if cut else value)

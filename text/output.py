@@ -10,12 +10,12 @@ import sys
 import traceback
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
-from text.plain import plain, plain_lines, replaced
+from text.plain import plain, plain_layout, plain_lines, replaced
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from types import TracebackType
 
 RED, GREEN, YELLOW, DIM, BOLD = "31", "32", "33", "2", "1"
@@ -112,6 +112,33 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False)).rstrip()
         for row in (head, *rows)
     ]
+
+
+class HarmlessStream:
+    """A text stream on which everything that is written can be shown; line breaks and tabs stay."""
+
+    def __init__(self, stream: TextIO) -> None:
+        """Write to this stream."""
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        """Write what is left of a text from anywhere; return the length of the text."""
+        self._stream.write(plain_layout(text))
+        return len(text)
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - as the stream has it
+        """Be the stream in all else."""
+        return getattr(self._stream, name)
+
+
+@contextlib.contextmanager
+def harmless_output() -> Iterator[None]:
+    """Have all that is printed in a `with` pass through a `HarmlessStream`."""
+    with (
+        contextlib.redirect_stdout(HarmlessStream(sys.stdout)),
+        contextlib.redirect_stderr(HarmlessStream(sys.stderr)),
+    ):
+        yield
 
 
 def drop_output() -> None:

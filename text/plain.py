@@ -74,6 +74,13 @@ def plain_lines(text: str) -> str:
     return replaced(text, lambda character: "\n" if character == "\n" else _picture(character))
 
 
+def plain_layout(text: str) -> str:
+    """Return `text` with its line breaks and tabs, all else sanitized by `plain`."""
+    return replaced(
+        text, lambda character: character if character in "\n\t" else _picture(character)
+    )
+
+
 def is_plain(text: str) -> bool:
     """Return whether `plain` leaves this text unchanged."""
     return plain(text) == text

@@ -16,6 +16,7 @@ from rclpy.utilities import remove_ros_args
 from tf2_ros import Buffer, TransformException, TransformListener
 
 from ros2.ending import until_interrupted
+from text.output import harmless_output
 
 FIRST_WITHIN_S = 1.0
 SPIN_S = 0.1
@@ -38,7 +39,7 @@ def main(argv: list[str]) -> int:
     if rate is None:
         print(USAGE)
         return 1
-    with until_interrupted():
+    with until_interrupted(), harmless_output():
         rclpy.init(args=argv, signal_handler_options=SignalHandlerOptions.NO)
         node = rclpy.create_node("tf2_echo")
         try:

@@ -1,0 +1,71 @@
+"""What others publish, answer or are set to is printed so that it can be read, and does nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from rcl_interfaces.msg import ParameterDescriptor
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+
+from tests.hostile_text import EVIL, harm_in
+from tests.ros.peer import LATCHED
+from tests.ros.ros2.typed import Typed, typed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from tests.ros.ros2.world import World
+
+NAME = "safe \u202egpj.exe"
+SHOWN = "safe \N{REPLACEMENT CHARACTER}gpj.exe"
+
+
+@pytest.fixture(scope="module")
+def _evil(world: World) -> Iterator[None]:
+    world.publisher("/evil", String, LATCHED).publish(String(data=NAME + EVIL))
+    described = ParameterDescriptor(description=NAME + EVIL)
+    world.node.declare_parameter("evil", NAME + EVIL, described)
+    service = world.node.create_service(SetBool, "/evil_answer", _answer)
+    yield
+    world.node.destroy_service(service)
+    world.node.undeclare_parameter("evil")
+
+
+def _answer(_request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+    response.message = NAME + EVIL
+    return response
+
+
+@pytest.mark.usefixtures("_evil")
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("topic", "echo", "--once", "/evil"),
+        ("topic", "echo", "--once", "/evil", "--flow-style"),
+        ("topic", "echo", "--once", "/evil", "--csv"),
+        ("topic", "echo", "--once", "/evil", "--field", "data"),
+        ("param", "get", "/turtle", "evil"),
+        ("param", "get", "/turtle", "evil", "--hide-type"),
+        ("param", "describe", "/turtle", "evil"),
+        ("param", "dump", "/turtle"),
+    ],
+    ids=" ".join,
+)
+def test_what_others_wrote_is_shown_as_on_the_screens(words: tuple[str, ...]) -> None:
+    shows(typed(*words), escapes=words[1] == "dump" or words[-1] in ("/evil", "--flow-style"))
+
+
+@pytest.mark.usefixtures("_evil")
+def test_what_a_service_answers_is_shown_as_on_the_screens() -> None:
+    # Python's own form has escapes for all that cannot be seen.
+    shows(typed("service", "call", "/evil_answer", "std_srvs/srv/SetBool", "{}"), escapes=True)
+
+
+def shows(told: Typed, *, escapes: bool = False) -> None:
+    assert (told.code, told.err) == (0, "")
+    # A tab does nothing, and the real tool prints some of its own.
+    assert harm_in(told.out.replace("\t", "").encode("utf-8", "surrogatepass")) == []
+    assert "gpj.exe" in told.out
+    assert escapes or SHOWN in told.out
