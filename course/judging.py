@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import course
 from course.protocol import MOST_BYTES, unpack_step
 from course.results import StepResult
-from launcher.control.protocol import encode, unpack_text
+from launcher.control.protocol import encode
 from text.nested import read_json
+from text.packing import unpack_text
 from text.sentences import say
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from course.results import CheckResult, State, StepResult
-from launcher.control.protocol import pack_text, unpack_text
+from text.packing import pack_text, unpack_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -22,7 +22,7 @@ def main(argv: list[str]) -> None:
     """Run the file `argv[0]` with its arguments."""
     program = runpy.run_path(f"{OURS}/node_program.py")
     file = os.path.abspath(argv[0])  # noqa: PTH100
-    program["prepare"]((file, *argv[1:]))
+    program["prepare"]((file, *argv[1:]), tells=False)
     sys.argv[0] = argv[0]
     report = sys.excepthook
 
@@ -30,28 +30,22 @@ def main(argv: list[str]) -> None:
         kind: type[BaseException], error: BaseException, trace: TracebackType | None
     ) -> None:
         report(kind, error, trace)
-        with contextlib.suppress(Exception):
-            _explain(program["INSTALLATION"], file, error)
+        with contextlib.suppress(Exception), program["deck_modules"]():
+            _explain(file, error)
 
     sys.excepthook = explain
     program["run"](file)
 
 
-def _explain(installation: str, file: str, error: BaseException) -> None:
-    """Print the sentence. The learner's own `launcher` or `text` is no longer needed."""
-    for name in [name for name in sys.modules if name.partition(".")[0] in ("launcher", "text")]:
-        del sys.modules[name]
-    sys.path.insert(0, installation)
-    import traceback
-
-    from launcher.faults.crash import crash_of
+def _explain(file: str, error: BaseException) -> None:
+    """Print the sentence."""
+    from launcher.faults.explain import explained
     from text.i18n import detect, localized, set_language
     from text.output import say_error
 
     set_language(detect())
-    printed = "".join(traceback.format_exception(None, error, error.__traceback__))
-    fault = crash_of(printed.splitlines(), file.rpartition("/")[0])
-    if fault is not None and fault.meaning:
+    fault = explained(error, file.rpartition("/")[0])
+    if fault.meaning:
         place = f"{fault.file.rpartition('/')[2]}:{fault.line}"
         sys.stdout.flush()
         say_error(f"{place}: {localized(fault.meaning)}")

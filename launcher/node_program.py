@@ -24,8 +24,11 @@ BRIDGES = f"{INSTALLATION}/bridges"
 """The folder of cv_bridge and tf2_ros, for a ROS that comes without them."""
 
 
-def prepare(argv: tuple[str, ...]) -> None:
-    """Make this process look like a node's program; `argv` begins with its module or file."""
+def prepare(argv: tuple[str, ...], *, tells: bool = True) -> None:
+    """Make this process look like a node's program; `argv` begins with its module or file.
+
+    `tells`: a supervisor reads what it prints, and is told what is wrong with a learner's program.
+    """
     name = argv[0]
     places = [place for place in sys.path if place not in (INSTALLATION, BRIDGES, "")]
     sys.path[:] = [INSTALLATION, *places] if is_ours(name) else [*places, INSTALLATION]
@@ -35,6 +38,9 @@ def prepare(argv: tuple[str, ...]) -> None:
         # Saved twice within a second, a module beside it would be taken for the first one.
         sys.dont_write_bytecode = True
     sys.excepthook = _report
+    if tells and "/" in name:
+        sys.excepthook = _report_and_tell
+        _report_threads()
     sys.orig_argv = [sys.executable, __file__, *argv]
     # The `-m` tells the nodes' packages that one of their modules is being started.
     sys.argv = [name if "/" in name else "-m", *argv[1:]]
@@ -65,6 +71,71 @@ def _report(kind: type[BaseException], error: BaseException, trace: TracebackTyp
     while trace is not None and _is_ours(trace.tb_frame.f_code.co_filename):
         trace = trace.tb_next
     traceback.print_exception(kind, error, trace)
+
+
+def _report_and_tell(
+    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+) -> None:
+    _report(kind, error, trace)
+    tell(error, sys.argv[0], "crash")
+
+
+def _report_threads() -> None:
+    """Tell of an exception that has ended a thread, too, of which nobody else takes notice."""
+    import threading
+
+    shown = threading.excepthook
+
+    def report(ended: threading.ExceptHookArgs) -> None:
+        shown(ended)
+        if ended.exc_value is not None:
+            tell(ended.exc_value, sys.argv[0], "thread")
+
+    threading.excepthook = report
+
+
+def tell(error: BaseException, file: str, kind: str) -> None:
+    """Print, in a way that no terminal shows, what is wrong with the learner's own program."""
+    import contextlib
+
+    with contextlib.suppress(Exception), deck_modules():
+        from launcher.faults.explain import explained
+        from launcher.faults.telling import line_of
+
+        line = line_of(explained(error, file.rpartition("/")[0], kind))
+        sys.stderr.flush()
+        os.write(2, line)
+
+
+class deck_modules:  # noqa: N801 - used as a function
+    """Makes Deck's own modules importable, where the learner has a `text` or `launcher` of his own.
+
+    Only for a moment: other threads of his program may run on.
+    """
+
+    def __enter__(self) -> None:
+        names = ("launcher", "text")
+        self._theirs = {
+            name: module
+            for name, module in tuple(sys.modules.items())
+            if name.partition(".")[0] in names and not _is_in_installation(module)
+        }
+        for name in self._theirs:
+            del sys.modules[name]
+        self._path = list(sys.path)
+        sys.path.insert(0, INSTALLATION)
+
+    def __exit__(self, *_error: object) -> None:
+        sys.path[:] = self._path
+        if self._theirs:
+            for name in tuple(sys.modules):
+                if name.partition(".")[0] in ("launcher", "text"):
+                    del sys.modules[name]
+            sys.modules.update(self._theirs)
+
+
+def _is_in_installation(module: object) -> bool:
+    return str(getattr(module, "__file__", "")).startswith(f"{INSTALLATION}/")
 
 
 def _is_ours(file: str) -> bool:

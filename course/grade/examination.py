@@ -17,8 +17,8 @@ from course.grade.leftovers import end_adopted, end_marked, kill_descendants
 from course.grade.limits import taken
 from course.grade.protocol import MOST_BYTES
 from course.proof.places import Places
-from launcher.control.protocol import unpack_text
 from text.nested import read_json
+from text.packing import unpack_text
 from text.sentences import say
 
 if TYPE_CHECKING:

@@ -30,9 +30,9 @@ from course.proof.domains import unused_domains
 from course.proof.places import Places
 from course.protocol import unpack_step
 from course.results import State
-from launcher.control.protocol import unpack_text
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.steps.draw import new_seed
+from text.packing import unpack_text
 from text.sentences import say
 
 if TYPE_CHECKING:

@@ -19,13 +19,11 @@ from launcher.control.protocol import (
     VERSION,
     encode,
     pack_stray,
-    pack_text,
     unpack_agents,
     unpack_line,
     unpack_session,
     unpack_status,
     unpack_stray,
-    unpack_text,
 )
 from launcher.control.socket import connect
 from launcher.errors import (
@@ -44,6 +42,7 @@ from launcher.supervisor.dependencies import stop_waves
 from launcher.supervisor.plan import plan_of
 from launcher.supervisor.words import who
 from text.nested import read_json
+from text.packing import pack_text, unpack_text
 from text.sentences import say
 
 if TYPE_CHECKING:

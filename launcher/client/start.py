@@ -93,8 +93,9 @@ class StartingSupervisor:
         """
         import asyncio
 
-        from launcher.control.protocol import unpack_session, unpack_text
+        from launcher.control.protocol import unpack_session
         from launcher.errors import AlreadyRunningError, RunDirError, StartError
+        from text.packing import unpack_text
         from text.sentences import say
 
         stdin = self._process.stdin

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from launcher.consent import Approval, ConsentAnswer
 from launcher.control.bad_request import BadRequestError
-from launcher.control.protocol import encode, unpack_text
+from launcher.control.protocol import encode
 from launcher.status import Severity
+from text.packing import unpack_text
 from text.plain import plain
 from text.sentences import say
 

@@ -14,9 +14,9 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from launcher.consent import Agent, AgentRules, Agents, Approval, Question
+from launcher.faults.telling import pack_fault, unpack_fault
 from launcher.status import (
     LogLine,
-    NodeFault,
     NodeState,
     NodeStatus,
     SessionInfo,
@@ -24,7 +24,8 @@ from launcher.status import (
     Stray,
     Who,
 )
-from text.sentences import InLanguages, Words, say
+from text.packing import pack_text, unpack_text
+from text.sentences import Words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,44 +47,10 @@ def encode(message: Mapping[str, Any]) -> bytes:
     return text.encode("utf-8", "surrogatepass") + b"\n"
 
 
-def pack_text(text: str) -> Any:  # noqa: ANN401 - JSON
-    """Return a sentence in a form that can be translated at the other end."""
-    if isinstance(text, InLanguages):
-        return text.texts
-    if isinstance(text, Words) and text.values:
-        return [text.template, {key: _pack_value(value) for key, value in text.values.items()}]
-    return str(text) if not isinstance(text, Words) else [text.template, {}]
-
-
-def _pack_value(value: object) -> Any:  # noqa: ANN401 - JSON
-    if isinstance(value, str):
-        return pack_text(value)
-    return value if isinstance(value, (int, float)) or value is None else str(value)
-
-
-def unpack_text(packed: Any) -> str:  # noqa: ANN401 - JSON
-    """Return the sentence that `pack_text` was given."""
-    if isinstance(packed, str):
-        return packed
-    if isinstance(packed, dict):
-        return InLanguages(packed)
-    template, values = packed
-    unpacked = {
-        key: unpack_text(value) if isinstance(value, (str, list, dict)) else value
-        for key, value in values.items()
-    }
-    return say(template, **unpacked)
-
-
 def pack_status(status: NodeStatus) -> dict[str, Any]:
     """Return a node's status as JSON."""
-    fault = None if status.fault is None else _pack_fault(status.fault)
+    fault = None if status.fault is None else pack_fault(status.fault)
     return {**vars(status), "detail": pack_text(status.detail), "fault": fault}
-
-
-def _pack_fault(fault: NodeFault) -> dict[str, Any]:
-    said = {"exception": pack_text(fault.exception), "meaning": pack_text(fault.meaning)}
-    return {**vars(fault), **said}
 
 
 def unpack_status(fields: dict[str, Any]) -> NodeStatus:
@@ -94,16 +61,9 @@ def unpack_status(fields: dict[str, Any]) -> NodeStatus:
             "state": NodeState(fields["state"]),
             "detail": unpack_text(fields["detail"]),
             "needs": tuple(fields["needs"]),
-            "fault": _unpack_fault(fields["fault"]),
+            "fault": unpack_fault(fields["fault"]),
         }
     )
-
-
-def _unpack_fault(fields: dict[str, Any] | None) -> NodeFault | None:
-    if fields is None:
-        return None
-    said = {name: unpack_text(fields[name]) for name in ("exception", "meaning")}
-    return NodeFault(**{**fields, **said})
 
 
 def pack_line(line: LogLine) -> list[Any]:

@@ -25,12 +25,12 @@ from launcher.control.protocol import (
     pack_session,
     pack_status,
     pack_stray,
-    pack_text,
     unpack_stray,
 )
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.processes.confinement import is_confined, is_elsewhere
 from text.nested import read_json
+from text.packing import pack_text
 from text.sentences import say
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Reading what a process has printed: the last frame of a traceback that is the learner's own."""
+"""Reading what a process has printed, where it has told nothing itself: its last traceback."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 import re
 from typing import TYPE_CHECKING
 
-from launcher.faults.meanings import meaning_of, warning_of
+from launcher.faults.meanings import warning_of
 from launcher.status import NodeFault
 from text.plain import plain
 from text.sentences import say
@@ -55,7 +55,6 @@ def crash_of(lines: Sequence[str], folder: str) -> NodeFault | None:
         line=line,
         source_line=source,
         exception=exception,
-        meaning=meaning_of(exception, source),
     )
 
 

@@ -9,24 +9,17 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.faults.meanings import meaning_of
+from launcher.faults.rules.imports import missing_module
+from launcher.faults.rules.syntax import encoding_of, syntax
 from launcher.status import NodeFault
 from text.plain import plain
 from text.sentences import say
-from text.suggestions import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 MAX_BYTES = 1 << 20
 MAIN = "main"
-KNOWN = (
-    "ackermann_msgs", "builtin_interfaces", "cv2", "cv_bridge", "deck_interfaces",
-    "diagnostic_msgs", "example_interfaces", "geometry_msgs", "json", "math", "nav_msgs", "numpy",
-    "pydantic", "random", "rclpy", "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "tf2_ros",
-    "time", "visualization_msgs",
-)  # fmt: skip
-"""Modules that a beginner may have meant."""
 
 
 def look_at(file: str) -> NodeFault | None:
@@ -40,9 +33,10 @@ def look_at(file: str) -> NodeFault | None:
         tree = compile(data, file, "exec", ast.PyCF_ONLY_AST, dont_inherit=True)
         compile(data, file, "exec", dont_inherit=True)
     except SyntaxError as error:
-        return _syntax(file, error)
+        return _syntax(file, error, data)
     except (ValueError, RecursionError, MemoryError) as error:  # A NUL character, or nested deeply
-        return NodeFault("syntax", file, exception=plain(str(error)))
+        meaning = encoding_of(data) or ""
+        return NodeFault("syntax", file, exception=plain(str(error)), meaning=meaning)
     lines = data.decode("utf-8", "replace").splitlines()
     assert isinstance(tree, ast.Module)
     for name, node in _imports(tree):
@@ -87,7 +81,7 @@ def modules_of(file: str) -> set[str]:
     return found - {file}
 
 
-def _syntax(file: str, error: SyntaxError) -> NodeFault:
+def _syntax(file: str, error: SyntaxError, data: bytes) -> NodeFault:
     words = plain(f"{type(error).__name__}: {error.msg}")
     return NodeFault(
         "syntax",
@@ -96,7 +90,7 @@ def _syntax(file: str, error: SyntaxError) -> NodeFault:
         column=error.offset or 0,
         source_line=plain((error.text or "").strip()),
         exception=words,
-        meaning=meaning_of(words),
+        meaning=encoding_of(data) or syntax(error, data.decode(errors="replace").splitlines()),
     )
 
 
@@ -125,15 +119,6 @@ def _is_there(name: str, folder: Path) -> bool:
 
 
 def _missing(file: str, name: str, node: ast.stmt, lines: list[str]) -> NodeFault:
-    meant = "" if name in KNOWN else nearest(name, KNOWN)
-    if meant:
-        meaning = say("There is no module {name}; did you mean {meant}?", name=name, meant=meant)
-    else:
-        meaning = say(
-            "The module {name} is not installed; put its file beside this one, or install it with"
-            " pip.",
-            name=name,
-        )
     return NodeFault(
         "import",
         file,
@@ -141,5 +126,5 @@ def _missing(file: str, name: str, node: ast.stmt, lines: list[str]) -> NodeFaul
         column=node.col_offset + 1,
         source_line=plain(lines[node.lineno - 1].strip()),
         exception=f"ModuleNotFoundError: No module named '{plain(name)}'",
-        meaning=meaning,
+        meaning=missing_module(name, file.rpartition("/")[0]),
     )

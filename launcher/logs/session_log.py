@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import heapq
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from launcher.faults.telling import told_in
 from launcher.logs.rcutils import SeverityParser
 from launcher.logs.reader import PipeReader
 from launcher.logs.ring import LogRing
@@ -38,6 +39,8 @@ class SessionLog:
         self._on_line = on_line
         self.heard: Callable[[LogLine], None] = lambda _line: None
         """Called with each line that a node has written."""
+        self.told: Callable[[str, dict[str, Any]], None] = lambda _node, _told: None
+        """Called with what a node's program tells the supervisor, which is no line of its log."""
 
     def read(self, node: str, fd: int, source: str) -> PipeReader:
         """Read a node's pipe to its end; `source` is `stdout` or `stderr`."""
@@ -88,7 +91,12 @@ class SessionLog:
         now = time.time()
         ring = self.rings[node]
         for raw in lines:
-            text, suggested = plain_text(raw.data)
+            data, told = told_in(raw.data)
+            if told is not None:
+                self.told(node, told)
+                if not data.strip():
+                    continue
+            text, suggested = plain_text(data)
             parsed = parser.parse(text, now, suggested)
             shown = parsed.text
             if raw.lost:

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.control.protocol import MAX_MESSAGE_BYTES, encode, pack_session, pack_text
+from launcher.control.protocol import MAX_MESSAGE_BYTES, encode, pack_session
 from launcher.control.server import ControlServer
 from launcher.domain.discovery import why_open
 from launcher.domain.ports import other_users
@@ -38,6 +38,7 @@ from launcher.supervisor.process import ProcessLauncher, ProcessScan
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
 from text.os_words import os_reason
+from text.packing import pack_text
 from text.run_path import OWN_RUN_DIR
 from text.sentences import Words, say
 

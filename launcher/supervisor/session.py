@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from launcher.clock import MonotonicClock
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.crash import crash_of, warning_in
 from launcher.faults.source import look_at, unspun
+from launcher.faults.telling import fault_in
 from launcher.logs.session_log import DECK
 from launcher.processes.usage import UsageMeter
 from launcher.status import NodeState, Severity
@@ -54,7 +55,9 @@ class Session:
         self.clock: Clock = MonotonicClock()
         self.plan = plan
         self.log = log
-        log.heard = self.heard
+        log.heard, log.told = self.heard, self._take_told
+        self._faults: dict[str, NodeFault] = {}
+        """Node to what its latest process has told of its end."""
         self.nodes = {node.name: SupervisedNode(node, self) for node in plan.nodes}
         self._launcher = launcher
         self._on_change = on_change
@@ -168,6 +171,7 @@ class Session:
             self._on_start(plan.name, plan.file)
             # Also where it has no condition: are its topics of the types that others use?
             self._readiness.expect()
+        self._faults.pop(plan.name, None)
         process = await self._launcher.launch(plan)
         self.processes[plan.name] = (process.pid, process.started_ticks)
         return process
@@ -193,8 +197,22 @@ class Session:
 
     def crash(self, plan: NodePlan) -> NodeFault | None:
         """Return what the last output of a learner's own node tells of its end."""
+        told = self._faults.get(plan.name)
+        if told is not None:
+            return told
         lines = [line.text for line in self.log.since_start(plan.name)]
         return crash_of(lines, plan.file.rpartition("/")[0])
+
+    def _take_told(self, name: str, told: dict[str, Any]) -> None:
+        """Take what the program of a learner's own node tells of itself."""
+        node = self.nodes.get(name)
+        if node is None or not node.plan.file:
+            return
+        fault = fault_in(told)
+        if fault is not None and fault.kind in ("crash", "syntax"):
+            self._faults[name] = fault
+        elif fault is not None:
+            node.warn(fault)
 
     def exchange(self, name: str, program: str | None) -> None:
         """Run a file or a module in the place of a node's program, or the program itself again."""

@@ -1,4 +1,8 @@
-"""What beginners get wrong is named by line, and by a sentence that says what it means."""
+"""What beginners get wrong is named by line, and by a sentence that says what it means.
+
+Each program of `tests.ros.launcher.mistakes` is run with the real rclpy. The sentences are written
+down in `sentences.txt` there: `--snapshot-update` writes them anew, and they want to be read.
+"""
 
 from __future__ import annotations
 
@@ -11,21 +15,31 @@ from pathlib import Path
 import pytest
 
 from launcher.faults.crash import crash_of
-from launcher.faults.meanings import CHECK_FIELDS, CRASHES, warning_of
-from tests.ros.launcher.mistakes import MISTAKES
+from launcher.faults.meanings import CHECK_FIELDS, warning_of
+from launcher.faults.source import look_at
+from launcher.faults.telling import fault_in, told_in
+from launcher.status import NodeFault
+from tests.ros.launcher.mistakes import MISTAKES, sentences, write
+from tests.ros.launcher.mistakes.language import BYTES
+from text.i18n import localized
+from text.sentences import Words
 
 ROOT = Path(__file__).parents[3]
 
 
+def both(fault: NodeFault) -> tuple[str, str]:
+    return localized(fault.meaning, "en"), localized(fault.meaning, "ru")
+
+
 @pytest.fixture(scope="module")
-def printed(
+def told(
     tmp_path_factory: pytest.TempPathFactory, module_domain: int
-) -> dict[str, tuple[list[str], str]]:
-    """What each program has printed, and the folder that it was in."""
+) -> dict[str, tuple[NodeFault | None, str]]:
+    """What each program has told the supervisor of its end, and all that it has printed."""
     folder = tmp_path_factory.mktemp("mistakes")
     names = {f"mistake_{number}": name for number, name in enumerate(MISTAKES)}
     for stem, name in names.items():
-        (folder / f"{stem}.py").write_text(MISTAKES[name][0])
+        (folder / f"{stem}.py").write_text(MISTAKES[name])
     done = subprocess.run(
         [sys.executable, "-m", "tests.ros.launcher.run_mistakes", str(folder)],
         cwd=ROOT,
@@ -33,29 +47,62 @@ def printed(
         stdout=subprocess.PIPE,
         text=True,
         check=True,
-        timeout=120,
+        timeout=300,
     )
     said: dict[str, str] = json.loads(done.stdout.splitlines()[-1])
-    return {names[stem]: (text.splitlines(), str(folder)) for stem, text in said.items()}
+    return {names[stem]: (_fault(text), text) for stem, text in said.items()}
 
 
-@pytest.mark.timeout(150)
+def _fault(printed: str) -> NodeFault | None:
+    lines = printed.encode(errors="surrogateescape").split(b"\n")
+    found = [fault_in(told) for _before, told in map(told_in, lines) if told]
+    return found[-1] if found else None
+
+
+@pytest.fixture(scope="module")
+def expected(
+    told: dict[str, tuple[NodeFault | None, str]], request: pytest.FixtureRequest
+) -> dict[str, tuple[str, str]]:
+    if request.config.option.update_snapshots:
+        write({name: both(fault) for name in MISTAKES if (fault := told[name][0]) is not None})
+    return sentences()
+
+
+@pytest.mark.timeout(330)
 @pytest.mark.parametrize("name", MISTAKES)
-def test_a_mistake_is_explained(name: str, printed: dict[str, tuple[list[str], str]]) -> None:
-    lines, folder = printed[name]
-    fault = crash_of(lines, folder)
-    assert fault is not None, lines
-    assert MISTAKES[name][1] in fault.meaning, fault
-    assert fault.file.startswith(folder)
+def test_a_mistake_is_explained(
+    name: str,
+    told: dict[str, tuple[NodeFault | None, str]],
+    expected: dict[str, tuple[str, str]],
+) -> None:
+    """In both languages, with the place in the learner's own file and the line that is there."""
+    fault, printed = told[name]
+    assert fault is not None, printed
+    assert both(fault) == expected[name], fault
+    assert isinstance(fault.meaning, Words)
     assert len(fault.exception) < 250, "rclpy writes the limits of a float64 out"
-    program = MISTAKES[name][0].splitlines()
-    # In the learner's own file, and the line that stands there.
+    assert Path(fault.file).name.startswith("mistake_")
+    program = MISTAKES[name].splitlines()
     assert fault.source_line in program[fault.line - 1] or fault.kind == "syntax"
+    # What is read from the printed traceback alone names the same exception.
+    read = crash_of(printed.splitlines(), fault.file.rpartition("/")[0])
+    assert read is None or fault.exception[:20] in read.exception or fault.kind == "syntax"
 
 
-def test_there_are_at_least_thirty() -> None:
-    assert len(CRASHES) >= 30
-    assert len(MISTAKES) >= 30
+def test_there_are_at_least_a_hundred_and_fifty() -> None:
+    assert len(MISTAKES) >= 150
+    assert set(sentences()) == set(MISTAKES)
+    russian = [ru for _en, ru in sentences().values()]
+    assert all(any("а" <= letter <= "я" for letter in words) for words in russian)
+
+
+@pytest.mark.parametrize("name", BYTES)
+def test_a_file_that_is_not_text_is_explained(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "own.py"
+    file.write_bytes(BYTES[name][0])
+    fault = look_at(str(file))
+    assert fault is not None
+    assert BYTES[name][1] in fault.meaning
 
 
 def test_what_only_the_log_tells_is_explained() -> None:

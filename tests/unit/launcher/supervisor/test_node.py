@@ -319,7 +319,7 @@ async def test_a_program_that_is_not_installed_is_told_and_no_alarm_if_optional(
 
 
 def test_words_can_be_translated() -> None:
-    from launcher.control.protocol import pack_text, unpack_text
+    from text.packing import pack_text, unpack_text
     from text.sentences import Words, say
 
     words = say("{why}; again in {seconds:g} s", why=say("exit code {code}", code=1), seconds=2.0)

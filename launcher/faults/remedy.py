@@ -1,0 +1,169 @@
+"""What to do with a value that is of another kind than the line needs: a parameter, a message."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from launcher.faults.failure import (
+    UNKNOWN,
+    Failure,
+    fields_of,
+    is_message_class,
+    name_of,
+    shown,
+)
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from text.sentences import Words
+
+FEW = 6
+"""As many fields are named."""
+
+
+def remedy(failure: Failure, node: ast.AST | None, value: Any = UNKNOWN) -> Words | None:  # noqa: ANN401
+    """Return what to write in an expression's place where a number or a text is needed."""
+    what = f"({shown(node)})" if isinstance(node, ast.BinOp) else shown(node)
+    value = failure.value(node) if value is UNKNOWN else value
+    if value is not UNKNOWN:
+        return _of_value(failure, what, node, value)
+    kind = failure.type_of(node)
+    return None if kind is None else _of_type(failure, what, node, kind)
+
+
+def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
+    """Say that an expression is None, and what that may come from."""
+    what, call = shown(node), failure.given_by(node)
+    if isinstance(node, ast.Constant) or node is None:
+        return say("None is not a value here: has nothing been put there yet?")
+    if call is not None:
+        return _nothing_given(call)
+    if isinstance(node, ast.Call):
+        return _nothing_given(node)
+    return is_none_here(what)
+
+
+def is_none_here(what: str) -> Words:
+    """Say that a value that was handed over is None."""
+    return say(
+        "{what} is None: nothing has been put there yet, such as a first message. Ask before:"
+        " if {what} is None: return.",
+        what=what,
+    )
+
+
+def _nothing_given(call: ast.Call) -> Words:
+    """Say that a function has given nothing."""
+    name = call.func.attr if isinstance(call.func, ast.Attribute) else ""
+    if name == "result":
+        return say(
+            "result() of a future gives None until its answer is there: ask for it in a done"
+            " callback, future.add_done_callback(self.on_answer)."
+        )
+    if name in ("append", "sort", "reverse", "extend", "update", "add", "insert"):
+        return say(
+            "{name} changes the list itself and gives None: write it on a line of its own, without"
+            " an equals sign.",
+            name=name,
+        )
+    return say(
+        "{what} gives None: does it have a return, and does it return a value in this case?",
+        what=shown(call),
+    )
+
+
+def of_message(what: str, kind: Any) -> Words:  # noqa: ANN401 - a class of messages
+    """Say that an expression is a whole message, and which of its fields may be meant."""
+    fields = list(fields_of(kind))
+    if fields == ["data"] or "data" in fields:
+        return say(
+            "{what} is a whole message, {type}; what is in it is {what}.data.",
+            what=what,
+            type=name_of(kind),
+        )
+    return say(
+        "{what} is a whole message, {type}; use one of its fields: {fields}.",
+        what=what,
+        type=name_of(kind),
+        fields=listed(fields),
+    )
+
+
+def listed(names: list[str]) -> str:
+    """Return some names, with an ellipsis if they are many."""
+    return ", ".join(names[:FEW]) + (", …" if len(names) > FEW else "")
+
+
+def future(what: str) -> Words:
+    """Say how to get at the answer that a future promises."""
+    return say(
+        "{what} is a future: the answer is not there yet. Have it called back,"
+        " future.add_done_callback(self.on_answer), and read future.result() there.",
+        what=what,
+    )
+
+
+def parameter(what: str) -> Words:
+    """Say that a parameter is not its value."""
+    return say("{what} is a parameter; its value is {what}.value.", what=what)
+
+
+def _of_value(failure: Failure, what: str, node: ast.AST | None, value: Any) -> Words | None:  # noqa: ANN401
+    if value is None:
+        return is_none(failure, node)
+    if isinstance(value, type):
+        return say("{what} is a class: the brackets are missing, {what}().", what=what)
+    if inspect.isroutine(value):
+        return say("{what} is a function: the brackets are missing, {what}().", what=what)
+    if isinstance(value, ModuleType):
+        return say("{what} is a module: name what is meant in it, {what}.x.", what=what)
+    if isinstance(value, str):
+        return of_text(what, value)
+    return _of_type(failure, what, node, type(value))
+
+
+def of_text(what: str, value: str) -> Words | None:
+    """Say how a text becomes a number."""
+    if re.fullmatch(r"\s*[-+]?\d+(\.\d*)?\s*", value):
+        return say("{what} is a text, not a number: float({what}).", what=what)
+    return None
+
+
+def _of_type(failure: Failure, what: str, node: ast.AST | None, kind: type) -> Words | None:
+    if kind is type(None):
+        return is_none(failure, node)
+    if is_message_class(kind) and not _is_time(kind):
+        return of_message(what, kind)
+    module, name = kind.__module__.partition(".")[0], kind.__name__
+    if module == "rclpy" and name == "Parameter":
+        return parameter(what)
+    if module == "rclpy" and name in ("Future", "Task"):
+        return future(what)
+    if module == "rclpy" and name == "Duration":
+        return say(
+            "{what} is of type Duration: {what}.nanoseconds / 1e9 are its seconds, and"
+            " Duration(seconds=0.5) makes one.",
+            what=what,
+        )
+    if module == "rclpy" and name == "Time":
+        return say(
+            "{what} is of type Time: {what}.nanoseconds / 1e9 are seconds, and a Duration can be"
+            " added to it: Duration(seconds=0.5).",
+            what=what,
+        )
+    if _is_time(kind):
+        return say(
+            "{what} is the message {type}: Time.from_msg({what}) of rclpy.time can be calculated"
+            " with.",
+            what=what,
+            type=name_of(kind),
+        )
+    return None
+
+
+def _is_time(kind: type) -> bool:
+    return kind.__module__.startswith("builtin_interfaces.")

@@ -1,0 +1,411 @@
+"""Attributes that are not there: of None, of a message, of the learner's own node, of a module."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import sys
+from types import ModuleType
+from typing import Any
+
+from launcher.faults.failure import (
+    UNKNOWN,
+    Failure,
+    is_action_class,
+    is_from,
+    is_message,
+    is_message_class,
+    is_service_class,
+    name_of,
+    shown,
+)
+from launcher.faults.homes import ROS1, home_of, ros1
+from launcher.faults.remedy import future, is_none, parameter
+from launcher.faults.rules.fields import no_field
+from text.sentences import Words, say
+from text.suggestions import nearest
+
+OTHER_NAMES = {
+    (list, "push"): "append", (list, "add"): "append", (list, "length"): "len(…)",
+    (list, "size"): "len(…)", (str, "length"): "len(…)", (dict, "has_key"): "key in d",
+    (str, "decode"): "", (bytes, "encode"): "", (list, "shape"): "np.array(…).shape",
+    (bytes, "shape"): "np.frombuffer(…)", (list, "tolist"): "",
+    ("Time", "to_sec"): ".nanoseconds / 1e9", ("Time", "secs"): ".nanoseconds",
+    ("Time", "nsecs"): ".nanoseconds", ("Time", "sec"): ".to_msg().sec",
+    ("Time", "nanosec"): ".to_msg().nanosec", ("Time", "seconds"): ".nanoseconds / 1e9",
+    ("Duration", "to_sec"): ".nanoseconds / 1e9", ("Duration", "seconds"): ".nanoseconds / 1e9",
+    ("Duration", "sec"): ".nanoseconds / 1e9", ("Timer", "stop"): ".cancel()",
+    ("Timer", "start"): ".reset()", ("Publisher", "send"): ".publish(msg)",
+    ("Publisher", "pub"): ".publish(msg)", ("Client", "call_service"): ".call_async(request)",
+    ("Client", "send_request"): ".call_async(request)", ("RcutilsLogger", "print"): ".info(…)",
+    ("RcutilsLogger", "log_info"): ".info(…)",
+    ("RcutilsLogger", "warning_once"): ".warn(…, once=True)",
+    ("RcutilsLogger", "critical"): ".fatal(…)", ("Clock", "time"): ".now()",
+    ("Rate", "wait"): ".sleep()",
+}  # fmt: skip
+"""What beginners call by another name, or need not call at all."""
+
+
+def wanted(failure: Failure) -> tuple[Any, str] | None:
+    """Return the object and the name of the attribute that it has not."""
+    error = failure.error
+    if not isinstance(error, AttributeError):
+        return None
+    name, of = getattr(error, "name", None), getattr(error, "obj", UNKNOWN)
+    if name is None:
+        for each in failure.all(ast.Attribute):
+            return failure.value(each.value), each.attr
+        return None
+    return of, name
+
+
+def expression(failure: Failure, name: str) -> ast.Attribute | None:
+    """Return the expression of the learner's own line that asks for the attribute."""
+    if not failure.is_own:
+        return None
+    return next((each for each in failure.all(ast.Attribute) if each.attr == name), None)
+
+
+def unsettable(failure: Failure) -> Words | None:
+    """A name of rclpy's own in every node was given another value."""
+    if not isinstance(failure.error, AttributeError):
+        return None
+    for each in failure.all(ast.Attribute):
+        of = failure.value(each.value)
+        found = inspect.getattr_static(type(of), each.attr, None)
+        if isinstance(each.ctx, ast.Store) and isinstance(found, property):
+            if is_from(of, "rclpy", "Node"):
+                return say(
+                    "self.{name} is rclpy's own in every node, and cannot be set: take another"
+                    " name, self.my_{name}.",
+                    name=each.attr,
+                )
+            return say("{name} can be read, and not be set.", name=shown(each))
+    return None
+
+
+def unset_field(failure: Failure) -> Words | None:
+    """A field was set that the message has not."""
+    found = wanted(failure)
+    if found is None:
+        return None
+    of, name = found
+    return no_field(type(of), name) if is_message(of) else None
+
+
+def of_taken(failure: Failure) -> Words | None:
+    """A function of rclpy's has given something else than it does, since its name was taken."""
+    found = wanted(failure)
+    node = expression(failure, found[1]) if found is not None else None
+    if found is None or node is None or not isinstance(node.value, ast.Call):
+        return None
+    given = type(found[0]).__module__.partition(".")[0]
+    if given == "rclpy" or not is_of_rclpy(failure.called(node.value)):
+        return None
+    return taken_name(failure)
+
+
+def of_none(failure: Failure) -> Words | None:
+    """Something is None that was used as an object."""
+    found = wanted(failure)
+    if found is None or found[0] is not None or not failure.is_own:
+        return None
+    node = expression(failure, found[1])
+    if node is None:
+        return None
+    return is_none(failure, node.value)
+
+
+def of_module(failure: Failure) -> Words | None:
+    """A module has no such name: it lives elsewhere, or the module is the learner's own file."""
+    found = wanted(failure)
+    if found is None or not isinstance(found[0], ModuleType):
+        return None
+    module, name = found
+    own = shadowing(module, failure.folder)
+    if own is not None:
+        return own
+    home = home_of(name, module.__name__)
+    if module.__name__ == "rclpy" and name in ROS1:
+        return ros1(name)
+    if name in ("msg", "srv", "action"):
+        return say(
+            "{module}.{name} has to be imported by its own name: import {module}.{name}, or from"
+            " {module}.{name} import ….",
+            module=module.__name__,
+            name=name,
+        )
+    if home:
+        return say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
+    meant = nearest(name, [each for each in dir(module) if not each.startswith("_")])
+    if meant:
+        return say(
+            "{module} has no {name}; did you mean {meant}?",
+            module=module.__name__,
+            name=name,
+            meant=meant,
+        )
+    return say(
+        "{module} has no {name}: is it spelled right, capitals included?",
+        module=module.__name__,
+        name=name,
+    )
+
+
+def shadowing(module: ModuleType | None, folder: str) -> Words | None:
+    """Say that a file of the learner's own has the name of a module, and hides it."""
+    file = getattr(module, "__file__", None) or ""
+    name = getattr(module, "__name__", "")
+    if file.rpartition("/")[0] != folder:
+        return None
+    if name in sys.stdlib_module_names or name in ("rclpy", "numpy", "cv2", "std_msgs", "tf2_ros"):
+        return say(
+            "Your own file {name}.py hides the module {name}: give the file another name.",
+            name=name,
+        )
+    return None
+
+
+def of_class(failure: Failure) -> Words | None:
+    """A class was asked for something that it, or only an object of it, has."""
+    found = wanted(failure)
+    if found is None or not isinstance(found[0], type):
+        return None
+    kind, name = found
+    if is_service_class(kind) or is_action_class(kind):
+        parts = (
+            ("Request", "Response") if is_service_class(kind) else ("Goal", "Result", "Feedback")
+        )
+        return say(
+            "{type} has the parts {parts}, written like this: {type}.{first}.",
+            type=kind.__name__,
+            parts=", ".join(parts),
+            first=parts[0],
+        )
+    if is_message_class(kind):
+        return no_field(kind, name)
+    return _near(kind.__name__, name, [each for each in dir(kind) if not each.startswith("_")])
+
+
+def is_of_rclpy(function: object) -> bool:
+    """Whether a function is one of rclpy's."""
+    return str(getattr(function, "__module__", "")).startswith("rclpy.")
+
+
+def of_routine(failure: Failure) -> Words | None:
+    """A function was used without being called."""
+    found = wanted(failure)
+    if found is None or not inspect.isroutine(found[0]):
+        return None
+    node = expression(failure, found[1])
+    what = shown(node.value) if node is not None else found[0].__name__
+    return say(
+        "{what} is a function: its brackets are missing, {what}().{name}.",
+        what=what,
+        name=found[1],
+    )
+
+
+def of_rclpy(failure: Failure) -> Words | None:
+    """An object of rclpy, or of Python, has it under another name."""
+    found = wanted(failure)
+    if found is None or found[0] is UNKNOWN:
+        return None
+    of, name = found
+    node = expression(failure, name)
+    what = shown(node.value) if node is not None else "x"
+    if is_from(of, "rclpy", "Future", "Task"):
+        return future(what)
+    if is_from(of, "rclpy", "Parameter"):
+        return parameter(what)
+    for kind in type(of).__mro__:
+        for key in (kind, kind.__name__):
+            if (key, name) in OTHER_NAMES:
+                return _other(what, of, name, OTHER_NAMES[key, name])
+    if isinstance(of, dict):
+        return say(
+            '{what} is a dictionary: its values are had by key, {what}["{name}"].',
+            what=what,
+            name=name,
+        )
+    if isinstance(of, (int, float, str, bool)) and name == "data":
+        return say(
+            "{what} is the value itself, of type {type}: without .data.",
+            what=what,
+            type=type(of).__name__,
+        )
+    return None
+
+
+def _other(what: str, of: Any, name: str, meant: str) -> Words:  # noqa: ANN401
+    kind = type(of).__name__
+    if not meant:
+        return say(
+            "{what} is of type {type} already: {name} is not needed.",
+            what=what,
+            type=kind,
+            name=name,
+        )
+    if meant.startswith("."):
+        return say(
+            "{type} of rclpy has no {name}: write {what}{meant}.",
+            type=kind,
+            name=name,
+            what=what,
+            meant=meant,
+        )
+    return say("{type} has no {name}: {meant} does that.", type=kind, name=name, meant=meant)
+
+
+def unmade(failure: Failure) -> Words | None:
+    """The node itself has no such attribute: made elsewhere, later, without self, or misspelt."""
+    found = wanted(failure)
+    if found is None or found[0] is UNKNOWN:
+        return None
+    of, name = found
+    if is_from(of, "rclpy", "Node") and not _is_made(of):
+        return say(
+            "super().__init__(name) has not been called yet: it comes first in __init__, before"
+            " anything of the node is used."
+        )
+    if type(of).__module__ != "__main__" and not _is_own(of, failure):
+        return _near(
+            name_of(type(of)), name, [each for each in dir(of) if not each.startswith("_")]
+        )
+    return _made_where(failure, name) or _taken(failure, of) or _near_own(of, name)
+
+
+def _is_own(of: Any, failure: Failure) -> bool:  # noqa: ANN401
+    module = sys.modules.get(type(of).__module__)
+    return (getattr(module, "__file__", None) or "").rpartition("/")[0] == failure.folder
+
+
+def _is_made(node: Any) -> bool:  # noqa: ANN401
+    return "_Node__handle" in vars(node) or "_Node__node" in vars(node)
+
+
+def _taken(failure: Failure, of: Any) -> Words | None:  # noqa: ANN401
+    """Say that the learner has used a name that rclpy uses itself, where rclpy fails by it."""
+    return taken_name(failure) if is_from(of, "rclpy", "Node") and not failure.is_own else None
+
+
+def taken_name(failure: Failure) -> Words | None:
+    """A name that rclpy uses itself in each node has another value, or another method."""
+    nodes = [
+        value
+        for level in failure.levels
+        for value in level.values.values()
+        if is_from(value, "rclpy", "Node")
+    ]
+    for node in nodes:
+        base = next(each for each in type(node).__mro__ if each.__module__.startswith("rclpy."))
+        used = {*dir(base), *inspect.unwrap(vars(base)["__init__"]).__code__.co_names}
+        made = {
+            name
+            for each in type(node).__mro__
+            if each.__module__ not in (base.__module__, "builtins")
+            for name in vars(each)
+        }
+        made |= _assigned_names(failure)
+        clash = sorted(name for name in made & used if not name.startswith("__"))
+        if clash:
+            return say(
+                "{name} is a name that rclpy uses itself in every node: give yours another one.",
+                name=clash[0],
+            )
+    return None
+
+
+def _assigned_names(failure: Failure) -> set[str]:
+    return {
+        each.attr
+        for each in ast.walk(failure.tree)
+        if isinstance(each, ast.Attribute)
+        and isinstance(each.ctx, ast.Store)
+        and shown(each.value) == "self"
+    }
+
+
+def _made_where(failure: Failure, name: str) -> Words | None:
+    """Say where the attribute is made, if it is made anywhere."""
+    cls = failure.own_class
+    if cls is None or failure.own is None:
+        return None
+    here = failure.own.function
+    for method in [each for each in cls.body if isinstance(each, ast.FunctionDef)]:
+        for each in ast.walk(method):
+            if (
+                isinstance(each, ast.Attribute)
+                and isinstance(each.ctx, ast.Store)
+                and each.attr == name
+            ):
+                if method.name == here:
+                    return say(
+                        "self.{name} is only made in line {line}, after this one.",
+                        name=name,
+                        line=each.lineno,
+                    )
+                return say(
+                    "self.{name} is only made in {method} (line {line}), which has not run yet:"
+                    " make it in __init__.",
+                    name=name,
+                    method=method.name,
+                    line=each.lineno,
+                )
+            if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store) and each.id == name:
+                return say(
+                    "In line {line} {name} is made without self, and is forgotten when {method}"
+                    " ends: write self.{name} there.",
+                    line=each.lineno,
+                    name=name,
+                    method=method.name,
+                )
+    return None
+
+
+def _near_own(of: Any, name: str) -> Words:  # noqa: ANN401
+    known = [each for each in dir(of) if not each.startswith("__")]
+    if name in ROS1:
+        return ros1(name)
+    meant = nearest(name, known)
+    if meant:
+        return (
+            say("The node has no {name}; did you mean self.{meant}?", name=name, meant=meant)
+            if is_from(of, "rclpy", "Node")
+            else say(
+                "{type} has no {name}; did you mean {meant}?",
+                type=type(of).__name__,
+                name=name,
+                meant=meant,
+            )
+        )
+    return say(
+        "{type} has no {name}: it is made nowhere in this class. Make it in __init__, self.{name}"
+        " = ….",
+        type=type(of).__name__,
+        name=name,
+    )
+
+
+def _near(kind: str, name: str, known: list[str]) -> Words:
+    meant = nearest(name, known)
+    if meant:
+        return say("{type} has no {name}; did you mean {meant}?", type=kind, name=name, meant=meant)
+    return say(
+        "{type} has no {name}: is it spelled right, or is something else meant than {type}?",
+        type=kind,
+        name=name,
+    )
+
+
+RULES = (
+    unsettable,
+    unset_field,
+    of_taken,
+    of_none,
+    of_module,
+    of_class,
+    of_routine,
+    of_rclpy,
+    unmade,
+)

@@ -1,0 +1,184 @@
+"""Imports that fail: ROS 1, another package of ROS, a misspelt name, a file that hides a module."""
+
+from __future__ import annotations
+
+import ast
+import sys
+
+from launcher.faults.failure import Failure
+from launcher.faults.homes import KINDS, PACKAGES, ROS1, home_of, ros1
+from launcher.faults.rules.attributes import shadowing
+from text.sentences import Words, say
+from text.suggestions import nearest
+
+OF_ROS1 = (
+    "rospy",
+    "roslib",
+    "rosbag",
+    "tf",
+    "actionlib",
+    "roslaunch",
+    "dynamic_reconfigure",
+    "tf_conversions",
+)
+OF_ROS = (
+    "turtlesim", "nav2_msgs", "nav2_simple_commander", "control_msgs", "moveit_msgs", "moveit",
+    "tf_transformations", "launch", "launch_ros", "gazebo_msgs", "ros_gz_interfaces", "rosbag2_py",
+    "image_transport", "message_filters", "vision_msgs", "controller_manager_msgs", "map_msgs",
+    "ament_index_python", "rqt", "tf2_sensor_msgs", "laser_geometry", "geographic_msgs", "pcl_msgs",
+)  # fmt: skip
+"""Packages of ROS that Deck does not bring."""
+OF_PYPI = {
+    "serial": "pyserial", "yaml": "pyyaml", "PIL": "pillow", "sklearn": "scikit-learn",
+    "usb": "pyusb", "smbus": "smbus2", "Image": "pillow",
+}  # fmt: skip
+KNOWN = (
+    "ackermann_msgs", "builtin_interfaces", "cv2", "cv_bridge", "deck_interfaces",
+    "diagnostic_msgs", "example_interfaces", "geometry_msgs", "json", "math", "nav_msgs", "numpy",
+    "pydantic", "random", "rclpy", "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "tf2_ros",
+    "time", "visualization_msgs",
+)  # fmt: skip
+"""Modules that a beginner may have meant."""
+
+
+def relative(failure: Failure) -> Words | None:
+    """A file of the learner's own folder was imported with a point before it."""
+    statement = failure.statement
+    if not isinstance(failure.error, ImportError) or not isinstance(statement, ast.ImportFrom):
+        return None
+    if not statement.level:
+        return None
+    return say(
+        "A file beside this one is imported without a point: from {module} import {name}.",
+        module=statement.module or "x",
+        name=statement.names[0].name,
+    )
+
+
+def missing(failure: Failure) -> Words | None:
+    """There is no such module."""
+    error = failure.error
+    if not isinstance(error, ModuleNotFoundError) or not error.name:
+        return None
+    statement = failure.statement
+    if isinstance(statement, ast.ImportFrom) and "." in error.name:
+        name = statement.names[0].name
+        home = home_of(name, error.name)
+        if home:
+            return say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
+    return missing_module(error.name, failure.folder)
+
+
+def missing_module(name: str, folder: str) -> Words:
+    """Say what is meant by a module that is not there, or how it is to be had."""
+    first, _, rest = name.partition(".")
+    if first in OF_ROS1:
+        return say(
+            "{name} is of ROS 1; this is ROS 2: import rclpy, and a class of its own, class"
+            " MyNode(Node).",
+            name=first,
+        )
+    if rest:
+        return _within(name, first, rest, folder)
+    meant = "" if first in KNOWN else nearest(first, KNOWN)
+    if first in OF_ROS:
+        return say(
+            "{name} is a package of ROS that Deck does not bring: with a ROS of its own,"
+            " apt install"
+            " ros-jazzy-{apt}.",
+            name=first,
+            apt=first.replace("_", "-"),
+        )
+    if meant:
+        return say("There is no module {name}; did you mean {meant}?", name=first, meant=meant)
+    if first in OF_PYPI:
+        return say(
+            "The module {name} is not installed: pip install {package}.",
+            name=first,
+            package=OF_PYPI[first],
+        )
+    if first.endswith(("_msgs", "_srvs", "_interfaces")):
+        return say(
+            "The message package {name} is not here: is it spelled right, is it built and sourced?",
+            name=first,
+        )
+    return say(
+        "The module {name} is not installed; put its file beside this one, or install it with pip.",
+        name=first,
+    )
+
+
+def _within(name: str, first: str, rest: str, folder: str) -> Words:
+    module = sys.modules.get(first)
+    own = shadowing(module, folder) if module is not None else None
+    if own is not None:
+        return own
+    parent, _, last = name.rpartition(".")
+    if last[:1].isupper():
+        return say(
+            "{last} is a class, not a module: from {parent} import {last}.",
+            last=last,
+            parent=home_of(last, parent) or parent,
+        )
+    if rest in KINDS:
+        return say("The package {package} has no {kind}.", package=first, kind=f".{rest}")
+    near = nearest(rest, [*KINDS, *("node", "qos", "time", "duration", "executors", "action")])
+    if near:
+        return say(
+            "There is no module {name}; did you mean {meant}?", name=name, meant=f"{first}.{near}"
+        )
+    return say("The module {package} has no {name}.", package=first, name=rest)
+
+
+def misplaced(failure: Failure) -> Words | None:
+    """A module is there, and has no such name."""
+    error, statement = failure.error, failure.statement
+    if not isinstance(error, ImportError) or isinstance(error, ModuleNotFoundError):
+        return None
+    module = sys.modules.get(error.name or "")
+    if module is None or not isinstance(statement, ast.ImportFrom):
+        return None
+    own = shadowing(module, failure.folder)
+    if own is not None:
+        return own
+    name = next((each.name for each in statement.names if not hasattr(module, each.name)), "")
+    if not name:
+        return None
+    spec = getattr(module, "__spec__", None)
+    if getattr(spec, "_initializing", False):
+        return say(
+            "{module} and this file import each other: move what both need into a third file.",
+            module=module.__name__,
+        )
+    return _elsewhere(name, module.__name__, dir(module))
+
+
+def _elsewhere(name: str, module: str, known: list[str]) -> Words:
+    if module == "rclpy" and name in ROS1:
+        home = home_of(name, module)
+        return (
+            say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
+            if home
+            else ros1(name)
+        )
+    home = home_of(name, module)
+    if home:
+        return say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
+    meant = nearest(name, [each for each in known if not each.startswith("_")])
+    if meant:
+        return say(
+            "{module} has no {name}; did you mean {meant}?", module=module, name=name, meant=meant
+        )
+    if module in PACKAGES:
+        return say(
+            "{name} is in the modules .msg, .srv or .action of a package: from {module}.msg import"
+            " ….",
+            name=name,
+            module=module,
+        )
+    return say(
+        "{module} has no {name}: is it spelled right, capitals included?", module=module, name=name
+    )
+
+
+RULES = (relative, missing, misplaced)

@@ -1,0 +1,102 @@
+"""Mistakes with messages: fields, their values, what is published, requests and responses."""
+
+from __future__ import annotations
+
+from tests.ros.launcher.mistakes.programs import SERVICE, bare, bare_heard, node, ticking
+
+FIELDS = {
+    "int for float": bare("m = Float32()\nm.data = 1"),
+    "int variable for float": bare("n = 3\nm = Float32()\nm.data = n"),
+    "int for float in the constructor": ticking("self.p.publish(Float32(data=1))"),
+    "text for float": bare('m = Float32()\nm.data = "1.0"'),
+    "None for float": bare("m = Float32()\nm.data = self.last"),
+    "message for float": bare("m = Float32()\nm.data = Float32(data=1.0)"),
+    "parameter for float": ticking(
+        'm = Float32()\nm.data = self.get_parameter("v")', init='self.declare_parameter("v", 1.0)'
+    ),
+    "numpy for float": bare("m = Float32()\nm.data = np.float32(1.0)"),
+    "list for float": bare("m = Float32()\nm.data = [1.0]"),
+    "too large for float32": bare("m = Float32()\nm.data = 1e300"),
+    "method for float": ticking(
+        "m = Float32()\nm.data = self.speed", init="self.speed = time.time"
+    ),
+    "number for text": bare("m = String()\nm.data = 1.5"),
+    "bytes for text": bare('m = String()\nm.data = b"abc"'),
+    "float for int": bare("m = Int32()\nm.data = 1.5"),
+    "text for int": bare('m = Int32()\nm.data = "7"'),
+    "300 for uint8": bare("m = UInt8()\nm.data = 300"),
+    "negative for uint8": bare("m = UInt8()\nm.data = -1"),
+    "int for bool": bare("m = Bool()\nm.data = 1"),
+    "number for a message": bare("m = Twist()\nm.linear = 0.5"),
+    "other message for a message": bare("m = Twist()\nm.linear = Point()"),
+    "class for a message": bare("m = Twist()\nm.linear = Vector3"),
+    "clock's time for a stamp": ticking("m = Odometry()\nm.header.stamp = self.get_clock().now()"),
+    "seconds for a stamp": bare("m = Odometry()\nm.header.stamp = time.time()"),
+    "number for a list": bare("m = Float32MultiArray()\nm.data = 0.5"),
+    "numpy for a list": bare("m = Float32MultiArray()\nm.data = np.zeros(3)"),
+    "ints in a list of floats": bare("m = JointState()\nm.position = [1, 2]"),
+    "numbers in a list of texts": bare("m = JointState()\nm.name = [1, 2]"),
+    "covariance too short": bare("m = Odometry()\nm.pose.covariance = [0.0] * 9"),
+    "covariance of ints": bare("m = Odometry()\nm.pose.covariance = [0] * 36"),
+    "pixels above 255": bare("m = Image()\nm.data = [300, 2, 3]"),
+    "text for bytes": bare('m = ByteMultiArray()\nm.data = "abc"'),
+    "numbers for bytes": bare("m = ByteMultiArray()\nm.data = [1, 2]"),
+    "text for pixels": bare('m = Image()\nm.data = "abc"'),
+    "field misspelt": bare("msg = Float32()\nmsg.dat = 1.0"),
+    "field of another message": bare("msg = Twist()\nmsg.speed = 1.0"),
+    "field misspelt in the constructor": bare("Float32(dat=1.0)"),
+    "field that is not in the constructor": bare("Twist(speed=1.0)"),
+    "field read that is not there": bare_heard("msg.ranges"),
+    "data of a Twist": bare_heard("msg.data", "Twist()"),
+    "value without a name": ticking("self.p.publish(Float32(1.5))"),
+    "field with Cyrillic": bare("m = Float32()\nm.dаta = 1.0"),
+    "constructor with Cyrillic": bare("Float32(dаta=1.0)"),
+    "brackets behind a field": bare_heard("x = msg.data()"),
+    "square brackets for a field": bare_heard('x = msg["data"]'),
+    "data of a number": bare_heard("x = msg.data\ny = x.data"),
+}
+SENT = {
+    "another type published": ticking("self.p.publish(String())"),
+    "a number published": ticking("self.p.publish(1.0)"),
+    "a class published": ticking("m = Float32\nm.data = 1.0\nself.p.publish(m)"),
+    "None published": ticking("self.p.publish(self.last)"),
+    "the namesake published": ticking(
+        "from example_interfaces.msg import Float32 as Other\nself.p.publish(Other())"
+    ),
+    "nothing published": ticking("self.p.publish()"),
+    "service made": bare("r = AddTwoInts()"),
+    "service asked without a request": node(
+        'self.c = self.create_client(AddTwoInts, "/add")\nself.c.call_async(AddTwoInts.Request)'
+    ),
+    "service asked with numbers": node(
+        'self.c = self.create_client(AddTwoInts, "/add")\nself.c.call_async(3)'
+    ),
+    "two numbers for a request": node(
+        'self.c = self.create_client(AddTwoInts, "/add")\nself.c.call_async(1, 2)'
+    ),
+    "request in small letters": bare("r = AddTwoInts.request()"),
+    "answer read at once": ticking(
+        "r = self.c.call_async(Trigger.Request())\nr.success",
+        init='self.c = self.create_client(Trigger, "/t")',
+    ),
+    "answer in a number": ticking(
+        "x = self.c.call_async(Trigger.Request()) + 1",
+        init='self.c = self.create_client(Trigger, "/t")',
+    ),
+    "result before it is there": ticking(
+        "r = self.c.call_async(Trigger.Request()).result()\nr.success",
+        init='self.c = self.create_client(Trigger, "/t")',
+    ),
+    "no response returned": node(
+        SERVICE, "def add(self, request, response):\n    response.sum = 3"
+    ),
+    "number returned": node(SERVICE, "def add(self, request, response):\n    return 3"),
+    "service with one argument": node(SERVICE, "def add(self, request):\n    return 3"),
+    "response's field misspelt": node(
+        SERVICE, "def add(self, request, response):\n    response.summe = 3\n    return response"
+    ),
+    "done callback without future": node(
+        SERVICE + "\nself.future.add_done_callback(self.done)",
+        "def add(self, request, response):\n    return response\ndef done(self):\n    pass",
+    ),
+}

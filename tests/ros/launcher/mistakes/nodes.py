@@ -1,0 +1,191 @@
+"""Mistakes with nodes: made, given arguments, spun, parameters, clocks, frames, pictures."""
+
+from __future__ import annotations
+
+from tests.ros.launcher.mistakes.programs import HEAD, bare, heard, node, script, ticking
+
+PUBLISHER = 'self.create_publisher(Float32, "/out", 10)'
+CB = "def cb(self, msg):\n    pass"
+LISTENER = """\
+from tf2_ros import Buffer, TransformListener, TransformBroadcaster
+self.buffer = Buffer()
+"""
+MADE = {
+    "no super": node(PUBLISHER, above="pass"),
+    "super too late": node("pass", above=f'{PUBLISHER}\nsuper().__init__("mistaken")'),
+    "super without a name": node("pass", above="super().__init__()"),
+    "super without brackets": node("pass", above='super.__init__("mistaken")'),
+    "super with two names": node("pass", above='super().__init__("mistaken", 10)'),
+    "not a node": node(PUBLISHER).replace("class Mistaken(Node)", "class Mistaken"),
+    "derived from a module": node("pass").replace("(Node):", "(rclpy.node):", 1),
+    "no init": node("pass").replace("rclpy.init()\n", ""),
+    "init twice": node("pass").replace("rclpy.init()", "rclpy.init()\nrclpy.init()"),
+    "shutdown twice": node("pass").replace(
+        "rclpy.spin(node)", "rclpy.shutdown()\nrclpy.shutdown()"
+    ),
+    "class spun": node("pass").replace("node = Mistaken()", "node = Mistaken"),
+    "nothing spun": node("pass").replace("rclpy.spin(node)", "rclpy.spin()"),
+    "None spun": node("pass").replace("node = Mistaken()", "node = None"),
+    "with init": script('with rclpy.init():\n    rclpy.spin(Node("mistaken"))'),
+    "blank in a node": node("pass", above='super().__init__("my node")'),
+    "hyphen in a node": node("pass", above='super().__init__("my-node")'),
+    "digit first in a node": node("pass", above='super().__init__("2nd")'),
+    "number as a node's name": node("pass", above="super().__init__(7)"),
+    "used after it was destroyed": node(PUBLISHER).replace(
+        "rclpy.spin(node)", 'node.destroy_node()\nnode.create_publisher(Float32, "/x", 10)'
+    ),
+    "Ctrl-C": ticking("raise KeyboardInterrupt"),
+    "publishers is rclpy's own": node("self.publishers = []"),
+    "timers is rclpy's own": node("self.timers = {}"),
+    "clock is rclpy's own": node("self._clock = 0\nself.get_clock().now()"),
+    "logger is rclpy's own": node("self._logger = None\n" + 'self.get_logger().info("x")'),
+    "handle is a method": node(PUBLISHER, "def handle(self, msg):\n    pass"),
+    "method called on the class": node("pass").replace("node = Mistaken()", "Mistaken.get_name()"),
+}
+CREATED = {
+    "two types for a topic": node(
+        f'{PUBLISHER}\nself.create_subscription(String, "/out", print, 10)'
+    ),
+    "no queue depth": node('self.create_publisher(Float32, "/out")'),
+    "no queue depth for a subscription": node(
+        'self.create_subscription(Float32, "/x", self.cb)', CB
+    ),
+    "queue depth as text": node('self.create_publisher(Float32, "/out", "10")'),
+    "negative queue depth": node('self.create_publisher(Float32, "/out", -1)'),
+    "publisher's arguments swapped": node('self.create_publisher("/out", Float32, 10)'),
+    "subscription's arguments swapped": node(
+        'self.create_subscription("/x", Float32, self.cb, 10)', CB
+    ),
+    "callback and depth swapped": node('self.create_subscription(Float32, "/x", 10, self.cb)', CB),
+    "timer's arguments swapped": node(
+        "self.create_timer(self.tick, 1.0)", "def tick(self):\n    pass"
+    ),
+    "service's arguments swapped": node('self.create_service("/s", Trigger, self.cb)', CB),
+    "client's arguments swapped": node('self.create_client("/s", Trigger)'),
+    "timer's method called": node(
+        "self.create_timer(0.0, self.tick())", "def tick(self):\n    pass"
+    ),
+    "timer without a period": node("self.create_timer(self.tick)", "def tick(self):\n    pass"),
+    "subscription's method called": node(
+        'self.create_subscription(Float32, "/x", self.cb(), 10)', "def cb(self):\n    pass"
+    ),
+    "type as text": node('self.create_publisher("Float32", "/out", 10)'),
+    "type is a module": script("import std_msgs.msg")
+    + node('self.create_publisher(std_msgs.msg, "/out", 10)').replace(
+        HEAD, HEAD + "import std_msgs.msg\n"
+    ),
+    "service for a topic": node('self.create_publisher(Trigger, "/out", 10)'),
+    "message for a service": node('self.create_service(String, "/s", self.cb)', CB),
+    "topic without quotes": node("self.create_publisher(Float32, out, 10)"),
+    "topic is a number": node("self.create_publisher(Float32, 5, 10)"),
+    "blank in a topic": node('self.create_publisher(Float32, "/my topic", 10)'),
+    "hyphen in a topic": node('self.create_subscription(Float32, "/my-topic", self.cb, 10)', CB),
+    "blank in a service": node('self.create_service(Trigger, "/my service", self.cb)', CB),
+    "timer with a message": ticking("pass", "self, msg"),
+    "no self": ticking("pass", ""),
+    "subscription without message": node(
+        'self.create_subscription(Float32, "/x", self.cb, 10)', "def cb(self):\n    pass"
+    ),
+    "subscription with three": node(
+        'self.create_subscription(Float32, "/x", self.cb, 10)',
+        "def cb(self, msg, other, third):\n    pass",
+    ),
+    "keyword misspelt": node('self.create_publisher(Float32, "/out", qos=10)'),
+    "profile without depth": node("QoSProfile()"),
+    "profile without a name": node("QoSProfile(10)"),
+}
+PARAMETERS = {
+    "parameter not declared": node('self.get_parameter("speed")'),
+    "parameter declared twice": node(
+        'self.declare_parameter("v", 1.0)\nself.declare_parameter("v", 2.0)'
+    ),
+    "value forgotten, times": node(
+        'self.declare_parameter("v", 1.0)\nx = self.get_parameter("v") * 2.0'
+    ),
+    "value forgotten, compared": node(
+        'self.declare_parameter("v", 1.0)\nif self.get_parameter("v") > 0.5:\n    pass'
+    ),
+    "value forgotten, kept": node(
+        'self.declare_parameter("v", 1.0)\nself.v = self.get_parameter("v")\nx = 1.0 / self.v'
+    ),
+    "value forgotten, float": node(
+        'self.declare_parameter("v", 1.0)\nx = float(self.get_parameter("v"))'
+    ),
+    "value forgotten, timer": node(
+        'self.v = self.declare_parameter("v", 1.0)\nself.create_timer(self.v, print)'
+    ),
+    "value forgotten, range": node(
+        'self.v = self.declare_parameter("v", 1)\nfor i in range(self.v):\n    pass'
+    ),
+    "value as an attribute": node(
+        'self.declare_parameter("v", 1.0)\nx = self.get_parameter("v").double_value'
+    ),
+    "never given a value": node(
+        'self.declare_parameter("robot", Parameter.Type.STRING)\nself.get_parameter("robot").value'
+    ),
+    "other type set": node(
+        'self.declare_parameter("v", 1.0)\nself.set_parameters([Parameter("v", value="x")])[0]\nself.declare_parameter("v")'
+    ),
+    "name and value swapped": node('self.declare_parameter(1.0, "v")'),
+    "get_param of ROS 1": node('self.get_param("v")'),
+}
+CLOCKS = {
+    "stamp subtracted from now": heard(
+        "dt = self.get_clock().now() - msg.header.stamp", "Odometry", "Odometry()"
+    ),
+    "stamps subtracted": heard(
+        "dt = msg.header.stamp - msg.header.stamp", "Odometry", "Odometry()"
+    ),
+    "seconds added to a time": ticking("t = self.get_clock().now() + 1.0"),
+    "duration compared": ticking("t = self.get_clock().now()\nif t - t > 1.0:\n    pass"),
+    "duration without a name": bare("d = Duration(1.0)"),
+    "clocks mixed": ticking("d = self.get_clock().now() - Time()"),
+    "to_sec of ROS 1": ticking("t = self.get_clock().now().to_sec()"),
+    "sec of a time": ticking("t = self.get_clock().now()\nt.sec"),
+    "time.sleep of text": bare('time.sleep("1")'),
+    "negative sleep": bare("time.sleep(-1)"),
+    "timer stopped": ticking("self.t.stop()", init="self.t = self.create_timer(1.0, print)"),
+}
+SEEN = {
+    "buffer without a listener": ticking(
+        'self.buffer.lookup_transform("map", "base_link", Time())', init=LISTENER
+    ),
+    "frame that nobody publishes": ticking(
+        'self.buffer.lookup_transform("map", "base_link", Time())',
+        init=LISTENER + "self.l = TransformListener(self.buffer, self)",
+    ),
+    "transform of this moment": ticking(
+        "from geometry_msgs.msg import TransformStamped\nt = TransformStamped()\n"
+        't.header.frame_id = "map"\nt.child_frame_id = "base_link"\nt.header.stamp.sec = 5\n'
+        'self.buffer.set_transform(t, "me")\n'
+        'self.buffer.lookup_transform("map", "base_link", self.get_clock().now())',
+        init=LISTENER,
+    ),
+    "slash before a frame": ticking(
+        'self.buffer.lookup_transform("/map", "base_link", Time())', init=LISTENER
+    ),
+    "window of OpenCV": bare('import cv2\ncv2.imshow("w", np.zeros((4, 4, 3), np.uint8))'),
+    "picture is None": bare("import cv2\ncv2.cvtColor(self.last, cv2.COLOR_BGR2GRAY)"),
+    "picture is empty": bare(
+        "import cv2\nx = np.zeros((0, 0, 3), np.uint8)\ncv2.cvtColor(x, cv2.COLOR_BGR2GRAY)"
+    ),
+    "picture of another encoding": bare(
+        'from cv_bridge import CvBridge\nm = Image()\nm.encoding = "32FC1"\nm.width = m.height = 1\nm.step = 4\n'
+        'm.data = [0, 0, 0, 0]\nCvBridge().imgmsg_to_cv2(m, "bgr8")'
+    ),
+    "pixels reshaped": bare("a = np.zeros(10)\nb = a.reshape(3, 4)"),
+    "arrays of other shapes": bare("a = np.zeros(3)\nb = np.zeros(4)\nc = a + b"),
+    "if of an array": bare("a = np.zeros(3)\nif a > 0:\n    pass"),
+}
+LOGGED = {
+    "logger without brackets": ticking('self.get_logger.info("x")'),
+    "logger like print": ticking('self.get_logger().info("speed is", 3.0)'),
+    "logger like print, with a variable": ticking('x = 3\nself.get_logger().warn("x:", x)'),
+    "logger without a text": ticking("self.get_logger().info()"),
+    "logger's print": ticking('self.get_logger().print("x")'),
+    "severity changes": ticking(
+        "for n in range(2):\n    log = self.get_logger().info if n else self.get_logger().error\n    log('x')"
+    ),
+    "input in a node": bare('x = input("name? ")'),
+    "loginfo of ROS 1": script('rclpy.loginfo("x")'),
+}
