@@ -103,5 +103,5 @@ def _shortened(error: BaseException) -> str:
     module = type(error).__module__
     name = name if module in ("builtins", "__main__") else f"{module}.{name}"
     said = error.msg if isinstance(error, SyntaxError) else str(error)
-    words = plain(f"{name}: {said}" if said else name).strip()
+    words = plain(f"{name}: {said}" if said else name).strip().rstrip(".")
     return words if len(words) <= LONGEST else f"{words[: LONGEST - 1]}…"

@@ -13,13 +13,13 @@ from textual.pilot import Pilot
 from course.folder.folder import new_folder
 from course.lessons.catalog import SHIPPED
 from course.lessons.lesson import LessonFolder
-from launcher.faults.meanings import meaning_of
 from launcher.profile.text import SHIPPED as PROFILES
 from launcher.status import NodeFault, NodeState, NodeStatus
 from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession
 from tests.tui.snapshots import Look, SnapCompare, both_languages
 from tests.waiting import until
+from text.sentences import say
 from tui.app import DeckApp
 from tui.dialogs.choice import ChoiceScreen
 
@@ -112,8 +112,8 @@ def test_a_mistake_in_ones_own_file_looks(look: Look, snap_compare: SnapCompare)
         31,
         0,
         f"        {MISTAKE}",
-        exception := "AssertionError: The 'data' field must be of type 'float'",
-        meaning_of(exception),
+        "AssertionError: The 'data' field must be of type 'float'",
+        say("The field {field} is a float: write {value}.0, not {value}.", field="data", value="1"),
     )
     opener = lesson_opener(PROFILES / f"{LESSON}.yaml", file, fault)
 

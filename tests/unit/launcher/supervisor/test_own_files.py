@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.faults import source
+from launcher.faults.rules import imports
 from launcher.faults.source import look_at
 from launcher.supervisor.own_files import OwnFiles
 from tests.waiting import until
@@ -60,12 +60,12 @@ async def test_what_is_saved_after_the_start_and_before_the_watch_counts(
 def test_a_module_of_the_course_that_is_missing_is_not_called_misspelled(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(source, "KNOWN", (*source.KNOWN, "absent_msgs", "absent_srvs"))
+    monkeypatch.setattr(imports, "KNOWN", (*imports.KNOWN, "absent_msgs", "absent_srvs"))
     own = tmp_path / "own.py"
     own.write_text("import absent_msgs\n")
     fault = look_at(str(own))
     assert fault is not None
-    assert "is not installed" in fault.meaning
+    assert "The message package absent_msgs is not here" in fault.meaning
     own.write_text("import absent_msg\n")
     fault = look_at(str(own))
     assert fault is not None
