@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 from graph.participants.telling import TOPIC, Telling
 
 if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
+
     from rclpy.node import Node
     from rmw_dds_common.msg import ParticipantEntitiesInfo
 
@@ -32,6 +34,20 @@ class Attendance:
     """How many endpoints have been found."""
 
 
+@dataclass(frozen=True)
+class _Told:
+    """What a participant has told."""
+
+    nodes: frozenset[tuple[str, str]]
+    """Names and namespaces."""
+    ends: frozenset[bytes]
+    """The GUIDs of their endpoints."""
+
+    def is_in(self, ends: AbstractSet[bytes], nodes: AbstractSet[tuple[str, str]]) -> bool:
+        """Whether all of it is among these."""
+        return self.ends <= ends and self.nodes <= nodes
+
+
 class Roll:
     """What a node's process knows of the participants; close it before the node."""
 
@@ -39,8 +55,7 @@ class Roll:
         """Begin to listen to what they tell."""
         self._node = node
         self._telling = Telling.load(node)
-        self._told: dict[bytes, frozenset[bytes]] = {}
-        """Of each participant the GUIDs of its nodes' endpoints."""
+        self._told: dict[bytes, _Told] = {}
 
     def close(self) -> None:
         """Listen no more."""
@@ -57,14 +72,17 @@ class Roll:
         if self._telling is None:
             return self._by_names(speaking)
         for told in self._telling.take():
-            self._told[_bytes(told.gid)[:PREFIX]] = _endpoints(told)
+            self._told[_bytes(told.gid)[:PREFIX]] = _told(told)
         silent = speaking - self._told.keys()
         if silent:
             return Attendance(speaking, silent)
-        ends = {bytes(end["endpoint_gid"]) for end in self._ends()}
-        partly = frozenset(one for one in speaking if not self._told[one] <= ends)
+        ends = self._ends()
+        # The middleware takes its own copy of what was told, and may be later with that.
+        placed = {bytes(end["endpoint_gid"]) for end in ends if end["node_name"] != UNNAMED}
+        names = frozenset(self._node.get_node_names_and_namespaces())
+        partly = frozenset(one for one in speaking if not self._told[one].is_in(placed, names))
         # Who has endpoints, and none on the topic, is not of ROS and has no nodes.
-        return Attendance(speaking | {end[:PREFIX] for end in ends}, partly, len(ends))
+        return Attendance(speaking | set(map(_participant, ends)), partly, len(placed))
 
     def _by_names(self, speaking: frozenset[bytes]) -> Attendance:
         """Go by the names of nodes, which the middleware makes of what it has been told."""
@@ -98,11 +116,13 @@ def _participant(end: dict[str, Any]) -> bytes:
     return bytes(end["endpoint_gid"][:PREFIX])
 
 
-def _endpoints(told: ParticipantEntitiesInfo) -> frozenset[bytes]:
-    return frozenset(
-        _bytes(gid)
-        for node in told.node_entities_info_seq
-        for gid in (*node.reader_gid_seq, *node.writer_gid_seq)
+def _told(told: ParticipantEntitiesInfo) -> _Told:
+    nodes = told.node_entities_info_seq
+    return _Told(
+        frozenset((node.node_name, node.node_namespace) for node in nodes),
+        frozenset(
+            _bytes(gid) for node in nodes for gid in (*node.reader_gid_seq, *node.writer_gid_seq)
+        ),
     )
 
 

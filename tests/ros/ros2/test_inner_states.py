@@ -25,6 +25,12 @@ def _managed(module_domain: int) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(autouse=True)
+def _all_there(_managed: None, _in_its_domain: None) -> None:
+    """Whichever test is the first waits for their program to start."""
+    wait_until(lambda: typed("lifecycle", "nodes").out == NODES, "their program to start")
+
+
 def out(*words: str) -> str:
     done = typed(*words)
     assert (done.code, done.err) == (0, ""), done
@@ -39,7 +45,7 @@ def failed(*words: str) -> str:
 
 def test_nodes_with_a_lifecycle_are_listed_and_not_who_is_only_called(world: World) -> None:
     world.node.create_client(GetState, "/nobody/get_state")
-    wait_until(lambda: out("lifecycle", "nodes") == NODES, "their program to start")
+    assert out("lifecycle", "nodes") == NODES
     assert out("lifecycle", "nodes", "-c") == "5\n"
 
 
