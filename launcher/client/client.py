@@ -13,6 +13,7 @@ from launcher.client.inbox import Inbox
 from launcher.client.log_history import newer
 from launcher.client.running import find_running, running_records
 from launcher.client.start import StartingSupervisor
+from launcher.client.stop_road import StopRoad
 from launcher.consent import Agents, ConsentVerdict
 from launcher.control.protocol import (
     MAX_MESSAGE_BYTES,
@@ -191,7 +192,7 @@ async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
     except BaseException:
         writer.close()
         raise
-    return SupervisorClient(hello, reader, writer, lifeline)
+    return SupervisorClient(hello, reader, writer, lifeline, folder)
 
 
 async def _greeted(
@@ -226,8 +227,12 @@ class SupervisorClient:
         reader: asyncio.StreamReader,
         writer: asyncio.StreamWriter,
         lifeline: int,
+        folder: Path,
     ) -> None:
-        """`lifeline` is a descriptor that keeps a foreground session alive, or -1."""
+        """`lifeline` is a descriptor that keeps a foreground session alive, or -1.
+
+        `folder` has the session's socket.
+        """
         self.session: SessionInfo = unpack_session(hello["session"])
         self.own = lifeline >= 0
         """Whether this client started the session, in the foreground: it ends with this client."""
@@ -237,6 +242,9 @@ class SupervisorClient:
         """Processes that an earlier run left behind, kept up to date."""
         self.agents = Agents()
         """The agents, and what they ask for, kept up to date."""
+        self.emergency_stop = StopRoad(folder, self.session.domain)
+        """Gives (True) or releases (False) the emergency stop without the middleware, on any thread
+        and without waiting."""
         self._reader = reader
         self._writer = writer
         self._lifeline = lifeline

@@ -5,6 +5,10 @@ The supervisor speaks first: `{"deck": VERSION, "session": ..., "nodes": [...], 
 A client answers `{"deck": VERSION}`, then sends requests such as `{"id": 1, "op": "start", "nodes":
 ["sonar"]}`. It receives `{"reply": 1, "result": ...}` or `{"reply": 1, "error": {...}}`, and in
 between events: `{"event": "status" | "log" | "strays" | "agents" | "closed", ...}`.
+
+`{"id": 1, "op": "emergency_stop", "said_ns": ...}` gives the robot an emergency stop, and
+`emergency_release` releases it, by the file that the nodes watch: no middleware is needed.
+`said_ns`, unix time, is what the stop is known by; without it, it is when the request arrives.
 """
 
 from __future__ import annotations

@@ -96,6 +96,12 @@ class Controlled(Protocol):
     def tell_of_agents(self, severity: Severity, words: str) -> None:
         """Add a line about an agent to the log."""
 
+    async def emergency_stop(self, said_ns: int) -> str:
+        """Give an emergency stop, known by that time; return why it could not be."""
+
+    async def emergency_release(self) -> str:
+        """Release the emergency stop; return why it could not be."""
+
     def shut_down(self, asked_by: int, *, now: bool) -> None:
         """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""
 
@@ -288,6 +294,10 @@ class ControlServer:
             controlled.exchange(*_exchange(request))
         elif op == "history":
             return self._history(request)
+        elif op == "emergency_stop":
+            _check(await controlled.emergency_stop(_said_ns(request)))
+        elif op == "emergency_release":
+            _check(await controlled.emergency_release())
         elif op == "stop_strays":
             await controlled.stop_strays(_strays(request))
         elif op == "shutdown":
@@ -383,6 +393,20 @@ def _check_version(request: dict[str, Any]) -> None:
     if version != VERSION:
         raise BadRequestError(
             say("this supervisor speaks version {ours}, not {theirs}", ours=VERSION, theirs=version)
+        )
+
+
+def _said_ns(request: dict[str, Any]) -> int:
+    said_ns = request.get("said_ns", time.time_ns())
+    if not isinstance(said_ns, int) or not 0 < said_ns < 1 << 62:
+        raise BadRequestError(say("said_ns: expected a time, found {x!r}", x=said_ns))
+    return said_ns
+
+
+def _check(problem: str) -> None:
+    if problem:
+        raise BadRequestError(
+            say("the emergency stop on disk cannot be changed: {problem}", problem=problem)
         )
 
 

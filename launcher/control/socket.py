@@ -38,13 +38,15 @@ def listen(folder: Path) -> socket.socket:
     return server
 
 
-def connect(folder: Path) -> socket.socket:
+def connect(folder: Path, within_s: float = TAKEN_WITHIN_S) -> socket.socket:
     """Return a connection to the session in `folder`; raises OSError if nobody accepts it."""
     client = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
         # If the server is suspended and its queue is full, connecting would block for ever.
         client.setsockopt(
-            socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", TAKEN_WITHIN_S, 0)
+            socket.SOL_SOCKET,
+            socket.SO_SNDTIMEO,
+            struct.pack("ll", int(within_s), int(within_s % 1 * 1e6)),
         )
         with _short_path(folder) as path:
             client.connect(path)

@@ -37,6 +37,8 @@ from launcher.supervisor.plan import Plan
 from launcher.supervisor.process import ProcessLauncher, ProcessScan
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
+from robot.safety.stop_file import BY_SCREEN, StopFile
+from robot.safety.stop_record import Stop
 from text.os_words import os_reason
 from text.packing import pack_text
 from text.run_path import OWN_RUN_DIR
@@ -181,6 +183,7 @@ class Supervisor:
         open_because = why_open(os.environ, plan.discovery)
         if open_because:
             self._log.say(DECK, Severity.WARN, open_because)
+        self._stop_file = StopFile(self.info.domain, "/supervisor")
         self._end = asyncio.Event()
         self._hurry = asyncio.Event()
         self._reason = ""
@@ -267,6 +270,14 @@ class Supervisor:
     def tell_of_agents(self, severity: Severity, words: str) -> None:
         """Add a line about an agent to the log."""
         self._log.say(AGENT, severity, words)
+
+    async def emergency_stop(self, said_ns: int) -> str:
+        """Give an emergency stop by the file that the nodes watch; return why it could not be."""
+        return await asyncio.to_thread(self._stop_file.give, Stop(said_ns), BY_SCREEN)
+
+    async def emergency_release(self) -> str:
+        """Release the emergency stop in the same way; return why it could not be."""
+        return await asyncio.to_thread(self._stop_file.release)
 
     def shut_down(self, asked_by: int, *, now: bool) -> None:
         """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""

@@ -133,10 +133,11 @@ class EmergencyStopListener:
             self._hear_release(info)
 
     def _hear_stop(self, info: dict[str, Any]) -> None:
-        was_free, record = self._stop is None, self._record.stopped(_named(info))
+        stop, now_s = _named(info), time.monotonic()
+        was_free, record = self._stop is None, self._record.stopped(stop)
         is_news = record != self._record
+        self._insistence.hear([stop], now_s)
         self._take(record, KeptStop(time.time(), TOPIC))
-        now_s = time.monotonic()
         if is_news and self._stop is not None and (was_free or now_s > self._suspected_s + 1.0):
             self._suspected_s = now_s
             self._suspects = {bytes(one.endpoint_gid) for one in self._publishers()}
@@ -147,7 +148,6 @@ class EmergencyStopListener:
         release, now_s = _named(info), time.monotonic()
         known = self._record.merged(self._file.read().record)
         if self._insistence.lasts(now_s, release.number):
-            self._contradicted_s = now_s
             self._tell_contradicted()
         elif not is_outdated(release.said_ns, known, time.time_ns()):
             self._take(known.freed(), None)
@@ -174,10 +174,14 @@ class EmergencyStopListener:
 
     def _take(self, record: StopRecord, stop: KeptStop | None) -> None:
         """Obey what is known now; `stop` says where it is known from."""
+        freed = self._stop is not None and not record.engaged
+        if freed and self._insistence.lasts(time.monotonic()):
+            # By another node, or on disk, where nobody has heard who goes on saying stop.
+            record = record.stopped(Stop(time.time_ns()))
+            self._tell_contradicted()
         before, self._record = self._record, record
         if record == before:
             return
-        self._insistence.hear(record.held - before.held, time.monotonic())
         if record.engaged == (self._stop is not None):
             self._watch.call_later(_AGAIN_S)
             return
@@ -232,6 +236,7 @@ class EmergencyStopListener:
                 self._node.say.error(_NOT_KEPT, every_s=10.0, problem=problem)
 
     def _tell_contradicted(self) -> None:
+        self._contradicted_s = time.monotonic()
         names = "" if self._stop is None else self._stop.publishers.replace(" ", ", ")
         self._node.say.error(_CONTRADICTED, every_s=10.0, publishers=names or "?")
         self._watch.call_later(_AGAIN_S)

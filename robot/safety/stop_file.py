@@ -34,6 +34,10 @@ _NO_SENSE = (
 )
 
 
+BY_SCREEN = "screen"
+"""What has engaged a stop that came by no topic."""
+
+
 class KeptStop(NamedTuple):
     """What is known of an emergency stop that is in effect."""
 
@@ -129,6 +133,14 @@ class StopFile:
         except (OSError, RuntimeError) as error:
             return os_reason(error)
         return ""
+
+    def give(self, stop: Stop, by: str) -> str:
+        """Add a stop on behalf of somebody who is no node; return why that failed."""
+        return self.keep(KeptStop(time.time(), by), self.read().record.stopped(stop))
+
+    def release(self) -> str:
+        """Release all that is saved on behalf of somebody who is no node; say why that failed."""
+        return self.forget(self.read().record.freed())
 
     def _place(self) -> Path:
         return stop_place(self._domain)

@@ -134,8 +134,11 @@ class Insistence:
         """By the number of the newest message of each: the next one follows it."""
 
     def hear(self, stops: Iterable[Stop], now_s: float) -> None:
-        """Take in new stops; `now_s` is a monotonic time."""
+        """Take in stops that were heard, copies among them; `now_s` is a monotonic time."""
         for stop in sorted(stops):
+            known = self._chains.get(stop.number)
+            if known is not None and known.said_ns == stop.said_ns:
+                continue
             last = self._chains.pop(stop.number - 1, None) if stop.number > 1 else None
             chain = _Chain(stop.said_ns, 1, 0.0, now_s)
             if last is not None and stop.said_ns > last.said_ns:

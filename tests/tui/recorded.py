@@ -78,6 +78,8 @@ class RecordedSession:
         self.agents = Agents()
         self.asked: list[tuple[str, ...]] = []
         """What was asked: ("stop", "camera"), ("shutdown", "now"), ("aclose",)."""
+        self.stops: list[bool] = []
+        """What was said of the emergency stop without ROS."""
         self.hold_shutdown = False
         """Set: the nodes do not stop until they are made to."""
         self._killed = asyncio.Event()
@@ -94,6 +96,10 @@ class RecordedSession:
         if isinstance(event, AgentsEvent):
             self.agents = event.agents
         self._queue.put_nowait(event)
+
+    def emergency_stop(self, engaged: bool) -> None:
+        """Note it."""
+        self.stops.append(engaged)
 
     def set_state(self, name: str, state: NodeState, **more: Any) -> None:
         """Change one node."""

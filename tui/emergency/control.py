@@ -143,8 +143,16 @@ class EmergencyControl:
         await feed.link.start(*names)
 
     def _publish(self, *, engaged: bool) -> Future[int] | None:
-        """Publish the latched message; None without a graph."""
-        graph = self._feed.graph
+        """Publish the latched message; None without a graph.
+
+        Beside it goes the road that needs no ROS, in case that hangs. Where no node listens, it
+        would keep a stop that nobody can obey.
+        """
+        graph, update, link = self._feed.graph, self._feed.update, self._feed.link
+        if link is not None and (
+            not engaged or update is None or update.error or listeners(update)
+        ):
+            link.emergency_stop(engaged)
         if graph is None:
             return None
         message = {"data": engaged}

@@ -51,6 +51,10 @@ class SessionLink(Protocol):
     def agents(self) -> Agents:
         """The agents, and what they ask for, kept up to date."""
 
+    @property
+    def emergency_stop(self) -> Callable[[bool], None]:
+        """Gives (True) or releases the emergency stop without ROS; on any thread, at once."""
+
     def events(self, *, past: int = 0) -> AsyncIterator[Event]:
         """Yield the newest `past` lines so far, then events until the session ends."""
 

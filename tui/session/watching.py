@@ -40,6 +40,9 @@ class NodelessLink:
             yield event
         await self._closed.wait()
 
+    def emergency_stop(self, engaged: bool) -> None:
+        """No supervisor is there for it: the topic is the only road."""
+
     async def start(self, *names: str) -> None:
         """Nothing to start."""
 
