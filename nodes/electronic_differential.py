@@ -26,7 +26,7 @@ from nodes.parts.parameters import Number, Text
 from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import MAX_WHEEL_SPEED, CommandRefusals
 from nodes.parts.runner import run
-from nodes.parts.sole_publisher import SolePublisher
+from nodes.parts.sole_publisher import LAST, SolePublisher
 from nodes.parts.stall_detector import StallDetector
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import (
@@ -132,7 +132,7 @@ class ElectronicDifferential(LessonNode):
         self._told: DriveSetpoint | None = None
         topic = self.text("drive_topic")
         self._publisher = self.create_publisher(JointState, WHEEL_COMMANDS, DEPTH)
-        SolePublisher(self, self._publisher)
+        SolePublisher(self, self._publisher.topic_name, own=True, others=LAST)
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
         self.create_subscription(AckermannDriveStamped, topic, self._hear, DEPTH)
         self._timer = self.every(1.0 / self.number("rate"), self._repeat)

@@ -1,11 +1,12 @@
 """The reflex: watches the distance and, as a gate, blocks dangerous commands.
 
 An obstacle nearer than `critical_distance`, an invalid reading (nan), and no reading for
-`stale_after_s` seconds, or none at all, count as danger. With `gate: true` the node stands between
-the sources of commands and /drive_safe: forward is blocked while the front is in danger, backward
-while the rear is (if a `rear_topic` is given; without one, backing off is always allowed). Between
-`slow_distance` and `critical_distance` the speed is reduced in proportion. A command that was cut
-short is forgotten: when the path is clear again the robot waits for a new one.
+`stale_after_s` seconds, or none at all, count as danger. While several publish the same distance,
+the lowest of the last `stale_after_s` counts, and they are named. With `gate: true` the node stands
+between the sources of commands and /drive_safe: forward is blocked while the front is in danger,
+backward while the rear is (if a `rear_topic` is given; without one, backing off is always allowed).
+Between `slow_distance` and `critical_distance` the speed is reduced in proportion. A command that
+was cut short is forgotten: when the path is clear again the robot waits for a new one.
 
 `sources` are the topics with commands, highest rank first: a source is active while its newest
 command is younger than `max_age_s`, and lower sources are ignored meanwhile. Without an active
@@ -22,7 +23,7 @@ from __future__ import annotations
 
 import sys
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float32
@@ -33,6 +34,7 @@ from nodes.parts.parameters import Number, Switch, Text
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
+from nodes.parts.sole_publisher import LOWEST, SolePublisher
 from nodes.safety.distance_sensors import DistanceSensors, shares
 from nodes.safety.gate import CommandGate
 from nodes.safety.snapshot import GateSnapshot
@@ -41,9 +43,11 @@ from robot.safety.distance import RangeState, SafetyZone, Verdict, allowed, wher
 from robot.topics import COMMAND_SOURCES, SAFETY_STATE, SONAR_FRONT
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from diagnostic_msgs.msg import DiagnosticStatus
 
-    from nodes.safety.distance_sensors import SensorResult
+    from nodes.safety.distance_sensors import DistanceSensor, SensorResult
 
 _STATE_EVERY_S = 1.0
 
@@ -105,9 +109,9 @@ class SafetyStop(LessonNode):
         self._state = self.create_publisher(DiagnosticArray, SAFETY_STATE, DEPTH)
         # In this order, which is that of their callbacks: a waiting stop comes first.
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
-        SensorListener(self, Float32, self.text("front_topic"), self._see_front)
+        self._listen(self.text("front_topic"), self._see_front)
         if self._sensors.rear is not None:
-            SensorListener(self, Float32, self.text("rear_topic"), self._see_rear)
+            self._listen(self.text("rear_topic"), self._see_rear)
         self._gate = CommandGate(self, self._judge, self._reason) if self.switch("gate") else None
         self._timer = self.every(1.0 / self.number("rate"), self._tick)
         self.say.info(STARTED, metres=self.number("critical_distance"))
@@ -125,17 +129,31 @@ class SafetyStop(LessonNode):
 
     # ---------------------------------------------------------------- what comes in
 
-    def _see_front(self, message: Float32) -> None:
+    def _listen(self, topic: str, see: Callable[[Float32, dict[str, Any]], None]) -> None:
+        hear: Any = see
+        SensorListener(self, Float32, topic, hear)
+        SolePublisher(self, self.resolve_topic_name(topic), others=LOWEST)
+
+    def _see_front(self, message: Float32, info: dict[str, Any]) -> None:
         if self._held_up():
             return
-        self._sensors.front.see(message.data)
+        self._take_in(self._sensors.front, "front_topic", message, info)
         self._judge()
         tell_front(self.say, self._results[0])
 
-    def _see_rear(self, message: Float32) -> None:
+    def _see_rear(self, message: Float32, info: dict[str, Any]) -> None:
         if self._sensors.rear is not None and not self._held_up():
-            self._sensors.rear.see(message.data)
+            self._take_in(self._sensors.rear, "rear_topic", message, info)
             self._judge()
+
+    def _take_in(
+        self, sensor: DistanceSensor, topic: str, message: Float32, info: dict[str, Any]
+    ) -> None:
+        sensor.see(
+            message.data,
+            number=info.get("publication_sequence_number") or 0,
+            publishers=self.count_publishers(self.text(topic)),
+        )
 
     def _emergency_changed(self, active: bool) -> None:
         if active:

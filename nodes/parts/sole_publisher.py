@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING
 from text.i18n import N_
 
 if TYPE_CHECKING:
-    from rclpy.publisher import Publisher
-
     from nodes.parts.node import LessonNode
 
 _LOOK_EVERY_S = 1.0
@@ -29,17 +27,19 @@ _FOUND_WITHIN_S = 5.0
 _FORGOTTEN_S = 25.0
 """By then the middleware has removed such an endpoint."""
 
-_OTHERS = N_("{topic} is also published by {others}: the wheels obey whoever spoke last")
+LAST = N_("{topic} is also published by {others}: the wheels obey whoever spoke last")
+LOWEST = N_("{topic} is published by several, {others}: the lowest distance counts")
 _NO_NODE = N_("a program without a node's name")
 _NAMESAKE = N_("another {name}")
 
 
 class SolePublisher:
-    """Looks once a second for other publishers on the topic of `publisher`, and names them."""
+    """Looks once a second for several publishers of a topic, and names them."""
 
-    def __init__(self, node: LessonNode, publisher: Publisher) -> None:
-        self._node, self._topic = node, publisher.topic_name
-        self._own = node.get_fully_qualified_name()
+    def __init__(self, node: LessonNode, topic: str, *, own: bool = False, others: str) -> None:
+        """Say `others` of them; `own`: the node publishes it itself, else one other may."""
+        self._node, self._topic, self._words = node, topic, others
+        self._own = node.get_fully_qualified_name() if own else ""
         self._began_s = time.monotonic()
         self._seen_s: dict[str, float] = {}
         self._told: frozenset[str] = frozenset()
@@ -47,10 +47,13 @@ class SolePublisher:
 
     def _look(self) -> None:
         others = self._others() if self._node.count_publishers(self._topic) > 1 else []
+        if not self._own and len(others) < 2:
+            # One that was started again: what is left of its last run is in the graph for a while.
+            others = []
         if others:
             every_s = 0.0 if frozenset(others) - self._told else _SAY_EVERY_S
             names = ", ".join(sorted(others))
-            self._node.say.warn(_OTHERS, every_s=every_s, topic=self._topic, others=names)
+            self._node.say.warn(self._words, every_s=every_s, topic=self._topic, others=names)
         self._told = frozenset(others)
 
     def _others(self) -> list[str]:
@@ -58,7 +61,8 @@ class SolePublisher:
             f"{one.node_namespace.rstrip('/')}/{one.node_name}"
             for one in self._node.get_publishers_info_by_topic(self._topic)
         )
-        names[self._own] -= 1
+        if self._own:
+            names[self._own] -= 1
         now_s = time.monotonic()
         self._seen_s = {name: self._seen_s.get(name, now_s) for name in +names}
         return [

@@ -6,6 +6,7 @@ import time
 from typing import NamedTuple
 
 from robot.safety.distance import RangeState, Reading, SafetyZone, Shares, range_state, share
+from robot.safety.several import LowestReading
 
 
 class SensorResult(NamedTuple):
@@ -24,22 +25,15 @@ class DistanceSensor:
 
     def __init__(self, place: str) -> None:
         self._place = place
-        self._distance_m: float | None = None
-        self._seen_s = time.monotonic()
+        self._readings = LowestReading(time.monotonic())
 
-    def see(self, distance_m: float) -> None:
-        """Add a new reading."""
-        self._distance_m = distance_m
-        self._seen_s = time.monotonic()
-
-    @property
-    def reading(self) -> Reading:
-        """Return the newest reading and its age."""
-        return Reading(self._distance_m, time.monotonic() - self._seen_s)
+    def see(self, distance_m: float, *, number: int = 0, publishers: int = 1) -> None:
+        """Add a new reading, its number at its publisher, and how many publishers there are."""
+        self._readings.see(distance_m, time.monotonic(), number=number, publishers=publishers)
 
     def result(self, zone: SafetyZone) -> SensorResult:
         """Return its current result."""
-        reading = self.reading
+        reading: Reading = self._readings.reading(time.monotonic(), zone.stale_after_s)
         state = range_state(reading, zone.critical_m, zone.stale_after_s)
         part = share(reading, zone)
         if state == RangeState.FREE and not part:

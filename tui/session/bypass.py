@@ -1,9 +1,9 @@
-"""Publishers that bypass the gate and the differential, and so command the wheels directly.
+"""Publishers that bypass the gate and the differential, or speak for a sonar of the gate.
 
 The nodes of the session may publish anything that their profile says. Any other publisher on these
 topics bypasses the gate, and so does a second publisher with the name of one of them. If the
 session has no such node of Deck's, the owner of the topic is unknown; then only two publishers are
-reported.
+reported, and so it is with the distances, of which the gate takes the lowest.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from graph.data import NAMELESS
-from robot.topics import DRIVE_SAFE, WHEEL_COMMANDS
+from robot.topics import DRIVE_SAFE, SONAR_FRAMES, WHEEL_COMMANDS
 from text.i18n import _
 from text.plain import plain
 
@@ -95,6 +95,12 @@ class BypassDetector:
             for reserved in RESERVED
             for publisher in _on_topics_of(reserved, update.topics, nodes, ours)
         }
+        found |= {
+            publisher: self._seen_s.get(publisher, update.time_s)
+            for row in update.topics
+            if row.name in SONAR_FRAMES
+            for publisher in _with_sonars(row, nodes, ours)
+        }
         before, self._seen_s = self.now, found
         self.now = tuple(
             publisher
@@ -109,13 +115,19 @@ class BypassDetector:
 
     def words(self) -> tuple[str, ...]:
         """Return texts that say who they are, from long to short; empty if there are none."""
-        if not self.now:
+        commands = [one for one in self.now if one.topic not in SONAR_FRAMES]
+        # The screen has one line, and who commands the wheels is the worse.
+        shown = commands or list(self.now)
+        if not shown:
             return ()
-        topics = ", ".join(dict.fromkeys(plain(publisher.topic, 60) for publisher in self.now))
-        names = ", ".join(dict.fromkeys(publisher.called for publisher in self.now))
+        topics = ", ".join(dict.fromkeys(plain(publisher.topic, 60) for publisher in shown))
+        names = ", ".join(dict.fromkeys(publisher.called for publisher in shown))
         words = _("⚠ Foreign commands on {topics}: {names}").format(topics=topics, names=names)
-        last = _("the wheels obey whoever spoke last")
-        return (f"{words} · {last}", words, f"⚠ {topics}: {names}")
+        follows = _("the wheels obey whoever spoke last")
+        if not commands:
+            words = _("⚠ Several publish {topics}: {names}").format(topics=topics, names=names)
+            follows = _("the lowest distance counts")
+        return (f"{words} · {follows}", words, f"⚠ {topics}: {names}")
 
 
 def _on_topics_of(
@@ -136,6 +148,28 @@ def _on_topics_of(
         is_used = row.subscribers or sum(by.values()) > 1
         if is_reserved or (row.name == reserved.topic and is_used):
             yield from _bypassing(row.name, by, reserved, owners, nodes)
+
+
+def _with_sonars(
+    row: TopicRow, nodes: Mapping[str, NodeStatus], ours: Collection[str]
+) -> list[BypassingPublisher]:
+    """Return who speaks for a sonar beside the session's own node; all if that is not known."""
+    by = Counter(end.node for end in row.published_by)
+    if row.name in ours:
+        by[OURSELVES] += 1
+    if sum(by.values()) < 2:
+        return []
+    own = {f"/{name}": node for name, node in nodes.items()}
+    foreign = [name for name in by if name not in own] or list(by)
+    twice = [name for name in by.keys() & own.keys() if by[name] > 1]
+    return [
+        *(BypassingPublisher(row.name, name) for name in foreign if len(by) > 1),
+        *(
+            BypassingPublisher(row.name, name, True)
+            for name in twice
+            if not _may_be_left(own[name])
+        ),
+    ]
 
 
 def _bypassing(

@@ -73,6 +73,32 @@ def test_who_bypasses_the_gate(by: dict[str, Any], expected: list[tuple[str, str
     assert named(graph(**by)) == expected
 
 
+@pytest.mark.parametrize(
+    ("by", "expected"),
+    [
+        (("/mock_sonar",), []),
+        (("/forgotten",), []),
+        (("/mock_sonar", "/forgotten"), ["/forgotten"]),
+        (("/one", "/other"), ["/one", "/other"]),
+        (("/mock_sonar", "/ai_brain"), ["/mock_sonar", "/ai_brain"]),
+        (("/mock_sonar",) * 2, ["another /mock_sonar"]),
+    ],
+    ids=str,
+)
+def test_who_speaks_for_a_sonar_beside_another(by: tuple[str, ...], expected: list[str]) -> None:
+    sonar = replace(NODES["ai_brain"], name="mock_sonar")
+    bypass = BypassDetector()
+    alone: dict[str, Any] = {"sensor/sonar_front": by}
+    bypass.see(graph(**alone), {**NODES, "mock_sonar": sonar})
+    assert [publisher.called for publisher in bypass.now] == expected
+    words = "⚠ Several publish /sensor/sonar_front: {} · the lowest distance counts"
+    assert not expected or bypass.words()[0] == words.format(", ".join(expected))
+    # Who commands the wheels is the worse, and the line is one.
+    both = graph(drive_safe=(GATE, "/evil"), **alone)
+    bypass.see(both, {**NODES, "mock_sonar": sonar})
+    assert "/drive_safe: /evil ·" in bypass.words()[0]
+
+
 def test_a_topic_that_the_profile_calls_otherwise_is_reserved_as_well() -> None:
     update = graph(kinds={"/safe": DRIVE}, safe=(GATE, "/evil"))
     assert named(update) == [("/safe", "/evil")]

@@ -1,0 +1,118 @@
+"""What counts where several publishers speak on an input that only one should: the most careful.
+
+A forgotten mock, or a recording that is played, must not make the robot bolder than the one sensor
+or gate that is right. Which message is from whom rclpy does not tell; but each publisher numbers
+its messages one by one, so the messages fall into streams.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from robot.safety.distance import Reading
+
+_MOST = 4096
+_LOST = 100
+"""So many messages of a stream may be missing; after more it counts as another one."""
+_STREAMS = 16
+
+Said = TypeVar("Said")
+
+
+@dataclass
+class _Stream(Generic[Said]):
+    number: int
+    said: Said
+    first_s: float
+    last_s: float
+
+
+class Streams(Generic[Said]):
+    """The newest message of each publisher of an input, as far as their numbers tell them apart."""
+
+    def __init__(self) -> None:
+        self._streams: list[_Stream[Said]] = []
+
+    def hear(self, said: Said, number: int, now_s: float) -> None:
+        """Add a message; its number is 0 if the middleware tells none."""
+        before = [one for one in self._streams if 0 <= number - one.number - bool(number) <= _LOST]
+        stream = max(before, key=lambda one: one.number, default=None)
+        if stream is None:
+            self._streams.append(_Stream(number, said, now_s, now_s))
+            self._streams.sort(key=lambda one: one.last_s)
+            del self._streams[:-_STREAMS]
+        else:
+            stream.number, stream.said, stream.last_s = number, said, now_s
+
+    def forget_but_newest(self) -> None:
+        """Forget all but the one that spoke last: only one is there."""
+        self._streams = self._streams[-1:] and [max(self._streams, key=lambda one: one.last_s)]
+
+    def fresh(self, now_s: float, stale_after_s: float) -> list[Said]:
+        """Return the newest message of each that has not been silent for longer."""
+        return [one.said for one in self._streams if now_s - one.last_s <= stale_after_s]
+
+    def silence_s(self, now_s: float, stale_after_s: float) -> float | None:
+        """Return for how long one is silent that spoke while another did that still speaks.
+
+        None if there is no such one. A node that was started again in the place of one that died is
+        no second one.
+        """
+        fresh = [one for one in self._streams if now_s - one.last_s <= stale_after_s]
+        silent = [one for one in self._streams if now_s - one.last_s > stale_after_s]
+        return max(
+            (
+                now_s - one.last_s
+                for one in silent
+                for other in fresh
+                if one.last_s >= other.first_s
+            ),
+            default=None,
+        )
+
+
+class LowestReading:
+    """The distance that counts: the newest reading; of several publishers, the lowest of late."""
+
+    def __init__(self, now_s: float) -> None:
+        self._distance_m: float | None = None
+        self._seen_s = now_s
+        self._recent: deque[tuple[float, float]] = deque(maxlen=_MOST)
+        self._streams: Streams[float] = Streams()
+        self._are_several = False
+
+    def see(self, distance_m: float, now_s: float, *, number: int = 0, publishers: int = 1) -> None:
+        """Add a reading, its number at its publisher, and how many publishers there are now."""
+        self._distance_m, self._seen_s = distance_m, now_s
+        self._recent.append((now_s, distance_m))
+        self._streams.hear(distance_m, number, now_s)
+        self._are_several = publishers > 1
+        if not self._are_several:
+            self._streams.forget_but_newest()
+
+    def reading(self, now_s: float, stale_after_s: float) -> Reading:
+        """Return what counts now, and its age.
+
+        Of several: silence if one has fallen silent, no valid reading if that is the newest of one,
+        else the lowest within the longest harmless silence.
+        """
+        age_s = now_s - self._seen_s
+        if not self._are_several or age_s > stale_after_s:
+            return Reading(self._distance_m, age_s)
+        silence_s = self._streams.silence_s(now_s, stale_after_s)
+        if silence_s is not None:
+            return Reading(None, silence_s)
+        newest = self._streams.fresh(now_s, stale_after_s)
+        if not all(map(_is_valid, newest)):
+            return Reading(math.nan, age_s)
+        while self._recent and now_s - self._recent[0][0] > stale_after_s:
+            self._recent.popleft()
+        valid = [distance_m for _, distance_m in self._recent if _is_valid(distance_m)]
+        return Reading(min(valid, default=math.nan), age_s)
+
+
+def _is_valid(distance_m: float) -> bool:
+    return distance_m == -math.inf or distance_m >= 0.0
