@@ -7,7 +7,6 @@ all that this user runs with the same settings.
 
 from __future__ import annotations
 
-import json
 import threading
 import time
 from collections import deque
@@ -17,6 +16,7 @@ from launcher.control.protocol import VERSION, encode
 from launcher.control.socket import connect
 from robot.safety.stop_file import BY_SCREEN, StopFile
 from robot.safety.stop_record import Stop
+from text.nested import read_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -78,7 +78,7 @@ class StopRoad:
             connection.sendall(encode({"deck": VERSION}) + encode(request))
             with connection.makefile("rb") as lines:
                 while time.monotonic() < until_s:
-                    message = json.loads(lines.readline())
+                    message = read_json(lines.readline())
                     if message.get("reply") == 1 and "error" not in message:
                         return
                     if "error" in message:

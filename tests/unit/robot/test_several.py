@@ -43,7 +43,8 @@ def test_alone_the_newest_counts() -> None:
     for number, metres in enumerate((0.2, 1.0), 1):
         seen.see(metres, number * 0.01, number=number)
     reading = seen.reading(0.03, STALE_S)
-    assert (reading.distance_m, reading.age_s) == (1.0, pytest.approx(0.01))
+    assert reading.distance_m == 1.0
+    assert reading.age_s == pytest.approx(0.01)
 
 
 def test_a_sensor_without_a_valid_reading_is_not_covered_up() -> None:
