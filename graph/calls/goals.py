@@ -40,10 +40,9 @@ class GoalError(Exception):
 class Goals:
     """All goals that have been sent, until they are forgotten."""
 
-    def __init__(self, node: Node, first_number: int = 1) -> None:
-        """Count them from `first_number` on."""
+    def __init__(self, node: Node) -> None:
         self._node = node
-        self._numbers = itertools.count(first_number)
+        self._numbers = itertools.count(1)
         self._lives: dict[int, GoalLife] = {}
         self._clients: dict[tuple[str, str], PolledActionClient] = {}
         self._sent: set[bytes] = set()
@@ -53,6 +52,10 @@ class Goals:
     def under_way(self) -> bool:
         """Whether any goal has not ended."""
         return any(not life.told.ended for life in self._lives.values())
+
+    def number_from(self, first: int) -> None:
+        """Count those to come from this number on."""
+        self._numbers = itertools.count(first)
 
     def send(
         self,

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from graph.data import GraphUpdate
 from graph.memory import keep_room_for_large_messages
 from graph.observer.asked import Asked, AskedBook
+from graph.observer.doubt import Doubt, SecondLook
 from graph.observer.lost import LostWork
 from graph.observer.process import language
 from graph.observer.process.plain import PlainError
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from concurrent.futures import Future
 
+    from graph.observer.census import Census
     from graph.observer.process.language import Order
     from graph.observer.settings import Settings
 
@@ -39,6 +41,8 @@ logger = logging.getLogger(__name__)
 
 LEAVES_WITHIN_S = 5.0
 """How long a process may take to leave the graph before it is killed."""
+DISMISSED_WITHIN_S = 2.0
+"""The same of one that has only looked."""
 SETTLED_AFTER_S = 2.0
 """A process that was made anew has found most of what there is by then."""
 AGAIN_S = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0)
@@ -62,6 +66,15 @@ class _Line:
     """Why it is no longer listened to."""
     refusal: ObserverError | None = None
     """Why there need not be another."""
+    there: Census | None = None
+    """Who is there by it."""
+    doubt: Doubt = field(default_factory=lambda: Doubt(time.monotonic()))
+    other: _Line | None = None
+    """A second one that looks whether it sees more."""
+    is_outdone: bool = False
+    """Whether it does."""
+    look: SecondLook = field(default_factory=lambda: SecondLook(time.monotonic()))
+    """How that is compared with the first."""
 
 
 class ObserverClient:
@@ -179,15 +192,20 @@ class ObserverClient:
     def _run(self) -> None:
         keep_room_for_large_messages()
         end = ObserverError(say("the observer has been stopped"))
-        deaths = 0
+        deaths, after = 0, None
         try:
             while not self._over:
-                line = self._begin()
+                line = self._begin(after)
+                after = None
                 self._listen(line)
                 if self._over or line.refusal is not None:
                     end = line.refusal or end
                     self._leave(line)
                     return
+                if line.is_outdone:
+                    after, line.other = line.other, None
+                    self._hand_on(line)
+                    continue
                 deaths = 1 + (deaths if time.monotonic() - line.began_s < LASTED_S else 0)
                 self._lose(line)
                 self._rest(AGAIN_S[min(deaths, len(AGAIN_S)) - 1])
@@ -197,17 +215,25 @@ class ObserverClient:
         finally:
             self._end(end)
 
-    def _begin(self) -> _Line:
-        """Start a process, and tell it what is wanted. Raises OSError."""
+    def _open(self) -> _Line:
+        """Start a process for the domain. Raises OSError."""
         line = _Line(self.started(), is_first=self._shown is None)
-        settings = replace(self._settings, first_number=self._lost.next_number)
+        line.process.send((0, language.OPEN, (astuple(self._settings),), 0.0))
+        return line
+
+    def _begin(self, opened: _Line | None) -> _Line:
+        """Tell a process what is wanted, one that is there or a new one. Raises OSError."""
+        line = opened or self._open()
         with self._lock:
-            wanted = dict(self._wanted)
-            line.process.send((0, language.OPEN, (astuple(settings), wanted), 0.0))
+            line.process.send((0, language.NUMBER, (self._lost.next_number,), 0.0))
+            for name, value in self._wanted.items():
+                line.process.send((0, name, (value,), 0.0))
             for order in self._unsent:
                 line.process.send(order)
             self._unsent.clear()
             self._line = line
+        if line.update is not None:
+            self._hand_over(line.update)
         return line
 
     def _listen(self, line: _Line) -> None:
@@ -221,6 +247,35 @@ class ObserverClient:
                 line.why = say("the process that watches the graph has hung")
                 return
             self._show_age(line, now_s)
+            if self._look_again(line, now_s):
+                return
+        self._dismiss(line)
+
+    def _look_again(self, line: _Line, now_s: float) -> bool:
+        """Have a second process look while there is doubt; return whether it sees more."""
+        if line.there is None:
+            return False
+        if line.other is None:
+            if line.doubt.is_due(now_s, line.there.is_networked):
+                line.other, line.look = self._open(), SecondLook(now_s)
+            return False
+        other = line.other
+        other.process.wait(self._wake, 0.0)
+        gone = not self._hear(other)
+        if other.there is not None and line.look.sees_more(line.there, other.there, now_s):
+            line.is_outdone = not gone
+            return True
+        if gone or other.refusal is not None or line.look.is_over(now_s):
+            line.doubt.nothing_found(now_s)
+            self._dismiss(line)
+        return False
+
+    def _dismiss(self, line: _Line) -> None:
+        """Send the second one away."""
+        other, line.other = line.other, None
+        if other is not None:
+            other.process.send((0, language.LEAVE, (), 0.0))
+            other.process.end(DISMISSED_WITHIN_S)
 
     def _hear(self, line: _Line) -> bool:
         """Take what it has said, and send what had no room; return whether it is still there."""
@@ -241,7 +296,11 @@ class ObserverClient:
     def _take(self, line: _Line, word: str, *told: Any) -> None:  # noqa: ANN401
         if word == language.UPDATE:
             line.update = line.rows.update(*told)
-            self._hand_over(line.update)
+            if line is self._line:
+                self._hand_over(line.update)
+        elif word == language.THERE:
+            line.there = told[0]
+            line.doubt.see(line.there, time.monotonic())
         elif word == language.OVER:
             line.refusal = told[0]
         elif word == language.DONE:
@@ -283,10 +342,21 @@ class ObserverClient:
             # The screen is being closed; the observer is stopped next.
             logger.exception("an update was not taken")
 
+    def _hand_on(self, line: _Line) -> None:
+        """Have done with a process that sees less than another."""
+        line.why = say("another observer has taken over, which sees more of the graph")
+        self._leave(line)
+        self._forget(line)
+
     def _lose(self, line: _Line) -> None:
         """Have done with a process that has ended or hangs, and make ready for another."""
+        self._dismiss(line)
         line.process.kill()
         self._grow_old(time.time())
+        self._forget(line)
+
+    def _forget(self, line: _Line) -> None:
+        """Say of what is under way that it has ended, and keep what another is to be told."""
         with self._lock:
             self._line = None
             ended = () if line.update is None else self._lost.lose(line.update, line.why)

@@ -14,7 +14,7 @@ from graph.data import GraphUpdate
 from graph.observer.interest import Interest
 from graph.observer.node import ObserverNode
 from graph.observer.orders import Orders
-from graph.observer.requests import ObserverError, RequestQueue
+from graph.observer.requests import ObserverError, Perform, RequestQueue
 from graph.observer.settings import LOOK_AT_GRAPH_S
 from graph.ros import open_ros
 from text.sentences import say
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import Protocol
 
+    from graph.observer.census import Census
     from graph.observer.settings import Settings
 
     class Company(Protocol):
@@ -53,6 +54,18 @@ class ObserverLoop:
         self.orders = Orders(self._requests)
         self.period_s = 0.1
         """Seconds between two updates."""
+        self._node: ObserverNode | None = None
+
+    def census(self) -> Census | None:
+        """Count who is in the domain; None before it is entered."""
+        settings = self._settings
+        is_networked = settings.discovery != "localhost"
+        node = self._node
+        return None if node is None else node.census(settings.domain, is_networked)
+
+    def number_from(self, first: int) -> None:
+        """Count goals and publications from this number on."""
+        self._requests.put(Perform(lambda node: node.number_from(first)))
 
     def stop(self) -> None:
         """Let `run` leave the graph and return."""
@@ -94,8 +107,9 @@ class ObserverLoop:
                 self._settings.role,
                 self._settings.owner,
             )
-            node = ObserverNode(ros, self._settings.graph_s, self._settings.first_number)
+            node = ObserverNode(ros, self._settings.graph_s)
             node.serve_urgent = lambda: self.serve_urgent(node)
+            self._node = node
         except Exception as error:  # noqa: BLE001 - reported to the screen
             words = say("ROS cannot be used: {error}", error=str(error))
             end = refusal = ObserverError(words)
@@ -104,6 +118,7 @@ class ObserverLoop:
             try:
                 self._observe(node)
             finally:
+                self._node = None
                 node.close(end)
         finally:
             self._requests.refuse(end)

@@ -21,5 +21,3 @@ class Settings:
     """Part of its node's name, see `graph.ros.ONLY_LISTENING`."""
     owner: int = 0
     """The process that it is for, by whose number its node is called; 0 for its own."""
-    first_number: int = 1
-    """Of its goals and publications."""

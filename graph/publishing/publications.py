@@ -75,11 +75,14 @@ class _Repeated:
 class RepeatedPublications:
     """Everything that is being published, each with a publisher of its own."""
 
-    def __init__(self, node: Node, first_number: int = 1) -> None:
-        """Count them from `first_number` on."""
+    def __init__(self, node: Node) -> None:
         self._node = node
-        self._numbers = itertools.count(first_number)
+        self._numbers = itertools.count(1)
         self._repeated: dict[int, _Repeated] = {}
+
+    def number_from(self, first: int) -> None:
+        """Count those to come from this number on."""
+        self._numbers = itertools.count(first)
 
     def start(
         self,

@@ -8,11 +8,13 @@ import queue
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from graph.data import GraphUpdate, NodeRow, Sample, TopicRow
 from graph.observer.observer import Observer
+from graph.observer.process.started import ObserverProcess
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
 from tests import ports
 from tests.ros.observer_thread import ObserverThread
@@ -93,13 +95,18 @@ class Peer:
 class Watcher:
     """An observer and all that it has handed over.
 
-    `apart`: in a process of its own, as everywhere but here.
+    `apart`: starts a process of its own, as everywhere but here.
     """
 
-    def __init__(self, domain: int, *, apart: bool = False, **settings: Any) -> None:
+    def __init__(
+        self,
+        domain: int,
+        *,
+        apart: Callable[[], ObserverProcess] = ObserverThread,
+        **settings: Any,
+    ) -> None:
         self.observer = Observer(domain, "localhost", **settings)
-        if not apart:
-            self.observer._client.started = ObserverThread
+        self.observer._client.started = apart
         self.update = GraphUpdate(0.0)
         self.updates = 0
         self.samples: dict[str, list[Sample]] = {}

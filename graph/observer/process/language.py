@@ -11,8 +11,9 @@ from typing import Any
 
 Order = tuple[int, str, tuple[Any, ...], float]
 
-PATH, OPEN, DROP, LEAVE = "path", "open", "drop", "leave"
-"""Where modules are; settings and what is wanted; a number nobody waits for any more; the end."""
+PATH, OPEN, NUMBER, DROP, LEAVE = "path", "open", "number", "drop", "leave"
+"""Where modules are; settings; the first number of goals and publications; a number that nobody
+waits for any more; the end."""
 WANTED = (
     "watch",
     "follow",
@@ -53,9 +54,10 @@ DOING = (
 LATE_S = 5.0
 """How long that is. What hung is not to drive the robot by what was meant for another moment."""
 
-UPDATE, DONE, FAILED, LATER, ALIVE, OVER = "update", "done", "failed", "later", "alive", "over"
+UPDATE, DONE, FAILED, LATER = "update", "done", "failed", "later"
+ALIVE, THERE, OVER = "alive", "there", "over"
 """An update; number and result; number and error; number and the answer that came too late; a sign
-of life; why it leaves by itself."""
+of life; who is there; why it leaves by itself."""
 
 
 def is_state(name: str, arguments: tuple[Any, ...]) -> bool:

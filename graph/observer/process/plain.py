@@ -76,6 +76,7 @@ def _known() -> dict[tuple[str, str], Any]:
     from graph import data, inner_states
     from graph.messages.making import FieldError, NoSuchFieldError
     from graph.messages.types import UnknownTypeError
+    from graph.observer.census import Census
     from graph.publishing.dead_man_switch import HeldCommand
     from space.buffer import Stamped
     from space.transform import Transform
@@ -88,9 +89,9 @@ def _known() -> dict[tuple[str, str], Any]:
         for each in vars(room).values()
         if isinstance(each, type) and (is_dataclass(each) or issubclass(each, Enum))
     ]
-    others = (HeldCommand, Stamped, Transform, Words, InLanguages)
+    others = (Census, HeldCommand, Stamped, Transform, Words, InLanguages)
     errors = (*_by_words(), FieldError, NoSuchFieldError, UnknownTypeError)
-    others = (HeldCommand, Stamped, Transform, Words, InLanguages)
+    others = (Census, HeldCommand, Stamped, Transform, Words, InLanguages)
     makers = (array_of, field_error)
     every: tuple[Any, ...] = (*plain, *others, *errors, *makers)
     return {(each.__module__, each.__qualname__): each for each in every}

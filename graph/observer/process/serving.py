@@ -39,6 +39,8 @@ OF_ROS = ("rclpy.node", "rclpy.event_handler", "rclpy.serialization", "sensor_ms
 """Modules that are needed in nearly every domain, imported before anybody names one."""
 SIGN_S = 1.0
 """Between two signs of life."""
+CENSUS_S = 1.0
+"""Between two counts of who is there."""
 STUCK_S = 60
 """The kernel ends a process that has not run for so long: it may hold Python's lock for ever."""
 LEFT_WITHIN_S = 6
@@ -62,6 +64,7 @@ class Server:
         self._since_s = time.monotonic()
         """From when on orders can be late."""
         self._next_sign_s = 0.0
+        self._next_census_s = 0.0
         self._over = False
 
     def run(self) -> None:
@@ -85,6 +88,7 @@ class Server:
         while True:
             now_s = time.monotonic()
             self._give_sign(now_s)
+            self._tell_who_is_there(now_s)
             left_s = min(until_s, self._next_sign_s) - now_s
             wanted = select.POLLIN | (select.POLLOUT if self._wire.is_behind else 0)
             waiting = select.poll()
@@ -126,14 +130,13 @@ class Server:
         if name == language.PATH:
             sys.path[:] = arguments
         elif name == language.OPEN:
-            settings, wanted = arguments
-            self._loop = ObserverLoop(Settings(*settings), self)
-            for each, value in wanted.items():
-                self._want(each, value)
+            self._loop = ObserverLoop(Settings(*arguments[0]), self)
         elif name == language.DROP:
             self._drop(*arguments)
         elif name == language.LEAVE or self._loop is None:
             self.leave()
+        elif name == language.NUMBER:
+            self._loop.number_from(*arguments)
         elif name in language.WANTED:
             self._want(name, arguments[0])
         elif self._is_too_late(name, arguments, asked_s):
@@ -191,6 +194,14 @@ class Server:
             self._next_sign_s = now_s + SIGN_S
             self._alarm(STUCK_S)
             self._say(language.ALIVE)
+
+    def _tell_who_is_there(self, now_s: float) -> None:
+        if self._loop is None or now_s < self._next_census_s:
+            return
+        self._next_census_s = now_s + CENSUS_S
+        found = self._loop.census()
+        if found is not None:
+            self._say(language.THERE, found)
 
     def _go_on(self) -> None:
         """Hand over what waits, as far as there is room."""

@@ -14,9 +14,11 @@ import pytest
 
 from graph.data import GoalStatus
 from graph.observer.process.language import LATE_S
+from graph.observer.process.started import ObserverProcess
 from graph.observer.requests import ObserverError
 from graph.publishing.dead_man_switch import HeldCommand
-from tests.ros.observing import ROOT, Peer, Watcher
+from graph.ros import FAST_DDS_VARIABLES
+from tests.ros.observing import ROOT, Peer, Watcher, let_updates_come
 from tests.shared_memory_port import ports_of
 from tests.waiting import wait_until
 
@@ -29,7 +31,7 @@ process that hangs would take at least as long as that is given."""
 
 @pytest.fixture
 def watcher(ros_domain: int) -> Iterator[Watcher]:
-    watcher = Watcher(ros_domain, apart=True)
+    watcher = Watcher(ros_domain, apart=ObserverProcess)
     yield watcher
     watcher.close()
 
@@ -185,3 +187,40 @@ def test_orders_from_before_a_hang_do_not_drive_the_robot_after_it(
     with pytest.raises(ObserverError):
         late.result(40)
     assert "2.0" not in str(teller.heard.get("/drive"))
+
+
+DEAF = """<?xml version="1.0"?>
+<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles>
+<participant profile_name="deaf" is_default_profile="true"><rtps><builtin><discovery_config>
+<ignoreParticipantFlags>FILTER_DIFFERENT_PROCESS</ignoreParticipantFlags>
+</discovery_config></builtin></rtps></participant></profiles></dds>
+"""
+"""Settings by which a node finds nobody, as after a load peak in which it has heard nothing."""
+
+
+def test_one_that_lives_and_sees_less_than_there_is_is_replaced(
+    ros_domain: int, teller: Peer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = tmp_path / "deaf.xml"
+    settings.write_text(DEAF)
+    started: list[ObserverProcess] = []
+
+    def start() -> ObserverProcess:
+        with monkeypatch.context() as patch:
+            if not started:
+                patch.setenv(FAST_DDS_VARIABLES[0], str(settings))
+            started.append(ObserverProcess())
+        return started[-1]
+
+    watcher = Watcher(ros_domain, apart=start)
+    watcher.observer.watch(["/beat"])
+    try:
+        wait_until(lambda: len(started) == 2, "a second one looks", within_s=40)
+        assert watcher.node(teller.name) is None
+        wait_until(lambda: watcher.of("/beat"), "it has taken over", within_s=40)
+        assert watcher.node(teller.name)
+        assert not started[0].is_alive
+        let_updates_come(watcher, 20)
+        assert len(started) == 2, "no third one is needed"
+    finally:
+        watcher.close()
