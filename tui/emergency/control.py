@@ -68,7 +68,7 @@ class EmergencyControl:
 
     def pressed(self, press: Pressed) -> None:
         """Show a stop that has been published, and stop the nodes if nobody listens."""
-        self._end_publications()
+        self._tell_of_publications()
         self._set(self.state.pressed(press.at_s))
         self._app.run_worker(self._stop(press.sent), group="emergency")
 
@@ -163,10 +163,12 @@ class EmergencyControl:
 
         This includes what was started during the stop, whoever releases it.
         """
+        if self._feed.graph is not None:
+            self._feed.graph.stop_publishing_all()
+            self._tell_of_publications()
+
+    def _tell_of_publications(self) -> None:
         feed = self._feed
-        if feed.graph is None:
-            return
-        feed.graph.stop_publishing_all()
         publications = () if feed.update is None else feed.update.publications
         topics = dict.fromkeys(one.topic for one in publications if not one.error)
         if topics:

@@ -8,6 +8,7 @@ publisher has gone, only the report of the gate counts, and can also clear the s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
@@ -60,6 +61,8 @@ class Emergency:
     """Unix time of the newest report."""
     awaited: Mapping[str, float] = field(default_factory=dict)
     """Nodes that have yet to confirm our release, and since when each one holds."""
+    confirmed_s: float = -math.inf
+    """When somebody last reported that it holds, Unix time by this machine's clock."""
     blocked: str = ""
     """Why the safety node holds the wheels, in its own words; empty if it does not."""
     gate: Gate | None = None
@@ -69,6 +72,21 @@ class Emergency:
     def engaged(self) -> bool:
         """Whether a node holds, or was asked to and has not reported its release."""
         return self.asked or any(node.engaged for node in self.nodes.values())
+
+    @property
+    def unconfirmed(self) -> bool:
+        """Whether it was pressed here, and nobody has said since that it holds."""
+        ours = self.asked and self.ours and not self.by_gate
+        return ours and not self.fallback and self.confirmed_s < self.since_s
+
+    @property
+    def silent(self) -> tuple[str, ...]:
+        """The nodes that have said nothing since it was pressed here, though others have."""
+        if not self.asked or not self.ours or self.time_s < self.since_s + SETTLED_S:
+            return ()
+        return tuple(
+            sorted(name for name, node in self.nodes.items() if node.heard_s < self.since_s)
+        )
 
     @property
     def holders(self) -> tuple[str, ...]:
@@ -132,6 +150,8 @@ class Emergency:
             settled = sample.received_s - state.heard_s > SETTLED_S
             if gate is not None and settled and not state.nodes:
                 state = state.told_by_gate(gate)
+            if gate is not None and gate.verdict == STOPPED:
+                state = state.confirmed(sample.received_s)
             gate = gate if gate is not None and (gate.is_held or gate.refused) else None
             state = replace(state, blocked=blocked_reason(sample), gate=gate)
         return state
@@ -151,6 +171,8 @@ class Emergency:
         """Take in what the nodes report; nodes that have left the graph report nothing any more."""
         held = self.holders
         state = replace(self, nodes=present(nodes, update), time_s=update.time_s)
+        for name in state.holders:
+            state = state.confirmed(state.nodes[name].heard_s)
         if held and not state.nodes:
             # They still hold when they come back.
             return replace(state, asked=True, by_gate=not state.asked, awaited={})
@@ -167,6 +189,10 @@ class Emergency:
         ):
             state = replace(state, asked=False, ours=False)
         return replace(state, awaited=still_awaited(state))
+
+    def confirmed(self, at_s: float) -> Emergency:
+        """Record that somebody reported at that time that it holds."""
+        return self if at_s <= self.confirmed_s else replace(self, confirmed_s=at_s)
 
     def told_by_gate(self, gate: Gate) -> Emergency:
         """Take in what the gate obeys: it received stops that were published before we listened."""

@@ -22,13 +22,16 @@ def stop_words(state: Emergency, release_key: str) -> tuple[str, ...]:
     release = release.format(key=release_key)
     head, since, differing = _head(state), _since(state), differing_words(state)
     why = _(state.fallback) if state.fallback else ""
-    lines = (
+    lines: tuple[tuple[str, ...], ...] = (
         (head + since, differing, why, release),
         (head, differing, why, release),
         (head, differing, release),
         (head, release),
         (_("■ EMERGENCY STOP"), release),
     )
+    if state.unconfirmed:
+        # Whether it holds matters more than the key that ends it.
+        lines = (*lines[:3], (_("■ EMERGENCY STOP"), _("unconfirmed")))
     return tuple(dict.fromkeys(" · ".join(filter(None, parts)) for parts in lines))
 
 
@@ -53,6 +56,14 @@ def differing_words(state: Emergency) -> str:
         return words.format(held=_names(held), free=_names(free))
     if free and state.asked:
         return _("not obeyed by {nodes}").format(nodes=_names(free))
+    return _unconfirmed_words(state)
+
+
+def _unconfirmed_words(state: Emergency) -> str:
+    if state.unconfirmed:
+        return _("pressed, nobody has confirmed it")
+    if state.silent:
+        return _("not confirmed by {nodes}").format(nodes=_names(state.silent))
     return ""
 
 

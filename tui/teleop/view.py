@@ -35,6 +35,9 @@ class Driving(NamedTuple):
     """The current remark: why nothing moves, or where the commands go."""
     look: str = ""
     """How the words look."""
+    allowed_ago: str = ""
+    """How old it is, if it is not current any more; likewise of the wheels."""
+    wheels_ago: str = ""
 
 
 def drawn(driving: Driving, width: int, height: int) -> list[Line]:
@@ -42,9 +45,20 @@ def drawn(driving: Driving, width: int, height: int) -> list[Line]:
     columns = (
         _column(_("asked"), driving.asked, "accent", ""),
         _column(
-            _("allowed"), driving.allowed, _allowed_look(driving), "" if driving.gated else _gone()
+            _("allowed"),
+            driving.allowed,
+            _allowed_look(driving),
+            "" if driving.gated else _gone(),
+            ago=driving.allowed_ago,
         ),
-        _column(_("wheels"), _of(driving.wheels), "second", "", _sides(driving.wheels)),
+        _column(
+            _("wheels"),
+            _of(driving.wheels),
+            "second",
+            "",
+            _sides(driving.wheels),
+            ago=driving.wheels_ago,
+        ),
     )
     words: Line = [Ink(fit(driving.words, width), driving.look)]
     limits = _limits(driving.limits, width)
@@ -78,8 +92,16 @@ class _Column(NamedTuple):
 
 
 def _column(
-    title: str, setpoint: DriveSetpoint | None, look: str, missing: str, detail: str = ""
+    title: str,
+    setpoint: DriveSetpoint | None,
+    look: str,
+    missing: str,
+    detail: str = "",
+    *,
+    ago: str = "",
 ) -> _Column:
+    if ago:
+        return _Column(title, "---", ago, "muted", ago)
     if setpoint is None:
         return _Column(title, "---", missing or _("no data yet"), "muted")
     speed, short = number_words(setpoint.speed_m_s), _arrows(setpoint)

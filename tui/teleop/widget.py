@@ -46,6 +46,9 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate, Sample
 
+OUTDATED_S = 2.5
+"""What is older is no news of now: the differential repeats itself every 2 s at the least, the gate
+every second."""
 LOOK_S = 0.05
 """How often to check whether a key is still down, while any is."""
 TITLE = N_("Drive by keys")
@@ -77,6 +80,10 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self._allowed: DriveSetpoint | None = None
         self._wheels: WheelsReading | None = None
         self._gate: Gate | None = None
+        self._heard_s: dict[str, float] = {}
+        """When the newest message of each topic was received, Unix time."""
+        self._time_s = 0.0
+        """Time of the newest update."""
         self._error = ""
         self._timer: Timer | None = None
 
@@ -202,6 +209,10 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
     def show(self, update: GraphUpdate) -> None:
         """Show the newest values."""
         self._follow(route(update))
+        self._time_s = update.time_s
+        for topic in self.topics:
+            for sample in update.samples.get(topic, ()):
+                self._heard_s[topic] = max(self._heard_s.get(topic, 0.0), sample.received_s)
         for sample in update.samples.get(SAFETY_STATE, ()):
             self._gate = gate_in(sample.value) or self._gate
         self._allowed = _drive(newest(update, DRIVE_SAFE)) or self._allowed
@@ -225,6 +236,10 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self._route = found
         self._entitle()
 
+    def _silent_s(self, topic: str) -> float:
+        """For how long nothing has come on this topic; 0.0 before the first message."""
+        return max(0.0, self._time_s - self._heard_s.get(topic, self._time_s))
+
     def _forget(self, topic: str) -> None:
         if topic == DRIVE_SAFE:
             self._allowed = self._gate = None
@@ -246,12 +261,27 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         """Draw as much as fits."""
         words, look = self._told()
         driving = Driving(
-            self.asked, self._allowed, self._route.gated, self._wheels, self._limits, words, look
+            self.asked,
+            self._allowed,
+            self._route.gated,
+            self._wheels,
+            self._limits,
+            words,
+            look,
+            self._outdated(DRIVE_SAFE),
+            self._outdated(WHEEL_COMMANDS),
         )
         return drawn(driving, width, height)
 
+    def _outdated(self, topic: str) -> str:
+        """Say since when a value is not current any more; empty while it is."""
+        silent_s = self._silent_s(topic)
+        return _("{seconds:.0f} s ago").format(seconds=silent_s) if silent_s > OUTDATED_S else ""
+
     def _told(self) -> tuple[str, str]:
         """Return the most serious remark for now, and its look."""
+        if self._deck.emergency.state.unconfirmed:
+            return _("emergency stop: pressed, nobody has confirmed it"), "stop"
         if self._deck.emergency.state.engaged:
             key = self._deck.keys_of(EmergencyRelease)[0]
             return _("emergency stop: nothing moves; {key} releases").format(key=key), "stop"
@@ -268,6 +298,9 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
     def _told_by_gate(self) -> tuple[str, str]:
         if not self._route.gated:
             return _("no gate: nothing stops the robot before an obstacle"), "warn"
+        if (silent_s := self._silent_s(SAFETY_STATE)) > OUTDATED_S:
+            words = _("the gate has been silent for {seconds:.0f} s: what it allows is unknown")
+            return words.format(seconds=silent_s), "warn"
         if self._gate is None:
             return _("the gate has not said anything yet"), "muted"
         look = "warn" if self._gate.is_held or self._gate.is_slowed else "good"

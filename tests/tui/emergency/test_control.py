@@ -43,7 +43,7 @@ async def test_space_stops_at_once_on_every_screen(screen: str) -> None:
         await pilot.press("space")
         assert opener.graph.published == [STOP]
         title = app.screen.query_one(TitleBar)
-        assert "■ EMERGENCY STOP · ^r releases" in title.text
+        assert "■ EMERGENCY STOP · pressed, nobody has confirmed it · ^r releases" in title.text
         assert title.styles.background == Color.parse("#b00020")
 
 

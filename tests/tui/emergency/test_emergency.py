@@ -244,3 +244,43 @@ def test_listeners_are_those_that_the_graph_knows() -> None:
     assert listeners(None) == 0
     assert listeners(lesson_update(topics=())) == 0
     assert listeners(lesson_update()) == 2
+
+
+def test_a_stop_pressed_while_the_link_is_down_is_not_told_as_obeyed() -> None:
+    """A cut of 45 s: the nodes are silent, then out of the graph, then back, and obey."""
+    free = word(GATE, False, NOW_S, since_s=NOW_S - 60)
+    state = after(obeyed(free, at_s=NOW_S)).pressed(NOW_S + 5)
+    unsure = "■ EMERGENCY STOP · pressed, nobody has confirmed it · ^r releases"
+    for seconds in (5.1, 8.0, 20.0):
+        state = after(obeyed(at_s=NOW_S + seconds), begin=state)
+        assert stop_words(state, "^r")[0] == unsure
+    state = after(lesson_update(samples={}, nodes=(), time_s=NOW_S + 40), begin=state)
+    assert stop_words(state, "^r")[0] == unsure
+    state = after(obeyed(word(GATE, True, NOW_S + 46), at_s=NOW_S + 46), begin=state)
+    assert "confirmed" not in stop_words(state, "^r")[0]
+
+
+def test_what_a_node_held_before_the_press_does_not_confirm_it() -> None:
+    holding = word(GATE, True, NOW_S, since_s=NOW_S - 60)
+    state = after(obeyed(holding, at_s=NOW_S)).pressed(NOW_S + 1)
+    assert state.unconfirmed
+    again = word(GATE, True, NOW_S + 1.2, since_s=NOW_S - 60)
+    assert not after(obeyed(again, at_s=NOW_S + 1.3), begin=state).unconfirmed
+
+
+def test_a_gate_that_obeys_confirms_it_where_no_node_reports() -> None:
+    state = Emergency().pressed(NOW_S)
+    assert state.unconfirmed
+    assert not after(gate_says("emergency_stop", NOW_S + 0.1), begin=state).unconfirmed
+
+
+def test_nodes_that_have_said_nothing_since_are_named() -> None:
+    both = (word(GATE, False, NOW_S), word(CHASSIS, False, NOW_S))
+    state = after(obeyed(*both, at_s=NOW_S)).pressed(NOW_S + 1)
+    state = after(obeyed(word(GATE, True, NOW_S + 3), at_s=NOW_S + 4), begin=state)
+    assert not state.unconfirmed
+    assert "not confirmed by chassis" in stop_words(state, "^r")[0]
+
+
+def test_where_there_is_no_room_it_says_at_least_that_nobody_has_confirmed_it() -> None:
+    assert "unconfirmed" in stop_words(Emergency().pressed(NOW_S), "^r")[-1]

@@ -18,6 +18,7 @@ from robot.safety.gate_report import gate_in
 from robot.topics import DRIVE, DRIVE_TELEOP, SAFETY_STATE
 from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
+    NOW_S,
     TOPICS,
     RecordedGraph,
     RecordedOpener,
@@ -27,6 +28,7 @@ from tests.tui.recorded import (
     sample,
     topic,
 )
+from tests.tui.recorded_emergency import GATE, obeyed, word
 from tests.tui.snapshots import Look, SnapCompare, every_look
 from tests.waiting import until
 from tui import clock
@@ -260,8 +262,15 @@ async def test_while_stopped_the_keys_ask_for_nothing() -> None:
     async with driving(opener) as (_app, pilot, panel):
         await pilot.press("space", "up")
         assert opener.graph.held == []
+        now_s = clock.now()
+        opener.graph.show(obeyed(word(GATE, True, now_s), at_s=now_s, topics=GATED))
+        await pilot.pause()
         assert "emergency stop: nothing moves; ^r releases" in text_of(panel)
-        await pilot.press("ctrl+r", "up")
+        await pilot.press("ctrl+r")
+        now_s = clock.now()
+        opener.graph.show(obeyed(word(GATE, False, now_s), at_s=now_s, topics=GATED))
+        await pilot.pause()
+        await pilot.press("up")
         assert len(opener.graph.held) == 1
 
 
@@ -336,3 +345,20 @@ def test_driving_looks(look: Look, snap_compare: SnapCompare) -> None:
 
     app = look.app(opener=opener_of(gated(SLOWED)))
     assert snap_compare(app, terminal_size=look.size, run_before=drive_on)
+
+
+async def test_during_a_cut_the_bar_shows_no_old_values_and_says_that_nothing_comes() -> None:
+    opener = opener_of(gated())
+    async with driving(opener) as (app, pilot, panel):
+        assert "0.30 rad" in text_of(panel).splitlines()[4]
+        silent = gated(time_s=NOW_S + 12)
+        opener.graph.show(replace(silent, samples={}))
+        await pilot.pause()
+        shown = text_of(panel)
+        assert "the gate has been silent for 12 s" in shown
+        assert "12 s ago" in shown.splitlines()[4]
+        assert "0.30 rad" not in shown.splitlines()[4]
+        app.emergency.engage()
+        await pilot.pause()
+        assert "pressed, nobody has confirmed it" in text_of(panel)
+        assert "nothing moves" not in text_of(panel)
