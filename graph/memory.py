@@ -6,8 +6,10 @@ import ctypes
 
 M_TRIM_THRESHOLD = -1
 M_MMAP_THRESHOLD = -3
+M_ARENA_MAX = -8
 """Source: `malloc.h` of glibc, mallopt(3)."""
 LARGEST_BYTES = 4_000_000
+MOST_ARENAS = 2
 KEPT_BYTES = 2 * LARGEST_BYTES
 
 
@@ -21,5 +23,7 @@ def keep_room_for_large_messages() -> None:
         mallopt = ctypes.CDLL(None).mallopt
     except (AttributeError, OSError):
         return
+    # Else most threads have a heap of their own, and each keeps what it once needed.
+    mallopt(M_ARENA_MAX, MOST_ARENAS)
     mallopt(M_MMAP_THRESHOLD, LARGEST_BYTES)
     mallopt(M_TRIM_THRESHOLD, KEPT_BYTES)

@@ -154,6 +154,9 @@ class Tap:
         self._losses.close()
         self._end_senders()
         self._node.destroy_subscription(self._subscription)
+        # rclpy forgets none, for an executor that does not exist here.
+        entities = self._node.default_callback_group.entities
+        entities.difference_update([each for each in entities if each() is None])
 
     def _take_all(self, decode: int) -> tuple[list[Arrival], deque[tuple[bytes, float, float]]]:
         batch: list[Arrival] = []

@@ -14,7 +14,7 @@ from graph.frames.reading import TF_MESSAGE
 from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.observer.interest import Interest
 from graph.observer.rates import QUIET_S
-from graph.observer.tap import FOLLOWED, Tap, first_depth
+from graph.observer.tap import FOLLOWED, LARGE_TYPES, Tap, first_depth
 from graph.observer.troubles import Diagnosis, quiet, structural
 from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
 from graph.scan.endpoints import TopicEnds
@@ -27,6 +27,11 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
     from graph.frames.book import FrameBook
+
+LINGER_S = 30.0
+"""How long a subscription is kept that nobody wants any more: whoever changes tabs comes back."""
+LIGHT_BYTES_PER_S = 50_000.0
+"""Most that such a topic may cost."""
 
 
 class Taps:
@@ -42,6 +47,8 @@ class Taps:
         """What is known without any message, by topic."""
         self._scan = Scan()
         self._interest = Interest()
+        self._left_s: dict[str, float] = {}
+        """Since when nobody wants a topic that is subscribed, Unix time."""
         self._fresh: set[str] = set()
         """Topics whose newest message is owed to a screen that has just begun to look."""
 
@@ -93,8 +100,9 @@ class Taps:
         return samples
 
     def need_tuning(self) -> bool:
-        """Return whether a queue turned out to have the wrong depth."""
-        return any(
+        """Return whether a queue turned out to have the wrong depth, or has lingered enough."""
+        now_s = time.time()
+        return any(now_s - left_s >= LINGER_S for left_s in self._left_s.values()) or any(
             tap.better_depth(one_publisher=self._one_publisher(topic)) != tap.depth
             for topic, tap in self._taps.items()
         )
@@ -116,8 +124,10 @@ class Taps:
         heard = bool(ends.everyone_publishing)
         wanted = topic in self._interest.named or (self._interest.all_topics and heard)
         if not wanted:
-            self._close(topic)
+            if not self._lingers(topic):
+                self._close(topic)
             return None
+        self._left_s.pop(topic, None)
         tap = self._taps.get(topic)
         if tap and not heard:
             tap.since_s = time.time()
@@ -153,7 +163,20 @@ class Taps:
         made = self._taps.get(topic)
         return made.unknown if made else self._refused[key]
 
+    def _lingers(self, topic: str) -> bool:
+        """Whether to keep a subscription that nobody wants now: it costs little, and another more.
+
+        The middleware keeps a little of each subscription that there ever was.
+        """
+        tap, now_s = self._taps.get(topic), time.time()
+        if tap is None or tap.every or tap.type_name in LARGE_TYPES:
+            return False
+        left_s = self._left_s.setdefault(topic, now_s)
+        is_light = (tap.meter.bytes_per_s(now_s) or 0) <= LIGHT_BYTES_PER_S
+        return is_light and 0 <= now_s - left_s < LINGER_S
+
     def _close(self, topic: str) -> None:
+        self._left_s.pop(topic, None)
         tap = self._taps.pop(topic, None)
         if tap:
             tap.close()
