@@ -45,7 +45,8 @@ MEASUREMENTS = {
     "serial_cpu": "What the serial drivers cost",
     "voice.words": "Spoken commands, heard offline",
     "voice.latency": "From the end of a spoken command to /drive, offline",
-    "hour": "An hour of simulated driving among boxes",
+    "simulated.hour": "An hour of simulated driving among boxes",
+    "hour": "An hour of the screen on the profile robot, tabs changing",
 }
 """Module to the title of its section."""
 

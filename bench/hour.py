@@ -1,39 +1,92 @@
-"""An hour of simulated driving among boxes: collisions with and without the gate.
+"""What an hour of the screen costs in memory: the profile `robot` on mocks, tabs changing.
 
-`python -m bench.hour` prints a table. The driver changes direction at random; commands are noisy
-and occasionally NaN or infinite, sonars fall silent for up to a second and drop readings, motors
-stall. A collision counts as avoidable if the obstacle was in the beam of the sonar on that side. If
-the robot is boxed in, it is moved to another place.
+`python -m bench.hour` prints a table. BENCH_MINUTES shortens the run. Growth is that from a sixth
+of the time on, ten minutes of an hour, as the slope of a line through all samples after it.
 """
 
 from __future__ import annotations
 
+import os
+import re
+import sys
+import tempfile
 import time
+from itertools import cycle
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
-from robot.safety.distance import SafetyZone
-from robot.world.room import LIVING_ROOM
-from robot.world.world import World
-from tests.unit.random_driver import RandomDriver
+import numpy as np
 
-HOUR_S = 3600.0
-GATES = {
-    "the robot's gate: stop at 0.5 m, slower from 1.0 m": SafetyZone(0.5, 1.0, 0.5),
-    "a later one: stop at 0.3 m, no slowing down": SafetyZone(0.3, 0.0, 0.3),
-    "no gate": None,
-}
+from bench.processes import pss_mb
+from bench.screen import deck, screen_processes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from tests.e2e.terminal import Terminal
+
+MINUTES = float(os.environ.get("BENCH_MINUTES", "60"))
+PACE_S = float(os.environ.get("BENCH_PACE_S", "2"))
+SAMPLE_S = 10.0
+TABS = ("f2", "f3", "f4", "f5", "5", "6", "7", "8", "9")
+"""Function keys where a text field may have the focus."""
+SETTLED = 1 / 6
+"""Until then buffers fill and screens are made."""
+
+
+class Sample(NamedTuple):
+    """Memory at one moment."""
+
+    hours: float
+    screen_mb: float
+    others_mb: float
+    """Supervisor, and what else the screen needs."""
+    tabs: int
+
+
+def all_ready(screen: str) -> bool:
+    """Return whether the title says so."""
+    return re.search(r"● (\d+)/\1\b", screen) is not None
+
+
+def samples(terminal: Terminal) -> Iterator[Sample]:
+    """Change tabs at a steady pace, and yield the memory now and then."""
+    screen, *others = screen_processes(terminal)
+    began_s, sampled_s = time.monotonic(), -SAMPLE_S
+    for number, tab in enumerate(cycle(TABS)):
+        passed_s = time.monotonic() - began_s
+        if passed_s - sampled_s >= SAMPLE_S:
+            sampled_s = passed_s
+            yield Sample(passed_s / 3600, pss_mb([screen]), pss_mb(others), number)
+        if passed_s > 60 * MINUTES:
+            return
+        terminal.press(tab)
+        time.sleep(PACE_S)
+
+
+def growth_mb_h(hours: Sequence[float], megabytes: Sequence[float]) -> float:
+    """Return the slope of the line that fits best."""
+    return float(np.polyfit(hours, megabytes, 1)[0])
 
 
 def main() -> None:
-    """Drive an hour with each gate."""
-    print("| | driven m | collisions | of these avoidable by a stop | took s |")
+    """Measure, and print a table."""
+    taken = []
+    with tempfile.TemporaryDirectory() as name, deck(Path(name), "robot") as terminal:
+        terminal.wait_until(all_ready, "all nodes ready", within_s=120)
+        for sample in samples(terminal):
+            taken.append(sample)
+            print(*(f"{figure:.3f}" for figure in sample), file=sys.stderr, flush=True)
+    settled = [each for each in taken if each.hours >= SETTLED * taken[-1].hours]
+    hours = [each.hours for each in settled]
+    screen = [each.screen_mb for each in settled]
+    others = [each.others_mb for each in settled]
+    print(f"{MINUTES:.0f} minutes, {taken[-1].tabs} changes of tab\n")
+    print("| | begins with | ends with | growth in an hour | goal |")
     print("| --- | --- | --- | --- | --- |")
-    for name, zone in GATES.items():
-        driver = RandomDriver(World(LIVING_ROOM, seed=3), seed=4, zone=zone)
-        began_s = time.monotonic()
-        driver.drive_for(HOUR_S)
-        took_s, world = time.monotonic() - began_s, driver.world
-        figures = f"{driver.driven_m:.0f} | {world.collisions} | {driver.avoidable}"
-        print(f"| {name} | {figures} | {took_s:.0f} |", flush=True)
+    for what, figures in (("screen", screen), ("supervisor", others)):
+        ends = f"{figures[0]:.1f} MB | {figures[-1]:.1f} MB"
+        print(f"| {what} | {ends} | {growth_mb_h(hours, figures):+.1f} MB | 1 MB |")
 
 
 if __name__ == "__main__":

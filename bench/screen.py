@@ -87,7 +87,8 @@ def first_frame(folder: Path) -> tuple[float, float, float]:
 def screen_processes(terminal: Terminal) -> list[int]:
     """Return the pids of the screen and its supervisor, without spawn server and nodes."""
     screen = terminal.process.pid
-    return [screen, *(pid for pid in children(screen) if "supervisor" in command(pid))]
+    below = [pid for guardian in children(screen) for pid in children(guardian)]
+    return [screen, *(pid for pid in below if "launcher.supervisor" in command(pid))]
 
 
 def at_rest(terminal: Terminal, pids: list[int]) -> tuple[float, float, float]:

@@ -1,0 +1,1 @@
+"""Measurements without ROS: the robot in its simulated world."""
