@@ -138,11 +138,14 @@ class RobotStatePublisher(LessonNode):
         return Path(self.text("urdf_file") or COURSE_ROBOT).expanduser()
 
     def _read(self, text: str) -> RobotModel:
+        source = "robot_description" if self.text("robot_description") else self._file
         try:
-            return read_urdf(text)
+            model = read_urdf(text)
         except UrdfError as error:
-            source = "robot_description" if self.text("robot_description") else self._file
             raise NodeUsageError(_NO_ROBOT, file=source, reason=reason_of(error)) from None
+        for warning in model.warnings:
+            self.say.warn(_NO_ROBOT, file=source, reason=warning)
+        return model
 
     def _published_joints(self) -> list[ModelJoint]:
         left_out = set(self.text("leave_out").split())

@@ -14,7 +14,7 @@ from space.transform import Quaternion, Transform, Vector
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 Colour: TypeAlias = tuple[float, float, float, float]
 """Red, green, blue and opacity, 0 to 1."""
@@ -164,6 +164,8 @@ class RobotModel:
     """The link that no joint holds."""
     links: Mapping[str, ModelLink]
     joints: Mapping[str, ModelJoint]
+    warnings: Sequence[str] = ()
+    """What its description has wrong and is left out, sentences with the line."""
 
     def transform(self, joint: str, position: float = 0.0) -> Transform:
         """Return where a joint's child is in its parent. Raises JointError."""

@@ -2,11 +2,13 @@
 
 What is seen and what moves is read: links with their visuals, and joints. Masses, collisions,
 transmissions and what is meant for simulators are passed over, as are elements that URDF does not
-know. What RViz refuses is refused here as well, but with the line and with what to do.
+know. What RViz refuses is refused here as well, but with the line and with what to do; what it only
+warns of, or does not look at, is a warning of the model.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
 from space.robot_model import ModelJoint, ModelLink, RobotModel
@@ -51,8 +53,9 @@ def _robot(robot: Element) -> RobotModel:
         raise robot.wrong(say("<robot> has no <link>"), say("a robot has at least one"))
     elements = {name_of(element).strip(): element for element in robot.all("joint")}
     _check_ends(joints, elements, links)
-    _check_mimics(joints, elements)
-    return RobotModel(name_of(robot), _root(robot, joints, elements, links), links, joints)
+    joints, unfollowed = _without_vain_mimics(joints, elements)
+    root = _root(robot, joints, elements, links)
+    return RobotModel(name_of(robot), root, links, joints, (*materials.warnings, *unfollowed))
 
 
 def _refuse_xacro(robot: Element) -> None:
@@ -116,27 +119,34 @@ def _check_ends(
             )
 
 
-def _check_mimics(joints: Mapping[str, ModelJoint], elements: Mapping[str, Element]) -> None:
-    """Refuse a joint that follows an unknown one, or itself by any way."""
+def _without_vain_mimics(
+    joints: Mapping[str, ModelJoint], elements: Mapping[str, Element]
+) -> tuple[dict[str, ModelJoint], list[str]]:
+    """Return the joints, each of which follows another in the end or nobody, and what is told."""
+    found, told = dict(joints), []
     ends_well: set[str] = set()
     for name in joints:
         way: dict[str, None] = {}
-        here: str | None = name
-        while here is not None and here not in ends_well:
-            if here in way:
-                raise elements[here].wrong(
-                    say("joint {name} follows itself by <mimic>", name=here),
-                    say("one of the joints must not follow"),
-                )
+        here = name
+        while here not in ends_well and (mimic := found[here].mimic) is not None:
             way[here] = None
-            mimic = joints[here].mimic
-            if mimic is not None and mimic.joint not in joints:
-                raise elements[here].wrong(
+            if mimic.joint not in joints:
+                wrong = elements[here].wrong(
                     say("joint {name}: there is no joint {other}", name=here, other=mimic.joint),
                     did_you_mean(mimic.joint, joints) or say("correct <mimic>"),
                 )
-            here = None if mimic is None else mimic.joint
+            elif mimic.joint in way:
+                wrong = elements[here].wrong(
+                    say("joint {name} follows itself by <mimic>", name=here),
+                    say("one of the joints must not follow"),
+                )
+            else:
+                here = mimic.joint
+                continue
+            told.append(reason_of(wrong))
+            found[here] = replace(found[here], mimic=None)
         ends_well.update(way)
+    return found, told
 
 
 def _root(

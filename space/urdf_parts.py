@@ -34,7 +34,7 @@ from space.urdf_values import (
 )
 from space.xml_elements import Element
 from text.i18n import N_
-from text.sentences import say
+from text.sentences import reason_of, say
 from text.suggestions import did_you_mean
 
 _ONES: Vector = (1.0, 1.0, 1.0)
@@ -52,6 +52,8 @@ class Materials:
 
     def __init__(self, robot: Element) -> None:
         """Read the definitions. Raises XmlError."""
+        self.warnings: list[str] = []
+        """What is left out, as urdfdom does it, sentences with the line."""
         self._colours: dict[str, Colour | None] = {}
         places = [robot, *(visual for link in robot.all("link") for visual in link.all("visual"))]
         for place in places:
@@ -65,7 +67,10 @@ class Materials:
                     self._colours.setdefault(name, _colour(element))
 
     def of(self, visual: Element) -> tuple[Colour | None, str]:
-        """Return the colour of a visual, None without one, and its material. Raises XmlError."""
+        """Return the colour of a visual, None without one, and its material.
+
+        A material that is not defined is warned of. Raises XmlError.
+        """
         element = visual.first("material")
         if element is None:
             return None, ""
@@ -73,12 +78,13 @@ class Materials:
             return _colour(element), name_of(element)
         name = written(element, "name")
         if name not in self._colours:
-            raise element.wrong(
+            unknown = element.wrong(
                 say("there is no material {name}", name=name),
                 did_you_mean(name, self._colours)
                 or say('define it below <robot>: <material name="..."><color rgba="1 0 0 1"/>'),
             )
-        return self._colours[name], name
+            self.warnings.append(reason_of(unknown))
+        return self._colours.get(name), name
 
 
 def read_link(element: Element, materials: Materials) -> ModelLink:

@@ -40,7 +40,12 @@ class Picture:
     """Size of the message's own picture, in pixels."""
     encoding: str
     range_m: tuple[float, float] | None = None
-    """For depth: the values of the first and the last colour of the ramp."""
+    """For depth: the values of the first and the last colour of the ramp; None if none is valid."""
+
+    @property
+    def is_empty_depth(self) -> bool:
+        """Whether it is depth of which not one reading is a distance: NaN, infinite or zero."""
+        return self.encoding in METRES and self.range_m is None
 
 
 def numbers_picture(

@@ -41,6 +41,7 @@ class ModelReader:
         self._text = ""
         self._links: tuple[Drawable, ...] = ()
         self._meshes = 0
+        self._warnings: Sequence[str] = ()
 
     def read(self, tree: Mapping[str, Any], now_s: float) -> None:
         """Take the description. Raises NotDrawnError."""
@@ -50,7 +51,7 @@ class ModelReader:
             return
         self.clear()
         model = read_model(text)
-        self._text = text
+        self._text, self._warnings = text, model.warnings
         self._links = tuple(map(self._drawable, model.links.values()))
 
     def shown(self, now_s: float) -> Sequence[Drawable]:
@@ -60,14 +61,20 @@ class ModelReader:
 
     @property
     def remark(self) -> Words | None:
-        """How many shapes are in files of their own."""
+        """What is wrong with the description, else how many shapes are in files of their own."""
+        if self._warnings:
+            return say(
+                "faults in the description: {count}; {first}",
+                count=len(self._warnings),
+                first=self._warnings[0],
+            )
         if not self._meshes:
             return None
         return say("shapes in files (mesh) are not drawn: {count}", count=self._meshes)
 
     def clear(self) -> None:
         """Forget the robot."""
-        self._text, self._links, self._meshes = "", (), 0
+        self._text, self._links, self._meshes, self._warnings = "", (), 0, ()
 
     def _drawable(self, link: ModelLink) -> Drawable:
         shapes = [shape for visual in link.visuals for shape in self._shapes(visual)]

@@ -84,6 +84,11 @@ class TopicPictures:
 
     def _put(self, picture: Picture) -> None:
         row = self._row()
+        if picture.is_empty_depth:
+            self._detail.show_no_picture(
+                _("no valid depth"), _("no reading is a distance: each is NaN, infinite or 0")
+            )
+            return
         size = f"{plain(picture.encoding, LONGEST)} {picture.width}×{picture.height}"
         scale = None
         if picture.range_m is not None:

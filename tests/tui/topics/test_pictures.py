@@ -7,6 +7,7 @@ from collections.abc import AsyncIterator
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from textual.app import App, ComposeResult
 
@@ -64,6 +65,43 @@ async def test_depth_has_a_scale_in_metres(stage: TopicsStage) -> None:
     scale = view.render_line(view.size.height - 2).text
     assert scale.strip().startswith("near 0.5 m")
     assert scale.strip().endswith("4 m far")
+
+
+@pytest.mark.parametrize(
+    ("encoding", "kind", "reading"),
+    [
+        ("32FC1", "<f4", np.nan),
+        ("32FC1", "<f4", np.inf),
+        ("32FC1", "<f4", 0.0),
+        ("16UC1", "<u2", 0),
+    ],
+)
+async def test_depth_without_a_distance_says_so_and_is_a_picture_again_with_one(
+    stage: TopicsStage, encoding: str, kind: str, reading: float
+) -> None:
+    await stage.choose(CAMERA)
+    numbers = np.full((20, 40), reading, kind)
+
+    async def show() -> None:
+        message = {
+            "width": 40,
+            "height": 20,
+            "step": numbers.strides[0],
+            "encoding": encoding,
+            "is_bigendian": 0,
+            "data": numbers.tobytes(),
+        }
+        shown = sample(CAMERA, "sensor_msgs/msg/Image", message)
+        await stage.show(lesson_update(samples={CAMERA: (shown,)}))
+
+    await show()
+    assert stage.screen.detail.picture.words == (
+        "no valid depth",
+        "no reading is a distance: each is NaN, infinite or 0",
+    )
+    numbers[:] = 2
+    await show()
+    assert stage.screen.detail.picture.caption.startswith(f"{encoding} 40×20")
 
 
 async def test_no_picture_of_the_topic_before_stays_while_the_line_is_busy(

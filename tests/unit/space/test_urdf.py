@@ -237,10 +237,6 @@ HOSTILE = {
     "a box of two sizes": (visual("<box size='1 2'/>"), "size of <box> has 2 numbers, and not 3"),
     "an endless cylinder": (visual("<cylinder radius='1' length='1e300'/>"), r"is 1e\+300 m"),
     "no shape": (visual("<cone/>"), "<geometry> has no shape; it can be: box,"),
-    "an unknown material": (
-        visual("<sphere radius='1'/>", "<material name='x'/>"),
-        "no material x",
-    ),
     "a colour to 255": (
         visual("<sphere radius='1'/>", "<material name='x'><color rgba='255 0 0 1'/></material>"),
         "divide each by 255",
@@ -260,14 +256,6 @@ HOSTILE = {
         robot(joint("<limit lower='1' upper='0' effort='1' velocity='1'/>", "revolute")),
         "above the upper one; swap them",
     ),
-    "a joint that follows itself": (
-        robot(joint("<mimic joint='j'/>", "continuous")),
-        "joint j follows itself",
-    ),
-    "a joint that follows nobody": (
-        robot(joint("<mimic joint='elbow'/>", "continuous")),
-        "there is no joint elbow; correct <mimic>",
-    ),
 }
 
 
@@ -276,6 +264,45 @@ def test_what_is_no_robot_is_told_by_line_and_mend(case: str) -> None:
     text, said = HOSTILE[case]
     told = refusal(text)
     assert re.search(said, told), told
+
+
+WARNED = {
+    "an unknown material": (
+        (
+            "<robot><link name='a'><visual><geometry><sphere radius='1'/></geometry>"
+            "<material name='x'/></visual></link></robot>"
+        ),
+        "there is no material x; define it below <robot>: ",
+    ),
+    "a joint that follows itself": (
+        robot(joint("<mimic joint='j'/>", "continuous")),
+        "joint j follows itself by <mimic>; one of the joints must not follow",
+    ),
+    "a joint that follows nobody": (
+        robot(joint("<mimic joint='elbow'/>", "continuous")),
+        "joint j: there is no joint elbow; correct <mimic>",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WARNED)
+def test_what_urdfdom_warns_of_or_does_not_check_is_warned_of_and_left_out(case: str) -> None:
+    text, said = WARNED[case]
+    model = read_urdf(text)
+    (warning,) = model.warnings
+    assert re.match(r"line \d+: ", warning)
+    assert said in warning
+    assert all(joint.mimic is None for joint in model.joints.values())
+    assert model.followed({}) == {}
+
+
+def test_of_joints_that_follow_each_other_one_does_not() -> None:
+    turns = [joint(f"<mimic joint='{other}'/>", "continuous") for other in ("k", "j")]
+    two = turns[1].replace("name='j'", "name='k'").replace("link='b'", "link='c'")
+    model = read_urdf(robot(turns[0] + two + "<link name='c'/>"))
+    assert len(model.warnings) == 1
+    assert [name for name, one in model.joints.items() if one.mimic is None] in (["j"], ["k"])
+    assert model.followed({"j": 1.0, "k": 1.0}) == {"j": 1.0, "k": 1.0}
 
 
 def test_names_can_neither_steer_a_terminal_nor_fill_it() -> None:
