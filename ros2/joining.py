@@ -89,14 +89,17 @@ class Guest:
         finally:
             self.node.destroy_client(client)
 
-    def settle(self) -> bool:
-        """Wait until all who are there have told all; return whether they have."""
-        self._await(lambda: False)
-        return not self.missing
+    def settle(self, longest_s: float = LONGEST_S) -> None:
+        """Wait until all who are there have told all, so long at most."""
+        self._await(lambda: False, longest_s)
 
     def await_until(self, there: Callable[[], bool]) -> bool:
         """Wait for one thing until it is there, or would be; return whether it is there."""
         return there() or self._await(there)
+
+    def forgive(self) -> None:
+        """Take it that what was needed has been found, whoever has not told all."""
+        self.missing = Missing()
 
     def look(self) -> None:
         """See who is missing at this moment."""
@@ -110,13 +113,15 @@ class Guest:
             self._known, self._news_at = (attendance, self.missing), now
         self._is_alone = len(attendance.found) <= 1 and len(self._here) <= 1
 
-    def _await(self, there: Callable[[], bool]) -> bool:
+    def _await(self, there: Callable[[], bool], longest_s: float = LONGEST_S) -> bool:
+        begun = time.monotonic()
         while True:
             self.look()
             if there():
-                self.missing = Missing()
+                self.forgive()
                 return True
-            if self._is_over(time.monotonic()):
+            now = time.monotonic()
+            if self._is_over(now) or now - begun >= longest_s:
                 return False
             time.sleep(LOOK_S)
 
@@ -124,7 +129,7 @@ class Guest:
         """Return whether waiting on would bring nothing."""
         age_s, quiet_s = now - self._since, now - self._news_at
         if self.missing.without(stopped(self.missing.pids)):
-            return quiet_s >= SILENT_S or age_s >= LONGEST_S
+            return quiet_s >= SILENT_S
         return quiet_s >= QUIET_S and age_s >= self._least_s()
 
     def _least_s(self) -> float:

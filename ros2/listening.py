@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from ros2.joining import Guest
 
 AGAIN_S = 0.1
-SETTLE_S = 0.3
-"""A topic's other publishers are found within this time after the first."""
+OTHERS_S = 2.0
+"""So long are a topic's other publishers waited for once there is one."""
 
 
 def type_of(me: Guest, topic: str) -> type[Any] | None:
@@ -52,7 +52,9 @@ def matching_qos(me: Guest, topic: str, *, words: bool = True) -> QoSProfile:
     from rclpy.qos import DurabilityPolicy, ReliabilityPolicy, qos_profile_sensor_data
 
     full = naming.expanded(topic, me.node)
-    me.await_until(lambda: me.node.count_publishers(full) > 0)
+    if me.await_until(lambda: me.node.count_publishers(full) > 0):
+        me.settle(OTHERS_S)
+        me.forgive()
     profile = copy.copy(qos_profile_sensor_data)
     ends = me.node.get_publishers_info_by_topic(full)
     if not ends:

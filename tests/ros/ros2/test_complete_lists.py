@@ -6,10 +6,13 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import pytest
+from std_msgs.msg import String
 
+from graph.participants.telling import Telling
 from tests.middleware_words import own_words
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import DISCOVERY, ROOT
@@ -19,31 +22,61 @@ from tests.waiting import wait_until
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from tests.ros.ros2.world import World
+
 SLOW = "slow_to_tell"
 LOOKS = 4
+LISTENING = """
+import rclpy
+rclpy.init()
+node = rclpy.create_node('slow_to_tell')
+print('here', flush=True)
+rclpy.spin(node)
+"""
+TALKING = """
+import rclpy
+from rclpy.qos import qos_profile_sensor_data
+from std_msgs.msg import String
+rclpy.init()
+node = rclpy.create_node('slow_to_tell')
+publisher = node.create_publisher(String, '/spoken', qos_profile_sensor_data)
+node.create_timer(0.1, lambda: publisher.publish(String(data='slow_to_tell')))
+print('here', flush=True)
+rclpy.spin(node)
+"""
 
 
-@pytest.fixture
-def slow(module_domain: int) -> Iterator[str]:
+@contextmanager
+def announcing_rarely(domain: int, program: str) -> Iterator[str]:
     """A node of somebody who does not have Deck's settings: it announces itself each 3 s."""
     environ = {key: value for key, value in os.environ.items() if key not in DISCOVERY}
-    program = (
-        "import rclpy\nrclpy.init()\n"
-        f"node = rclpy.create_node('{SLOW}')\nprint('here', flush=True)\nrclpy.spin(node)\n"
-    )
     with subprocess.Popen(
         [sys.executable, "-c", program],
         cwd=ROOT,
-        env=environ | {"ROS_DOMAIN_ID": str(module_domain)},
+        env=environ | {"ROS_DOMAIN_ID": str(domain)},
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,
     ) as process:
         assert process.stdout is not None
         assert next(filter(own_words, process.stdout)) == "here\n"
-        yield SLOW
-        process.terminate()
-        process.communicate()
+        try:
+            yield SLOW
+        finally:
+            process.terminate()
+            process.communicate()
+
+
+@pytest.fixture
+def slow(module_domain: int) -> Iterator[str]:
+    with announcing_rarely(module_domain, LISTENING) as name:
+        yield name
+
+
+@pytest.fixture
+def slow_talker(module_domain: int) -> Iterator[str]:
+    with announcing_rarely(module_domain, TALKING) as name:
+        yield name
 
 
 def test_who_announces_itself_rarely_is_found_each_time(slow: str) -> None:
@@ -56,6 +89,26 @@ def test_who_announces_itself_rarely_is_found_each_time(slow: str) -> None:
     assert f"    /{slow}/set_parameters_atomically: " in info.out
     value = typed("param", "get", f"/{slow}", "use_sim_time")
     assert (value.code, value.out) == (0, "Boolean value is: False\n")
+
+
+def test_it_is_so_where_what_they_tell_cannot_be_read(
+    slow: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Then the names of nodes that the middleware has made of it are asked for."""
+    monkeypatch.setattr(Telling, "load", lambda _node: None)
+    for _ in range(LOOKS):
+        listed = typed("node", "list")
+        assert (listed.code, listed.out, listed.err) == (0, f"/{slow}\n/turtle\n", "")
+
+
+def test_publishers_of_every_kind_are_found_before_a_quality_is_chosen(
+    slow_talker: str, world: World
+) -> None:
+    """One is found at once and is reliable, the other is found late and is not."""
+    world.publisher("/spoken", String)
+    echoed = typed("topic", "echo", "--once", "/spoken", "--field", "data")
+    assert f"{slow_talker}\n---\n" in echoed.out
+    assert "Falling back to" in echoed.out
 
 
 def test_who_is_halted_is_missed_aloud(module_domain: int) -> None:
