@@ -4,7 +4,8 @@
 is kept as `progress.json.broken` when it is next written.
 
 {"last": "02-sonar-safety",
- "lessons": {"02-sonar-safety": {"topic": {"passed": true, "points": 2, "hints": 1}}}}
+ "lessons": {"02-sonar-safety": {"topic": {"passed": true, "points": 2, "hints": 1,
+                                           "files": "0a1b2c3d4e5f6071", "at": 1767225600}}}}
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import contextlib
 import json
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TypedDict
@@ -38,6 +39,10 @@ class StepProgress:
     """How many were asked for."""
     solution: bool = False
     """Whether the solution was looked at."""
+    files: str = ""
+    """The state of the files that it passed with, see `course.progress.files`."""
+    at: int = 0
+    """When, as Unix time; 0 if that is not known."""
 
 
 class StepChanges(TypedDict, total=False):
@@ -47,6 +52,8 @@ class StepChanges(TypedDict, total=False):
     points: int
     hints: int
     solution: bool
+    files: str
+    at: int
 
 
 @dataclass(frozen=True)
@@ -66,9 +73,15 @@ class Progress:
         """Return the steps of a lesson that have passed."""
         return frozenset(name for name, step in self.lessons.get(lesson, {}).items() if step.passed)
 
-    def points(self, lesson: str) -> int:
-        """Return the points earned in a lesson."""
-        return sum(step.points for step in self.lessons.get(lesson, {}).values() if step.passed)
+    def held(self, lesson: str, files: str) -> frozenset[str]:
+        """Return those of them that have passed with these files."""
+        return frozenset(
+            name for name in self.passed(lesson) if self.step(lesson, name).files == files
+        )
+
+    def points(self, lesson: str, steps: Iterable[str]) -> int:
+        """Return the points earned by these steps of a lesson."""
+        return sum(self.step(lesson, step).points for step in steps)
 
     def with_step(self, lesson: str, step: str, changes: StepChanges) -> Progress:
         """Return the same with a step that has got further."""

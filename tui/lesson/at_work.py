@@ -7,11 +7,15 @@ first of them asks until the session ends.
 from __future__ import annotations
 
 import asyncio
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
+from course.progress.files import state_of
 from course.progress.progress import Progress, load_progress, noted
 from course.results import State, StepResult
+from launcher.profile.steps.checks import kind_of
+from launcher.status import NodeState
 from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import host_of
@@ -32,6 +36,9 @@ if TYPE_CHECKING:
     from tui.frame.host import Host
     from tui.session.messages import SessionChanged
     from tui.session.ports import JudgeLink
+
+ACTS = frozenset({"publish", "service", "action", "parameter", "ends"})
+"""Checks that do something to the nodes: not done again for a change of a file alone."""
 
 
 class LessonAtWork:
@@ -58,7 +65,12 @@ class LessonAtWork:
         """The step that the judge was asked for."""
         self._run = ""
         """The run whose lesson this is."""
+        self.files = ""
+        """The state of the learner's files that run, see `course.progress.files`."""
+        self._again: list[str] = []
+        """Steps to be judged again: they have passed with other files."""
         self._following: Worker[None] | None = None
+        self._looking: Worker[None] | None = None
         self._shown_by: dict[Screen[None], Callable[[], object]] = {}
 
     @classmethod
@@ -91,6 +103,8 @@ class LessonAtWork:
             done = self._following is None or self._following.is_finished
             self._run = "" if done else self._run
             self._follow(screen)
+        elif self._judge is not None and (self._looking is None or self._looking.is_finished):
+            self._looking = screen.app.run_worker(self._look_at_files(), group="files")
 
     @property
     def _session(self) -> SessionInfo | None:
@@ -118,9 +132,11 @@ class LessonAtWork:
             self._changed()
             return
         self.reading = StepTexts(folder)
+        self.files = await asyncio.to_thread(state_of, self._own_files)
         passed = self.progress.passed(folder.name)
         ids = [step.id for step in folder.steps]
-        self._step = next((id_ for id_ in ids if id_ not in passed), ids[0])
+        self._step = next((id_ for id_ in ids if id_ not in self.passed), ids[0])
+        self._again = self._to_be_judged_again()
         self._changed()
         if not self.own:
             return
@@ -136,10 +152,31 @@ class LessonAtWork:
             await judge.close()
 
     def _ask_judge(self) -> None:
-        """Have the step at hand judged, unless it has passed already."""
-        if self._judge is not None and self._judged != self._step and not self.passed_now:
-            self._judged = self._step
-            self._judge.judge(self._step)
+        """Have a step judged again that has passed earlier, else that at hand if it has not."""
+        wanted = self._again[0] if self._again else "" if self.passed_now else self._step
+        if self._judge is not None and wanted and self._judged != wanted:
+            self._judged = wanted
+            self._judge.judge(wanted)
+
+    async def _look_at_files(self) -> None:
+        """Let ticks fade that are of other files than there are now."""
+        files = await asyncio.to_thread(state_of, self._own_files)
+        if files == self.files:
+            return
+        self.files, self._results, self._judged = files, {}, ""
+        self._again = self._to_be_judged_again()
+        self._ask_judge()
+        self._changed()
+
+    def _to_be_judged_again(self) -> list[str]:
+        """Return the steps whose ticks have faded, and that cost no more than a look."""
+        steps = () if self.folder is None else self.folder.steps
+        return [
+            step.id
+            for step in steps
+            if self.was_right(step.id) is not None
+            and not any(str(kind_of(check)) in ACTS for check in step.checks)
+        ]
 
     def _take(self, event: JudgeEvent) -> None:
         if isinstance(event, StepResult):
@@ -147,7 +184,11 @@ class LessonAtWork:
                 return
             self._results[event.id] = event
             if event.state is State.PASSED:
-                self.note(event.id, passed=True, points=event.points)
+                now = int(time.time())
+                self.note(event.id, passed=True, points=event.points, files=self.files, at=now)
+            if event.id in self._again and event.state is not State.NOT_YET:
+                self._again.remove(event.id)
+                self._ask_judge()
         elif seed := getattr(event, "seed", 0):
             self.seed = seed
         elif reason := getattr(event, "reason", ""):
@@ -188,8 +229,26 @@ class LessonAtWork:
 
     @property
     def passed(self) -> frozenset[str]:
-        """The steps that have passed, now or earlier."""
-        return frozenset() if self.folder is None else self.progress.passed(self.folder.name)
+        """The steps that have passed with these files; none while one of them cannot run."""
+        if self.folder is None or self._crashed:
+            return frozenset()
+        return self.progress.held(self.folder.name, self.files)
+
+    @property
+    def _crashed(self) -> bool:
+        nodes = self._host.feed.nodes.values()
+        return any(node.file and node.state is NodeState.FAILED for node in nodes)
+
+    @property
+    def _own_files(self) -> list[str]:
+        return [node.file for node in self._host.feed.nodes.values() if node.file]
+
+    def was_right(self, step: str) -> int | None:
+        """Return when a step passed whose tick has faded, 0 if nobody knows; None: it has not."""
+        if self.folder is None or step in self.passed:
+            return None
+        known = self.progress.step(self.folder.name, step)
+        return known.at if known.passed else None
 
     @property
     def passed_now(self) -> bool:
@@ -223,7 +282,7 @@ class LessonAtWork:
         return next(iter(named or nodes), None)
 
     def result(self, step: StepDocument) -> StepResult:
-        """Return what is known of a step; one that has passed stays passed."""
+        """Return what is known of a step; one that has passed with these files has passed."""
         result = self._results.get(step.id, StepResult(step.id, State.NOT_YET, step.points))
         if step.id in self.passed and result.state is not State.PASSED:
             return StepResult(step.id, State.PASSED, step.points)

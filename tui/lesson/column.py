@@ -76,7 +76,12 @@ class LessonColumn(VerticalScroll):
             return
         ids = [one.id for one in at_work.folder.steps]
         number = ids.index(step.id) + 1
-        self._put("head", words.head(step, number, len(ids), at_work.result(step).state))
+        self._put(
+            "head",
+            words.head(
+                step, number, len(ids), at_work.result(step).state, at_work.was_right(step.id)
+            ),
+        )
         self._put("checks", Content("\n").join(judged_lines(at_work, host_of(self), beside=True)))
         self._put("hints", Content("\n").join(words.hint_lines(step, at_work.taken)))
         if at_work.reading is None:

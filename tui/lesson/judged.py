@@ -39,7 +39,12 @@ def judged_lines(at_work: LessonAtWork, host: Host, *, beside: bool = False) -> 
         yield Content(told.format(key=f"{there}, {key}" if beside else key))
     elif result.state is State.PASSED:
         more = at_work.neighbour(1)
-        if not more:
+        faded = [step for step in lesson.steps if at_work.was_right(step.id) is not None]
+        if not more and faded:
+            told = _("Passed, but other steps have not with these files: {steps}.").format(
+                steps=", ".join(str(lesson.steps.index(step) + 1) for step in faded)
+            )
+        elif not more:
             told = _("Passed. That was the last step.")
         elif beside:
             told = _("Passed. {key}, then Enter, goes on.").format(key=there)

@@ -201,14 +201,14 @@ class LessonScreen(DeckScreen):
         number = ids.index(step.id) + 1
         put(
             self.query_one("#lesson-head", Static),
-            words.head(step, number, len(ids), result.state),
+            words.head(step, number, len(ids), result.state, at_work.was_right(step.id)),
         )
         earned = _("{points} of {all} points").format(
-            points=at_work.progress.points(lesson.name), all=lesson.points
+            points=at_work.progress.points(lesson.name, at_work.passed), all=lesson.points
         )
         put(
             self.query_one("#lesson-overview", Static),
-            words.overview(lesson.steps, at_work.passed, step.id, earned, at_work.seed),
+            words.overview(at_work, step.id, earned),
         )
         put(
             self.query_one("#lesson-checks", Static),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from course.results import CheckResult, StepResult
     from launcher.profile.steps.model import StepDocument
     from launcher.status import NodeStatus
+    from tui.lesson.at_work import LessonAtWork
 
 STATES = {
     State.NOT_YET: ("·", N_("not yet"), "$text-muted"),
@@ -29,29 +31,48 @@ STATES = {
     State.WAITS: ("◌", N_("waits"), "$text-muted"),
 }
 """Sign, word and colour: colour is never the only indication."""
+FADED = "○"
+"""The sign of a step that has passed with other files."""
 LONGEST = 400
 
 
-def head(step: StepDocument, number: int, count: int, state: State) -> Content:
-    """Return the line above everything: which step, what it is worth, how far it is."""
+def head(
+    step: StepDocument, number: int, count: int, state: State, was_right: int | None = None
+) -> Content:
+    """Return the line above everything: which step, what it is worth, how far it is.
+
+    `was_right`: when it passed with other files, see `LessonAtWork.was_right`.
+    """
     sign, word, colour = STATES[state]
     points = ngettext("{n} point", "{n} points", step.points).format(n=step.points)
     title = plain(pick(step.title) or step.id, LONGEST)
+    faded = "" if was_right is None else f" · {was_right_words(was_right)}"
     return Content.assemble(
         (f"{number}/{count} {title}", "bold"),
         (f" · {points}   ", "$text-muted"),
         (f"{sign} {_(word)}", f"bold {colour}"),
+        (faded, "$text-muted"),
     )
 
 
-def overview(
-    steps: Sequence[StepDocument], passed: Iterable[str], shown: str, points: str, seed: int
-) -> Content:
+def was_right_words(at_s: int) -> str:
+    """Say when a step passed whose tick has faded."""
+    if not at_s:
+        return _("was right earlier")
+    then, now = time.localtime(at_s), time.localtime()
+    today = then[:3] == now[:3]
+    return _("was right at {time}").format(
+        time=time.strftime("%H:%M" if today else "%Y-%m-%d %H:%M", then)
+    )
+
+
+def overview(at_work: LessonAtWork, shown: str, points: str) -> Content:
     """Return all steps as signs, the one that is shown in brackets; the points, and the seed."""
-    done = set(passed)
+    done, seed = at_work.passed, at_work.seed
     parts = []
-    for step in steps:
-        sign = "✓" if step.id in done else "·"
+    for step in at_work.folder.steps if at_work.folder is not None else ():
+        faded = at_work.was_right(step.id) is not None
+        sign = "✓" if step.id in done else FADED if faded else "·"
         colour = "$text-success" if step.id in done else "$text-muted"
         text = f"[{sign}]" if step.id == shown else f" {sign} "
         parts.append((text, f"bold {colour}" if step.id == shown else colour))

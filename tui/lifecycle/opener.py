@@ -234,14 +234,16 @@ def _scored(lessons: Iterable[Lesson]) -> list[Lesson]:
 
 def _with_score(task: Task, progress: Progress) -> Task | None:
     from course.lessons.lesson import LessonFolder
+    from course.progress.files import state_of
 
     folder = LessonFolder(task.folder)
     try:
         steps = {step.id for step in folder.steps}
     except (LauncherError, OSError):
         return None
-    passed = progress.passed(folder.name) & steps
-    earned = sum(progress.step(folder.name, step).points for step in passed)
+    files = state_of([str(task.own)] if task.own is not None else [])
+    passed = progress.held(folder.name, files) & steps
+    earned = progress.points(folder.name, passed)
     score = Score(len(steps), folder.points, len(passed), earned)
     return task._replace(score=score) if steps else None
 

@@ -202,6 +202,40 @@ async def test_the_next_time_it_goes_on_where_the_learner_left_off(course: Path)
         assert "2 of 10 points" in text(app, "overview")
 
 
+async def test_ticks_fade_when_a_file_changes_and_cheap_ones_are_judged_again(course: Path) -> None:
+    file = course / "mock_sonar.py"
+    file.write_text("right = 1\n")
+    opener = own_opener(str(file))
+    async with learning(opener) as (app, pilot):
+        opener.judged.say(ValuesDrawn(SEED))
+        opener.judged.say(PASSED)
+        await until(lambda: "Enter" in text(app, "checks"), "the tick")
+        assert text(app, "overview").startswith("[✓]")
+        await pilot.press("enter")
+        await until(lambda: opener.judged.asked == ["topic", "rate"], "the next step judged")
+        file.write_text("while True: pass\n")
+        opener.link.set_state("sonar_front", NodeState.READY, pid=9)
+        await until(lambda: opener.judged.asked[2:] == ["topic"], "the first one judged again")
+        assert text(app, "overview").startswith(" ○ ")
+        assert "0 of 10 points" in text(app, "overview")
+        opener.judged.say(SEEN)
+        await until(lambda: opener.judged.asked[3:] == ["rate"], "the step at hand judged")
+        await pilot.press("N")
+        await until(lambda: "was right at" in text(app, "head"), "when it was right")
+        assert "nobody publishes" in text(app, "checks")
+
+
+async def test_a_node_that_has_crashed_holds_no_tick(course: Path) -> None:
+    file = course / "mock_sonar.py"
+    file.write_text("right = 1\n")
+    opener = own_opener(str(file))
+    async with learning(opener) as (app, _pilot):
+        opener.judged.say(PASSED)
+        await until(lambda: text(app, "overview").startswith("[✓]"), "the tick")
+        opener.link.set_state("sonar_front", NodeState.FAILED)
+        await until(lambda: text(app, "overview").startswith("[○]"), "the tick to fade")
+
+
 async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(
     course: Path,
 ) -> None:
