@@ -31,7 +31,7 @@ from tests.tui.recorded_lesson import (
     topic,
 )
 from tui.session.ports import SessionLink
-from tui.session.requests import Lesson, OpenRequest
+from tui.session.requests import Lesson, OpenRequest, WholeGrade
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -193,6 +193,10 @@ class RecordedOpener:
     task: LessonFolder | None = None
     """The lesson that the session belongs to."""
     judged: RecordedJudge = field(default_factory=RecordedJudge)
+    graded: list[Path] = field(default_factory=list)
+    """The folders that were graded."""
+    grades: WholeGrade = field(default_factory=lambda: WholeGrade(10, 10, {}))
+    """What comes of that."""
 
     async def lessons(self) -> list[Lesson]:
         return self.known
@@ -225,6 +229,11 @@ class RecordedOpener:
         del lesson, session
         self.judged.passed = frozenset(passed)
         return self.judged
+
+    async def grade(self, lesson: LessonFolder, folder: Path) -> WholeGrade:
+        del lesson
+        self.graded.append(folder)
+        return self.grades
 
     def observe(self, session: SessionInfo) -> RecordedGraph:
         del session

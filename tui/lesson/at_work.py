@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from tui.frame.host import Host
     from tui.session.messages import SessionChanged
     from tui.session.ports import JudgeLink
+    from tui.session.requests import WholeGrade
 
 ACTS = frozenset({"publish", "service", "action", "parameter", "ends"})
 """Checks that do something to the nodes: not done again for a change of a file alone."""
@@ -69,6 +70,12 @@ class LessonAtWork:
         """The state of the learner's files that run, see `course.progress.files`."""
         self._again: list[str] = []
         """Steps to be judged again: they have passed with other files."""
+        self.grade: WholeGrade | None = None
+        """What `deck grade` has said of these files."""
+        self.grading = False
+        """Whether it is at it."""
+        self._graded = ""
+        """The state of the files that it was asked about."""
         self._following: Worker[None] | None = None
         self._looking: Worker[None] | None = None
         self._shown_by: dict[Screen[None], Callable[[], object]] = {}
@@ -163,7 +170,7 @@ class LessonAtWork:
         files = await asyncio.to_thread(state_of, self._own_files)
         if files == self.files:
             return
-        self.files, self._results, self._judged = files, {}, ""
+        self.files, self._results, self._judged, self.grade = files, {}, "", None
         self._again = self._to_be_judged_again()
         self._ask_judge()
         self._changed()
@@ -189,10 +196,41 @@ class LessonAtWork:
             if event.id in self._again and event.state is not State.NOT_YET:
                 self._again.remove(event.id)
                 self._ask_judge()
+            if event.state is State.PASSED:
+                self._grade_if_done()
         elif seed := getattr(event, "seed", 0):
             self.seed = seed
         elif reason := getattr(event, "reason", ""):
             self._host.notify(plain(localized(reason)), severity="warning")
+        self._changed()
+
+    def _grade_if_done(self) -> None:
+        """Have the files graded once all steps hold with them: that alone is the end."""
+        steps = () if self.folder is None else self.folder.steps
+        done = all(step.id in self.passed for step in steps)
+        asked = self.grading or self._graded == self.files
+        if done and self.files and self._shown_by and not asked:
+            self._graded, self.grading = self.files, True
+            screen = next(iter(self._shown_by))
+            screen.app.run_worker(self._grade(), group="grade")
+
+    async def _grade(self) -> None:
+        """Ask for the grade; a step that does not pass there has lost its tick."""
+        lesson, node, files = self.folder, self.node, self.files
+        try:
+            if lesson is None or node is None:
+                return
+            grade = await self._host.sessions.opener.grade(lesson, Path(node.file).parent)
+        finally:
+            self.grading = False
+        if files != self.files or lesson is not self.folder:
+            return
+        self.grade = grade
+        for step in lesson.steps:
+            if step.id in grade.failed:
+                self.note(step.id, passed=False)
+                why = grade.failed[step.id]
+                self._results[step.id] = StepResult(step.id, State.FAILED, step.points, (), why)
         self._changed()
 
     def note(self, step: str = "", **changes: Unpack[StepChanges]) -> None:

@@ -8,6 +8,7 @@ from textual.content import Content
 
 from course.results import State
 from text.i18n import _
+from text.plain import plain
 from tui.frame.actions.app import CloseSession, ShowLesson
 from tui.lesson import words
 from tui.lesson.actions import MakeOwnFolder
@@ -38,23 +39,50 @@ def judged_lines(at_work: LessonAtWork, host: Host, *, beside: bool = False) -> 
         key = host.keys_of(MakeOwnFolder)[0]
         yield Content(told.format(key=f"{there}, {key}" if beside else key))
     elif result.state is State.PASSED:
-        more = at_work.neighbour(1)
-        faded = [step for step in lesson.steps if at_work.was_right(step.id) is not None]
-        if not more and faded:
-            told = _("Passed, but other steps have not with these files: {steps}.").format(
-                steps=", ".join(str(lesson.steps.index(step) + 1) for step in faded)
-            )
-        elif not more:
-            told = _("Passed. That was the last step.")
-        elif beside:
-            told = _("Passed. {key}, then Enter, goes on.").format(key=there)
-        else:
-            told = _("Passed. Enter goes on.")
-        yield Content.styled(told, "bold $text-success")
-        if not more:
+        yield Content.styled(_after(at_work, there if beside else ""), "bold $text-success")
+        yield from grade_lines(at_work)
+        if not at_work.neighbour(1):
             yield Content(where_lessons_are(host))
+    elif at_work.grade is not None and at_work.grade.failed:
+        yield from grade_lines(at_work)
     elif not result.checks and result.state is not State.WAITS:
         yield Content.styled(_("being judged…"), "$text-muted")
+
+
+def _after(at_work: LessonAtWork, there: str) -> str:
+    """Say what comes after a step that has passed; `there` is the key to the Lesson screen."""
+    steps = at_work.folder.steps if at_work.folder is not None else ()
+    faded = [
+        str(number)
+        for number, step in enumerate(steps, start=1)
+        if at_work.was_right(step.id) is not None
+    ]
+    if at_work.grading:
+        return _("Passed. All of the lesson is being graded once more…")
+    if at_work.neighbour(1) and there:
+        return _("Passed. {key}, then Enter, goes on.").format(key=there)
+    if at_work.neighbour(1):
+        return _("Passed. Enter goes on.")
+    if faded:
+        told = _("Passed, but other steps have not with these files: {steps}.")
+        return told.format(steps=", ".join(faded))
+    return _("Passed. That was the last step.")
+
+
+def grade_lines(at_work: LessonAtWork) -> Iterable[Content]:
+    """Yield what `deck grade` says of these files, if it was asked."""
+    grade = at_work.grade
+    if grade is None:
+        return
+    told = _("deck grade: {points} of {most} points").format(points=grade.points, most=grade.most)
+    right = not grade.failed and not grade.ungraded
+    yield Content.styled(told, "bold $text-success" if right else "bold $text-warning")
+    lesson = at_work.folder
+    for number, step in enumerate(lesson.steps if lesson is not None else (), start=1):
+        if step.id in grade.failed:
+            yield Content(f"  {number}: {plain(grade.failed[step.id], words.LONGEST)}")
+    if grade.ungraded:
+        yield Content(f"  {plain(grade.ungraded, words.LONGEST)}")
 
 
 def where_lessons_are(host: Host) -> str:

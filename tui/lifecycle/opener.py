@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from launcher.profile.load import Profile
     from launcher.status import SessionInfo
     from tui.session.ports import GraphLink, JudgeLink, SessionLink
-    from tui.session.requests import OpenRequest, ReplayRequest
+    from tui.session.requests import OpenRequest, ReplayRequest, WholeGrade
 
 OF_SCREEN = ("tui.deck.screen", "tui.widgets.half_blocks")
 """Modules that show a lesson, besides its panels."""
@@ -142,6 +142,12 @@ class LiveOpener:
         from course.judging import RemoteJudge
 
         return await RemoteJudge.start(lesson.path, session.run_id, passed=passed)
+
+    async def grade(self, lesson: LessonFolder, folder: Path) -> WholeGrade:
+        """Have a learner's folder graded, which takes a while."""
+        from tui.lifecycle.graded import graded
+
+        return await graded(lesson, folder)
 
 
 def _lesson_of(session: SessionInfo) -> LessonFolder | None:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from launcher.consent import Agents, ConsentAnswer
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
-    from tui.session.requests import Lesson, OpenRequest
+    from tui.session.requests import Lesson, OpenRequest, WholeGrade
 
 
 class SessionLink(Protocol):
@@ -251,3 +251,6 @@ class SessionOpener(Protocol):
         self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]
     ) -> JudgeLink:
         """Start a judge, which begins once it is told what to judge."""
+
+    async def grade(self, lesson: LessonFolder, folder: Path) -> WholeGrade:
+        """Have a learner's folder graded, which takes a while."""

@@ -21,6 +21,17 @@ class Score(NamedTuple):
     earned: int = 0
 
 
+class WholeGrade(NamedTuple):
+    """What `deck grade` says of a folder."""
+
+    points: int
+    most: int
+    failed: Mapping[str, str]
+    """The steps that have not passed, and why, in words."""
+    ungraded: str = ""
+    """Why it could not be graded to the end; empty if it was."""
+
+
 class Task(NamedTuple):
     """What there is to do in a lesson."""
 

@@ -31,7 +31,7 @@ from text.i18n import set_language
 from text.sentences import say
 from tui.app import DeckApp
 from tui.session.ports import SessionLink
-from tui.session.requests import OpenRequest
+from tui.session.requests import OpenRequest, WholeGrade
 from tui.session.watching import watched
 
 LESSON = "02-sonar-safety"
@@ -223,6 +223,29 @@ async def test_ticks_fade_when_a_file_changes_and_cheap_ones_are_judged_again(co
         await pilot.press("N")
         await until(lambda: "was right at" in text(app, "head"), "when it was right")
         assert "nobody publishes" in text(app, "checks")
+
+
+async def test_a_lesson_ends_with_its_grade_and_what_fails_there_loses_its_tick(
+    course: Path,
+) -> None:
+    file = course / "mock_sonar.py"
+    file.write_text("right = 1\n")
+    opener = own_opener(str(file))
+    opener.grades = WholeGrade(8, 10, {"ends": "it does not end"})
+    async with learning(opener) as (app, pilot):
+        lesson = LessonFolder(SHIPPED / LESSON)
+        for step in lesson.steps:
+            await until(lambda id_=step.id: opener.judged.asked[-1] == id_, step.id)  # type: ignore[misc]
+            assert opener.graded == []
+            opener.judged.say(StepResult(step.id, State.PASSED, step.points))
+            if step.id != "ends":
+                await until(lambda: "Passed" in text(app, "checks"), "the tick")
+                await pilot.press("enter")
+        await until(lambda: "8 of 10" in text(app, "checks"), "the grade")
+        assert opener.graded == [course]
+        assert "it does not end" in text(app, "checks")
+        assert text(app, "overview").startswith(" ✓  ✓  ✓  ✓ [·]")
+        assert "ends" not in load_progress().passed(LESSON)
 
 
 async def test_a_node_that_has_crashed_holds_no_tick(course: Path) -> None:
