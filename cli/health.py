@@ -44,6 +44,8 @@ def well(node: NodeStatus, optional: Collection[str] = (), *, on_the_way: bool =
     """
     if node.name in optional:
         return True
+    if node.ails:
+        return False
     if on_the_way and node.state in (NodeState.STARTING, NodeState.WAITING):
         return not node.restarts and OTHER_TYPE not in node.detail
     if node.state is NodeState.EXITED:

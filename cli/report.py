@@ -133,7 +133,7 @@ class TextReport:
                 _("healthy") if healthy[node.name] else _("FAILED"),
                 _(node.state.value),
                 str(node.restarts),
-                localized(node.detail),
+                localized(node.why),
             )
             for node in nodes
         ]
@@ -232,7 +232,7 @@ def status_fields(node: NodeStatus) -> dict[str, object]:
     return {
         "node": node.name,
         "state": node.state.value,
-        "detail": node.detail,
+        "detail": node.why,
         "pid": node.pid,
         "restarts": node.restarts,
         "exit_code": node.exit_code,

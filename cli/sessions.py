@@ -51,7 +51,7 @@ def _row(node: NodeStatus) -> tuple[str, ...]:
         str(node.restarts),
         "" if node.cpu_percent is None else decimal(f"{node.cpu_percent:.1f}"),
         "" if node.memory_bytes is None else f"{node.memory_bytes / 1e6:.0f}",
-        localized(node.detail),
+        localized(node.why),
     )
 
 
@@ -80,6 +80,7 @@ def as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, obje
         "nodes": [
             {
                 **status_fields(node),
+                "healthy": well(node),
                 "uptime_s": node.uptime_s,
                 "cpu_percent": node.cpu_percent,
                 "memory_bytes": node.memory_bytes,

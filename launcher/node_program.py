@@ -58,7 +58,8 @@ def run(name: str) -> None:
     if "/" in name:
         # Not imported: the learner may have a `launcher` of his own.
         runpy.run_path(f"{OURS}/byte_fields.py")["allow"]()
-        runpy.run_path(f"{OURS}/callback_watch.py")["watch"](name.rpartition("/")[0])
+        watch = runpy.run_path(f"{OURS}/callback_watch.py")["watch"]
+        watch(name.rpartition("/")[0], tells=sys.excepthook is _report_and_tell)
         runpy.run_path(name, run_name="__main__")
     else:
         runpy.run_module(name, run_name="__main__", alter_sys=True)

@@ -62,13 +62,22 @@ class Severity(str, Enum):
 _RANKS = {severity: rank for rank, severity in enumerate(Severity)}
 
 
+STUCK = "stuck"
+"""The kind of fault of a node that runs, with a callback that does not return."""
+THREAD = "thread"
+"""That of one that runs, and in which a thread has ended by an exception."""
+IDLE = "idle"
+"""That of one that came to its end without having done anything: main() is never called."""
+
+
 @dataclass(frozen=True)
 class NodeFault:
     """What is wrong with a learner's own file."""
 
     kind: str
     """`syntax`: it cannot be read, and an older process may still run; `import`: a module is not
-    there; `crash`: its process has ended by an exception; `warning`: it runs, but not as meant."""
+    there; `crash`: its process has ended by an exception; `warning`: it runs, but not as meant;
+    `STUCK`, `THREAD` and `IDLE`: see there."""
     file: str
     """Absolute."""
     line: int = 0
@@ -120,6 +129,16 @@ class NodeStatus:
     """The learner's own file that it runs, absolute; empty for other nodes."""
     fault: NodeFault | None = None
     """What is wrong with that file, as far as it has shown."""
+
+    @property
+    def ails(self) -> bool:
+        """Whether its own file keeps it from its work, whatever its state: it is not healthy."""
+        return self.fault is not None and self.fault.kind != "warning"
+
+    @property
+    def why(self) -> str:
+        """Why it is as it is, in words: what keeps it from its work, else the detail."""
+        return self.fault.words if self.ails and self.fault is not None else self.detail
 
     @property
     def late(self) -> bool:

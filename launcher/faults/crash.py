@@ -8,6 +8,7 @@ import re
 from typing import TYPE_CHECKING
 
 from launcher.faults.meanings import warning_of
+from launcher.faults.stuck import MENDS
 from launcher.status import NodeFault
 from text.plain import plain
 from text.sentences import say
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _BLOCKED = re.compile(
-    r"callback (?P<name>\S+) still runs after (?P<seconds>[\d.]+) s: "
+    r"callback (?P<name>\S+) still runs after (?P<seconds>[\d.]+) s(?: in (?P<waits_in>\w+))?: "
     r"(?P<file>.+), line (?P<line>\d+)"
 )
 """What `launcher.callback_watch` writes."""
@@ -70,7 +71,8 @@ def warning_in(line: str, file: str) -> NodeFault | None:
         )
         source = linecache.getline(where, number).strip()
         linecache.clearcache()
-        return NodeFault("warning", where, number, 0, plain(source), words, warning_of(line))
+        mend = MENDS.get(blocked["waits_in"] or "", MENDS[""])
+        return NodeFault("warning", where, number, 0, plain(source), words, say(mend))
     meaning = warning_of(line)
     return NodeFault("warning", file, exception=line, meaning=meaning) if meaning else None
 

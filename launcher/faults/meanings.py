@@ -25,10 +25,6 @@ class Meaning(NamedTuple):
 
 WARNINGS = (
     Meaning(
-        r"callback \S+ still runs after",
-        N_("Until a callback returns, the node hears nothing: let a timer do the waiting."),
-    ),
-    Meaning(
         r"incompatible QoS",
         N_("The QoS of publisher and subscription do not fit each other: nothing arrives."),
     ),

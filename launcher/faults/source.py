@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from launcher.faults.rules.imports import missing_module
 from launcher.faults.rules.syntax import encoding_of, syntax
-from launcher.status import NodeFault
+from launcher.status import IDLE, NodeFault
 from text.plain import plain
 from text.sentences import say
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 1 << 20
 MAIN = "main"
+WAITING = {"create_timer", "create_subscription", "create_service", "ActionServer"}
+"""What only works while the node is spun."""
 
 
 def look_at(file: str) -> NodeFault | None:
@@ -58,11 +60,12 @@ def unspun(file: str) -> NodeFault | None:
     ended = say("the program came to its end")
     if mains and MAIN not in named:
         words = say('main() is never called: if __name__ == "__main__": main().')
-        return NodeFault("warning", file, mains[0].lineno, exception=ended, meaning=words)
+        return NodeFault(IDLE, file, mains[0].lineno, exception=ended, meaning=words)
     if not any(name.startswith("spin") for name in named):
         line = mains[0].end_lineno if mains else tree.body[-1].end_lineno
         words = say("rclpy.spin(node) is missing: it keeps the node running.")
-        return NodeFault("warning", file, line or 0, exception=ended, meaning=words)
+        kind = IDLE if named & WAITING else "warning"
+        return NodeFault(kind, file, line or 0, exception=ended, meaning=words)
     return None
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from launcher.processes.exit import UNSEEN, Exit
 from launcher.processes.stop import PATIENT, QUICK, StagedStop
 from launcher.spawn_server.spawner import SpawnError
-from launcher.status import NodeFault, NodeState, NodeStatus, Severity
+from launcher.status import IDLE, STUCK, NodeFault, NodeState, NodeStatus, Severity
 from launcher.supervisor.readying import Readying, why_unready
 from launcher.supervisor.restart_policy import Again, Finished, GivenUp, RestartPolicy
 from launcher.supervisor.words import (
@@ -159,6 +159,24 @@ class SupervisedNode:
             self.fault = fault
             self._around.changed(self.plan.name, self.state)
 
+    def ail(self, fault: NodeFault) -> None:
+        """Note that it runs, and does not do its work: a callback is stuck, a thread has ended."""
+        if self._now is None or self._down:
+            return
+        self.fault = fault
+        self._around.say(self.plan.name, Severity.ERROR, fault.words)
+        self._around.changed(self.plan.name, self.state)
+
+    def go_on(self) -> None:
+        """Note that the callback that seemed stuck has returned."""
+        if self._now is None or self._down:
+            return
+        if self.fault is None or self.fault.kind != STUCK:
+            return
+        self.fault = replace(self.fault, kind="warning")
+        self._around.say(self.plan.name, Severity.INFO, say("the callback has returned after all"))
+        self._around.changed(self.plan.name, self.state)
+
     def clashes(self, fault: NodeFault | None) -> None:
         """Note a topic that has another type elsewhere, or that this is no longer so."""
         if fault == self._clash or self._now is None:
@@ -264,7 +282,9 @@ class SupervisedNode:
                 end, why = UNREADY, failure
             elif self.fault is not None and not self._down:
                 why = self.fault.words
-                self._around.say(self.plan.name, Severity.ERROR, why)
+                warns = self.fault.kind == "warning"
+                gravity = Severity.WARN if warns else Severity.ERROR
+                self._around.say(self.plan.name, gravity, why)
         if self._down:
             return False
         return await self._after(end, lasted, why)
@@ -390,12 +410,14 @@ class SupervisedNode:
                 self._restarts += 1
             return not self._down
         undone = next(filter(None, map(left_undone, self.plan.conditions[::-1])), "")
-        if self.plan.optional or (isinstance(verdict, Finished) and not undone):
+        idle = self.fault is not None and self.fault.kind == IDLE
+        if self.plan.optional or (isinstance(verdict, Finished) and not undone and not idle):
             self.become(NodeState.EXITED, why)
             return False
         if isinstance(verdict, Finished):
             why = why if self.fault is not None else undone
-            self._around.say(self.plan.name, Severity.ERROR, why)
+            if not idle:
+                self._around.say(self.plan.name, Severity.ERROR, why)
         elif verdict.crashes > 1:
             why = say(
                 "given up after {count} exits in {seconds:.0f} s: {why}",

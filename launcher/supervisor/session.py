@@ -9,6 +9,7 @@ from launcher.clock import MonotonicClock
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.crash import crash_of, warning_in
 from launcher.faults.source import look_at, unspun
+from launcher.faults.stuck import stuck_in
 from launcher.faults.telling import fault_in
 from launcher.logs.session_log import DECK
 from launcher.processes.usage import UsageMeter
@@ -212,7 +213,10 @@ class Session:
         if fault is not None and fault.kind in ("crash", "syntax"):
             self._faults[name] = fault
         elif fault is not None:
-            node.warn(fault)
+            node.ail(fault)
+        stuck = stuck_in(told)
+        if stuck is not None:
+            node.go_on() if stuck[1] else node.ail(stuck[0])
 
     def exchange(self, name: str, program: str | None) -> None:
         """Run a file or a module in the place of a node's program, or the program itself again."""

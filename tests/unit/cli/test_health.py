@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from cli.health import over, settled, well
-from launcher.status import NodeState, NodeStatus
+from launcher.status import IDLE, STUCK, THREAD, NodeFault, NodeState, NodeStatus
 from launcher.supervisor.readiness import ReadyCondition, Seen
 from launcher.supervisor.words import instead, what
 
@@ -21,6 +21,16 @@ READY, RUNNING, FAILED = NodeState.READY, NodeState.RUNNING, NodeState.FAILED
 STARTING, WAITING, EXITED = NodeState.STARTING, NodeState.WAITING, NodeState.EXITED
 TOPIC = ReadyCondition("topic", "/scan", "std_msgs/msg/Float32", 5.0)
 LATE = "not ready within 10 s: nobody publishes /scan"
+
+
+@pytest.mark.parametrize("kind", ["syntax", "import", "crash", STUCK, THREAD, IDLE])
+@pytest.mark.parametrize("state", [READY, RUNNING, EXITED, STARTING])
+def test_a_node_that_ails_is_not_healthy_whatever_its_state(kind: str, state: NodeState) -> None:
+    ailing = node("a", state, fault=NodeFault(kind, "/own/a.py", 3, exception="x"))
+    assert not well(ailing)
+    assert not well(ailing, on_the_way=True)
+    assert well(ailing, optional=("a",))
+    assert ailing.why == "a.py:3: x"
 
 
 def statuses(*nodes: NodeStatus) -> dict[str, NodeStatus]:

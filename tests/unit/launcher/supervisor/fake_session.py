@@ -78,6 +78,7 @@ class FakeSession:
         self.gravest = Severity.DEBUG
         self.said_last = "no such port"
         self.fault: NodeFault | None = None
+        self.early: NodeFault | None = None
 
     @property
     def process(self) -> FakeProcess:
@@ -109,7 +110,7 @@ class FakeSession:
         return self.fault
 
     def ended_early(self, _plan: NodePlan) -> NodeFault | None:
-        return None
+        return self.early
 
     def say(self, _name: str, severity: Severity, words: str) -> None:
         self.lines.append(words)

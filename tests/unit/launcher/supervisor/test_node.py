@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
 import signal
 from dataclasses import replace
 
 import pytest
 
+from cli.health import well
 from launcher.processes.exit import Exit
 from launcher.processes.usage import Usage
-from launcher.status import NodeFault, NodeState, Severity
+from launcher.status import IDLE, STUCK, THREAD, NodeFault, NodeState, Severity
 from launcher.supervisor.lifecycle import NotBroughtUpError
 from launcher.supervisor.readiness import ReadyCondition, Seen
 from launcher.supervisor.readying import LATE_S
@@ -187,6 +189,44 @@ async def test_a_file_that_does_not_compile_is_not_tried_again_until_it_is_saved
     node.saved(None)
     await settle()
     assert (node.state, len(session.started)) == (NodeState.RUNNING, 2)
+
+
+@pytest.mark.parametrize(
+    ("kind", "state", "gravest"),
+    [(IDLE, NodeState.FAILED, Severity.ERROR), ("warning", NodeState.EXITED, Severity.WARN)],
+)
+async def test_what_an_early_end_is_called_agrees_with_its_state(
+    session: FakeSession, kind: str, state: NodeState, gravest: Severity
+) -> None:
+    """A main that nobody calls is an error, said once, and no healthy end."""
+    node = await started(session, replace(PLAN, file="/own/hello.py"))
+    session.early = fault = NodeFault(kind, "/own/hello.py", 3, exception="it came to its end")
+    session.process.end(100, Exit(0))
+    await settle()
+    assert (node.state, node.detail, session.gravest) == (state, fault.words, gravest)
+    assert session.lines.count(fault.words) == 1
+    assert well(node.status()) is (kind == "warning")
+
+
+async def test_a_stuck_callback_ails_the_node_until_it_returns(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, file="/own/hello.py"))
+    node.ail(fault := NodeFault(STUCK, "/own/hello.py", 3, exception="tick has been stuck"))
+    assert (node.status().ails, node.status().why) == (True, fault.words)
+    assert session.gravest is Severity.ERROR
+    node.go_on()
+    assert not node.status().ails
+    assert well(node.status())
+
+
+async def test_a_thread_that_ends_while_the_node_is_stopped_is_no_fault(
+    session: FakeSession,
+) -> None:
+    node = await started(session, replace(PLAN, file="/own/hello.py"))
+    stopping = asyncio.create_task(node.stop())
+    await asyncio.sleep(0)
+    node.ail(NodeFault(THREAD, "/own/hello.py", 3, exception="ExternalShutdownException"))
+    assert node.fault is None
+    await stopping
 
 
 async def test_what_a_killed_node_said_last_is_no_reason(session: FakeSession) -> None:

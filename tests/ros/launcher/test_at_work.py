@@ -1,0 +1,107 @@
+"""A node that runs is at work: no callback is stuck, no thread has died; others are told."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from cli.health import well
+from launcher.client.client import SupervisorClient
+from launcher.status import STUCK, THREAD, NodeFault, NodeState, Severity
+from tests.ros.supervised import Launch
+from tests.waiting import until
+
+NODE = """\
+import threading
+import time
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+
+class Own(Node):
+    def __init__(self):
+        super().__init__("own")
+        self.client = self.create_client(Trigger, "own_service")
+        self.create_service(Trigger, "own_service", self.answer)
+        self.rate = self.create_rate(1)
+        self.count = 0
+        self.create_timer(0.1, self.tick)
+        {begin}
+
+    def answer(self, request, response):
+        return response
+
+    def work(self):
+        {work}
+
+    def tick(self):
+        self.count += 1
+        {tick}
+
+
+rclpy.init()
+rclpy.spin(Own())
+"""
+SPUN = """
+        future = self.client.call_async(Trigger.Request())
+        rclpy.spin_until_future_complete(self, future)"""
+BUSY = """
+        if self.count == 1:
+            end = time.monotonic() + 5.0
+            while time.monotonic() < end:
+                pass
+        elif self.count == 3:
+            print("went on", flush=True)"""
+
+
+def own(*, begin: str = "pass", work: str = "pass", tick: str = "pass") -> str:
+    return textwrap.dedent(NODE.format(begin=begin, work=work, tick=tick))
+
+
+async def _ailing(client: SupervisorClient, name: str, kind: str) -> NodeFault:
+    def found() -> NodeFault | None:
+        fault = client.nodes[name].fault
+        return fault if fault is not None and fault.kind == kind else None
+
+    fault: NodeFault = await until(found, f"{name} ails", 60.0)
+    return fault
+
+
+@pytest.mark.timeout(150)
+async def test_who_is_stuck_or_has_lost_a_thread_is_not_healthy(
+    start: Launch, tmp_path: Path
+) -> None:
+    """A callback that waits for itself; one that only works for long is none."""
+    programs = {
+        "calls": own(tick="self.client.call(Trigger.Request())"),
+        "spins": own(tick=SPUN),
+        "rates": own(tick="self.rate.sleep()"),
+        "loses": own(begin="threading.Thread(target=self.work).start()", work="1 / 0"),
+        "works": own(tick=BUSY),
+    }
+    for name, text in programs.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    client = await start({name: {"run": f"./{name}.py"} for name in programs})
+    calls = await _ailing(client, "calls", STUCK)
+    assert calls.source_line == "self.client.call(Trigger.Request())"
+    assert "call_async(request)" in calls.meaning
+    assert "add_done_callback" in calls.meaning
+    assert "tick has been stuck since" in calls.exception
+    assert "add_done_callback" in (await _ailing(client, "spins", STUCK)).meaning
+    assert "create_timer" in (await _ailing(client, "rates", STUCK)).meaning
+    loses = await _ailing(client, "loses", THREAD)
+    assert (loses.source_line, loses.exception) == ("1 / 0", "ZeroDivisionError: division by zero")
+    lines = await client.history("calls", 100)
+    assert [line.text for line in lines if line.severity is Severity.ERROR] == [calls.words]
+    for name in ("calls", "spins", "rates", "loses"):
+        assert client.nodes[name].state in (NodeState.READY, NodeState.RUNNING)
+        assert not well(client.nodes[name])
+
+    async def went_on() -> bool:
+        return any("went on" in line.text for line in await client.history("works", 100))
+
+    assert await until(went_on, "the busy callback ends, and others follow", 60.0)
+    assert well(client.nodes["works"])
