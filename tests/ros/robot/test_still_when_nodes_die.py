@@ -164,7 +164,7 @@ def test_an_emergency_stop_holds_in_each_place_by_itself(nodes: RobotNodes) -> N
     peer, wheels = nodes.peer, nodes.wheels
     wheels.drive()
     wheels.wait_moving()
-    peer.say("/emergency_stop", Bool(data=True), listeners=7, qos=LATCHED)
+    peer.say("/emergency_stop", Bool(data=True), listeners=6, qos=LATCHED)
     wheels.assert_stands()
     # The gate.
     allowed = peer.hear("/drive_safe", AckermannDriveStamped)
