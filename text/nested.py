@@ -1,7 +1,8 @@
-"""JSON and YAML from elsewhere: files, servers, nodes, other processes; bounded in depth.
+"""JSON from elsewhere: files, servers, nodes, other processes; bounded in depth.
 
-The standard parsers follow brackets as deep as their stack holds and end in a RecursionError, and
-what just fits ends whoever walks through it later. All of Deck reads by the functions here.
+The standard parser follows brackets as deep as its stack holds and ends in a RecursionError, and
+what just fits ends whoever walks through it later. All of Deck reads by the
+function here, and YAML by that of `text.nested_yaml`.
 """
 
 from __future__ import annotations
@@ -51,21 +52,3 @@ def _children(value: object) -> list[object]:
     """Return the lists and dicts in a list or dict."""
     inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
     return [each for each in inner if isinstance(each, (dict, list))]
-
-
-def read_yaml(text: str) -> Any:  # noqa: ANN401 - anything that YAML can express
-    """Parse a YAML text of plain values as `yaml.safe_load` does.
-
-    Raises:
-        yaml.YAMLError: if it is none.
-        NestedTooDeeplyError: if it is nested deeper than `MAX_DEPTH`.
-    """
-    import yaml
-
-    depth = 0
-    for event in yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
-        depth += isinstance(event, yaml.CollectionStartEvent)
-        depth -= isinstance(event, yaml.CollectionEndEvent)
-        if depth > MAX_DEPTH:
-            raise NestedTooDeeplyError
-    return yaml.safe_load(text)  # noqa: TID251 - the one place

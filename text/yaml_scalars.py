@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 
 import yaml
 
-from text.nested import read_yaml
+from text.nested_yaml import read_yaml
 from text.plain import is_plain, replaced
 
 Scalar: TypeAlias = "bool | int | float | str | None"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from text.nested import read_yaml
+from text.nested_yaml import read_yaml
 
 RELIABILITIES = ("system_default", "reliable", "best_effort", "unknown", "best_available")
 """By their number in rmw's `rmw_qos_reliability_policy_e`."""

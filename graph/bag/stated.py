@@ -8,7 +8,7 @@ from pathlib import PureWindowsPath
 from typing import TYPE_CHECKING, Any
 
 from graph.bag.offers import Offer, offer_in
-from text.nested import read_yaml
+from text.nested_yaml import read_yaml
 from text.os_words import os_reason
 from text.sentences import Words, say
 

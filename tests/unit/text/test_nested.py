@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from text.nested import MAX_DEPTH, NestedTooDeeplyError, read_json, read_yaml
+from text.nested import MAX_DEPTH, NestedTooDeeplyError, read_json
+from text.nested_yaml import read_yaml
 
 
 @pytest.mark.parametrize("opening", ["[", '{"a":', '[{"a":'])
