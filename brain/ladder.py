@@ -23,6 +23,7 @@ from platformdirs import user_cache_path
 
 from brain.client import Answer, Message, ModelRequest
 from brain.faults import FaultKind, ModelError
+from robot.commands.wrapping import unwrapped
 from text.nested import read_json
 from text.sentences import say
 
@@ -196,13 +197,5 @@ _OF_THIS_WAY = (
 
 
 def bare(text: str) -> str:
-    """Return the JSON of an answer without what models like to put around it.
-
-    That is their thoughts in <think>, and a fence of Markdown.
-    """
-    text = text.strip()
-    if text.startswith("<think>") and "</think>" in text:
-        text = text.split("</think>", 1)[1].strip()
-    if text.startswith("```") and text.endswith("```") and "\n" in text:
-        text = text.split("\n", 1)[1].removesuffix("```").strip()
-    return text
+    """Return the JSON of an answer without what models like to put around it."""
+    return unwrapped(text).strip()

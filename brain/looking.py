@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from brain.situation import picture_part
 from brain.thinking import think
 from robot.commands.problems import CommandError, Problem
-from text.nested import read_json
+from robot.commands.wrapping import read_answer
 
 if TYPE_CHECKING:
     from brain.client import Message
@@ -70,8 +70,7 @@ def parse_seen(text: str) -> PictureSeen:
         CommandError: if it is no such answer. A box from right to left is one.
     """
     try:
-        found: Any = read_json(text)
-        seen = PictureSeen.model_validate(found)
+        seen = PictureSeen.model_validate(read_answer(text).value)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         raise CommandError([Problem.of("invalid", first["loc"])]) from None

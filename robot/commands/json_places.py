@@ -6,6 +6,7 @@ infinities and duplicate keys, and deeply nested text overflows its stack. RFC 8
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field
 from json import JSONDecodeError, JSONDecoder
@@ -24,6 +25,9 @@ _BLANK = re.compile(r"[ \t\n\r]*")
 _NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)\b", re.IGNORECASE)
+_OTHER_QUOTES = "“”„‟‘’‚«»'`"
+_FENCE = "```"
+_LONGEST_SHOWN = 24
 _HALF_CHARACTER = re.compile("[\ud800-\udfff]")
 _CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
 _LONGEST_INT = 18
@@ -59,7 +63,7 @@ def read(text: str) -> PlacedJson:
     value, end = reader.value(reader.blank(0), ())
     end = reader.blank(end)
     if end != len(text):
-        raise JsonError("text_after", end)
+        raise JsonError("fence" if text.startswith(_FENCE, end) else "text_after", end)
     return PlacedJson(value, reader.values, reader.keys)
 
 
@@ -104,7 +108,7 @@ class _JsonScanner:
             return members, at + 1
         while True:
             if not self.text.startswith('"', at):
-                raise JsonError("key_expected", at, path)
+                raise self.no_quote(at, path) or JsonError("key_expected", at, path)
             key, end = self.string(at, path)
             if key in members:
                 raise JsonError("duplicate", at, (*path, key), name=key)
@@ -136,7 +140,19 @@ class _JsonScanner:
             return at + 1, True
         if not self.text.startswith(",", at):
             raise JsonError("comma_expected", at, path, closing=closing)
-        return self.blank(at + 1), False
+        after = self.blank(at + 1)
+        if self.text.startswith(closing, after):
+            raise JsonError("trailing_comma", at, path, closing=closing)
+        return after, False
+
+    def no_quote(self, at: int, path: Path) -> JsonError | None:
+        """Return the error if a quote stands here that is none of JSON's."""
+        if self.text.startswith(_FENCE, at):
+            return JsonError("fence", at, path)
+        quote = self.text[at : at + 1]
+        if quote and quote in _OTHER_QUOTES:
+            return JsonError("quotes", at, path, quote=quote)
+        return None
 
     def string(self, at: int, path: Path) -> tuple[str, int]:
         try:
@@ -151,12 +167,14 @@ class _JsonScanner:
         match = _NUMBER.match(self.text, at)
         if match is None or _NOT_FINITE.match(self.text, at):
             code = "not_finite" if _NOT_FINITE.match(self.text, at) else "value_expected"
-            raise JsonError(code, at, path)
+            raise self.no_quote(at, path) or JsonError(code, at, path)
         comma = _DECIMAL_COMMA.match(self.text, at)
         if comma and not (path and isinstance(path[-1], int)):
             # In a list a comma may separate two numbers; elsewhere no number can follow a comma.
             raise JsonError("decimal_comma", at, path, mended=".".join(comma.groups()))
         digits = match.group()
         if match.group(1) or match.group(2) or len(digits) > _LONGEST_INT:
+            if math.isinf(float(digits)):
+                raise JsonError("too_large", at, path, number=digits[:_LONGEST_SHOWN])
             return float(digits), match.end()
         return int(digits), match.end()

@@ -14,6 +14,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from robot.commands import json_places
 from robot.commands.explain import Explainer
 from robot.commands.problems import TEMPLATES, CommandError, Problem
+from robot.commands.wrapping import read_answer
 from robot.limits import HEAD_ANGLE, MAX_BYTES, MAX_COMMANDS, SPEED, STEERING
 
 __all__ = [
@@ -118,7 +119,7 @@ def parse_llm(text: str | bytes, kind: type[LlmResponse] = LlmResponse) -> LlmRe
     """Parse and check a response; raises `CommandError` with every problem found and its place."""
     decoded = _decode(text)
     try:
-        found = json_places.read(decoded)
+        found = read_answer(decoded)
     except json_places.JsonError as error:
         place = json_places.line_column(decoded, error.offset)
         raise CommandError([Problem.of(error.code, error.path, place, **error.details)]) from None

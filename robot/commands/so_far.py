@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robot.commands.schema import CommandError, parse_llm
+from robot.commands.wrapping import straightened, unwrapped
 
 if TYPE_CHECKING:
     from robot.commands.schema import Problem
@@ -20,6 +21,7 @@ _COMMAND_LEVEL = 2
 
 def so_far(text: str) -> tuple[int, tuple[Problem, ...]]:
     """Return how many whole commands have come, and the problems that no continuation can mend."""
+    text = straightened(unwrapped(text, whole=False))
     begun = text.lstrip()
     if not begun:
         return 0, ()
