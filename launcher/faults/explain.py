@@ -10,6 +10,7 @@ import linecache
 from typing import TYPE_CHECKING
 
 from launcher.faults.failure import Failure
+from launcher.faults.ros_arguments import meaning_of_arguments
 from launcher.faults.rules import (
     attributes,
     callbacks,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from text.sentences import Words
 
 RULES: tuple[Rule, ...] = (
+    lambda failure: meaning_of_arguments(str(failure.error)),
     *callbacks.RULES,
     *names.RULES[:1],
     *fields.RULES,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from launcher.clock import MonotonicClock
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.crash import crash_of, warning_in
+from launcher.faults.ros_arguments import refused_arguments
 from launcher.faults.source import look_at, unspun
 from launcher.faults.stuck import stuck_in
 from launcher.faults.telling import fault_in
@@ -202,7 +203,7 @@ class Session:
         if told is not None:
             return told
         lines = [line.text for line in self.log.since_start(plan.name)]
-        return crash_of(lines, plan.file.rpartition("/")[0])
+        return crash_of(lines, plan.file.rpartition("/")[0]) or refused_arguments(lines, plan.file)
 
     def _take_told(self, name: str, told: dict[str, Any]) -> None:
         """Take what the program of a learner's own node tells of itself."""
