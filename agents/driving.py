@@ -167,7 +167,9 @@ class AgentDriving:
         async with self._under_way:
             checked = await self._allowed(session, caller, proposal)
             words = " · ".join(str(line) for line in checked.lines("")[:1])
-            told = say("{agent} does {id}: {words}", agent=caller.name, id=proposal.id, words=words)
+            told = say(
+                "agent “{agent}” does {id}: {words}", agent=caller.name, id=proposal.id, words=words
+            )
             # Written before anything moves: if that fails, nothing does.
             arguments = {"proposal": proposal.id, "commands": read_json(_thought(proposal, ""))}
             session.audit.write(caller.name, "execute", arguments, "begins", 0.0)

@@ -16,6 +16,7 @@ import uvicorn
 from mcp.server.transport_security import TransportSecuritySettings
 from starlette.responses import PlainTextResponse
 
+from agents.doors import BACKLOG, CONNECTION, GuardedConnection
 from launcher.errors import UsageError
 from text.os_words import os_reason
 from text.sentences import say
@@ -45,7 +46,7 @@ def listen(port: int) -> socket.socket:
     try:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listening.bind((HOST, port))
-        listening.listen(16)
+        listening.listen(BACKLOG)
     except OSError as error:
         listening.close()
         words = say(
@@ -82,6 +83,9 @@ async def serve_http(server: AgentServer, listening: socket.socket, token: str) 
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=END_WITHIN_S,
+        http=GuardedConnection,
+        ws="none",
+        backlog=BACKLOG,
     )
     web = _Web(config)
     async with server.looking():
@@ -122,6 +126,7 @@ class TokenNeeded:
                 )
                 await refusal(scope, receive, send)
                 return
+            scope["state"].pop(CONNECTION).shows_token()
         elif scope["type"] != "lifespan":
             return
         await self._app(scope, receive, send)

@@ -6,7 +6,9 @@ import asyncio
 import contextlib
 import json
 import logging
+import re
 import time
+from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 import mcp_types as types
@@ -43,21 +45,27 @@ MAX_AT_ONCE = 16
 """Most calls at once."""
 LONGEST_NAME = 40
 SHOWN_ARGUMENTS = 160
+_NO_WORD = re.compile(r"[^\w.@+/]+")
 
 
 class AgentServer:
     """One server for all agents that are connected."""
 
     def __init__(
-        self, approval: Approval, name: str | None = None, domain: int | None = None
+        self,
+        approval: Approval,
+        name: str | None = None,
+        domain: int | None = None,
+        discovery: str | None = None,
     ) -> None:
         """Keep to the session of this name or domain; by default the only one that runs."""
         self.driving = AgentDriving(approval)
-        self.finder = SessionFinder(name, domain, self.driving.stopped)
+        self.finder = SessionFinder(name, domain, self.driving.stopped, discovery)
         self._calls = 0
         self.mcp: Server[dict[str, Any]] = Server(
             "deck",
             title="Deck",
+            version=metadata.version("deck-robot"),
             instructions=INSTRUCTIONS,
             on_list_tools=self._list,
             on_call_tool=self._call,
@@ -161,7 +169,7 @@ class _Record:
             say_error(f"deck mcp: {session.audit.path}: {error}")
         shown = json_text(dict(self.given))
         words = say(
-            "{agent}: {tool} {arguments}: {outcome}",
+            "agent “{agent}”: {tool} {arguments}: {outcome}",
             agent=self._agent,
             tool=self.tool,
             arguments=shown if len(shown) <= SHOWN_ARGUMENTS else f"{shown[:SHOWN_ARGUMENTS]}…",
@@ -174,10 +182,15 @@ class _Record:
 def caller_of(ctx: ServerRequestContext[Any]) -> Caller:
     """Return who calls: the name that the client gives itself, and its connection."""
     params = ctx.session.client_params
-    name = plain(" ".join(params.client_info.name.split()), LONGEST_NAME) if params else ""
+    name = shown_name(params.client_info.name) if params else ""
     headers = getattr(ctx.request, "headers", None)
     connection = "" if headers is None else str(headers.get("mcp-session-id", ""))[:36]
-    return Caller(f"{name}/{connection}", name or "an agent")
+    return Caller(f"{name}/{connection}", name or "unnamed")
+
+
+def shown_name(name: str) -> str:
+    """Return the name that an agent gives itself, as one short word: no sentence, no quotes."""
+    return _NO_WORD.sub("-", plain(name[: 4 * LONGEST_NAME]))[:LONGEST_NAME].strip("-")
 
 
 def _tool(name: str, session: RobotSession) -> Tool:

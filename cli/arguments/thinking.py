@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.arguments.options import add_domain, add_language, add_running
+from cli.arguments.options import add_graph, add_language, add_running
 from cli.values import between, port
 from text.i18n import _
 
 if TYPE_CHECKING:
     from cli.arguments.parser import Parser
 
-MCP_PORT = 8765
+MCP_PORT = 8730
+"""Not that of Foxglove, which may be served beside it."""
 """Where agents find `deck mcp --http`."""
 
 
 def add_mcp(parser: Parser) -> None:
     """Add the options of `deck mcp`."""
     add_running(parser)
-    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
     parser.add_argument(
         "--approve",
         choices=("never", "ask", "always"),

@@ -33,8 +33,21 @@ MAX_QUESTIONS = 4
 """Most questions at once; a person cannot oversee more."""
 
 
+REFUSED_FOR_S = 5.0
+"""How long nobody asks after a refusal; twice as long after each further one."""
+LONGEST_REFUSED_FOR_S = 320.0
+
+
 class TooManyError(Exception):
     """There are too many agents, or too many questions."""
+
+
+class TooSoonError(Exception):
+    """A person has just refused; `.wait_s` says for how long they are left alone."""
+
+    def __init__(self, wait_s: float) -> None:
+        super().__init__(wait_s)
+        self.wait_s = wait_s
 
 
 @dataclass
@@ -66,6 +79,7 @@ class ConsentDesk:
         told: Callable[[Severity, Words], None],
         asked_for_s: float = ASKED_FOR_S,
         allowed_for_s: float = ALLOWED_FOR_S,
+        refused_for_s: float = REFUSED_FOR_S,
     ) -> None:
         """`changed` is called when `state` has changed; `told` gets what belongs in the log."""
         self._asked_for_s, self._allowed_for_s = asked_for_s, allowed_for_s
@@ -75,6 +89,10 @@ class ConsentDesk:
         self._known: dict[tuple[Hashable, str], _Known] = {}
         self._pending: dict[int, _Pending] = {}
         self._last = 0
+        self._refused_for_s = refused_for_s
+        self._refusals = 0
+        """In a row, of whomever: an agent that leaves and comes back has another name."""
+        self._not_before_s = 0.0
 
     @property
     def state(self) -> Agents:
@@ -104,8 +122,10 @@ class ConsentDesk:
         if pending is None or pending.answered.done():
             return False
         if answer is ConsentAnswer.REFUSE:
+            self._refuse()
             pending.answered.set_result(ConsentVerdict.REFUSED)
             return True
+        self._refusals = 0
         if answer is ConsentAnswer.FOR_A_TIME:
             self._allow(pending)
         pending.answered.set_result(ConsentVerdict.ALLOWED)
@@ -134,9 +154,9 @@ class ConsentDesk:
         if len(self._known) >= MAX_AGENTS and not self._forget_one(client):
             raise TooManyError
         self._known[client, key] = _Known(Agent(name, approval))
-        self._told(Severity.DEBUG, say("agent {name} is connected", name=name))
+        self._told(Severity.DEBUG, say("agent “{name}” is connected", name=name))
         if approval is Approval.ALWAYS:
-            words = say("agent {name} drives without asking: --approve always", name=name)
+            words = say("agent “{name}” drives without asking: --approve always", name=name)
             self._told(Severity.WARN, words)
         self._changed()
 
@@ -156,12 +176,16 @@ class ConsentDesk:
 
         Raises:
             TooManyError: if too much is asked at once.
+            TooSoonError: if a person has refused a moment ago.
         """
         known = self._known[client, key]
         if known.allowed_until_s > time.monotonic() and not anew:
             return ConsentVerdict.ALLOWED_BEFORE
         if not self._screens:
             return ConsentVerdict.NO_SCREEN
+        wait_s = self._not_before_s - time.monotonic()
+        if wait_s > 0:
+            raise TooSoonError(wait_s)
         if len(self._pending) >= MAX_QUESTIONS:
             raise TooManyError
         self._last += 1
@@ -193,9 +217,15 @@ class ConsentDesk:
         mine = [key for key in self._known if key[0] is client]
         for key in mine:
             name = self._known.pop(key).agent.name
-            self._told(Severity.DEBUG, say("agent {name} has left", name=name))
+            self._told(Severity.DEBUG, say("agent “{name}” has left", name=name))
         if mine:
             self._changed()
+
+    def _refuse(self) -> None:
+        wait_s = min(self._refused_for_s * 2**self._refusals, LONGEST_REFUSED_FOR_S)
+        if wait_s < LONGEST_REFUSED_FOR_S:
+            self._refusals += 1
+        self._not_before_s = time.monotonic() + wait_s
 
     def _allow(self, pending: _Pending) -> None:
         known = self._known.get((pending.client, pending.key))
@@ -207,7 +237,7 @@ class ConsentDesk:
             known.agent.name, known.agent.approval, time.time() + self._allowed_for_s
         )
         words = say(
-            "agent {name} may drive without a question for {minutes:g} min",
+            "agent “{name}” may drive without a question for {minutes:g} min",
             name=known.agent.name,
             minutes=self._allowed_for_s / 60,
         )

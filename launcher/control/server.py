@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from launcher.control.agent_requests import AGENT_OPS, serve_agents
 from launcher.control.bad_request import BadRequestError
-from launcher.control.consent import ConsentDesk, TooManyError
+from launcher.control.consent import ConsentDesk, TooManyError, TooSoonError
 from launcher.control.feed import ClientFeed
 from launcher.control.protocol import (
     MAX_HISTORY_CHARS,
@@ -263,6 +263,12 @@ class ControlServer:
             client.refuse(request_id, "still_running", pack_text(error.args[0]))
         except BadRequestError as error:
             client.refuse(request_id, "bad_request", str(error))
+        except TooSoonError as error:
+            words = say(
+                "the person has just refused: nothing is asked for another {seconds:.0f} s",
+                seconds=max(error.wait_s, 1.0),
+            )
+            client.refuse(request_id, "too_soon", words)
         except TooManyError:
             client.refuse(request_id, "too_many", say("too many agents ask at once"))
         except Exception as error:

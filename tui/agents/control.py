@@ -92,7 +92,7 @@ class AgentControl:
             key = (session.run_id if session is not None else "", agent.name)
             if agent.approval is Approval.ALWAYS and key not in self._warned:
                 self._warned.add(key)
-                words = _("Agent {name} drives without asking: --approve always")
+                words = _("Agent “{name}” drives without asking: --approve always")
                 told = words.format(name=plain(agent.name))
                 self._app.notify(told, severity="warning", timeout=TOLD_S, markup=False)
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import signal
+import socket
 import subprocess
 import sys
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
@@ -73,7 +76,8 @@ def greeted(process: subprocess.Popen[bytes]) -> dict[str, Any]:
 async def test_standard_output_is_the_protocol_alone(tmp_path: Path, ros_domain: int) -> None:
     async with running(tmp_path, ros_domain, {"sonar": GATED["sonar"]}):
         with stdio() as process:
-            assert greeted(process)["result"]["serverInfo"]["name"] == "deck"
+            server = greeted(process)["result"]["serverInfo"]
+            assert (server["name"], server["version"]) == ("deck", version("deck-robot"))
             assert process.stdin is not None
             call = {"method": "tools/call", "params": {"name": "look", "arguments": {}}}
             lines = (
@@ -170,6 +174,37 @@ def test_only_who_knows_the_token_gets_in_and_no_web_page(ros_domain: int) -> No
         assert status(address, Authorization=right) == 200
         assert status(address, Authorization=right, Host="evil.example") == 421
         assert status(address, Authorization=right, Origin="http://evil.example") == 403
+
+
+def half_open(address: str, count: int) -> list[socket.socket]:
+    """Begin requests without a token, as fast as one can, and end none."""
+    port = int(address.rpartition(":")[2].partition("/")[0])
+    begun = []
+    for _number in range(count):
+        one = socket.create_connection(("127.0.0.1", port), timeout=30)
+        begun.append(one)
+        with suppress(OSError):  # It may have made way already.
+            one.sendall(b"POST /mcp HTTP/1.1\r\nHost: 127")
+    return begun
+
+
+def test_half_open_requests_lock_no_agent_out(ros_domain: int) -> None:
+    """As many as the server may have descriptors, and more; none of them stays for good."""
+    del ros_domain
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (min(4096, hard), hard))
+    with http() as (_process, address, token):
+        begun = half_open(address, 1100)
+        try:
+            assert status(address, Authorization=f"Bearer {token}") == 200
+            # The youngest is ended too, once its request has not come in time.
+            begun[-1].settimeout(60)
+            with suppress(ConnectionResetError):
+                assert begun[-1].recv(1) == b""
+        finally:
+            for one in begun:
+                one.close()
+            resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
 async def test_agents_by_http_look_at_the_robot(tmp_path: Path, ros_domain: int) -> None:

@@ -51,12 +51,12 @@ async def test_what_is_said_of_agents_is_in_the_log_and_screens_hear_of_them(
     screen = await start(NODE)
     agent = await attach()
     await agent.join("k", "claude", Approval.ALWAYS)
-    await agent.tell(Severity.INFO, say("agent {name} is connected", name="claude"))
+    await agent.tell(Severity.INFO, say("agent “{name}” is connected", name="claude"))
     lines = [line for line in await screen.history(None, 100) if line.source == "agent"]
     assert [line.text for line in lines] == [
-        "agent claude is connected",
+        "agent “claude” is connected",
         "agent claude drives without asking: --approve always",
-        "agent claude is connected",
+        "agent “claude” is connected",
     ]
     async for event in screen.events():
         if isinstance(event, AgentsEvent) and event.agents.connected:

@@ -12,9 +12,9 @@ from text.sentences import say
 from tui.flow.screen import FlowScreen
 from tui.logs.screen import LogsScreen
 
-DOES = say("{agent} does {id}: {words}", agent="claude", id="p1", words="drives")
+DOES = say("agent “{agent}” does {id}: {words}", agent="claude", id="p1", words="drives")
 LOOKS = say(
-    "{agent}: {tool} {arguments}: {outcome}",
+    "agent “{agent}”: {tool} {arguments}: {outcome}",
     agent="claude",
     tool="look",
     arguments="{}",
@@ -41,7 +41,7 @@ async def test_what_an_agent_does_begins_a_chain() -> None:
         chains = await until(
             lambda: [one for one in screen.chains if one.first.lane.value == "agent"], "a chain"
         )
-        assert [one.first.text for one in chains] == ["claude does p1: drives"]
+        assert [one.first.text for one in chains] == ["agent “claude” does p1: drives"]
 
 
 async def test_lines_about_agents_are_translated() -> None:
@@ -50,7 +50,7 @@ async def test_lines_about_agents_are_translated() -> None:
     async with opened(opener, "logs") as (app, pilot):
         assert isinstance(app.screen, LogsScreen)
         opener.link.say(said_by_agents())
-        await until(lambda: "claude выполняет p1" in shown(app), "the line")
+        await until(lambda: "«claude» выполняет p1" in shown(app), "the line")
         await pilot.pause()
 
 

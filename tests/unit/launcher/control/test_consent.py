@@ -10,7 +10,13 @@ import pytest
 from launcher.consent import Agent, Agents, Approval, ConsentAnswer, ConsentVerdict, Question
 from launcher.control.agent_requests import serve_agents
 from launcher.control.bad_request import BadRequestError
-from launcher.control.consent import MAX_AGENTS, MAX_QUESTIONS, ConsentDesk, TooManyError
+from launcher.control.consent import (
+    MAX_AGENTS,
+    MAX_QUESTIONS,
+    ConsentDesk,
+    TooManyError,
+    TooSoonError,
+)
 from launcher.control.protocol import encode, pack_agents, unpack_agents
 from tests.waiting import until
 from text.sentences import say
@@ -187,3 +193,33 @@ def test_agents_and_questions_arrive_as_they_were_sent() -> None:
         (Agent("claude", Approval.ALWAYS, 12.5),), (Question(3, "claude", LINES, 20.0),)
     )
     assert unpack_agents(json.loads(encode(pack_agents(agents)))) == agents
+
+
+async def test_whoever_was_refused_leaves_the_person_alone_for_longer_each_time() -> None:
+    """A new name does not help; what a person allows ends it."""
+    waited = []
+    made = ConsentDesk(lambda: None, lambda *_: None, refused_for_s=0.1)
+    made.join(AGENT, "k", "claude", Approval.ASK)
+    made.attend(SCREEN)
+    for number in range(3):
+        asking, question = await asked(made)
+        made.answer(question.number, ConsentAnswer.REFUSE)
+        assert await asking is ConsentVerdict.REFUSED
+        made.join("another", str(number), f"new {number}", Approval.ASK)
+        with pytest.raises(TooSoonError) as soon:
+            await made.ask("another", str(number), LINES)
+        waited.append(soon.value.wait_s)
+        assert made.state.questions == ()
+        await asyncio.sleep(soon.value.wait_s)
+    assert 0.0 < waited[0] <= 0.1
+    assert 0.1 < waited[1] <= 0.2
+    assert 0.2 < waited[2] <= 0.4
+    asking, question = await asked(made)
+    made.answer(question.number, ConsentAnswer.ONCE)
+    assert await asking is ConsentVerdict.ALLOWED
+    asking, question = await asked(made)
+    made.answer(question.number, ConsentAnswer.REFUSE)
+    await asking
+    with pytest.raises(TooSoonError) as soon:
+        await made.ask(AGENT, "k", LINES)
+    assert soon.value.wait_s <= 0.1
