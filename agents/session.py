@@ -35,13 +35,18 @@ BOOL = "std_msgs/msg/Bool"
 class RobotSession:
     """A running session: its supervisor, its graph, and the record of what agents do."""
 
-    def __init__(self, link: SupervisorClient, stopped: Callable[[], None]) -> None:
-        """Begin to look; `stopped` is called while an emergency stop is in force."""
+    def __init__(
+        self, link: SupervisorClient, stopped: Callable[[], None], discovery: str | None = None
+    ) -> None:
+        """Begin to look; `stopped` is called while an emergency stop is in force.
+
+        `discovery`: how far to look, by default as the session does.
+        """
         self.link = link
         self.audit = Audit(link.session.log_dir)
         self.emergency = EmergencyWatch()
         self.observer = Observer(
-            link.session.domain, link.session.discovery, PERIOD_S, role="agents"
+            link.session.domain, discovery or link.session.discovery, PERIOD_S, role="agents"
         )
         self.view = GraphView(self.observer)
         self.last_words: Future[int] | None = None
@@ -107,8 +112,15 @@ class RobotSession:
 class SessionFinder:
     """Keeps to the session of a name or a domain, whenever it runs."""
 
-    def __init__(self, name: str | None, domain: int | None, stopped: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        name: str | None,
+        domain: int | None,
+        stopped: Callable[[], None],
+        discovery: str | None = None,
+    ) -> None:
         self._name, self._domain, self._stopped = name, domain, stopped
+        self._discovery = discovery
         self._now: RobotSession | None = None
         self._why: Words | str = say("no session has been looked for yet")
         self._looked = asyncio.Event()
@@ -159,7 +171,7 @@ class SessionFinder:
         return await client.attach(here[0].run_id)
 
     async def _stay(self, link: SupervisorClient) -> None:
-        session = RobotSession(link, self._stopped)
+        session = RobotSession(link, self._stopped, self._discovery)
         self._now = session
         self._looked.set()
         try:

@@ -34,7 +34,7 @@ LOOKS = {
 
 def diagnostics_command(options: Namespace) -> int:
     """Listen for a moment, and show the tree; return 1 if anything is not all right."""
-    with domain_view(options.domain, follow=(DIAGNOSTICS,)) as view:
+    with domain_view(options.domain, options.discovery, follow=(DIAGNOSTICS,)) as view:
         words = _("listening to {topic} in domain {domain} for {seconds:g} s")
         tell_that_it_takes_time(
             words.format(topic=DIAGNOSTICS, domain=view.domain, seconds=options.seconds)

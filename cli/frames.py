@@ -39,7 +39,7 @@ def frames_command(options: Namespace) -> int:
     from graph.frames.around import findings_in
     from space.tree.tree import FrameTree
 
-    _name, domain, discovery = running_domain(options.domain)
+    _name, domain, discovery = running_domain(options.domain, options.discovery)
     keep_stdout_to_ourselves()
     # There may be no supervisor here that does it.
     discard_unfinished()

@@ -27,7 +27,7 @@ SEEN_WITHIN_S = 3.0
 def level_command(options: Namespace) -> int:
     """Print the level that the node has now."""
     node = f"/{options.node.removeprefix('/')}"
-    _name, domain, discovery = running_domain(options.domain)
+    _name, domain, discovery = running_domain(options.domain, options.discovery)
     keep_stdout_to_ourselves()
     # There may be no supervisor here that does it.
     discard_unfinished()

@@ -80,7 +80,7 @@ def _server(options: Namespace) -> AgentServer:
 
     # Requests are written into warnings, and may be anything.
     logging.basicConfig(handlers=[_PlainHandler()], level=logging.WARNING)
-    return AgentServer(Approval(options.approve), options.name, options.domain)
+    return AgentServer(Approval(options.approve), options.name, options.domain, options.discovery)
 
 
 def _run(

@@ -27,8 +27,12 @@ LOOK_S = 0.2
 class DomainView:
     """What an observer tells of one domain."""
 
-    def __init__(self, domain: int, updates: queue.SimpleQueue[GraphUpdate]) -> None:
+    def __init__(
+        self, domain: int, updates: queue.SimpleQueue[GraphUpdate], *, alone: bool
+    ) -> None:
+        """`alone`: whether only this machine is looked at."""
         self.domain = domain
+        self._alone = alone
         self._updates = updates
 
     def updates(self, within_s: float = LOOK_S) -> Iterator[GraphUpdate]:
@@ -52,18 +56,29 @@ class DomainView:
         from graph.findings.names import is_deck
 
         if all(is_deck(node.name) for node in update.nodes):
-            raise UsageError(
+            words = (
                 say(
+                    "no node was found in domain {domain} on this machine: start one, choose "
+                    "another with --domain, or look on the network with --discovery subnet",
+                    domain=self.domain,
+                )
+                if self._alone
+                else say(
                     "no node was found in domain {domain}: start one, or choose another with "
                     "--domain",
                     domain=self.domain,
                 )
             )
+            raise UsageError(words)
 
 
 @contextmanager
 def domain_view(
-    asked: int | None, *, follow: Iterable[str] = (), all_topics: bool = False
+    asked: int | None,
+    wanted: str | None = None,
+    *,
+    follow: Iterable[str] = (),
+    all_topics: bool = False,
 ) -> Iterator[DomainView]:
     """Observe the domain that was asked for, else that of the running robot, and leave it again.
 
@@ -72,7 +87,7 @@ def domain_view(
     """
     from graph.observer.observer import Observer
 
-    _name, domain, discovery = running_domain(asked)
+    _name, domain, discovery = running_domain(asked, wanted)
     keep_stdout_to_ourselves()
     # There may be no supervisor here that does it.
     discard_unfinished()
@@ -82,7 +97,7 @@ def domain_view(
     observer.measure(all_topics)
     observer.start(updates.put)
     try:
-        yield DomainView(domain, updates)
+        yield DomainView(domain, updates, alone=discovery == "localhost")
     finally:
         observer.stop()
 

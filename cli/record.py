@@ -46,7 +46,7 @@ def record_command(options: Namespace) -> int:
     from graph.recording.recorder import Recorder
 
     topics = [_topic(name) for name in options.topics]
-    what, domain, discovery = running_domain(options.domain)
+    what, domain, discovery = running_domain(options.domain, options.discovery)
     without = (frozenset() if options.images else IMAGES) | (
         frozenset() if options.clouds else {POINT_CLOUD}
     )

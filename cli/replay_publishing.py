@@ -39,7 +39,7 @@ def publish_bag(path: Path, options: Namespace) -> int:
     """
     from graph.bag.reading import open_bag
 
-    _name, domain, discovery = running_domain(options.domain)
+    _name, domain, discovery = running_domain(options.domain, options.discovery)
     stop = threading.Event()
     for number in SIGNALS:
         signal.signal(number, lambda *_: stop.set())

@@ -9,8 +9,12 @@ from launcher.errors import UsageError
 from text.sentences import say
 
 
-def running_domain(asked: int | None) -> tuple[str, int, str | tuple[str, ...]]:
+def running_domain(
+    asked: int | None, wanted: str | None = None
+) -> tuple[str, int, str | tuple[str, ...]]:
     """Return name, domain and discovery: those of the robot that Deck runs, else the environment's.
+
+    `asked` and `wanted`: the domain and the discovery of the command line, which go before these.
 
     Raises:
         UsageError: if robots run in several domains.
@@ -25,7 +29,7 @@ def running_domain(asked: int | None) -> tuple[str, int, str | tuple[str, ...]]:
             say("robots are running in domains {domains}: choose one with --domain", domains=named)
         )
     if sessions:
-        return sessions[0].name, sessions[0].domain, sessions[0].discovery
+        return sessions[0].name, sessions[0].domain, wanted or sessions[0].discovery
     wide = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() == "SUBNET"
     domain = choose_domain(asked, None, os.environ)
-    return f"domain-{domain}", domain, "subnet" if wide else "localhost"
+    return f"domain-{domain}", domain, wanted or ("subnet" if wide else "localhost")

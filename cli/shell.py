@@ -86,7 +86,7 @@ def shell_command(options: Namespace) -> int:
 def _place(options: Namespace) -> tuple[str, int, str | tuple[str, ...]]:
     """Return name, domain and discovery: of the lesson asked for, else of the one that runs."""
     if options.profile is None:
-        return running_domain(options.domain)
+        return running_domain(options.domain, options.discovery)
     from launcher.client.running import find_running
 
     try:
@@ -96,8 +96,8 @@ def _place(options: Namespace) -> tuple[str, int, str | tuple[str, ...]]:
         from launcher.profile.load import load_profile
 
         profile = load_profile(find_profile(options.profile), domain=options.domain)
-        return profile.name, profile.domain, profile.document.discovery
-    return session.name, session.domain, session.discovery
+        return profile.name, profile.domain, options.discovery or profile.document.discovery
+    return session.name, session.domain, options.discovery or session.discovery
 
 
 def environment_in(domain: int, discovery: str | tuple[str, ...]) -> dict[str, str]:

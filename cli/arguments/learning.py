@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.arguments.options import add_domain, add_seed
+from cli.arguments.options import add_domain, add_graph, add_seed
 from cli.values import at_once, folder, seconds
 from course.grade.defaults import FORMATS, WITHIN_S
 from text.i18n import _
@@ -104,5 +104,5 @@ def add_shell(parser: Parser) -> None:
     parser.add_argument(
         "-c", dest="line", metavar=_("LINE"), help=_("run this command line and end")
     )
-    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
     parser.epilog = _("The shell is that of SHELL. The exit code is that of the shell or command.")

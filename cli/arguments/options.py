@@ -42,6 +42,19 @@ def add_domain(parser: Parser, help_text: str) -> None:
     parser.add_argument("--domain", metavar="N", type=domain, help=help_text)
 
 
+def add_graph(parser: Parser, help_text: str) -> None:
+    """Add the ROS domain, and how far to look for nodes: what joins a graph that somebody runs."""
+    add_domain(parser, help_text)
+    parser.add_argument(
+        "--discovery",
+        choices=("localhost", "subnet"),
+        help=_(
+            "look on this machine only, or on the network too; by default as the running robot "
+            "does, else localhost"
+        ),
+    )
+
+
 def add_screen(parser: Parser) -> None:
     """Add what the screen begins with, and the limit for its pictures."""
     parser.add_argument(

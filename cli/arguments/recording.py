@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.arguments.options import add_domain, add_json, add_screen
+from cli.arguments.options import add_graph, add_json, add_screen
 from cli.values import folder, rate, seconds
 from text.i18n import _
 
@@ -42,7 +42,7 @@ def add_record(parser: Parser) -> None:
     parser.add_argument(
         "--for", dest="seconds", metavar="S", type=seconds, help=_("stop after S seconds")
     )
-    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
     add_json(parser)
     parser.epilog = _(
         "Exit code: 0 if the recording is complete, 1 if it broke off or no messages "
@@ -79,5 +79,5 @@ def add_replay(parser: Parser) -> None:
     parser.add_argument(
         "--motion", action="store_true", help=_("with --publish: also what moves a robot")
     )
-    add_domain(parser, _("with --publish: ROS domain; by default that of the running robot"))
+    add_graph(parser, _("with --publish: ROS domain; by default that of the running robot"))
     add_screen(parser)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from cli.arguments.options import (
-    add_domain,
+    add_graph,
     add_json,
     add_profile,
     add_profile_options,
@@ -73,7 +73,7 @@ def add_frames(parser: Parser) -> None:
         type=seconds,
         help=_("listen for S seconds; 3 by default"),
     )
-    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
     add_json(parser)
     parser.epilog = _(
         "Exit code: 0 if nothing is wrong with the frames, 1 if something is or there are none, 2 "
@@ -111,13 +111,7 @@ def add_attach(parser: Parser) -> None:
 
 def add_watch(parser: Parser) -> None:
     """Add the options of `deck watch`."""
-    add_domain(parser, _("ROS domain; by default ROS_DOMAIN_ID, else one of your own"))
-    parser.add_argument(
-        "--discovery",
-        choices=("localhost", "subnet"),
-        default="localhost",
-        help=_("look on this machine only (the default) or on the network too"),
-    )
+    add_graph(parser, _("ROS domain; by default ROS_DOMAIN_ID, else one of your own"))
     add_screen(parser)
     parser.epilog = _("Deck starts and stops nothing here.")
 
@@ -131,7 +125,7 @@ def add_level(parser: Parser) -> None:
         choices=tuple(LOG_LEVELS),
         help=_("from this severity on it is to log; without it, the level is only shown"),
     )
-    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
     parser.epilog = _(
         "Exit code: 0, or 1 if the node is not there, does not answer or does not let others "
         "change its level."
@@ -148,7 +142,7 @@ def add_doctor(parser: Parser) -> None:
         action="store_true",
         help=_("examine the running ROS graph instead, whoever has started its nodes"),
     )
-    add_domain(parser, _("with --graph: ROS domain; by default that of the running robot"))
+    add_graph(parser, _("with --graph: ROS domain; by default that of the running robot"))
     add_json(parser)
     parser.epilog = _(
         "Exit code: 0, or 1 if something essential is missing. With --graph: 0 without findings, 1 "
@@ -166,7 +160,7 @@ def add_diagnostics(parser: Parser) -> None:
         default=3.0,
         help=_("listen for S seconds, 3 by default"),
     )
-    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
     add_json(parser)
     parser.epilog = _(
         "Exit code: 0 if everything is all right, 1 if anything is not, 2 if nobody says anything."

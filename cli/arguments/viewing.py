@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.arguments.options import add_domain
+from cli.arguments.options import add_graph
 from cli.values import port
 from text.i18n import _
 
@@ -49,7 +49,7 @@ def add_foxglove(parser: Parser) -> None:
 
 
 def _add_common(parser: Parser) -> None:
-    add_domain(parser, _("ROS domain; by default that of the running robot"))
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
     parser.add_argument(
         "--json",
         action="store_true",

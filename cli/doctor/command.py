@@ -34,6 +34,8 @@ def doctor_command(options: Namespace) -> int:
         return _graph(options)
     if options.domain is not None:
         raise UsageError(say("--domain goes with --graph"))
+    if options.discovery is not None:
+        raise UsageError(say("--discovery goes with --graph"))
     findings = _tried() if options.what == "llm" else examine()
     if options.json:
         write(json_text([finding.for_programs() for finding in findings], indent=2))
@@ -48,7 +50,7 @@ def _graph(options: Namespace) -> int:
 
     if options.what:
         raise UsageError(say("--graph does not go with {what}", what=options.what))
-    seen = examine_graph(options.domain)
+    seen = examine_graph(options.domain, options.discovery)
     if options.json:
         write(json_text(seen.for_programs(), indent=2))
     else:

@@ -77,13 +77,13 @@ def _line(one: GraphFinding) -> Finding:
     return make(f"graph.{one.rule}", text, localized(one.mend))
 
 
-def examine_graph(asked: int | None) -> GraphExamination:
+def examine_graph(asked: int | None, wanted: str | None = None) -> GraphExamination:
     """Look at the graph until it is known and all that is wrong has lasted.
 
     Raises:
         UsageError: if ROS cannot be used, or nobody is in the domain.
     """
-    with domain_view(asked, all_topics=True) as view:
+    with domain_view(asked, wanted, all_topics=True) as view:
         words = _("looking at domain {domain} for {seconds} s").format(
             domain=view.domain, seconds=round(LISTEN_S)
         )

@@ -54,7 +54,7 @@ class Waiting(Protocol):
 
 def view_command(options: Namespace) -> int:
     """Show the robot in 3D until the viewer is closed."""
-    _name, domain, discovery = running_domain(options.domain)
+    _name, domain, discovery = running_domain(options.domain, options.discovery)
     if options.rviz:
         _rviz(domain, discovery)
     from view.installed import rerun_program
@@ -78,7 +78,7 @@ def view_command(options: Namespace) -> int:
 
 def foxglove_command(options: Namespace) -> int:
     """Serve what is published to Foxglove until it is stopped."""
-    _name, domain, discovery = running_domain(options.domain)
+    _name, domain, discovery = running_domain(options.domain, options.discovery)
     from view.installed import need_foxglove
     from view.sharing import Sharing
 

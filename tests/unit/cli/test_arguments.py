@@ -14,6 +14,7 @@ import pytest
 
 from cli import main
 from cli.arguments.commands import COMMANDS, parser_of, split
+from cli.running_domain import running_domain
 from text.i18n import set_language
 
 
@@ -185,6 +186,38 @@ def test_a_mistyped_profile_is_still_told_with_profiles(
 def test_without_a_terminal_a_profile_must_be_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 2
     assert "name a profile: deck run 09-brain" in capsys.readouterr().err
+
+
+JOINING = {
+    "watch": [],
+    "frames": [],
+    "shell": [],
+    "record": [],
+    "replay": ["bag", "--publish"],
+    "doctor": ["--graph"],
+    "diagnostics": [],
+    "level": ["/sonar"],
+    "view": [],
+    "foxglove": [],
+    "mcp": [],
+}
+"""The commands that join a graph that somebody else runs, and what they need besides."""
+
+
+@pytest.mark.parametrize("command", JOINING)
+def test_whoever_joins_a_graph_can_look_on_the_network(command: str) -> None:
+    options = parser_of(command).parse_args([*JOINING[command], "--discovery", "subnet"])
+    assert options.discovery == "subnet"
+    assert parser_of(command).parse_args(JOINING[command]).discovery is None
+
+
+def test_what_is_asked_for_goes_before_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ROS_AUTOMATIC_DISCOVERY_RANGE", raising=False)
+    assert running_domain(57)[1:] == (57, "localhost")
+    assert running_domain(57, "subnet")[1:] == (57, "subnet")
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
+    assert running_domain(57)[1:] == (57, "subnet")
+    assert running_domain(57, "localhost")[1:] == (57, "localhost")
 
 
 def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
