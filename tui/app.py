@@ -221,8 +221,12 @@ class DeckApp(App[int], Acting):
 
     def stop_wheels(self) -> None:
         """Engage the emergency stop without waiting for the event loop; on any thread."""
-        press = self.emergency.publish_now()
-        self._soon(lambda: self.emergency.pressed(press))
+        try:
+            press = self.emergency.publish_now()
+        except Exception:  # noqa: BLE001 - the thread that reads the keys must not end with it
+            self._soon(self.emergency.engage)
+        else:
+            self._soon(lambda: self.emergency.pressed(press))
 
     def terminal_lost(self) -> None:
         """Command nothing any more, and begin to end; on any thread."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from textual.theme import BUILTIN_THEMES
 
+from graph.memory import keep_room_for_large_messages
 from launcher.errors import LauncherError
 from launcher.rundir import log_dir
 from launcher.status import LogLine, Severity
@@ -166,6 +167,8 @@ def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = Non
     terminal.
     """
     gc.set_threshold(GARBAGE_AFTER)
+    # Before there are threads, most of which would get a heap of their own.
+    keep_room_for_large_messages()
     set_language(detect(lang))
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         return _refused(_("the screen needs a terminal; `deck run` works without one"))

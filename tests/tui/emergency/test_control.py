@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
+from concurrent.futures import Future
+from typing import Any
 
 import pytest
 from textual.color import Color
@@ -318,3 +320,21 @@ async def test_without_its_terminal_it_commands_nothing_any_more() -> None:
     async with opened(opener) as (app, _pilot):
         await asyncio.to_thread(app.terminal_lost)
         assert opener.graph.commands_nothing
+
+
+async def test_a_publisher_that_fails_ends_neither_the_stop_nor_the_keys() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        publish, refused = opener.graph.publish, ["the middleware is gone"]
+
+        def at_second_try(*args: Any, **more: Any) -> Future[int]:
+            if refused:
+                raise RuntimeError(refused.pop())
+            return publish(*args, **more)
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(opener.graph, "publish", at_second_try)
+            await asyncio.to_thread(app.stop_wheels)
+            await pilot.pause()
+        assert opener.graph.published == [STOP]
+        assert app.emergency.state.engaged
