@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from launcher.profile.steps.model import StepDocument
 
 PERIOD_S = 0.1
+ROSOUT = "/rosout"
 SETTLED_WITHIN_S = 15.0
 NAMED_WITHIN_S = 1.5
 """After this, a node need not have the name of the profile, or not run in the process started."""
@@ -53,6 +54,7 @@ class Judge:
         self.seed = seed
         self.evidence = evidence
         self.steps = {step.id: step for step in lesson.steps}
+        self.follow(())
         self.over = asyncio.create_task(evidence.listen())
         """Done once the session has ended."""
 
@@ -217,10 +219,17 @@ class Judge:
         return type(check).model_validate(data)
 
     def follow(self, steps: Iterable[StepDocument] | None = None) -> None:
-        """Subscribe to what these steps need, or all steps, and to nothing else."""
-        steps = self.steps.values() if steps is None else steps
-        topics = {topic for step in steps for check in step.checks for topic in topics_of(check)}
+        """Subscribe to what these steps need, or all steps, and to nothing else but the log.
+
+        What a node logs when it starts is not said again when the turn of a step comes.
+        """
+        everything = _topics_of(self.steps.values())
+        topics = everything if steps is None else _topics_of(steps) | (everything & {ROSOUT})
         self.evidence.observer.follow(topics)
+
+
+def _topics_of(steps: Iterable[StepDocument]) -> set[str]:
+    return {topic for step in steps for check in step.checks for topic in topics_of(check)}
 
 
 def _why(error: Exception) -> str:
