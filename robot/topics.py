@@ -20,7 +20,7 @@ DRIVE_TELEOP = "/drive_teleop"
 DRIVE_TO_POINT = "drive_to_point"
 """An action, relative to the namespace of its node."""
 EMERGENCY_STATE = "/emergency_stop_state"
-EMERGENCY_STOP = "/emergency_stop"
+EMERGENCY_STOP = ros_names.EMERGENCY_STOP
 GOAL_POSE = "/goal_pose"
 HEAD_SERVICE = "set_head_position"
 """Relative to the namespace of its node."""

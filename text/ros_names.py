@@ -1,4 +1,4 @@
-"""The names of ROS: which characters they may have, and two that several rooms know.
+"""The names of ROS: which characters they may have, and three that several rooms know.
 
 Source: design.ros2.org/articles/topic_and_service_names.html.
 """
@@ -14,3 +14,5 @@ TOPIC_NAME = re.compile(rf"/{_PART}(/{_PART})*", re.ASCII)
 """The full name of a topic."""
 TF, TF_STATIC = "/tf", "/tf_static"
 """Where tf2 listens, in whichever namespace a node is."""
+EMERGENCY_STOP = "/emergency_stop"
+"""Where people and screens say that the robot has to stand still."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ros2 import naming, options
 from ros2.filling import filled, read
 from ros2.joining import joined
+from text.ros_names import EMERGENCY_STOP
 
 if TYPE_CHECKING:
     from rclpy.publisher import Publisher
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 SUMMARY = "Publish a message to a topic"
 LOOK_S = 0.1
 LOOKS_A_LINE = 10
-FOR_ALL = "/emergency_stop"
+FOR_ALL = EMERGENCY_STOP
 """Goes out as soon as one listens, and once more when all who listen are found, up to 3 s later."""
 ARRIVES_S = 1.0
 """So long is waited for those who have not confirmed it."""
