@@ -54,7 +54,6 @@ class Judge:
         self.seed = seed
         self.evidence = evidence
         self.steps = {step.id: step for step in lesson.steps}
-        self.follow(())
         self.over = asyncio.create_task(evidence.listen())
         """Done once the session has ended."""
 
@@ -263,6 +262,7 @@ async def judging(
 
     observer.start(take)
     judge = Judge(lesson, evidence, seed)
+    judge.follow(())
     try:
         yield judge
     finally:
