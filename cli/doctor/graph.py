@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
 import time
 from typing import TYPE_CHECKING
 
@@ -91,12 +93,31 @@ def examine_graph(asked: int | None, wanted: str | None = None) -> GraphExaminat
         return _examined(view)
 
 
+async def _failures(domain: int) -> dict[str, str]:
+    """Return the nodes that the sessions in a domain say have ended for good, and why."""
+    from launcher.client import client
+    from launcher.errors import LauncherError
+    from tui.graph.finding_words import failures_of
+
+    found: dict[str, str] = {}
+    for session in client.running():
+        if session.domain != domain:
+            continue
+        # It may just have ended.
+        with contextlib.suppress(LauncherError):
+            link = await client.attach(session.run_id)
+            found |= failures_of(link.nodes.values())
+            await link.aclose()
+    return found
+
+
 def _examined(view: DomainView) -> GraphExamination:
     lasting, update = LastingFindings(NORMS), GraphUpdate(0.0)
+    failures = asyncio.run(_failures(view.domain))
     began_s = time.monotonic()
     while True:
         for update in view.updates(LOOK_S):
-            lasting.take(update, time.monotonic())
+            lasting.take(update, time.monotonic(), failures)
         now_s = time.monotonic()
         passed_s = now_s - began_s
         settled = lasting.settles_in_s(now_s) is None

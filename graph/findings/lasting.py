@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from graph.findings.examining import examine
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from graph.data import GraphUpdate
     from graph.findings.finding import GraphFinding, GraphNorms
 
@@ -19,11 +22,19 @@ class LastingFindings:
         self._since_s: dict[str, float] = {}
         self._found: tuple[GraphFinding, ...] = ()
 
-    def take(self, update: GraphUpdate, now_s: float) -> None:
-        """Examine the graph as it is at `now_s`, on any clock that runs steadily."""
+    def take(
+        self,
+        update: GraphUpdate,
+        now_s: float,
+        failures: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
+        """Examine the graph as it is at `now_s`, on any clock that runs steadily.
+
+        `failures`: full name to why, of nodes that have ended for good.
+        """
         if update.error:
             return
-        self._found = examine(update, self._norms)
+        self._found = examine(update, self._norms, failures)
         self._since_s = {one.key: self._since_s.get(one.key, now_s) for one in self._found}
 
     def told(self, now_s: float) -> tuple[GraphFinding, ...]:

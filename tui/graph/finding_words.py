@@ -6,13 +6,17 @@ from typing import TYPE_CHECKING
 
 from graph.findings.finding import FindingLevel
 from graph.findings.lasting import LastingFindings
+from launcher.status import NodeState
 from text.i18n import N_, _
 from tui import clock
 from tui.session.norms import NORMS
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     from graph.data import GraphUpdate
     from graph.findings.finding import GraphFinding
+    from launcher.status import NodeStatus
 
 LOOKS = {
     FindingLevel.ERROR: ("✗", N_("error"), "bad"),
@@ -21,6 +25,7 @@ LOOKS = {
 """Sign, word and meaning (`tui.widgets.rows.Cell`) of a level."""
 _TITLES = {
     "clock": N_("another clock"),
+    "failed": N_("has failed"),
     "clock-mix": N_("two kinds of time"),
     "fight": N_("publishers that fight"),
     "lost": N_("messages are lost"),
@@ -34,6 +39,11 @@ _TITLES = {
     "unknown-type": N_("unknown type"),
     "unserved": N_("nobody serves"),
 }
+
+
+def failures_of(nodes: Iterable[NodeStatus]) -> dict[str, str]:
+    """Return the nodes that have ended for good, by full name, and why."""
+    return {f"/{node.name}": node.detail for node in nodes if node.state is NodeState.FAILED}
 
 
 def title(finding: GraphFinding) -> str:
@@ -69,12 +79,12 @@ class FindingsBook:
         """The meaning of the worst one, empty if there are none."""
         return LOOKS[self.told[0].level][2] if self.told else ""
 
-    def take(self, update: GraphUpdate | None) -> None:
-        """Examine this graph; None if the session has ended."""
+    def take(self, update: GraphUpdate | None, failures: Mapping[str, str]) -> None:
+        """Examine this graph; None if the session has ended. `failures`: see `examine`."""
         if update is None:
             self._lasting.forget()
         else:
-            self._lasting.take(update, clock.steady())
+            self._lasting.take(update, clock.steady(), failures)
         self.settle()
 
     def settle(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from graph.housekeeping import is_housekeeping
@@ -11,7 +12,7 @@ from tui.graph.finding_words import LOOKS, FindingsBook, checked_words, title
 from tui.graph.places import LISTED, GraphKind
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
     from tui.graph.places import GraphPlace
@@ -49,10 +50,12 @@ class GraphIndex:
         self._installed: tuple[str, ...] = ()
         """Every type installed on this computer, once it has been requested."""
 
-    def take(self, update: GraphUpdate | None) -> None:
-        """Use this graph from now on."""
+    def take(
+        self, update: GraphUpdate | None, failures: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
+        """Use this graph from now on; `failures`: nodes that have ended for good, and why."""
         self.listed = {kind: entries(update, kind, self._installed) for kind in LISTED}
-        self.findings.take(update)
+        self.findings.take(update, failures)
         self.listed[GraphKind.FINDING] = _findings(self.findings)
 
     def settle(self) -> bool:

@@ -16,6 +16,7 @@ from tui.graph.actions import GRAPH_ACTIONS, ShowEverything
 from tui.graph.ask import AskPane
 from tui.graph.detail import GraphDetail
 from tui.graph.finding import place_meant
+from tui.graph.finding_words import failures_of
 from tui.graph.index import GraphIndex, why_empty
 from tui.graph.list import GraphList
 from tui.graph.map import GraphMap, middle_of
@@ -99,6 +100,7 @@ class GraphScreen(DeckScreen):
         self.index = GraphIndex()
         self._detail = GraphDetail()
         self._goals_of: set[str] = set()  # Actions whose goals were requested.
+        self._failures: dict[str, str] = {}
 
     def compose_body(self) -> ComposeResult:
         """Kinds and filter above list and detail."""
@@ -194,7 +196,8 @@ class GraphScreen(DeckScreen):
 
     def take(self, update: GraphUpdate | None) -> None:
         """Show this graph from now on."""
-        self.index.take(update)
+        self._failures = failures_of(self.feed.nodes.values())
+        self.index.take(update, self._failures)
         self.redraw()
 
     def redraw(self) -> None:
@@ -251,8 +254,10 @@ class GraphScreen(DeckScreen):
             self.node_pane.parameters.hear(message.update.samples.get(PARAMETER_EVENTS, ()))
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Show the new states of the processes."""
+        """Show the new states of the processes, and which have failed."""
         del message
+        if self._failures != failures_of(self.feed.nodes.values()):
+            self.take(self.feed.update)
         if self.pane is not None:
             self.pane.redraw()
 

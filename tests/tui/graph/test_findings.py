@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator, Callable
 
 import pytest
 
+from launcher.status import NodeState
 from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_findings import ill_graph
@@ -102,3 +103,15 @@ async def test_a_service_that_does_not_exist_leads_to_who_calls_it(listed: Graph
 async def test_the_filter_finds_words_of_the_sentence(listed: GraphStage) -> None:
     listed.screen.filter.value = "future"
     await listed.wait(lambda: listed.screen.names.chosen_name == "clock topic /imu")
+
+
+async def test_a_node_of_the_lesson_that_has_failed_is_found() -> None:
+    async with opened() as stage:
+        assert "Findings 0" in tab_words(stage)
+        stage.session.set_state("camera", NodeState.FAILED, detail="exit code 1", pid=None)
+        await stage.wait(lambda: "Findings 1" in tab_words(stage))
+        stage.screen.list_kind(GraphKind.FINDING)
+        await stage.wait_for("✗ error · has failed")
+        await stage.wait_for("It has failed, and is not started again: exit code 1")
+        stage.session.set_state("camera", NodeState.READY, detail="", pid=7)
+        await stage.wait(lambda: "Findings 0" in tab_words(stage))

@@ -395,3 +395,13 @@ def test_an_observer_that_fails_changes_nothing_and_another_graph_all() -> None:
     assert len(lasting.told(6.0)) == 1
     lasting.forget()
     assert lasting.told(6.0) == ()
+
+
+def test_a_node_that_has_ended_for_good_is_told_at_once() -> None:
+    lasting = LastingFindings(NORMS)
+    lasting.take(GraphUpdate(0.0, (FED,)), 0.0, {"/sonar": "exit code 1"})
+    (finding,) = lasting.told(0.0)
+    assert (finding.rule, finding.place.name) == ("failed", "/sonar")
+    assert finding.what == "It has failed, and is not started again: exit code 1"
+    lasting.take(GraphUpdate(0.0, (FED,)), 1.0)
+    assert lasting.told(1.0) == ()
