@@ -16,7 +16,7 @@ import math
 import sys
 import threading
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, JointState
@@ -45,6 +45,7 @@ from nodes.parts.stall_detector import StallDetector
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
 from robot.limits import STEERING, wheel_limits
+from robot.safety.several import SlowestCommand
 from robot.topics import BATTERY, JOINT_STATES, ODOMETRY, TF, WHEEL_COMMANDS
 
 if TYPE_CHECKING:
@@ -111,7 +112,9 @@ class ChassisNode(LessonNode):
         self._battery = self.quick_publisher(BatteryState, BATTERY)
         # Released even if this node never saw the stop: the Pico may have kept it.
         self._emergency = EmergencyStopListener(self, self._emergency_changed, self._hear_release)
-        self.create_subscription(JointState, WHEEL_COMMANDS, self._obey, DEPTH)
+        self._commands: SlowestCommand[tuple[float, float, float]] = SlowestCommand()
+        obey: Any = self._obey
+        self.create_subscription(JointState, WHEEL_COMMANDS, obey, DEPTH)
         self._pace = PeriodicThread(1.0 / self.number("rate"), self._drive)
         self.every(_BATTERY_EVERY_S, self._publish_battery)
         tell_every_second(self, self._status)
@@ -131,17 +134,30 @@ class ChassisNode(LessonNode):
 
     # ---------------------------------------------------------------- the node's thread
 
-    def _obey(self, message: JointState) -> None:
+    def _obey(self, message: JointState, info: dict[str, Any]) -> None:
         stamp = message.header.stamp
         if self._stalls.lasted(_AWAY_S) or self._stalls.kept_waiting(stamp):
             return
-        command = _STILL if self._emergency.active else self._granted(message)
+        command = _STILL if self._emergency.active else self._slowest(message, info)
         with self._sending:
             self._commanded_s = time.monotonic()
             if command != self._command:
                 # A repeated command goes out with the next periodic line.
                 self._command = command
                 self._send()
+
+    def _slowest(self, message: JointState, info: dict[str, Any]) -> tuple[float, float, float]:
+        """Return what counts if others publish beside the differential."""
+        command = self._granted(message)
+        chosen = self._commands.choose(
+            command,
+            max(command[:2], key=abs),
+            time.monotonic(),
+            within_s=self.number("max_age_s"),
+            number=info.get("publication_sequence_number") or 0,
+            publishers=self.count_publishers(WHEEL_COMMANDS),
+        )
+        return _STILL if chosen is None else chosen
 
     def _granted(self, message: JointState) -> tuple[float, float, float]:
         """Return the command within what these motors can do, a stop if it is refused."""

@@ -14,6 +14,8 @@ from __future__ import annotations
 
 import math
 import sys
+import time
+from typing import Any
 
 from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
@@ -26,7 +28,7 @@ from nodes.parts.parameters import Number, Text
 from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import MAX_WHEEL_SPEED, CommandRefusals
 from nodes.parts.runner import run
-from nodes.parts.sole_publisher import LAST, SolePublisher
+from nodes.parts.sole_publisher import SLOWEST, SolePublisher
 from nodes.parts.stall_detector import StallDetector
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import (
@@ -38,6 +40,7 @@ from robot.kinematics import (
     wheel_speeds,
 )
 from robot.limits import RIM_M_S, SPEED, STEERING, Limits
+from robot.safety.several import SlowestCommand
 from robot.topics import DRIVE, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
 from text.i18n import N_
@@ -76,6 +79,8 @@ _NO_GATE = N_(
     "Nobody publishes {topic}: the wheels stand. Deck's safety_stop publishes it with gate: true,"
     " the course's does not; drive_topic: /drive in the profile drives without a gate"
 )
+_LATE_S = 1.0
+"""Of several publishers, the slowest command of so long counts, if there is no limit of age."""
 _GATE_WITHIN_S = 5.0
 """A long time for a gate that starts together with the other nodes."""
 
@@ -132,9 +137,11 @@ class ElectronicDifferential(LessonNode):
         self._told: DriveSetpoint | None = None
         topic = self.text("drive_topic")
         self._publisher = self.create_publisher(JointState, WHEEL_COMMANDS, DEPTH)
-        SolePublisher(self, self._publisher.topic_name, own=True, others=LAST)
+        SolePublisher(self, self._publisher.topic_name, own=True, others=SLOWEST)
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
-        self.create_subscription(AckermannDriveStamped, topic, self._hear, DEPTH)
+        self._commands: SlowestCommand[DriveSetpoint] = SlowestCommand()
+        hear: Any = self._hear
+        self.create_subscription(AckermannDriveStamped, topic, hear, DEPTH)
         self._timer = self.every(1.0 / self.number("rate"), self._repeat)
         self._deadline = self.every(1.0, self._too_late)
         self._await_next()
@@ -155,7 +162,7 @@ class ElectronicDifferential(LessonNode):
         self._publish()
         self._publisher.wait_for_all_acked(_LAST_STOP)
 
-    def _hear(self, message: AckermannDriveStamped) -> None:
+    def _hear(self, message: AckermannDriveStamped, info: dict[str, Any]) -> None:
         stamp = message.header.stamp
         if self._held_up() or self._stalls.kept_waiting(stamp):
             return
@@ -163,10 +170,23 @@ class ElectronicDifferential(LessonNode):
         if self._emergency.active:
             return
         self._heard = True
-        self._command = self._granted(message)
+        self._command = self._slowest(self._granted(message), info)
         self._publish()
         # The next repetition is timed from here.
         self._timer.reset()
+
+    def _slowest(self, command: DriveSetpoint, info: dict[str, Any]) -> DriveSetpoint:
+        """Return what counts if others publish beside the gate; on /drive many may."""
+        topic = self.text("drive_topic")
+        chosen = self._commands.choose(
+            command,
+            command.speed_m_s,
+            time.monotonic(),
+            within_s=self.number("max_age_s") or _LATE_S,
+            number=info.get("publication_sequence_number") or 0,
+            publishers=1 if topic == DRIVE else self.count_publishers(topic),
+        )
+        return STOP if chosen is None else chosen
 
     def _granted(self, message: AckermannDriveStamped) -> DriveSetpoint:
         """Return the command within this chassis's limits, a stop if it is refused."""

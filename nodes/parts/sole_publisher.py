@@ -27,7 +27,7 @@ _FOUND_WITHIN_S = 5.0
 _FORGOTTEN_S = 25.0
 """By then the middleware has removed such an endpoint."""
 
-LAST = N_("{topic} is also published by {others}: the wheels obey whoever spoke last")
+SLOWEST = N_("{topic} is also published by {others}: the slowest command counts")
 LOWEST = N_("{topic} is published by several, {others}: the lowest distance counts")
 _NO_NODE = N_("a program without a node's name")
 _NAMESAKE = N_("another {name}")

@@ -18,7 +18,7 @@ from nodes.parts.drive import from_message, to_message
 from nodes.parts.first_heard import FirstHeard
 from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import CommandRefusals
-from nodes.parts.sole_publisher import LAST, SolePublisher
+from nodes.parts.sole_publisher import SLOWEST, SolePublisher
 from nodes.parts.stall_detector import StallDetector
 from nodes.safety import words
 from nodes.safety.snapshot import GateSnapshot
@@ -63,7 +63,7 @@ class CommandGate:
         self._stalls = StallDetector()
         self._refusals = CommandRefusals(node)
         self._publisher = node.create_publisher(AckermannDriveStamped, DRIVE_SAFE, DEPTH)
-        SolePublisher(node, self._publisher.topic_name, own=True, others=LAST)
+        SolePublisher(node, self._publisher.topic_name, own=True, others=SLOWEST)
         self._arrivals = FirstHeard()
         for name in names:
             hear = functools.partial(self._hear, name)

@@ -114,5 +114,44 @@ class LowestReading:
         return Reading(min(valid, default=math.nan), age_s)
 
 
+class SlowestCommand(Generic[Said]):
+    """The command that counts: the newest; of several publishers, the slowest of late.
+
+    So whoever publishes past the gate makes the robot no faster than the gate allows.
+    """
+
+    def __init__(self) -> None:
+        self._recent: deque[tuple[float, float, Said]] = deque(maxlen=_MOST)
+        self._streams: Streams[Said] = Streams()
+
+    def choose(
+        self,
+        command: Said,
+        speed: float,
+        now_s: float,
+        *,
+        within_s: float,
+        number: int = 0,
+        publishers: int = 1,
+    ) -> Said | None:
+        """Return what to do after this command, with its speed and its number; None: stop.
+
+        Several stop the robot if one of them drives the other way, or if one falls silent.
+        """
+        self._recent.append((now_s, speed, command))
+        self._streams.hear(command, number, now_s)
+        if publishers <= 1:
+            self._streams.forget_but_newest()
+            return command
+        while now_s - self._recent[0][0] > within_s:
+            self._recent.popleft()
+        speeds = [speed for _, speed, _ in self._recent]
+        if min(speeds) < 0.0 < max(speeds):
+            return None
+        if self._streams.silence_s(now_s, within_s) is not None:
+            return None
+        return min(reversed(self._recent), key=lambda one: abs(one[1]))[2]
+
+
 def _is_valid(distance_m: float) -> bool:
     return distance_m == -math.inf or distance_m >= 0.0

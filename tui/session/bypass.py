@@ -123,7 +123,7 @@ class BypassDetector:
         topics = ", ".join(dict.fromkeys(plain(publisher.topic, 60) for publisher in shown))
         names = ", ".join(dict.fromkeys(publisher.called for publisher in shown))
         words = _("⚠ Foreign commands on {topics}: {names}").format(topics=topics, names=names)
-        follows = _("the wheels obey whoever spoke last")
+        follows = _("the slowest command counts")
         if not commands:
             words = _("⚠ Several publish {topics}: {names}").format(topics=topics, names=names)
             follows = _("the lowest distance counts")

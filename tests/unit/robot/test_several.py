@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.safety.distance import RangeState, range_state
-from robot.safety.several import LowestReading, Streams
+from robot.safety.several import LowestReading, SlowestCommand, Streams
 
 STALE_S = 0.5
 
@@ -101,6 +101,30 @@ def test_another_publisher_never_makes_it_bolder(said: list[tuple[int, float, bo
             alone.see(metres, now_s, number=numbers[0])
         if state_of(alone, now_s) != RangeState.FREE and numbers[0]:
             assert state_of(together, now_s) != RangeState.FREE
+
+
+def chosen(*said: tuple[float, float, bool], publishers: int = 2) -> float | None:
+    """What counts after these commands: when, how fast, and whether by the other one."""
+    slowest: SlowestCommand[float] = SlowestCommand()
+    numbers, last = [0, 1000], None
+    for now_s, speed, is_other in said:
+        numbers[is_other] += 1
+        last = slowest.choose(
+            speed, speed, now_s, within_s=0.5, number=numbers[is_other], publishers=publishers
+        )
+    return last
+
+
+def test_of_several_commands_the_slowest_counts_and_of_opposite_ones_none() -> None:
+    assert chosen((0.0, 0.0, False), (0.1, 0.5, True)) == 0.0
+    assert chosen((0.0, 0.2, False), (0.1, 0.5, True)) == 0.2
+    assert chosen((0.0, -0.2, False), (0.1, -0.1, True)) == -0.1
+    assert chosen((0.0, 0.2, False), (0.1, -0.1, True)) is None
+    # One that falls silent is not replaced by the other.
+    gate = [(0.1 * count, 0.5, False) for count in range(5)]
+    foreign = [(0.1 * count + 0.05, 0.5, True) for count in range(15)]
+    assert chosen(*sorted(gate + foreign)) is None
+    assert chosen((0.0, 0.0, False), (0.1, 0.5, False), publishers=1) == 0.5
 
 
 def test_streams_keep_apart_by_number() -> None:
