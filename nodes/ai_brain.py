@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image
-from std_msgs.msg import Bool, ByteMultiArray, Float32, String
+from std_msgs.msg import ByteMultiArray, Float32, String
 
 from brain.faults import FaultKind, ModelError
 from nodes.parts.head_client import HeadAnswer, HeadClient
@@ -32,6 +32,7 @@ from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
 from nodes.parts.sound import from_message, to_message
+from nodes.parts.stop_news import StopNews
 from robot.commands.brain import Decision, asks_to_stop, decide, spoken
 from robot.commands.schema import DriveCommand, LlmResponse, SpokenResponse
 from robot.safety.distance import Reading, range_state
@@ -39,7 +40,6 @@ from robot.sound import text_in
 from robot.topics import (
     AI_COMMAND,
     CAMERA,
-    EMERGENCY_STOP,
     HEARD,
     LLM_RAW_JSON,
     MICROPHONE,
@@ -162,11 +162,11 @@ class AiBrain(LessonNode):
             return None
         self._senses = Senses(self, self.number("stale_after_s"))
         self._json = self.create_publisher(String, LLM_RAW_JSON, DEPTH)
-        self.create_subscription(Bool, EMERGENCY_STOP, self._emergency, DEPTH)
+        StopNews(self, self._emergency)
         return mind
 
-    def _emergency(self, message: Bool) -> None:
-        if message.data and self._mind is not None:
+    def _emergency(self) -> None:
+        if self._mind is not None:
             self._mind.stop()
 
     def _see(self, picture: bytes) -> None:

@@ -17,7 +17,7 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from std_msgs.msg import Bool, ByteMultiArray, Float32, String
+from std_msgs.msg import ByteMultiArray, Float32, String
 
 from brain.faults import FaultKind, ModelError
 from brain.prompt import prompt_file, read_prompt
@@ -27,6 +27,7 @@ from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
 from nodes.parts.sound import from_message
+from nodes.parts.stop_news import StopNews
 from nodes.thinking.model import AskedModel
 from nodes.thinking.playing import PacedSpeaker
 from nodes.thinking.senses import Senses
@@ -34,7 +35,7 @@ from nodes.thinking.state import BrainState
 from robot.commands.brain import asks_to_stop, spoken
 from robot.commands.schema import DriveCommand, LlmResponse
 from robot.sound import RATE_HZ, SAMPLE, Resampler, text_in
-from robot.topics import EMERGENCY_STOP, LLM_RAW_JSON, MICROPHONE, SONAR_FRONT
+from robot.topics import LLM_RAW_JSON, MICROPHONE, SONAR_FRONT
 from text.i18n import N_
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ class RealtimeBrain(LessonNode):
         self._retry = self.every(_FIRST_WAIT_S, self._begin)
         SensorListener(self, Float32, SONAR_FRONT, self._measure)
         self.create_subscription(ByteMultiArray, MICROPHONE, self._hear, DEPTH)
-        self.create_subscription(Bool, EMERGENCY_STOP, self._emergency, DEPTH)
+        StopNews(self, self._stop)
         url = self._model.settings.base_url
         self.say.info(_STARTED, model=self._model.name, url=url)
         self._begin()
@@ -194,10 +195,6 @@ class RealtimeBrain(LessonNode):
 
     def _measure(self, message: Float32) -> None:
         self._front_m, self._front_s = message.data, time.monotonic()
-
-    def _emergency(self, message: Bool) -> None:
-        if message.data:
-            self._stop()
 
     def _hear(self, message: ByteMultiArray) -> None:
         sound, talk = from_message(message), self._talk

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.event_handler import PublisherEventCallbacks
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
 from nodes.parts.qos import DEPTH, LATCHED
+from nodes.parts.stop_news import OF_MANY
 from nodes.parts.stop_reports import FREE, HELD, read_reports, report_message
 from nodes.parts.stop_watch import StopWatch
 from robot.safety.stop_file import KeptStop, StopFile
@@ -39,8 +39,6 @@ _AGAIN_S = 0.1
 _MOST_NAMES = 16
 _CONTRADICTED_S = 10.0
 """So long after a release that had no effect it is said that there was one."""
-_OF_MANY = QoSProfile(depth=64, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""Every node publishes its state, and all of them at once."""
 _UNKNOWN = "_UNKNOWN_"
 """In the names of a node whose endpoint is known but whose name is not yet (rmw)."""
 
@@ -105,7 +103,7 @@ class EmergencyStopListener:
         hear: Any = self._hear
         node.create_subscription(Bool, EMERGENCY_STOP, hear_old, LATCHED)
         node.create_subscription(Bool, EMERGENCY_STOP, hear, DEPTH)
-        node.create_subscription(DiagnosticArray, EMERGENCY_STATE, self._hear_of, _OF_MANY)
+        node.create_subscription(DiagnosticArray, EMERGENCY_STATE, self._hear_of, OF_MANY)
         node.every(_TOLD_EVERY_S, self._repeat)
         self._watch.start()
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from ackermann_msgs.msg import AckermannDriveStamped
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from std_msgs.msg import Bool, ByteMultiArray, Float32, String
 
 from tests.model_server import KEY, ModelServer, hangs_up, obeys
 from tests.model_settings import write_settings
 from tests.ros.node_process import NodeProcess
 from tests.ros.nodes.test_brain import text, voice
-from tests.ros.peer import Peer
+from tests.ros.peer import LATCHED, Peer
 from tests.waiting import comes, wait_until
 
 if TYPE_CHECKING:
@@ -200,7 +200,7 @@ def test_a_server_that_says_nothing_is_not_waited_for(robot: Robot) -> None:
     wait_until(lambda: _asks(robot, "go on") and 0.3 in robot.speeds(), "the newer answer")
 
 
-@pytest.mark.parametrize("said", ["stop", "Стоп, машина!", "emergency stop"])
+@pytest.mark.parametrize("said", ["stop", "Стоп, машина!", "emergency stop", "stop of another"])
 def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
     """Neither the word nor the emergency stop; what the model answers afterwards is not done."""
     stopped = threading.Event()
@@ -215,15 +215,21 @@ def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
     robot.server.script = slow
     robot.forget()
     wait_until(lambda: _asks(robot, "go on"), "the question")
+    by_topic = "stop of another", "emergency stop"
     if said == "emergency stop":
         robot.peer.say("/emergency_stop", Bool(data=True))
+    elif said == "stop of another":
+        # Heard by a node that obeys, and not by this one.
+        values = [KeyValue(key="engaged", value="true"), KeyValue(key="stops", value="7.1")]
+        status = DiagnosticStatus(name="/safety_stop", values=values)
+        robot.peer.say("/emergency_stop_state", DiagnosticArray(status=[status]), qos=LATCHED)
     else:
         robot.hear(said)
         wait_until(robot.speeds, "the stop on /drive")
     wait_until(lambda: "waits for a voice" in robot.state["words"], "no more thinking")
     stopped.set()
     robot.server.script = obeys(answer(say="Another one."))
-    if said != "emergency stop":
+    if said not in by_topic:
         wait_until(
             lambda: _asks(robot, "and now?") and robot.said("Another one"), "the next answer"
         )
