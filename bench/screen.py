@@ -85,10 +85,12 @@ def first_frame(folder: Path) -> tuple[float, float, float]:
 
 
 def screen_processes(terminal: Terminal) -> list[int]:
-    """Return the pids of the screen and its supervisor, without spawn server and nodes."""
+    """Return the pids of the screen, its observer and its supervisor, without server and nodes."""
     screen = terminal.process.pid
+    observers = [pid for pid in children(screen) if "observer/process" in command(pid)]
     below = [pid for guardian in children(screen) for pid in children(guardian)]
-    return [screen, *(pid for pid in below if "launcher.supervisor" in command(pid))]
+    supervisors = [pid for pid in below if "launcher.supervisor" in command(pid)]
+    return [screen, *observers, *supervisors]
 
 
 def at_rest(terminal: Terminal, pids: list[int]) -> tuple[float, float, float]:

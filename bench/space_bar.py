@@ -66,7 +66,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name, Pico(Path(name) / "pico") as pico:
         folder = Path(name)
         with deck(folder, str(write_profile(folder))) as terminal:
-            terminal.wait_for("9/9")
+            terminal.wait_for("10/10")
             wait_for(pico.stopped, time.monotonic())
             taken = trials(terminal, pico, TRIALS)
     print(f"{TRIALS} presses; load of the machine {os.getloadavg()[0]:.1f}\n")

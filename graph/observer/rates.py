@@ -21,6 +21,8 @@ QUIET_PERIODS = 3.0
 TURNS = 3
 """So many steps back in the sequence numbers within `WINDOW_S` show that several publishers send:
 a publisher that was started again makes one."""
+MOST_KNOWN = 256
+"""Latched messages that are recognised when they are delivered again."""
 STEADY = 10
 """The fewest messages that can be called regular, and below, the greatest spread of the time
 between them, in periods."""
@@ -48,7 +50,10 @@ class RateMeter:
         self.mean_size_bytes = 0.0
         self.lost: int | None = None
         """Messages that the middleware knows to be lost; None while it reports nothing."""
+        self._timed = 0
+        """Messages that came when they were sent."""
         self._bytes = 0.0
+        self._known: deque[tuple[int, int | None]] = deque(maxlen=MOST_KNOWN)
         self._points: deque[_Point] = deque()
         self._sequence: int | None = None
         self._intervals = Intervals()
@@ -70,11 +75,14 @@ class RateMeter:
         `overflowed` says that the queue was full. With one publisher, a gap in the sequence before
         the batch is then our own doing: its messages did arrive, except those `lost` on the way.
         """
+        self._add_past([arrival for arrival in batch if arrival.is_of_past])
+        batch = [arrival for arrival in batch if not arrival.is_of_past]
         if not batch:
             return
         skipped = self._skipped(batch, lost) if overflowed and one_publisher else 0
         size = sum(arrival.size_bytes for arrival in batch)
         self.count += len(batch) + skipped
+        self._timed += len(batch) + skipped
         self._bytes += size * (1 + skipped / len(batch))
         self.mean_size_bytes = size / len(batch)
         self._note_turns(batch)
@@ -86,9 +94,30 @@ class RateMeter:
             self._delays.clear()
         self._intervals.add(batch, overflowed=overflowed, numbered=one_publisher)
         self._add_delays(stamp_s, [a.delay_s for a in batch if a.delay_s is not None])
-        self._points.append(_Point(stamp_s, self.count, self._bytes))
+        self._points.append(_Point(stamp_s, self._timed, self._bytes))
         while len(self._points) > FEW and stamp_s - self._points[0].stamp_s > WINDOW_S:
             self._points.popleft()
+
+    def is_again(self, sent_ns: int, number: int | None) -> bool:
+        """Return whether a latched message was here before, by when it was sent and its number.
+
+        It comes again to each new subscription of Deck's.
+        """
+        key = (sent_ns, number)
+        if key in self._known:
+            return True
+        self._known.append(key)
+        return False
+
+    def _add_past(self, batch: list[Arrival]) -> None:
+        if not batch:
+            return
+        self.count += len(batch)
+        self.mean_size_bytes = sum(arrival.size_bytes for arrival in batch) / len(batch)
+        self._sequence = batch[-1].sequence
+        if not self._points:
+            # It has an age.
+            self._points.append(_Point(batch[-1].stamp_s, self._timed, self._bytes))
 
     def _add_delays(self, stamp_s: float, delays_s: list[float]) -> None:
         """Keep those of this clock, and how far off the newest one is if it is of another."""

@@ -16,7 +16,7 @@ from graph.observer.losses import Losses
 from graph.observer.rates import RateMeter
 from graph.observer.taking import SENDER, SenderReader, TakeError
 from graph.observer.timing import Arrival
-from graph.qos import Qos, profile
+from graph.qos import TRANSIENT_LOCAL, Qos, profile
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,6 +51,8 @@ LARGE_TYPES = frozenset(
 FOLLOWED = 200
 """Messages per poll that a follower gets; older ones of the same poll are only counted."""
 NANOSECONDS = 1e-9
+FIRST = 1
+"""Number of the first message of a publisher."""
 
 
 class Tap:
@@ -80,7 +82,7 @@ class Tap:
         self.qos = qos
         self.depth = depth
         self.meter = meter or RateMeter()
-        self.since_s = time.time()
+        self.since_s = self._subscribed_s = time.time()
         self.broken = ""
         """Why the newest message could not be decoded."""
         self.unknown: UnknownTypeError | None
@@ -112,13 +114,12 @@ class Tap:
         """
         batch, kept = self._take_all(decode)
         lost = self._take_losses()
-        if not batch:
-            return ()
-        self._hears = True
-        # One less than the depth: see SHALLOW.
-        full = len(batch) >= self.depth - 1
-        self._numbered = batch[-1].sequence is not None
-        self.meter.add(batch, overflowed=full, one_publisher=one_publisher, lost=lost)
+        if batch:
+            # One less than the depth: see SHALLOW.
+            full = len(batch) >= self.depth - 1
+            self._numbered = batch[-1].sequence is not None
+            self.meter.add(batch, overflowed=full, one_publisher=one_publisher, lost=lost)
+        self._hears = self._hears or bool(batch)
         now_s = time.time()
         return tuple(sample for one in kept if (sample := self._sample(*one, now_s)))
 
@@ -176,13 +177,19 @@ class Tap:
                 raw, info = taken
                 stamp_s = info["received_timestamp"] * NANOSECONDS or time.time()
                 delay_s = self._delay(raw, stamp_s) if self._delay else None
-                number = info["publication_sequence_number"]
+                number, sent_ns = info["publication_sequence_number"], info["source_timestamp"]
                 if self.every:
                     self._hand_on(self.every, raw, stamp_s, number, info.get(SENDER))
-                batch.append(Arrival(stamp_s, len(raw), number, delay_s))
-                self._last = (raw, stamp_s, info["source_timestamp"] * NANOSECONDS)
+                is_latched = self.qos.durability == TRANSIENT_LOCAL
+                if not (is_latched and self.meter.is_again(sent_ns, number)):
+                    of_past = is_latched and self._is_of_past(sent_ns, number)
+                    batch.append(Arrival(stamp_s, len(raw), number, delay_s, of_past))
+                self._last = (raw, stamp_s, sent_ns * NANOSECONDS)
                 kept.append(self._last)
         return batch, kept
+
+    def _is_of_past(self, sent_ns: int, number: int | None) -> bool:
+        return sent_ns * NANOSECONDS < self._subscribed_s or number == FIRST
 
     def _taking(self) -> Callable[[], tuple[bytes, dict[str, Any]] | None]:
         if self._senders:

@@ -29,6 +29,9 @@ class Arrival:
     """Its sequence number at the publisher, if the middleware counts them."""
     delay_s: float | None = None
     """Between the stamp in its header and its arrival, if it has one."""
+    is_of_past: bool = False
+    """Whether when it came says nothing of how often they are sent: a latched one that was sent
+    before Deck subscribed, or the first of its publisher."""
 
 
 @dataclass(frozen=True)
