@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from course.judge.evidence import MET, Evidence, Observation
 from course.judge.functions import LessonFaultError
 from course.judge.kinds import expected, judged, topics_of
+from course.judge.missing import dead_nodes
 from course.results import CheckResult, LessonResult, State, StepResult
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
@@ -210,6 +211,9 @@ class Judge:
         if self.evidence.ended:
             return CheckResult(State.UNJUDGED, what, say("the session has ended"))
         look = InLanguages(check.look) if check.look else observation.look
+        if any(node.ails for node in self.evidence.nodes.values()):
+            # Whatever a check advises is meant for a program that runs.
+            look = dead_nodes(self.evidence)
         return CheckResult(State.FAILED, what, observation.seen, look)
 
     def _filled(self, check: CheckDocument) -> CheckDocument:

@@ -33,13 +33,15 @@ except (KeyboardInterrupt, ExternalShutdownException):
     pass
 """
 RIGHT = TALKER.format(type="Float32", period=0.1, data="1.0")
+CRASHES = TALKER.format(type="Float32", period=0.1, data="float(None)")
 AS_TEXT = TALKER.format(type="String", period=0.1, data="'1.0'")
 ENDS_BADLY = RIGHT.replace("(KeyboardInterrupt, ExternalShutdownException)", "ZeroDivisionError")
 STARTS_SLOWLY = RIGHT.replace("rclpy.init()", "import time; time.sleep(0.4); rclpy.init()")
 FLOOD = TALKER.format(type="Float32", period=0.0001, data="1.0")
 CHATTER = {"field": "/chatter", "type": "std_msgs/msg/Float32", "path": "data", "equals": 1}
+ADVICE = {"en": "Is it published by a timer?", "ru": "Публикует ли его таймер?"}
 STEPS = [
-    {"id": "field", "checks": [{**CHATTER, "within": 1}]},
+    {"id": "field", "checks": [{**CHATTER, "within": 1, "look": ADVICE}]},
     {"id": "ends", "needs": ["field"], "checks": [{"ends": "talker"}]},
     {"id": "late", "needs": ["ends"], "checks": [{"node": "/talker"}]},
 ]
@@ -110,6 +112,25 @@ async def test_a_mended_node_passes_and_a_passed_step_lets_the_next_one_begin(
         judge.judge("late")
         assert (await step_in(events, State.PASSED)).id == "late"
         assert client.nodes["talker"].pid != before
+
+
+@pytest.mark.timeout(90)
+async def test_advice_for_a_node_that_runs_is_not_given_to_one_that_has_crashed(
+    begin: Begin, tmp_path: Path
+) -> None:
+    """What a check advises gives way to what has ended the node."""
+    client, judge = await begin(CRASHES)
+    async with aclosing(judge.events()) as events:
+        judge.judge("field")
+        while True:
+            looks = [check.look for check in (await step_in(events, State.FAILED)).checks]
+            if any("float()" in look or "None" in look for look in looks):
+                break
+        assert ADVICE["en"] not in looks
+        (tmp_path / "talker.py").write_text(AS_TEXT)
+        await client.restart("talker")
+        while ADVICE["en"] not in looks:
+            looks = [check.look for check in (await step_in(events, State.FAILED)).checks]
 
 
 @pytest.mark.timeout(90)
