@@ -47,7 +47,7 @@ FORBIDDEN = {
     "graph.observer.observer": ["launcher", "nodes", "robot", "textual", "tui"],
     "nodes.hello": ["graph", "launcher", "textual", "tui"],
     "launcher.profile.load": [
-        *("graph", "nodes", "rclpy", "robot", "std_msgs.msg", "textual", "tui"),
+        *("graph", "nodes", "rclpy", "std_msgs.msg", "textual", "tui"),
         *(
             "launcher.spawn_server.server",
             "launcher.spawn_server.probe",
