@@ -22,6 +22,7 @@ from text.plain import plain
 from tui import clock
 from tui.app import DeckApp
 from tui.isolation import isolating
+from tui.lean_strips import lean_strips
 from tui.lifecycle.opener import LiveOpener
 from tui.screens import every_action
 from tui.session.requests import OpenRequest
@@ -180,7 +181,7 @@ def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = Non
         return _refused(str(error))
     set_language(detect(lang, settled=settings.language))
     limit = default_limit(os.environ) if bandwidth is None else bandwidth
-    with stray, isolating():
+    with stray, isolating(), lean_strips():
         terminal = RealTerminal(stray, settings)
         app = DeckApp(
             LiveOpener(),
