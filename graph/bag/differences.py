@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from graph.bag.errors import BagError
-    from graph.bag.files import Files
-    from graph.bag.part import Channel, Part
+    from graph.bag.files import BagFiles
+    from graph.bag.part import BagPart, Channel
     from graph.bag.stated import Stated
 
 NAMED = 5
@@ -31,7 +31,7 @@ class Note(NamedTuple):
 
 
 def notes_on(
-    files: Files, parts: Sequence[Part], unread: Sequence[BagError], left_out: Sequence[Path]
+    files: BagFiles, parts: Sequence[BagPart], unread: Sequence[BagError], left_out: Sequence[Path]
 ) -> list[Note]:
     """Return all that differs; `unread`: why files cannot be opened; `left_out`: files not read."""
     found = [Note(error.words, incomplete=True) for error in unread]
@@ -44,7 +44,7 @@ def notes_on(
 
 
 def _against_metadata(
-    files: Files, stated: Stated, parts: Sequence[Part], left_out: Sequence[Path]
+    files: BagFiles, stated: Stated, parts: Sequence[BagPart], left_out: Sequence[Path]
 ) -> Iterator[Note]:
     if stated.trouble is not None:
         yield Note(stated.trouble)
@@ -70,7 +70,7 @@ def _against_metadata(
     yield from _types(stated, parts)
 
 
-def _storages(files: Files, stated: Stated, parts: Sequence[Part]) -> Iterator[Note]:
+def _storages(files: BagFiles, stated: Stated, parts: Sequence[BagPart]) -> Iterator[Note]:
     named = {kinds.storage_of_name(part.file) for part in parts} - {""}
     if not stated.storage or not named or stated.storage in named:
         return
@@ -83,7 +83,7 @@ def _storages(files: Files, stated: Stated, parts: Sequence[Part]) -> Iterator[N
     yield Note(words)
 
 
-def _counts(stated: Stated, parts: Sequence[Part]) -> Iterator[Note]:
+def _counts(stated: Stated, parts: Sequence[BagPart]) -> Iterator[Note]:
     said = Counter({topic.name: topic.messages for topic in stated.topics})
     if stated.messages is None and not said:
         return
@@ -120,7 +120,7 @@ def _by_topic(said: Mapping[str, int], held: Mapping[str, int]) -> str:
     return ": " + _some(named)
 
 
-def _types(stated: Stated, parts: Sequence[Part]) -> Iterator[Note]:
+def _types(stated: Stated, parts: Sequence[BagPart]) -> Iterator[Note]:
     by_name: dict[str, list[Channel]] = {}
     for channel in _channels(parts):
         by_name.setdefault(channel.topic, []).append(channel)
@@ -147,7 +147,7 @@ def _types(stated: Stated, parts: Sequence[Part]) -> Iterator[Note]:
             yield Note(words)
 
 
-def _cut(path: Path, parts: Sequence[Part]) -> list[Words]:
+def _cut(path: Path, parts: Sequence[BagPart]) -> list[Words]:
     cut = [part for part in parts if part.cut_bytes is not None]
     if not cut:
         return []
@@ -162,7 +162,7 @@ def _cut(path: Path, parts: Sequence[Part]) -> list[Words]:
     ]
 
 
-def _by_own_count(parts: Sequence[Part]) -> Iterator[Note]:
+def _by_own_count(parts: Sequence[BagPart]) -> Iterator[Note]:
     for part in parts:
         held = sum(channel.messages for channel in part.channels)
         lost = sum(lost.messages for lost in part.lost)
@@ -176,7 +176,7 @@ def _by_own_count(parts: Sequence[Part]) -> Iterator[Note]:
             yield Note(words, incomplete=True)
 
 
-def _foreign(parts: Sequence[Part]) -> list[Note]:
+def _foreign(parts: Sequence[BagPart]) -> list[Note]:
     found: Counter[tuple[str, str]] = Counter()
     for channel in _channels(parts):
         if channel.encoding != CDR:
@@ -190,7 +190,7 @@ def _foreign(parts: Sequence[Part]) -> list[Note]:
     return [Note(words)]
 
 
-def _channels(parts: Sequence[Part]) -> Iterator[Channel]:
+def _channels(parts: Sequence[BagPart]) -> Iterator[Channel]:
     for part in parts:
         yield from part.channels
 

@@ -16,13 +16,13 @@ from graph.bag.stated import METADATA, Stated, stated_in
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from graph.bag.part import Part
+    from graph.bag.part import BagPart
 
 _DIGITS = re.compile(r"(\d+)")
 
 
 @dataclass(frozen=True)
-class Files:
+class BagFiles:
     """The files of a bag, before any is opened."""
 
     path: Path
@@ -37,7 +37,7 @@ class Files:
     """Names in the metadata of files that are not there."""
 
 
-def files_of(path: Path) -> Files:
+def files_of(path: Path) -> BagFiles:
     """Return the files that hold messages, without opening any.
 
     Raises BagError if there are none, or none that can be read.
@@ -48,7 +48,7 @@ def files_of(path: Path) -> Files:
         raise unreadable(path, error) from error
 
 
-def opened(file: Path) -> Part:
+def opened(file: Path) -> BagPart:
     """Open a file of a bag. Raises BagError that says why it cannot be read."""
     stack = ExitStack()
     try:
@@ -60,7 +60,7 @@ def opened(file: Path) -> Part:
         raise
 
 
-def _opened(file: Path, stack: ExitStack) -> Part:
+def _opened(file: Path, stack: ExitStack) -> BagPart:
     from graph.bag.mcap import McapPart
     from graph.bag.sqlite import SqlitePart
 
@@ -75,7 +75,7 @@ def _opened(file: Path, stack: ExitStack) -> Part:
     return (SqlitePart if is_sqlite else McapPart)(file, content, stack)
 
 
-def _files(path: Path) -> Files:
+def _files(path: Path) -> BagFiles:
     path = path.parent if path.name == METADATA else path
     if not path.exists():
         raise no_bag(path, say("there is no such file or folder"))
@@ -83,7 +83,7 @@ def _files(path: Path) -> Files:
         _refuse_foreign(path, [path])
         if not kinds.is_bag_file(path) and not kinds.storage_of(path):
             raise no_bag(path, say("the name ends neither in .mcap nor in .db3"))
-        return Files(path, None, (path,))
+        return BagFiles(path, None, (path,))
     if not path.is_dir():
         raise no_bag(path, say("it is neither a file nor a folder"))
     stated = stated_in(path)
@@ -105,7 +105,7 @@ def _files(path: Path) -> Files:
         )
     if stated is not None and stated.storage not in {"", kinds.MCAP, kinds.SQLITE}:
         _refuse_unknown(path, stated.storage, named)
-    return Files(path, stated, tuple(named), tuple(others), tuple(missing))
+    return BagFiles(path, stated, tuple(named), tuple(others), tuple(missing))
 
 
 def _named(found: dict[str, Path], names: tuple[str, ...]) -> tuple[list[Path], list[str]]:

@@ -38,7 +38,7 @@ class Lost(NamedTuple):
     """How many messages it held, 0 if that is not known."""
 
 
-class Part(Protocol):
+class BagPart(Protocol):
     """An open file of a bag."""
 
     file: Path

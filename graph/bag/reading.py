@@ -17,7 +17,7 @@ from graph.bag import kinds
 from graph.bag.decoding import TypeText
 from graph.bag.differences import Note, notes_on
 from graph.bag.errors import BagError, unreadable
-from graph.bag.files import Files, files_of, opened
+from graph.bag.files import BagFiles, files_of, opened
 from graph.bag.offers import Offer
 from graph.bag.packed import unpacked
 from graph.bag.part import CDR, Lost
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
-    from graph.bag.part import Channel, Part
+    from graph.bag.part import BagPart, Channel
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class _Place(NamedTuple):
 class Bag:
     """An open bag; close it, or use it in a `with`."""
 
-    def __init__(self, files: Files, parts: Sequence[Part], notes: Sequence[Note]) -> None:
+    def __init__(self, files: BagFiles, parts: Sequence[BagPart], notes: Sequence[Note]) -> None:
         """Use `open_bag` to make one."""
         self.path = files.path
         self.files = tuple(part.file for part in parts)
@@ -172,7 +172,7 @@ def open_bag(path: Path) -> Bag:
     files = files_of(path)
     _refuse_packed(files)
     with ExitStack() as stack:
-        parts: list[Part] = []
+        parts: list[BagPart] = []
         stack.callback(_close, parts)
         errors = _open_all(files.named, parts)
         left_out = _open_others(files, parts, errors)
@@ -186,12 +186,12 @@ def open_bag(path: Path) -> Bag:
     return bag
 
 
-def _close(parts: Sequence[Part]) -> None:
+def _close(parts: Sequence[BagPart]) -> None:
     for part in parts:
         part.close()
 
 
-def _refuse_packed(files: Files) -> None:
+def _refuse_packed(files: BagFiles) -> None:
     """Raise BagError for a bag that is packed by something that Deck does not know."""
     packed_by = files.stated.compression if files.stated else ""
     if packed_by.lower() not in {"", kinds.ZSTD}:
@@ -204,7 +204,7 @@ def _refuse_packed(files: Files) -> None:
         )
 
 
-def _open_all(files: Sequence[Path], parts: list[Part]) -> list[BagError]:
+def _open_all(files: Sequence[Path], parts: list[BagPart]) -> list[BagError]:
     """Append what can be opened to `parts`; return why the others cannot."""
     errors = []
     for file in files:
@@ -215,10 +215,10 @@ def _open_all(files: Sequence[Path], parts: list[Part]) -> list[BagError]:
     return errors
 
 
-def _open_others(files: Files, parts: list[Part], errors: list[BagError]) -> list[Path]:
+def _open_others(files: BagFiles, parts: list[BagPart], errors: list[BagError]) -> list[Path]:
     """Open files that the metadata do not name, but none that is a copy; return those left out."""
     spans = [(part.start_ns, part.end_ns) for part in parts if part.end_ns]
-    others: list[Part] = []
+    others: list[BagPart] = []
     errors += _open_all(files.others, others)
     left_out = []
     for part in others:
@@ -230,7 +230,7 @@ def _open_others(files: Files, parts: list[Part], errors: list[BagError]) -> lis
     return left_out
 
 
-def _topics(files: Files, parts: Sequence[Part]) -> Mapping[tuple[int, int], TopicInBag]:
+def _topics(files: BagFiles, parts: Sequence[BagPart]) -> Mapping[tuple[int, int], TopicInBag]:
     """Return for part and channel the topic that it belongs to."""
     channels = {
         (place, channel.number): channel
@@ -252,7 +252,7 @@ def _topics(files: Files, parts: Sequence[Part]) -> Mapping[tuple[int, int], Top
     return {place: merged[key] for place, key in keys.items()}
 
 
-def _distro(files: Files, parts: Sequence[Part]) -> str:
+def _distro(files: BagFiles, parts: Sequence[BagPart]) -> str:
     stated = files.stated.distro if files.stated else ""
     return stated or next((part.distro for part in parts if part.distro), "")
 
