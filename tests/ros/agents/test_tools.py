@@ -6,6 +6,7 @@ import asyncio
 import base64
 import contextlib
 import json
+import time
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from std_srvs.srv import Trigger
 
 from launcher.client.client import SupervisorClient
 from launcher.consent import AUDIT_FILE, ConsentAnswer
+from launcher.control.consent import REFUSED_FOR_S
 from launcher.status import NodeState, Severity
 from robot.topics import DRIVE_SAFE, LLM_RESULT
 from tests.ros.agents.robots import GATED, Agent, agent, drive, running, screen
@@ -64,6 +66,14 @@ def audited(link: SupervisorClient) -> list[tuple[str, str]]:
     """Return tool and outcome of each call so far."""
     lines = Path(link.session.log_dir, AUDIT_FILE).read_text("utf-8").splitlines()
     return [(line["tool"], line["outcome"]) for line in map(json.loads, lines)]
+
+
+async def leaves_the_person_alone(claude: Agent) -> None:
+    """Ask again after a refusal, in vain, and return once that is possible again."""
+    until_s = time.monotonic() + REFUSED_FOR_S
+    why = await claude.refused("execute", proposal=await claude.proposed(drive(0.2)))
+    assert "the person has just refused: nothing is asked for another" in why
+    await until(lambda: time.monotonic() > until_s, "the time in which nobody is asked")
 
 
 async def test_it_looks_and_drives_only_as_far_as_the_person_lets_it(
@@ -112,6 +122,8 @@ async def test_it_looks_and_drives_only_as_far_as_the_person_lets_it(
             refusing = asyncio.create_task(claude.refused("execute", proposal=proposal))
             await person.answer(await asked(person), ConsentAnswer.REFUSE)
             assert "has refused" in await refusing
+            await leaves_the_person_alone(claude)
+            assert not moved(told)
 
         # The screen goes away while it is asked.
         async with screen() as person:
@@ -126,8 +138,8 @@ async def test_it_looks_and_drives_only_as_far_as_the_person_lets_it(
         lines = [line for line in await link.history(None, 200) if line.source == "agent"]
         (does,) = [line.text for line in lines if line.severity is Severity.INFO]
         assert does == (
-            f"claude does {answer['proposal']}: drives at 0.2 m/s, steering 0.1 rad, for 1 s: "
-            "0.20 m at most"
+            f"agent “claude” does {answer['proposal']}: "
+            "drives at 0.2 m/s, steering 0.1 rad, for 1 s: 0.20 m at most"
         )
 
 

@@ -55,7 +55,7 @@ async def test_what_is_said_of_agents_is_in_the_log_and_screens_hear_of_them(
     lines = [line for line in await screen.history(None, 100) if line.source == "agent"]
     assert [line.text for line in lines] == [
         "agent “claude” is connected",
-        "agent claude drives without asking: --approve always",
+        "agent “claude” drives without asking: --approve always",
         "agent “claude” is connected",
     ]
     async for event in screen.events():
