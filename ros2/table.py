@@ -28,6 +28,7 @@ VERBS: Final[dict[tuple[str, str], str]] = {
     ("bag", "play"): "bag.play",
     ("bag", "record"): "bag.record",
     ("component", "list"): "component.list",
+    ("component", "types"): "component.types",
     ("interface", "list"): "interface.list",
     ("interface", "package"): "interface.package",
     ("interface", "packages"): "interface.packages",
@@ -50,6 +51,7 @@ VERBS: Final[dict[tuple[str, str], str]] = {
     ("pkg", "executables"): "pkg.executables",
     ("pkg", "list"): "pkg.list",
     ("pkg", "prefix"): "pkg.prefix",
+    ("pkg", "xml"): "pkg.xml",
     ("run", ""): "run",
     ("service", "call"): "service.call",
     ("service", "find"): "service.find",
@@ -78,6 +80,22 @@ ELSEWHERE: Final = {
 }
 """Commands of the real tool that are not here, and where Deck does the same."""
 
+_TALK = (
+    "`deck run 1` runs the nodes of lesson 1, `deck new --node my_talker` writes one of your own, "
+    "`ros2 topic pub` and `ros2 topic echo` talk and listen."
+)
+PACKAGES_ELSEWHERE: Final = {
+    "demo_nodes_cpp": _TALK,
+    "demo_nodes_py": _TALK,
+    "examples_rclpy_minimal_publisher": _TALK,
+    "rqt_graph": "The Flow and Graph tabs show who speaks to whom.",
+    "rqt_console": "The Logs tab shows what the nodes log.",
+    "rqt_plot": "The Topics tab shows values as they come.",
+    "rviz2": "The Space tab and `deck view` show frames, models and what sensors see.",
+    "turtlesim": "`deck run robot` drives a simulated robot.",
+}
+"""Packages that tutorials run and that are not here, and where Deck does the same."""
+
 VERBS_ELSEWHERE: Final = {
     (
         "action",
@@ -87,7 +105,6 @@ VERBS_ELSEWHERE: Final = {
     ("bag", "reindex"): "A bag that was cut short is read as far as it goes; `deck replay` too.",
     ("component", "load"): "`ros2 service call` asks the service ~/_container/load_node.",
     ("component", "unload"): "`ros2 service call` asks the service ~/_container/unload_node.",
-    ("component", "types"): "Deck reads no index of components; `ros2 pkg list` has the packages.",
     ("component", "standalone"): "Every node of Deck is a process: `ros2 run`.",
     ("bag", "burst"): "Replay in Deck steps message by message: `deck replay`.",
     ("service", "echo"): "The Graph tab shows the calls of a service and their answers.",

@@ -9,6 +9,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from ros2.packages import NoPackageError, executables
+from ros2.table import PACKAGES_ELSEWHERE
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,7 +37,8 @@ def main(args: argparse.Namespace) -> int | str | None:
     try:
         paths = executables(args.package_name)
     except NoPackageError:
-        return f"Package '{args.package_name}' not found"
+        instead = PACKAGES_ELSEWHERE.get(args.package_name, "")
+        return f"Package '{args.package_name}' not found{instead and '. '}{instead}"
     fitting = [path for path in paths if path.name == args.executable_name]
     if not fitting:
         return "No executable found"
