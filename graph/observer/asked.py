@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Asked:
+class OpenOrder:
     """One order and who waits for its answer."""
 
     number: int
@@ -58,16 +58,16 @@ class AskedBook:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._waiting: dict[int, Asked] = {}
+        self._waiting: dict[int, OpenOrder] = {}
         self._late: dict[int, Future[CallResult]] = {}
         """Answers to calls that have timed out, should they still come."""
 
-    def add(self, asked: Asked) -> None:
+    def add(self, asked: OpenOrder) -> None:
         """Take note of one."""
         with self._lock:
             self._waiting[asked.number] = asked
 
-    def drop(self, number: int) -> Asked | None:
+    def drop(self, number: int) -> OpenOrder | None:
         """Forget one, and return it."""
         with self._lock:
             return self._waiting.pop(number, None)
@@ -98,15 +98,15 @@ class AskedBook:
         """Say to everybody that there will be no answer."""
         self._fail(error, lambda _: True)
 
-    def fail_lost(self, error: Exception) -> tuple[Asked, ...]:
+    def fail_lost(self, error: Exception) -> tuple[OpenOrder, ...]:
         """Say so of what has gone with its process; return what another one can be asked for."""
         self._fail(error, lambda asked: not asked.outlives_its_process)
         with self._lock:
             return tuple(self._waiting.values())
 
-    def _fail(self, error: Exception, is_lost: Callable[[Asked], bool]) -> None:
+    def _fail(self, error: Exception, is_lost: Callable[[OpenOrder], bool]) -> None:
         with self._lock:
-            lost: Iterable[Asked] = [each for each in self._waiting.values() if is_lost(each)]
+            lost: Iterable[OpenOrder] = [each for each in self._waiting.values() if is_lost(each)]
             for asked in lost:
                 del self._waiting[asked.number]
         self._late.clear()

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from graph.data import GraphUpdate
 from graph.memory import keep_room_for_large_messages
-from graph.observer.asked import Asked, AskedBook
+from graph.observer.asked import AskedBook, OpenOrder
 from graph.observer.doubt import Doubt, SecondLook
 from graph.observer.lost import LostWork
 from graph.observer.process import language
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from graph.observer.census import Census
     from graph.observer.process.language import Order
-    from graph.observer.settings import Settings
+    from graph.observer.settings import ObserverSettings
 
 logger = logging.getLogger(__name__)
 
@@ -83,7 +83,7 @@ class ObserverClient:
     started: Callable[[], ObserverProcess] = staticmethod(lambda: take_ahead() or ObserverProcess())
     """Starts a process; raises OSError."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: ObserverSettings) -> None:
         self._settings = settings
         self._numbers = itertools.count(1)
         self._asked = AskedBook()
@@ -148,14 +148,14 @@ class ObserverClient:
 
         `refusal` makes the result of a future that must not raise.
         """
-        asked = Asked(next(self._numbers), name, arguments, refusal)
+        asked = OpenOrder(next(self._numbers), name, arguments, refusal)
         asked.future.add_done_callback(lambda done: self._look_at_end(asked.number, done))
         failure = self._try(asked)
         if failure is not None:
             asked.fail(failure)
         return asked.future
 
-    def _try(self, asked: Asked) -> ObserverError | None:
+    def _try(self, asked: OpenOrder) -> ObserverError | None:
         with self._lock:
             if self._failure is not None:
                 return self._failure

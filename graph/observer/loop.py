@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from typing import Protocol
 
     from graph.observer.census import Census
-    from graph.observer.settings import Settings
+    from graph.observer.settings import ObserverSettings
 
     class Company(Protocol):
         """Whom the loop works for."""
@@ -45,7 +45,7 @@ logger = logging.getLogger(__name__)
 class ObserverLoop:
     """One observer at work; all methods are called on the thread of `run`."""
 
-    def __init__(self, settings: Settings, company: Company) -> None:
+    def __init__(self, settings: ObserverSettings, company: Company) -> None:
         self._settings = settings
         self._company = company
         self._interest = Interest()

@@ -15,7 +15,7 @@ from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import CallResult, ParametersResult, SetResult
 from graph.observer.client import ObserverClient
 from graph.observer.inner import InnerStates
-from graph.observer.settings import LOOK_AT_GRAPH_S, Settings
+from graph.observer.settings import LOOK_AT_GRAPH_S, ObserverSettings
 from text.sentences import reason_of
 
 if TYPE_CHECKING:
@@ -42,7 +42,9 @@ class Observer:
         `graph_s`: seconds between two looks at who is there, which cost more than those at messages
         `role`: part of the node's name, see `graph.ros.ONLY_LISTENING`
         """
-        self._client = ObserverClient(Settings(domain, discovery, graph_s, role, os.getpid()))
+        self._client = ObserverClient(
+            ObserverSettings(domain, discovery, graph_s, role, os.getpid())
+        )
         self.inner = InnerStates(self._client)
         """Requests about lifecycles and log levels."""
         self.period_s = period_s

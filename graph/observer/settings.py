@@ -9,7 +9,7 @@ LOOK_AT_GRAPH_S = 0.25
 
 
 @dataclass(frozen=True)
-class Settings:
+class ObserverSettings:
     """What an observer is told at its start."""
 
     domain: int

@@ -39,7 +39,7 @@ class _Unknown:
 UNKNOWN = _Unknown()
 
 
-class Level(NamedTuple):
+class TraceLevel(NamedTuple):
     """One level of the traceback."""
 
     frame: FrameType
@@ -75,11 +75,11 @@ class Failure:
         self.folder = folder
         self.levels = list(_levels(error.__traceback__))
         own = [each for each in self.levels if each.file.rpartition("/")[0] == folder]
-        self.own: Level | None = own[-1] if own else None
+        self.own: TraceLevel | None = own[-1] if own else None
         """The last level that is in the learner's own file."""
 
     @property
-    def inner(self) -> Level | None:
+    def inner(self) -> TraceLevel | None:
         """The level at which it was raised."""
         return self.levels[-1] if self.levels else None
 
@@ -88,7 +88,7 @@ class Failure:
         """Whether the learner's own line has raised it, and nothing that this line calls."""
         return self.own is not None and self.own is self.inner
 
-    def below(self, package: str) -> Iterator[Level]:
+    def below(self, package: str) -> Iterator[TraceLevel]:
         """Yield the levels of a package that are below the learner's own."""
         begin = self.levels.index(self.own) + 1 if self.own is not None else 0
         yield from (each for each in self.levels[begin:] if each.is_in(package))
@@ -286,13 +286,13 @@ def name_of(kind: type | None) -> str:
     return f"{outer}.{inner}" if outer and is_message_class(kind) else kind.__name__
 
 
-def _levels(trace: TracebackType | None) -> Iterator[Level]:
+def _levels(trace: TracebackType | None) -> Iterator[TraceLevel]:
     while trace is not None:
-        yield Level(trace.tb_frame, trace.tb_lineno, trace.tb_lasti)
+        yield TraceLevel(trace.tb_frame, trace.tb_lineno, trace.tb_lasti)
         trace = trace.tb_next
 
 
-def _position(level: Level) -> tuple[int, int, int, int] | None:
+def _position(level: TraceLevel) -> tuple[int, int, int, int] | None:
     positions = getattr(level.frame.f_code, "co_positions", None)
     if positions is None or level.instruction < 0:
         return None

@@ -24,7 +24,7 @@ from graph.observer.process import language
 from graph.observer.process.plain import PlainError, packed, plain_error, unpacked
 from graph.observer.process.updates import Shortener
 from graph.observer.requests import ObserverError
-from graph.observer.settings import Settings
+from graph.observer.settings import ObserverSettings
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ class Server:
         if name == language.PATH:
             sys.path[:] = arguments
         elif name == language.OPEN:
-            self._loop = ObserverLoop(Settings(*arguments[0]), self)
+            self._loop = ObserverLoop(ObserverSettings(*arguments[0]), self)
         elif name == language.DROP:
             self._drop(*arguments)
         elif name == language.LEAVE or self._loop is None:

@@ -22,7 +22,7 @@ from text.sentences import say
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from launcher.faults.failure import Level
+    from launcher.faults.failure import TraceLevel
     from text.sentences import Words
 
 FITS: dict[str, Callable[[Any], bool]] = {
@@ -66,13 +66,13 @@ def arguments(failure: Failure) -> Words | None:
     return _wrong(level, wrong[0], given[wrong[0]])
 
 
-def _callback(level: Level, given: dict[str, Any]) -> Words | None:
+def _callback(level: TraceLevel, given: dict[str, Any]) -> Words | None:
     if "callback" in given and level.function == "create_subscription":
         return asks_for_other(SUBSCRIPTION, given["callback"])
     return None
 
 
-def _maker(failure: Failure) -> Level | None:
+def _maker(failure: Failure) -> TraceLevel | None:
     """Return the level of rclpy's function that the learner's own line has called."""
     level = next(failure.below("rclpy"), None)
     if level is None:
@@ -86,12 +86,12 @@ def _maker(failure: Failure) -> Level | None:
     return level if level.function == "__init__" and is_from(me, "rclpy", "Node") else None
 
 
-def _parameters(level: Level) -> tuple[str, ...]:
+def _parameters(level: TraceLevel) -> tuple[str, ...]:
     code = level.frame.f_code
     return code.co_varnames[: code.co_argcount]
 
 
-def _required(level: Level) -> list[str]:
+def _required(level: TraceLevel) -> list[str]:
     """Return rclpy's own names of the arguments that have to be given."""
     me = level.values["self"]
     signature = inspect.signature(getattr(type(me), level.function))
@@ -103,7 +103,7 @@ def _required(level: Level) -> list[str]:
     return names[1:]
 
 
-def _name(level: Level) -> str:
+def _name(level: TraceLevel) -> str:
     if level.function == "__init__":
         return type(level.values["self"]).__name__
     return f"self.{level.function}"
@@ -113,7 +113,7 @@ def _fits_all(wrong: list[str], given: dict[str, Any], order: tuple[str, ...]) -
     return all(FITS[name](given[other]) for name, other in zip(wrong, order, strict=True))
 
 
-def _wrong(level: Level, name: str, value: Any) -> Words | None:  # noqa: ANN401
+def _wrong(level: TraceLevel, name: str, value: Any) -> Words | None:  # noqa: ANN401
     call = _name(level)
     if name in ("callback", "execute_callback"):
         return not_handed_over() if value is None else _no_callback(call, value)

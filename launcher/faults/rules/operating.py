@@ -255,7 +255,7 @@ def _dumped(value: Any) -> Words:  # noqa: ANN401
     if is_message_class(type(value)):
         fields = list(type(value).get_fields_and_field_types())
         return say(
-            "A message, {type}, is no JSON: put its fields into a dictionary: {fields}.",
+            "A message, {type}, is not JSON: put its fields into a dictionary: {fields}.",
             type=name_of(type(value)),
             fields=listed(fields),
         )
@@ -264,7 +264,7 @@ def _dumped(value: Any) -> Words:  # noqa: ANN401
     if type(value).__module__ == "numpy":
         return say("Values of numpy are no JSON: array.tolist(), float(x) or int(x).")
     return say(
-        "{type} is no JSON: only texts, numbers, lists and dictionaries are.",
+        "{type} is not JSON: only texts, numbers, lists and dictionaries are.",
         type=type(value).__name__,
     )
 

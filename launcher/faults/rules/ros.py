@@ -260,7 +260,7 @@ def opencv(failure: Failure) -> Words | None:
             value = failure.value(each)
             if value is None or getattr(value, "size", 1) == 0:
                 return say(
-                    "{what} is no picture, or an empty one: was it read, has one arrived?",
+                    "{what} is not a picture, or is an empty one: was it read, has one arrived?",
                     what=shown(each),
                 )
     return say("OpenCV does not take this picture: look at its shape and dtype before the call.")

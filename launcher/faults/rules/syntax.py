@@ -73,7 +73,9 @@ def encoding_of(data: bytes) -> Words | None:
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or _is_wide(data):
         return say("The file is stored as UTF-16: save it as UTF-8, in the editor's Save As.")
     if b"\0" in data:
-        return say("The file has zero bytes in it: it is no text, or was not written to its end.")
+        return say(
+            "The file has zero bytes in it: it is not a text, or was not written to its end."
+        )
     try:
         data.decode()
     except UnicodeDecodeError as error:

@@ -24,17 +24,19 @@ def number(failure: Failure) -> Words | None:
             return _no_number(what, value)
         if isinstance(value, float):
             return say(
-                "{what} is {value}, which is no whole number: ask math.isfinite({what}) before.",
+                "{what} is {value}, which is not a whole number: ask math.isfinite({what}) first.",
                 what=what,
                 value=str(value),
             )
-        return say("{what} is a text that is no number: look at what it is before.", what=what)
+        return say("{what} is a text that is not a number: look at what it is first.", what=what)
     return None
 
 
 def _no_number(what: str, value: str) -> Words:
     if not value.strip():
-        return say("{what} is an empty text, which is no number: ask if {what}: before.", what=what)
+        return say(
+            "{what} is an empty text, which is not a number: ask if {what}: first.", what=what
+        )
     try:
         float(value)
     except ValueError:
@@ -46,9 +48,11 @@ def _no_number(what: str, value: str) -> Words:
             what=what,
         )
     if "," in value:
-        return say("{value} is no number: a fraction is written with a point.", value=value.strip())
+        return say(
+            "{value} is not a number: a fraction is written with a point.", value=value.strip()
+        )
     return say(
-        "The text {value!r} is no number ({what}): catch ValueError, or look at it before.",
+        "The text {value!r} is not a number ({what}): catch ValueError, or look at it first.",
         value=value,
         what=what,
     )
@@ -260,7 +264,7 @@ def texts(failure: Failure) -> Words | None:
         document = str(getattr(error, "doc", ""))
         if not document.strip():
             return say(
-                "The text is empty, which is no JSON: catch the exception, and move nothing."
+                "The text is empty, which is not JSON: catch the exception, and move nothing."
             )
         if document.lstrip().startswith(("{'", "['")):
             return say(

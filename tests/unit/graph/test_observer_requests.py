@@ -12,7 +12,7 @@ from graph.data import GraphUpdate
 from graph.observer.loop import ObserverLoop
 from graph.observer.node import ObserverNode
 from graph.observer.requests import ObserverError
-from graph.observer.settings import Settings
+from graph.observer.settings import ObserverSettings
 from graph.publishing.dead_man_switch import HeldCommand
 from text.i18n import localized
 from text.sentences import say
@@ -82,7 +82,7 @@ class Nobody:
 
 
 def a_loop() -> ObserverLoop:
-    return ObserverLoop(Settings(1), Nobody())
+    return ObserverLoop(ObserverSettings(1), Nobody())
 
 
 def test_what_cannot_wait_is_done_in_the_middle_of_a_look() -> None:

@@ -18,12 +18,12 @@ from graph.observer.loop import ObserverLoop
 from graph.observer.node import ObserverNode
 from graph.observer.observer import Observer
 from graph.observer.requests import ObserverError
-from graph.observer.settings import Settings
+from graph.observer.settings import ObserverSettings
 from tests.middleware_words import own_words
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 def run(program: str, domain: int, **env: str) -> subprocess.CompletedProcess[str]:
@@ -171,7 +171,7 @@ class Listener:
 
     def __init__(self, domain: int) -> None:
         self.updates: list[GraphUpdate] = []
-        self.loop = ObserverLoop(Settings(domain), self)
+        self.loop = ObserverLoop(ObserverSettings(domain), self)
 
     def tell(self, update: GraphUpdate) -> None:
         self.updates.append(update)

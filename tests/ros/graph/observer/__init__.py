@@ -1,0 +1,1 @@
+"""Tests of the observer, in its own process or on a thread, among real nodes."""
