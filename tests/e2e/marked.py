@@ -38,3 +38,10 @@ def alive(mark: str) -> dict[int, str]:
 def nodes(mark: str) -> dict[int, str]:
     """Like `alive`, the nodes only."""
     return {pid: line for pid, line in alive(mark).items() if NODE_TITLE.match(line)}
+
+
+def observer(mark: str) -> int:
+    """The process that watches the graph for a screen."""
+    program = "observer/process/program.py"
+    (pid,) = (pid for pid, line in alive(mark).items() if program in line)
+    return pid

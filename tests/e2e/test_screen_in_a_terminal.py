@@ -119,19 +119,19 @@ def test_a_killed_supervisor_is_said_and_leaves_no_node(deck: Deck) -> None:
 
 
 def test_nodes_that_die_with_a_message_in_hand_do_not_freeze_the_screen(deck: Deck) -> None:
-    """Fast DDS would try for ever to take their marks away, with Python's lock held."""
+    """Fast DDS tries for ever to take their marks away; in the observer's process, not in its."""
     terminal = deck.open("02-sonar-safety", "--lang", "en")
     terminal.wait_for("2/2")
-    screen = terminal.process.pid
+    observer = marked.observer(deck.mark)
     ports = [port for node in marked.nodes(deck.mark) for port in ports_of(node)]
-    wait_until(lambda: any(port.is_open_in(screen) for port in ports), "the screen met a node")
+    wait_until(lambda: any(port.is_open_in(observer) for port in ports), "it met a node")
     for port in ports:
         port.lock()
         port.take_in_hand()
     (supervisor,) = supervisors(deck.mark)
     os.kill(supervisor, signal.SIGKILL)
     wait_until(lambda: not marked.nodes(deck.mark), "every node gone")
-    wait_until(lambda: any(port.is_awaited_by(screen) for port in ports), "the screen is sending")
+    wait_until(lambda: any(port.is_awaited_by(observer) for port in ports), "it is sending")
     for port in ports:
         port.break_down()
         port.unlock()

@@ -78,6 +78,28 @@ def test_colcon_says_where_it_cannot_work(run: Run, tmp_path: Path) -> None:
         assert (done.returncode, words in done.stderr) == (code, True), done
 
 
+def test_what_only_cmake_builds_is_named_with_the_way_that_works(run: Run, home: Path) -> None:
+    """CMake itself says that it lacks ament_cmake, or it is not there at all."""
+    package = home / "src" / "lamp_interfaces"
+    package.mkdir(parents=True)
+    (package / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.8)\nproject(lamp_interfaces NONE)\n"
+        "find_package(ament_cmake REQUIRED)\n"
+    )
+    (package / "package.xml").write_text(
+        '<package format="3"><name>lamp_interfaces</name><version>0.0.0</version>'
+        "<description>d</description><maintainer email='a@b.c'>a</maintainer><license>MIT</license>"
+        "<buildtool_depend>ament_cmake</buildtool_depend>"
+        "<member_of_group>rosidl_interface_packages</member_of_group>"
+        "<export><build_type>ament_cmake</build_type></export></package>"
+    )
+    built = run("colcon build")
+    assert built.returncode != 0
+    if " " not in sys.executable:
+        assert "lamp_interfaces is built by ament_cmake, which Deck's ROS does not" in built.stderr
+        assert "copy the folder to interfaces/" in built.stderr
+
+
 def test_every_node_is_an_executable_of_deck_nodes(run: Run) -> None:
     modules = {path.stem for path in Path(nodes.__file__).parent.glob("*.py")} - {"__init__"}
     seen = run("ros2 pkg executables deck_nodes")
