@@ -256,7 +256,9 @@ def _listening(model: ServedModel) -> list[Any]:
 
 
 def test_the_robot_comes_first(model: ServedModel) -> None:
-    assert model.llama().nice() > psutil.Process(model.process.process.pid).nice()
+    # Who runs the tests may have given way to all others already.
+    ours = psutil.Process(model.process.process.pid).nice()
+    assert model.llama().nice() > min(ours, 18)
 
 
 def test_the_context_is_what_was_asked_for_and_trained(model_file: Path) -> None:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.events import DescendantBlur
 
+EXAMPLES = "example_interfaces/"
 LISTED = 50
 """Nobody scrolls through more than that."""
 
@@ -88,15 +89,18 @@ class TypeField(Vertical):
         self.remove_class("-listing")
 
     def fitting(self) -> list[str]:
-        """Return the types that contain every word typed, those that start with one first."""
+        """Return the types that contain every word typed, those that start with one first.
+
+        `example_interfaces` repeats all of `std_msgs`: its types come after theirs.
+        """
         words = self.value.lower().split()
         found = [name for name in self._types if all(word in name.lower() for word in words)]
         first = words[0] if words else ""
 
-        def rank(name: str) -> tuple[int, int, str]:
+        def rank(name: str) -> tuple[int, int, bool, str]:
             short = name.rpartition("/")[2].lower()
             place = 0 if short == first else 1 if short.startswith(first) else 2
-            return (place, len(short) if first else 0, name)
+            return (place, len(short) if first else 0, name.startswith(EXAMPLES), name)
 
         return sorted(found, key=rank)[:LISTED]
 

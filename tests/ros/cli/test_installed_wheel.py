@@ -50,5 +50,5 @@ def test_the_commands_of_the_shell_are_executable(installed: Installed) -> None:
     assert said.startswith(f"{commands / 'ros2'}\n{commands / 'python3'}\n"), said
     assert "\ntf2_ros static_transform_publisher\ntf2_ros tf2_echo\n" in said
     assert "--ros-args" in said
-    assert "mine.py:1: There is no module no_such_module" in said
+    assert "mine.py:1: The module no_such_module is not installed" in said
     assert not installed.imported.exists()

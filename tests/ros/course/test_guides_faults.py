@@ -20,7 +20,7 @@ from tests.waiting import until
 COURSE = Path(__file__).parents[2] / "course"
 FILES = sorted(file.name for file in COURSE.glob("[a-z]*.py"))
 END = "rclpy has been shut down already: write rclpy.try_shutdown(), not rclpy.shutdown()."
-BYTES = 'The data of a ByteMultiArray is a list of single bytes: write b"".join(msg.data).'
+BYTES = 'message.data is a list of single bytes: b"".join(message.data) puts them together.'
 TALK = """\
 import rclpy
 from std_msgs.msg import ByteMultiArray

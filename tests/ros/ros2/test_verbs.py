@@ -271,8 +271,8 @@ def test_interfaces() -> None:
     )
     assert typed("interface", "show", "nope/msg/No").err == "Unknown package 'nope'\n"
     assert "    std_msgs/msg/String\n" in out("interface", "list", "-m")
-    assert out("interface", "package", "example_interfaces") == (
-        "example_interfaces/action/Fibonacci\nexample_interfaces/srv/AddTwoInts\n"
+    assert out("interface", "package", "composition_interfaces") == "".join(
+        f"composition_interfaces/srv/{name}\n" for name in ("ListNodes", "LoadNode", "UnloadNode")
     )
     assert "deck_interfaces\n" in out("interface", "packages", "-a")
     assert out("interface", "proto", "std_msgs/msg/String") == "\"data: ''\n\"\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,11 @@ from graph.bag.errors import not_made
 from graph.recording import recorder as recording
 from graph.recording.recorder import RecordedTopic, RecordingStatus
 from tests.tui.app_runs import opened
+from tests.tui.recorded import RecordedOpener
+from tests.tui.recorded_emergency import CHASSIS, GATE, obeyed, word
 from tests.tui.snapshots import Look, SnapCompare, one_look
 from tests.waiting import until
+from tui import clock
 from tui.app import DeckApp
 from tui.frame.title_bar import TitleBar
 
@@ -90,10 +94,16 @@ async def test_that_the_disk_will_be_full_is_told_once() -> None:
         assert not any("1:20" in words for words in told(app))
 
 
-async def stopped_and_recorded(app: DeckApp, pilot: Pilot[Any]) -> tuple[str, str]:
-    """Press the stop, then the key that records; return the title before and after."""
+async def stopped_and_recorded(
+    opener: RecordedOpener, app: DeckApp, pilot: Pilot[Any]
+) -> tuple[str, str]:
+    """Press the stop, which is obeyed, then record; return the title before and after."""
     await pilot.press("space")
-    await until(lambda: "STOP" in title(app).upper(), "the stop in the title")
+    now_s = clock.now()
+    both = (word(node, True, now_s, since_s=time.time()) for node in (GATE, CHASSIS))
+    opener.graph.show(obeyed(*both, at_s=now_s))
+    await until(lambda: "nobody has confirmed" not in title(app), "that it is obeyed")
+    assert "EMERGENCY STOP" in title(app)
     before = title(app)
     await pilot.press("f6", "enter")
     await until(lambda: app.recording.words, "the words of the recording")
@@ -102,16 +112,18 @@ async def stopped_and_recorded(app: DeckApp, pilot: Pilot[Any]) -> tuple[str, st
 
 
 async def test_beside_an_alarm_too_the_title_tells_how_much_is_recorded() -> None:
-    async with opened(size=(120, 40)) as (app, pilot):
-        _before, after = await stopped_and_recorded(app, pilot)
+    opener = RecordedOpener()
+    async with opened(opener, size=(140, 40)) as (app, pilot):
+        _before, after = await stopped_and_recorded(opener, app, pilot)
         assert "3.4 MB" in after
         assert "STOP" in after
         assert "7 De" in after
 
 
 async def test_what_is_recorded_takes_no_tab_away_beside_an_alarm() -> None:
-    async with opened(size=(80, 24)) as (app, pilot):
-        before, after = await stopped_and_recorded(app, pilot)
+    opener = RecordedOpener()
+    async with opened(opener, size=(90, 24)) as (app, pilot):
+        before, after = await stopped_and_recorded(opener, app, pilot)
         tabs = "1 L 2 3 4 5 6 7 8 9"
         assert tabs in before
         assert tabs in after

@@ -110,7 +110,7 @@ def test_endpoints(look: Look, dump_compare: SnapCompare) -> None:
     kind = "std_msgs/msg/Float32"
     lidar = EndpointInfo("/lidar", kind, "best_effort", "volatile", 5, "keep_last", 0.1, 0.5, 2.0,
                          "manual_by_topic")  # fmt: skip
-    front = EndpointInfo("/sonar_front", kind, "reliable", "transient_local", 1, "keep_last")
+    front = EndpointInfo("/hearing", kind, "reliable", "transient_local", 1, "keep_last")
     brain = EndpointInfo("/ai_brain", kind, "reliable", "transient_local", liveliness="automatic")
     other = replace(front, node="/recorder", type_name="std_msgs/msg/Float64")
     ends: dict[str, Any] = {
@@ -118,10 +118,8 @@ def test_endpoints(look: Look, dump_compare: SnapCompare) -> None:
         "type_names": (kind, "std_msgs/msg/Float64"), "jitter_s": 0.0123, "latency_s": 0.00045,
         "lost": 12,
     }  # fmt: skip
-    rows = tuple(
-        replace(row, **ends) if row.name == "/sensor/sonar_front" else row for row in TOPICS
-    )
-    before = shown("/sensor/sonar_front", lesson_update(topics=rows), "e")
+    rows = tuple(replace(row, **ends) if row.name == "/ai_command" else row for row in TOPICS)
+    before = shown("/ai_command", lesson_update(topics=rows), "e")
     assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
