@@ -136,30 +136,6 @@ def test_a_cable_that_is_pulled_and_put_back(nodes: RobotNodes, device: str) -> 
     nodes.wheels.wait_moving()
 
 
-def test_what_was_commanded_before_a_fault_is_over_does_not_count(nodes: RobotNodes) -> None:
-    peer, wheels, way = nodes.peer, nodes.wheels, 1
-    # Straight to the chassis, and believed for long.
-    set_parameter(peer, "chassis", "max_age_s", 60.0)
-    nodes.end("electronic_differential")
-    troubles: tuple[tuple[str, Any, Any], ...] = (
-        ("driver_fault", "left", "none"),
-        ("battery", 5.0, 7.4),
-    )
-    for trouble, value, fine in troubles:
-        wheels.command("/wheel_commands", partial(wheel_command, way * 4.0, STEERING))
-        wheels.wait_moving(way)
-        set_parameter(peer, "mock_robot", trouble, value)
-        wheels.assert_stands()
-        wheels.quiet()
-        set_parameter(peer, "mock_robot", trouble, fine)
-        wheels.assert_stays()
-        way = -way
-    wheels.command("/wheel_commands", partial(wheel_command, way * 4.0, STEERING))
-    wheels.wait_moving(way)
-    set_parameter(peer, "chassis", "max_age_s", 1.0)
-    nodes.start("electronic_differential")
-
-
 def test_an_emergency_stop_holds_in_each_place_by_itself(nodes: RobotNodes) -> None:
     peer, wheels = nodes.peer, nodes.wheels
     wheels.drive()
@@ -206,6 +182,30 @@ def flags_after_driving(path: Path) -> frozenset[str]:
         wait_until(lambda: drive(0.0) > 2, "telemetry")
         wait_until(lambda: drive(5.0) > 20, "more telemetry")
     return told[-1].flags
+
+
+def test_what_was_commanded_before_a_fault_is_over_does_not_count(nodes: RobotNodes) -> None:
+    peer, wheels, way = nodes.peer, nodes.wheels, 1
+    # Straight to the chassis, and believed for long.
+    set_parameter(peer, "chassis", "max_age_s", 60.0)
+    nodes.end("electronic_differential")
+    troubles: tuple[tuple[str, Any, Any], ...] = (
+        ("driver_fault", "left", "none"),
+        ("battery", 5.0, 7.4),
+    )
+    for trouble, value, fine in troubles:
+        wheels.command("/wheel_commands", partial(wheel_command, way * 4.0, STEERING))
+        wheels.wait_moving(way)
+        set_parameter(peer, "mock_robot", trouble, value)
+        wheels.assert_stands()
+        wheels.quiet()
+        set_parameter(peer, "mock_robot", trouble, fine)
+        wheels.assert_stays()
+        way = -way
+    wheels.command("/wheel_commands", partial(wheel_command, way * 4.0, STEERING))
+    wheels.wait_moving(way)
+    set_parameter(peer, "chassis", "max_age_s", 1.0)
+    nodes.start("electronic_differential")
 
 
 def test_ending_in_any_order_moves_no_wheel(nodes: RobotNodes) -> None:
