@@ -61,8 +61,9 @@ async def test_it_opens_a_page_and_ends_when_told(
     monkeypatch.setenv("SSH_CONNECTION", "10.0.0.7 50000 10.0.0.20 22")
     view = await start_view(ros_domain)
     try:
-        processes = family(view._process.pid)
-        assert len(processes) >= 2, "its own and of Rerun; that of the observer may come later"
+        pid = view._process.pid
+        await until(lambda: len(family(pid)) == 3, "itself, Rerun and the observer")
+        processes = family(pid)
         forwarded = " ".join(f"-L {port}:127.0.0.1:{port}" for port in view.opened.ports)
         assert view.opened.ssh.startswith(f"ssh -N {forwarded} ")
         page = await asyncio.to_thread(lambda: urlopen(view.opened.url).read())
