@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import faulthandler
 import gc
 import os
 import shutil
@@ -69,10 +70,48 @@ LEFT_OUT = "left_out"
 """Under this a process of the run tells the first one what the tests need that it has left out."""
 LEFT = pytest.StashKey[list[tuple[str, ...]]]()
 
+REAL_STDERR = pytest.StashKey[int]()
+AFTER_TIMEOUT_S = 60.0
+"""How long after its time a test may still be there, to fail and to clean up."""
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The option of `make test`."""
     parser.addoption(PLAIN, action="store_true", help="leave out what `make test-all` adds")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Keep where a dying process of the run can write: nothing is caught yet."""
+    config.stash[REAL_STDERR] = os.dup(2)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Bound what is to come."""
+    _end_if_it_hangs(item)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_teardown(item: pytest.Item) -> None:
+    """Bound the clean-up as well: after a failure pytest has called off the former bound."""
+    _end_if_it_hangs(item)
+
+
+def pytest_runtest_logfinish() -> None:
+    """The test is over."""
+    faulthandler.cancel_dump_traceback_later()
+
+
+def _end_if_it_hangs(item: pytest.Item) -> None:
+    """End this process if the time-out of the test does not, and say where it stands.
+
+    pytest-timeout needs Python's lock, which a call into ROS that never returns may hold. The run
+    goes on in another process; the test has failed.
+    """
+    mark = item.get_closest_marker("timeout")
+    timeout_s = float(mark.args[0] if mark else item.config.getini("timeout"))
+    error = item.config.stash[REAL_STDERR]
+    faulthandler.dump_traceback_later(timeout_s + AFTER_TIMEOUT_S, file=error, exit=True)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -6,8 +6,6 @@ import json
 import shlex
 from pathlib import Path
 
-import pytest
-
 from course.lessons.catalog import SHIPPED
 from tests.e2e.conftest import Deck
 from tests.hostile_text import EVIL, WORST, harm_on_screen, quoted
@@ -25,7 +23,6 @@ ENTITIES = "&#27;]52;c;ZXZpbA==&#7; &#x202e;cba &#155;45m [click](javascript:ale
 """What Markdown would make of characters that are not in the file."""
 
 
-@pytest.mark.timeout(150)
 def test_a_saved_file_is_started_again_and_ticks_its_check(deck: Deck, tmp_path: Path) -> None:
     own = Path(deck.env["DECK_COURSE"]) / LESSON / "hello_node.py"
     editor, seen = tmp_path / "vim", tmp_path / "line"

@@ -21,7 +21,6 @@ def _nodes(ros_domain: int) -> Iterator[None]:
         yield
 
 
-@pytest.mark.timeout(90)
 def test_a_level_is_shown_set_or_refused() -> None:
     for words, code, said in (
         (("good",), 0, "info"),

@@ -55,7 +55,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.timeout(180)
 async def test_the_guides_files_run_and_their_faults_are_explained(
     start: Launch, folder: Path
 ) -> None:
@@ -81,7 +80,6 @@ async def test_the_guides_files_run_and_their_faults_are_explained(
         assert [line.severity for line in told] == [Severity.WARN], name
 
 
-@pytest.mark.timeout(180)
 def test_in_the_shell_they_run_as_well_and_their_ends_are_explained(
     folder: Path, ros_domain: int
 ) -> None:

@@ -84,7 +84,6 @@ async def step_in(events: AsyncIterator[JudgeEvent], state: State, seen: str = "
     raise AssertionError(f"the judge has only said: {said}")
 
 
-@pytest.mark.timeout(90)
 async def test_a_mended_node_passes_and_a_passed_step_lets_the_next_one_begin(
     begin: Begin, tmp_path: Path
 ) -> None:
@@ -114,7 +113,6 @@ async def test_a_mended_node_passes_and_a_passed_step_lets_the_next_one_begin(
         assert client.nodes["talker"].pid != before
 
 
-@pytest.mark.timeout(90)
 async def test_advice_for_a_node_that_runs_is_not_given_to_one_that_has_crashed(
     begin: Begin, tmp_path: Path
 ) -> None:
@@ -133,7 +131,6 @@ async def test_advice_for_a_node_that_runs_is_not_given_to_one_that_has_crashed(
             looks = [check.look for check in (await step_in(events, State.FAILED)).checks]
 
 
-@pytest.mark.timeout(90)
 async def test_a_saved_node_has_begun_before_it_is_told_to_end(
     begin: Begin, tmp_path: Path
 ) -> None:
@@ -148,7 +145,6 @@ async def test_a_saved_node_has_begun_before_it_is_told_to_end(
         assert (await step_in(events, State.PASSED)).id == "ends"
 
 
-@pytest.mark.timeout(90)
 async def test_a_flood_is_judged_and_the_judge_ends_with_its_session(begin: Begin) -> None:
     client, judge = await begin(FLOOD)
     async with aclosing(judge.events()) as events:

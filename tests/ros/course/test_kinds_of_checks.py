@@ -283,7 +283,6 @@ def _all_heard(judge: Judge) -> bool:
     return heard and ended and "/drive_to" in actions
 
 
-@pytest.mark.timeout(150)
 @pytest.mark.parametrize("name", PASSING)
 def test_what_holds_passes(name: str, results: dict[str, CheckResult]) -> None:
     found = results[f"pass-{name}"]

@@ -121,7 +121,6 @@ def test_a_node_that_is_finalized_can_nothing_more(watcher: Watcher) -> None:
     )
 
 
-@pytest.mark.timeout(60)
 def test_a_node_that_hangs_is_told_of(watcher: Watcher, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its transition is seen to begin; then it answers nobody, which its row says, too."""
     monkeypatch.setattr("graph.calls.lifecycle_exchange.CHANGE_WITHIN_S", 1.0)

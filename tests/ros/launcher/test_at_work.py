@@ -5,8 +5,6 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
-import pytest
-
 from cli.health import well
 from launcher.client.client import SupervisorClient
 from launcher.status import STUCK, THREAD, NodeFault, NodeState, Severity
@@ -70,7 +68,6 @@ async def _ailing(client: SupervisorClient, name: str, kind: str) -> NodeFault:
     return fault
 
 
-@pytest.mark.timeout(150)
 async def test_who_is_stuck_or_has_lost_a_thread_is_not_healthy(
     start: Launch, tmp_path: Path
 ) -> None:

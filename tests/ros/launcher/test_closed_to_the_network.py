@@ -104,7 +104,6 @@ def profile(folder: Path, discovery: str) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(180)
 def test_the_network_neither_sees_nor_drives_a_local_robot(
     robot: Machine, neighbour: Machine, ros_domain: int, other_domain: int, tmp_path: Path
 ) -> None:
@@ -134,7 +133,6 @@ def test_the_network_neither_sees_nor_drives_a_local_robot(
             wait_until(lambda: friend.seen["fastest"] > 1, "to drive from this machine", 60)
 
 
-@pytest.mark.timeout(120)
 @pytest.mark.parametrize("program", ["run", "record"])
 def test_no_process_of_deck_listens_to_a_cable(
     robot: Machine, ros_domain: int, tmp_path: Path, program: str
@@ -151,7 +149,6 @@ def test_no_process_of_deck_listens_to_a_cable(
         session.close()
 
 
-@pytest.mark.timeout(120)
 def test_the_screen_does_not_listen_to_a_cable(
     robot: Machine, ros_domain: int, tmp_path: Path
 ) -> None:

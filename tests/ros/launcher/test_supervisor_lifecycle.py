@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-import pytest
 from lifecycle_msgs.srv import ChangeState
 
 from launcher.status import NodeState, Severity
@@ -28,7 +27,6 @@ async def lines(client: SupervisorClient, name: str, severity: Severity) -> list
     return [line.text for line in await client.history(name, 50) if line.severity is severity]
 
 
-@pytest.mark.timeout(90)
 async def test_a_node_is_brought_up_and_those_that_need_it_wait(start: Launch) -> None:
     client = await start(
         {
@@ -51,7 +49,6 @@ async def test_a_node_is_brought_up_and_those_that_need_it_wait(start: Launch) -
     assert client.nodes["good"].state is NodeState.READY
 
 
-@pytest.mark.timeout(90)
 async def test_a_node_is_waited_for_that_somebody_else_activates(
     start: Launch, ros_domain: int
 ) -> None:
@@ -70,7 +67,6 @@ async def test_a_node_is_waited_for_that_somebody_else_activates(
     await until_state(client, "good", NodeState.READY)
 
 
-@pytest.mark.timeout(90)
 async def test_a_node_that_hangs_or_has_no_lifecycle_is_late_and_says_why(start: Launch) -> None:
     client = await start(
         {
@@ -89,7 +85,6 @@ async def test_a_node_that_hangs_or_has_no_lifecycle_is_late_and_says_why(start:
     assert client.nodes["hanging"].state is NodeState.RUNNING
 
 
-@pytest.mark.timeout(90)
 async def test_an_exception_is_a_failure_that_is_tried_again(start: Launch) -> None:
     client = await start({"raising": managed("raising", lifecycle="active", restart="on-failure")})
     again = await until_state(client, "raising", NodeState.BACKOFF)

@@ -36,7 +36,6 @@ def wheels() -> JointState:
     return JointState(name=list(DRIVE_JOINTS), velocity=[5.0, 5.0, nan], position=[nan, nan, 0.0])
 
 
-@pytest.mark.timeout(120)
 @pytest.mark.parametrize(
     ("topic", "message", "owner"),
     [

@@ -36,7 +36,6 @@ def ahead(robot: RobotNodes) -> AckermannDriveStamped:
     return message
 
 
-@pytest.mark.timeout(180)
 @pytest.mark.parametrize("distance_m", [9.0, math.inf])
 @pytest.mark.parametrize("every_s", [0.02, 0.3])
 def test_the_robot_stops_before_the_wall_whoever_says_that_the_way_is_free(

@@ -15,8 +15,6 @@ import pytest
 from launcher.ros_tools import COMMANDS
 from tests.ros.shell.conftest import DECK, WITHIN_S, Run
 
-pytestmark = pytest.mark.timeout(180)
-
 
 def test_a_command_runs_in_the_domain_and_its_exit_code_is_passed_on(
     run: Run, ros_domain: int

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-import pytest
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from sensor_msgs.msg import LaserScan, PointCloud2, Range
@@ -78,7 +77,6 @@ def until_heard(watcher: Watcher, stage: Stage, topics: set[str]) -> None:
     wait_until(heard, lambda: f"{topics - {one.topic for one in stage.layers if one.heard}}")
 
 
-@pytest.mark.timeout(60)
 def test_every_type_is_drawn_and_a_short_cloud_is_a_sentence(peer: Peer, watcher: Watcher) -> None:
     stage = Stage()
     said = messages()
@@ -96,7 +94,6 @@ def test_every_type_is_drawn_and_a_short_cloud_is_a_sentence(peer: Peer, watcher
     assert {Tint.WALL, Tint.FREE, Tint.GOOD, Tint.SECOND} <= tints
 
 
-@pytest.mark.timeout(60)
 def test_a_marker_is_deleted_by_the_next_message(peer: Peer, watcher: Watcher) -> None:
     stage = Stage()
     marker = messages()["/marker"]
@@ -111,7 +108,6 @@ def test_a_marker_is_deleted_by_the_next_message(peer: Peer, watcher: Watcher) -
         wait_until(lambda: shown() == 0, "that it is gone")
 
 
-@pytest.mark.timeout(60)
 def test_only_the_newest_of_large_clouds_is_decoded(peer: Peer, watcher: Watcher) -> None:
     stage = Stage()
     publisher = peer.publisher("/cloud", PointCloud2)

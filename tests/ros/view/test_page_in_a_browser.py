@@ -38,7 +38,6 @@ def number_on(picture: NDArray[np.uint8]) -> int | None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(150)
 def test_it_shows_what_the_camera_sees_now_and_asks_nobody_else(
     shown: Shown, tmp_path: Path
 ) -> None:
