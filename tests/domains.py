@@ -9,6 +9,7 @@ import socket
 from pathlib import Path
 
 from launcher.processes.shared_memory import SHARED_MEMORY, names, port_numbers, sweep
+from launcher.processes.shared_memory_in_hand import release_in_hand
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 
 DOMAINS = range(1, 102)
@@ -49,6 +50,7 @@ class DomainPool:
         which somebody's robot runs.
         """
         discard_unfinished(self._shared_memory)
+        release_in_hand(self._shared_memory)
         parts = list(filter(None, map(_PART.fullmatch, names(self._shared_memory))))
         alive = _held_files()
         strange = {
@@ -64,18 +66,23 @@ class DomainPool:
             for _ in some:
                 domain = self._next(some)
                 if domain in choice and self._lock(domain):
+                    self._sweep(domain)
                     return domain
         raise RuntimeError("every ROS domain is held by a test")
 
     def let_go(self, *domains: int) -> None:
         """Give domains back, without the ports of killed nodes; all if none is named."""
         for domain in domains or tuple(self._held):
-            ports = (number for number in self._ports() if domain_of(number) == domain)
-            sweep([f"fastrtps_port{number}" for number in ports], self._shared_memory)
-            self._remove_semaphores(domain)
+            self._sweep(domain)
             os.close(self._held.pop(domain))
             if domain in self._sockets:
                 self._sockets.pop(domain).close()
+
+    def _sweep(self, domain: int) -> None:
+        """Remove what killed nodes have left; of a run that was killed before it let go, too."""
+        ports = (number for number in self._ports() if domain_of(number) == domain)
+        sweep([f"fastrtps_port{number}" for number in ports], self._shared_memory)
+        self._remove_semaphores(domain)
 
     def _remove_semaphores(self, domain: int) -> None:
         """Remove what Fast DDS leaves of each port: no other user could open one of that number."""

@@ -72,6 +72,14 @@ def test_ports_of_killed_nodes_go_with_their_domain(pool: DomainPool, shared_mem
         assert left == {others.name, alive.name}
 
 
+def test_ports_of_a_run_that_was_killed_go_before_a_test_begins(
+    pool: DomainPool, shared_memory: Path
+) -> None:
+    dead = make_port(shared_memory, 1)
+    assert pool.take() == 1
+    assert not dead.exists()
+
+
 def test_runs_of_two_users_have_no_domain_in_common(tmp_path: Path) -> None:
     """Each has a folder of its own, and may not write into the files of the other."""
     first, second = (
