@@ -39,15 +39,6 @@ if TYPE_CHECKING:
     from tui.session.ports import GraphLink, SessionLink
 
 
-HEALED_WITHIN_S = 3.0
-"""How long the graph of a session that has ended by itself is left open.
-
-A node that was killed may hold a lock of this process in shared memory. Fast DDS waits 1 s for it,
-and then makes do without. While it leaves the graph it waits for ever, with Python's lock held, or
-ends the whole process.
-"""
-
-
 class GraphReady(Message, bubble=False):
     """An update of the graph is waiting in the inbox."""
 
@@ -192,10 +183,7 @@ class Feed:
             await link.aclose()
         self.tell(lambda: SessionChanged(ended))
         if graph is not None:
-            try:
-                await asyncio.sleep(HEALED_WITHIN_S if ended else 0.0)
-            finally:
-                await asyncio.to_thread(graph.stop)
+            await asyncio.to_thread(graph.stop)
 
     def _show_ended(self, nodes: Mapping[str, NodeStatus]) -> None:
         # Not needed for the first frame.

@@ -356,7 +356,9 @@ async def test_closing_a_session_goes_back_to_the_lessons_and_another_can_be_ope
 
 
 async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> None:
-    opener = RecordedOpener()
+    opener, may_leave = RecordedOpener(), threading.Event()
+    leave = opener.graph.stop
+    opener.graph.stop = lambda: leave() if may_leave.wait(60) else None  # type: ignore[method-assign]
     async with opened(opener) as (app, pilot):
         opener.link.say(ClosedEvent(say("the supervisor is gone")))
         await pilot.pause()
@@ -365,6 +367,7 @@ async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> N
         # Leaving the graph may take a while, or fail; until then, nothing is to drive.
         assert opener.graph.commands_nothing
         assert not opener.graph.stopped
+        may_leave.set()
         await pilot.press("4")
         await pilot.pause()
         assert isinstance(app.screen, LogsScreen)
