@@ -12,7 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from textual.theme import BUILTIN_THEMES
 
-from graph.memory import keep_room_for_large_messages
+from graph.memory import (
+    GIVEN_BACK_EVERY_S,
+    give_back_free_memory,
+    keep_room_for_large_messages,
+)
 from launcher.errors import LauncherError
 from launcher.rundir import log_dir
 from launcher.status import LogLine, Severity
@@ -71,6 +75,7 @@ class RealTerminal:
         for number in SIGNALS:
             loop.add_signal_handler(number, self.desert, 128 + number)
         app.set_interval(LOOK_S, self._look)
+        app.set_interval(GIVEN_BACK_EVERY_S, give_back_free_memory)
 
     @property
     def app(self) -> DeckApp:

@@ -23,6 +23,9 @@ UPPER_HALF = "▀"
 FULL_DEPTH = 8
 JUMP = 4
 """A run of unchanged cells this short is cheaper to redraw than to skip."""
+MOST_STYLES = 4096
+MOST_COLOURS = 8192
+"""Kept for the next picture: three megabytes, and two for the styles."""
 
 
 def fitting_size(width: int, height: int, columns: int, rows: int) -> tuple[int, int]:
@@ -93,12 +96,12 @@ def _segment(pair: int, cells: int) -> Segment:
     return Segment(UPPER_HALF * cells, _style(upper, lower))
 
 
-@lru_cache(maxsize=8192)
+@lru_cache(maxsize=MOST_STYLES)
 def _style(upper: int | None, lower: int) -> Style:
     foreground = None if upper is None else _color(upper)
     return Style.from_color(foreground, _color(lower))
 
 
-@lru_cache(maxsize=65536)
+@lru_cache(maxsize=MOST_COLOURS)
 def _color(packed: int) -> Color:
     return Color.from_rgb(packed >> 16, packed >> 8 & 255, packed & 255)

@@ -18,6 +18,7 @@ import traceback
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from graph.memory import GIVEN_BACK_EVERY_S, give_back_free_memory
 from graph.observer.loop import ObserverLoop
 from graph.observer.merging import merged
 from graph.observer.process import language
@@ -65,6 +66,7 @@ class Server:
         """From when on orders can be late."""
         self._next_sign_s = 0.0
         self._next_census_s = 0.0
+        self._give_back_at_s = self._since_s + GIVEN_BACK_EVERY_S
         self._over = False
 
     def run(self) -> None:
@@ -89,6 +91,7 @@ class Server:
             now_s = time.monotonic()
             self._give_sign(now_s)
             self._tell_who_is_there(now_s)
+            self._give_memory_back(now_s)
             left_s = min(until_s, self._next_sign_s) - now_s
             wanted = select.POLLIN | (select.POLLOUT if self._wire.is_behind else 0)
             waiting = select.poll()
@@ -140,7 +143,6 @@ class Server:
         elif name in language.WANTED:
             self._want(name, arguments[0])
         elif self._is_too_late(name, arguments, asked_s):
-            age = f"{self._age(asked_s):.0f}"
             age = f"{self._age(asked_s):.0f}"
             words = say("it was asked for {seconds} s ago, and is not done so late", seconds=age)
             self._say(language.FAILED, number, ObserverError(words))
@@ -194,6 +196,11 @@ class Server:
             self._next_sign_s = now_s + SIGN_S
             self._alarm(STUCK_S)
             self._say(language.ALIVE)
+
+    def _give_memory_back(self, now_s: float) -> None:
+        if now_s >= self._give_back_at_s:
+            self._give_back_at_s = now_s + GIVEN_BACK_EVERY_S
+            give_back_free_memory()
 
     def _tell_who_is_there(self, now_s: float) -> None:
         if self._loop is None or now_s < self._next_census_s:

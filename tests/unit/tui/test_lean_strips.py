@@ -3,15 +3,30 @@
 from __future__ import annotations
 
 import gc
+from itertools import product
 from typing import Any
+from weakref import ref
 
 import pytest
+from rich.color import ColorSystem
 from rich.segment import Segment
 from rich.style import Style
 from textual.cache import FIFOCache
 from textual.strip import Strip
 
 from tui.lean_strips import SIZES, lean_strips
+
+STYLES = (
+    Style(),
+    Style(bold=True, italic=False, dim=True),
+    Style(color="#1264af", bgcolor="color(17)"),
+    Style(color="red", reverse=True, underline=True),
+    Style(bgcolor="#ffffff", meta={"offset": (3, 7)}),
+)
+
+
+class Watched(Style):
+    """One that a weak reference can be made to."""
 
 
 def caches(strip: Strip) -> dict[str, int]:
@@ -55,3 +70,24 @@ def test_a_line_has_a_cache_once_it_uses_it() -> None:
     assert lean.apply_style(Style(dim=True)).text == whole.text
     with pytest.raises(AttributeError, match="_else"):
         _ = lean._else  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(("style", "colours"), product(STYLES, ColorSystem))
+def test_each_style_is_drawn_as_before(style: Style, colours: ColorSystem) -> None:
+    drawn = Strip.render_ansi(style, colours)
+    with lean_strips():
+        assert Strip.render_ansi(style, colours) == drawn
+        assert Strip.render_style(style, "Путь", colours) == Strip.render_style(
+            Style() + style, "Путь", colours
+        )
+    assert Strip.render_ansi(style, colours) == drawn
+
+
+def test_where_a_piece_of_text_stands_is_not_kept_for_how_it_is_drawn() -> None:
+    with lean_strips():
+        style = Watched(bold=True, meta={"offset": (3, 7)})
+        Strip.render_ansi(style, ColorSystem.TRUECOLOR)
+        kept = ref(style)
+        del style
+        gc.collect()
+        assert kept() is None
