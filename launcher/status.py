@@ -151,7 +151,7 @@ class NodeStatus:
         return self.state in (NodeState.READY, NodeState.RUNNING) and not self.late
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class LogLine:
     """One line written by a node, or by the supervisor about a node."""
 

@@ -21,7 +21,6 @@ from launcher.control.protocol import (
     encode,
     pack_stray,
     unpack_agents,
-    unpack_line,
     unpack_session,
     unpack_status,
     unpack_stray,
@@ -36,6 +35,7 @@ from launcher.errors import (
     UsageError,
 )
 from launcher.events import LogEvent
+from launcher.logs.packing import unpack_line
 from launcher.run_id import supervisor_of
 from launcher.rundir import log_dir, run_dir
 from launcher.serial_ports import serial_ports

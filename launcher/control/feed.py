@@ -10,7 +10,8 @@ from __future__ import annotations
 import heapq
 from typing import TYPE_CHECKING, Any
 
-from launcher.control.protocol import pack_line, pack_status
+from launcher.control.protocol import pack_status
+from launcher.logs.packing import pack_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -20,16 +20,13 @@ from typing import TYPE_CHECKING, Any
 from launcher.consent import Agent, AgentRules, Agents, Approval, Question
 from launcher.faults.telling import pack_fault, unpack_fault
 from launcher.status import (
-    LogLine,
     NodeState,
     NodeStatus,
     SessionInfo,
-    Severity,
     Stray,
     Who,
 )
 from text.packing import pack_text, unpack_text
-from text.sentences import Words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -68,21 +65,6 @@ def unpack_status(fields: dict[str, Any]) -> NodeStatus:
             "fault": unpack_fault(fields["fault"]),
         }
     )
-
-
-def pack_line(line: LogLine) -> list[Any]:
-    """Return a log line as JSON, in a short form because there are many."""
-    text = pack_text(line.text) if isinstance(line.text, Words) else line.text
-    return [line.node, line.seq, line.time_s, line.severity.rank, text, line.logger, line.source]
-
-
-_BY_RANK = {severity.rank: severity for severity in Severity}
-
-
-def unpack_line(fields: list[Any]) -> LogLine:
-    """Return the log line that `pack_line` was given."""
-    node, seq, time_s, rank, text, logger, source = fields
-    return LogLine(node, seq, time_s, _BY_RANK[rank], unpack_text(text), logger, source)
 
 
 def pack_session(session: SessionInfo) -> dict[str, Any]:

@@ -21,13 +21,13 @@ from launcher.control.protocol import (
     VERSION,
     encode,
     pack_agents,
-    pack_line,
     pack_session,
     pack_status,
     pack_stray,
     unpack_stray,
 )
 from launcher.errors import StillRunningError, UnknownNodeError
+from launcher.logs.packing import pack_line
 from launcher.processes.confinement import is_confined, is_elsewhere
 from text.nested import read_json
 from text.packing import pack_text

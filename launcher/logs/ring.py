@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections import deque
 from itertools import islice
 from typing import TYPE_CHECKING
+
+from launcher.logs.kept_lines import KeptLines
 
 if TYPE_CHECKING:
     from launcher.status import LogLine
@@ -12,7 +13,8 @@ if TYPE_CHECKING:
 MAX_LINES = 5000
 MAX_BYTES = 4 << 20
 LINE_COST = 300
-"""Bytes that a line takes in addition to its text: the object and its numbers."""
+"""Bytes that a line takes in addition to its text, if it is not compressed: the object and its
+numbers."""
 
 
 class LogRing:
@@ -20,7 +22,7 @@ class LogRing:
 
     def __init__(self, max_lines: int = MAX_LINES, max_bytes: int = MAX_BYTES) -> None:
         """`max_bytes` limits, approximately, the memory that the lines take."""
-        self._lines: deque[LogLine] = deque()
+        self._lines = KeptLines()
         self._max_lines = max_lines
         self._max_bytes = max_bytes
         self._bytes = 0
@@ -35,7 +37,8 @@ class LogRing:
         self.last_seq = line.seq
         self._bytes += len(line.text) + LINE_COST
         while len(self._lines) > self._max_lines or self._bytes > self._max_bytes:
-            self._bytes -= len(self._lines.popleft().text) + LINE_COST
+            lines, characters = self._lines.drop_oldest()
+            self._bytes -= characters + lines * LINE_COST
 
     def newest(self, limit: int) -> list[LogLine]:
         """Return at most `limit` lines, oldest first."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+import sys
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -107,7 +108,7 @@ class SessionLog:
                 parsed.time_s,
                 parsed.severity,
                 shown,
-                parsed.logger,
+                sys.intern(parsed.logger),
                 source,
             )
             ring.append(line)

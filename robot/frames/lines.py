@@ -26,7 +26,7 @@ LONGEST_TEXT = 400
 WAYS = ("in", "out")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class FrameLine:
     """One reported frame."""
 

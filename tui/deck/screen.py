@@ -61,6 +61,8 @@ if TYPE_CHECKING:
 
 DRIVER = "nodes.ai_driver"
 COMMANDS_TYPE = "std_msgs/msg/String"
+LOG_LINES = 1000
+"""What is older is on the screen of the log."""
 
 
 class LessonDeck(DeckScreen):
@@ -128,7 +130,7 @@ class LessonDeck(DeckScreen):
                 yield NodesTable()
                 yield NameHead()
             with Vertical(id="talk"):
-                yield LogPane(LogView(file_of=self.feed.log_file))
+                yield LogPane(LogView(max_lines=LOG_LINES, file_of=self.feed.log_file))
                 yield CommandLine(id="command")
 
     # Actions

@@ -14,7 +14,7 @@ from tui.log_view.rows import LogColumns
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-KEPT = 5000
+KEPT = 2000
 """Frames kept for each port."""
 WAYS = {"in": N_("← in"), "out": N_("→ out")}
 _SEVERITIES = {

@@ -20,7 +20,9 @@ LONGEST_TEXT = 16_384
 """Characters kept of one line; the file has the whole line."""
 SLACK = 1.25
 """Dropping goes through all lines, so it is done only occasionally, for many at once."""
-_OBJECT_BYTES = 160
+_OBJECT_BYTES = 130
+MAX_LINES = 3000
+"""A screen has several such logs, and is to take no more memory after hours than after minutes."""
 
 SAID_BY_DECK = frozenset({"deck", "agent"})
 """The `source` of lines that can be translated."""
@@ -40,15 +42,18 @@ class LogEntry:
     """The text without control characters."""
     skipped: int = 0
     """Number of missing lines for a mark; 0 for a line."""
-    size: int = _OBJECT_BYTES
-    """Approximate size in bytes."""
     dropped: bool = False
+
+    @property
+    def size(self) -> int:
+        """Approximate size in bytes."""
+        return sys.getsizeof(self.text) + _OBJECT_BYTES
 
 
 class LineRing:
     """Lines in order of arrival."""
 
-    def __init__(self, max_lines: int = 20_000, max_bytes: int = 16 * 2**20) -> None:
+    def __init__(self, max_lines: int = MAX_LINES, max_bytes: int = 16 * 2**20) -> None:
         """Keep at most this many lines and bytes, and temporarily a quarter more."""
         self.max_lines, self.max_bytes = max_lines, max_bytes
         self.entries: list[LogEntry] = []
@@ -91,10 +96,9 @@ class LineRing:
         if len(text) > LONGEST_TEXT:
             text = f"{text[:LONGEST_TEXT]} … (+{len(text) - LONGEST_TEXT})"
         text = plain(text)
-        size = sys.getsizeof(text) + _OBJECT_BYTES
-        self.entries.append(LogEntry(self._next_id, node, rank, time_s, text, skipped, size))
+        self.entries.append(LogEntry(self._next_id, node, rank, time_s, text, skipped))
         self._next_id += 1
-        self._bytes += size
+        self._bytes += self.entries[-1].size
 
     def clear(self) -> None:
         """Remove every line."""

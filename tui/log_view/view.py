@@ -21,7 +21,7 @@ from tui.log_view.choice import LineChoice, exported
 from tui.log_view.drawing import ColumnsFor, DrawnRows
 from tui.log_view.index import LogIndex
 from tui.log_view.palette import PALETTE_CLASSES, PALETTE_CSS
-from tui.log_view.ring import LineRing
+from tui.log_view.ring import MAX_LINES, LineRing
 from tui.log_view.rows import columns_for, text_of
 from tui.log_view.tail import Tail
 from tui.widgets.one_style import OneStyle
@@ -88,7 +88,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
     def __init__(
         self,
         *,
-        max_lines: int = 20_000,
+        max_lines: int = MAX_LINES,
         fold: bool = True,
         period_s: float = 0.1,
         columns_for: ColumnsFor = columns_for,

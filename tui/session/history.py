@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from launcher.status import LogLine
 
-KEPT_LINES = 10_000
+KEPT_LINES = 3000
+"""As many as a log view shows."""
 KEPT_CHARACTERS = 8_000_000
 
 

@@ -12,10 +12,11 @@ import pytest
 from launcher.client import client as client_module
 from launcher.client.client import SupervisorClient, attach
 from launcher.consent import Approval, ConsentAnswer
-from launcher.control.protocol import encode, pack_line
+from launcher.control.protocol import encode
 from launcher.control.socket import connect, listen
 from launcher.errors import ConnectionLostError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
+from launcher.logs.packing import pack_line
 from launcher.status import LogLine, Severity, Stray
 from tests.dying_supervisor import HELLO, DyingSupervisor
 
