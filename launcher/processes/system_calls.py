@@ -25,10 +25,17 @@ _NEW_NAMESPACES = 0x7E020080
 _TYPE_OF_SOCKET = 0xF
 _FAMILIES = (2, 10, 16)
 """AF_INET, AF_INET6, AF_NETLINK: what DDS needs."""
-_STREAM, _SEQPACKET = 1, 5
+_STREAM, _DATAGRAM, _RAW, _SEQPACKET = 1, 2, 3, 5
+_TYPES = (_DATAGRAM, _RAW)
+"""UDP, and what netlink calls raw. Landlock knows TCP only by bind(2) and connect(2): not what
+MSG_FASTOPEN opens, nor MPTCP and SCTP."""
+_PAIRS = (_STREAM, _SEQPACKET)
 """Other pairs of sockets could still be connected elsewhere."""
-_INTO_TERMINAL = (0x5412, 0x541C)
-"""TIOCSTI, TIOCLINUX: typing on somebody's terminal."""
+_TO_OTHERS = (0x5412, 0x541C, 0x8901, 0x8902)
+"""TIOCSTI, TIOCLINUX: typing on somebody's terminal; FIOSETOWN, SIOCSPGRP: sending a signal."""
+_OF_OTHERS = (8, 10, 15, 1024, 1026)
+"""F_SETOWN, F_SETSIG, F_SETOWN_EX: any signal to anybody; F_SETLEASE, F_NOTIFY: a lease holds up
+whoever opens the file."""
 
 _MACHINES = {"x86_64": (0xC000003E, 0), "aarch64": (0xC00000B7, 1)}
 _METADATA = {
@@ -54,19 +61,21 @@ _NEVER = {
     "finit_module": (313, 273), "delete_module": (176, 106), "kexec_load": (246, 104),
     "shmget": (29, 194), "shmctl": (31, 195), "msgget": (68, 186), "msgctl": (71, 187),
     "semget": (64, 190), "semctl": (66, 191), "mq_open": (240, 180), "mq_unlink": (241, 181),
+    "shmat": (30, 196), "msgsnd": (69, 189), "msgrcv": (70, 188), "semop": (65, 193),
+    "semtimedop": (220, 192), "fanotify_init": (300, 262),
 }  # fmt: skip
 _ABSENT = {
     "io_uring_setup": (425, 425), "io_uring_enter": (426, 426), "io_uring_register": (427, 427),
-    "clone3": (435, 435),
+    "clone3": (435, 435), "memfd_create": (319, 279), "memfd_secret": (447, 447),
 }  # fmt: skip
-"""What does by other means what is filtered here; libraries go on without."""
+"""What does by other means what is filtered or counted here; libraries go on without."""
 _ON_ITSELF = {
     "sched_setparam": (142, 118), "sched_setscheduler": (144, 119),
     "sched_setaffinity": (203, 122), "sched_setattr": (314, 274),
 }  # fmt: skip
 """Of this process, which is 0 in the first argument, and of no other."""
 _OF_WHOM = {"setpriority": (141, 140), "ioprio_set": (251, 30)}
-_PRLIMIT, _CLONE, _IOCTL = (302, 261), (56, 220), (16, 29)
+_PRLIMIT, _CLONE, _IOCTL, _FCNTL = (302, 261), (56, 220), (16, 29), (72, 25)
 _SOCKET, _SOCKETPAIR = (41, 198), (53, 199)
 _SIGNALS = {"kill": (62, 129), "tkill": (200, 130), "tgkill": (234, 131)}
 _QUEUED_SIGNALS = {
@@ -151,9 +160,10 @@ def _program(machine: str, alone: int) -> list[_Step]:
         *((numbers, _own_priority()) for numbers in _OF_WHOM.values()),
         (_PRLIMIT, _only_zero(0)),
         (_CLONE, [_argument(0), _Step(_ANY_BIT, _NEW_NAMESPACES, 0, 1), _refused(), _allowed()]),
-        (_SOCKET, _one_of(0, _FAMILIES, errno.EAFNOSUPPORT)),
-        (_SOCKETPAIR, _one_of(1, (_STREAM, _SEQPACKET), errno.EOPNOTSUPP, _TYPE_OF_SOCKET)),
-        (_IOCTL, _none_of(1, _INTO_TERMINAL)),
+        (_SOCKET, _socket_of(_FAMILIES, _TYPES)),
+        (_SOCKETPAIR, _one_of(1, _PAIRS, errno.EOPNOTSUPP, _TYPE_OF_SOCKET)),
+        (_IOCTL, _none_of(1, _TO_OTHERS)),
+        (_FCNTL, _none_of(1, _OF_OTHERS)),
     ]
     if alone:
         own = (alone, 0, -alone & 0xFFFFFFFF)
@@ -195,6 +205,14 @@ def _one_of(argument: int, values: tuple[int, ...], error: int, mask: int = 0) -
     masked = [_Step(_MASK, mask)] if mask else []
     tests = [_Step(_EQUAL, value, when=len(values) - number) for number, value in enumerate(values)]
     return [_argument(argument), *masked, *tests, _refused(error), _allowed()]
+
+
+def _socket_of(families: tuple[int, ...], types: tuple[int, ...]) -> list[_Step]:
+    """Of one of these families, and of one of these types."""
+    last = len(families)
+    tests = [_Step(_EQUAL, family, when=last - number) for number, family in enumerate(families)]
+    of_type = _one_of(1, types, errno.EACCES, _TYPE_OF_SOCKET)
+    return [_argument(0), *tests, _refused(errno.EAFNOSUPPORT), *of_type]
 
 
 def _none_of(argument: int, values: tuple[int, ...]) -> list[_Step]:

@@ -5,6 +5,7 @@ All that it tries to harm is the test's own.
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
 import socket
@@ -20,10 +21,11 @@ import pytest
 from launcher.processes.confinement import Confinement, confinement, is_confined
 
 TRIES = """
-import ctypes, fcntl, json, os, resource, shutil, socket, subprocess, sys, termios, threading
+import ctypes, fcntl, json, os, resource, shutil, socket, struct, subprocess, sys, termios
+import threading
 from launcher.processes.confinement import confine
 
-own, other, victim, terminal = sys.argv[1:]
+own, other, victim, terminal, port, memory = sys.argv[1:]
 confine([own])
 libc = ctypes.CDLL(None, use_errno=True)
 there = f"{other}/there"
@@ -40,6 +42,11 @@ def call(number, *arguments):
     if libc.syscall(number, *arguments) != 0:
         raise OSError(ctypes.get_errno(), "refused")
 
+def attach(number):
+    libc.shmat.restype = ctypes.c_void_p
+    if libc.shmat(number, None, 0) == ctypes.c_void_p(-1).value:
+        raise OSError(ctypes.get_errno(), "refused")
+
 def write(path):
     open(path, "w").close()
 
@@ -50,6 +57,22 @@ def connect():
 def datagram():
     for one in socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM):
         one.sendto(b"x", f"{other}/datagrams")
+
+def fast_open():
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as client:
+        client.sendto(b"x", socket.MSG_FASTOPEN, ("127.0.0.1", int(port)))
+
+def multipath():
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM, 262) as client:
+        client.connect(("127.0.0.1", int(port)))
+
+def signal_by_file(number, owner):
+    # The kernel sends it when something comes.
+    ours, theirs = socket.socketpair()
+    owner(ours.fileno())
+    fcntl.fcntl(ours, 10, number)
+    fcntl.fcntl(ours, fcntl.F_SETFL, os.O_ASYNC | os.O_NONBLOCK)
+    theirs.send(b"x")
 
 def typed():
     fcntl.ioctl(os.open(terminal, os.O_RDONLY | os.O_NOCTTY), termios.TIOCSTI, b"x")
@@ -87,12 +110,22 @@ print(json.dumps({
     "socket": told(connect),
     "datagram": told(datagram),
     "terminal": told(typed),
+    "fast open": told(fast_open),
+    "multipath": told(multipath),
+    "owner of a file": told(lambda: signal_by_file(9, lambda fd: fcntl.fcntl(fd, 8, victim))),
+    "owner by ioctl": told(
+        lambda: signal_by_file(9, lambda fd: fcntl.ioctl(fd, 0x8901, struct.pack("i", victim)))
+    ),
+    "lease": told(lambda: fcntl.fcntl(os.open(there, os.O_RDONLY), 1024, fcntl.F_RDLCK)),
+    "shared memory": told(lambda: attach(int(memory))),
+    "memory as a file": told(lambda: os.memfd_create("much")),
 }))
 """
 CALLS = {
     "x86_64": {"IOPRIO_SET": 251, "PTRACE": 101, "UNSHARE": 272},
     "aarch64": {"IOPRIO_SET": 30, "PTRACE": 117, "UNSHARE": 97},
 }
+LIBC = ctypes.CDLL(None, use_errno=True)
 OWN = ("write", "rename", "copy", "null", "pair", "udp", "own limit", "own priority", "thread")
 
 
@@ -113,7 +146,7 @@ def state(there: Path, victim: int) -> object:
     attributes = os.listxattr(there)
     return (
         (stat.S_IMODE(info.st_mode), info.st_uid, info.st_gid, info.st_mtime_ns, attributes),
-        (numbers[0] in "SR", numbers[16]),
+        (numbers[0] not in "TtZX", numbers[16]),
         process.joinpath("limits").read_text(),
         sorted(os.sched_getaffinity(victim)),
         os.sched_getscheduler(victim),
@@ -136,16 +169,23 @@ def tried() -> Tried:
         hearing = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         hearing.bind(str(other / "datagrams"))
         ours, terminal = os.openpty()
+        server = socket.create_server(("127.0.0.1", 0))
+        # IPC_PRIVATE
+        memory = LIBC.shmget(0, 4096, 0o600)
         before = state(there, sleeping.pid)
         text = TRIES
         for name, number in CALLS[os.uname().machine].items():
             text = text.replace(name, str(number))
+        numbers = (server.getsockname()[1], memory)
         arguments = [str(own), str(other), str(sleeping.pid), os.ttyname(terminal)]
+        arguments += map(str, numbers)
         done = subprocess.run([sys.executable, "-c", text, *arguments], stdout=-1, check=True)
         after = state(there, sleeping.pid)
         sleeping.communicate(b"\n")
-        for one in (listening, hearing):
+        for one in (listening, hearing, server):
             one.close()
+        # IPC_RMID
+        LIBC.shmctl(memory, 0, None)
         os.close(ours)
         os.close(terminal)
         return Tried(json.loads(done.stdout), before, after)
@@ -170,7 +210,8 @@ def test_what_it_may_not(tried: Tried) -> None:
     "way",
     [
         "attribute", "limit", "priority", "priority of all", "affinity", "scheduler", "idle disk",
-        "trace", "namespace", "socket", "datagram", "terminal",
+        "trace", "namespace", "socket", "datagram", "terminal", "fast open", "multipath",
+        "owner of a file", "owner by ioctl", "lease", "shared memory", "memory as a file",
     ],
 )  # fmt: skip
 def test_no_way_out(way: str, tried: Tried) -> None:
