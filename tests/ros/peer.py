@@ -91,6 +91,12 @@ class Peer:
             self._publishers[topic] = self.node.create_publisher(kind, topic, qos)
         return self._publishers[topic]
 
+    def retire(self, topic: str) -> None:
+        """Publish that topic no more, so that nobody counts on this node for it."""
+        publisher = self._publishers.pop(topic, None)
+        if publisher is not None:
+            self.node.destroy_publisher(publisher)
+
     def say(
         self, topic: str, message: Any, *, listeners: int = 1, qos: QoSProfile | int = 10
     ) -> None:

@@ -30,6 +30,7 @@ class Wheels:
         self.peer = peer
         self.told: list[JointState] = peer.hear("/mock/motors", JointState)
         self._timer: Any = None
+        self._topic = ""
 
     # ---------------------------------------------------------------- commands
 
@@ -45,8 +46,14 @@ class Wheels:
         self.command(topic, stamped)
 
     def command(self, topic: str, message: Callable[[], Any]) -> None:
-        """Say something else ten times a second from now on."""
+        """Say something else ten times a second from now on, and on no other topic.
+
+        Who is still there, and silent, is a reason for the chassis to stand.
+        """
         self.quiet()
+        if topic != self._topic:
+            self.peer.retire(self._topic)
+            self._topic = topic
         publisher = self.peer.publisher(topic, type(message()))
         self._timer = self.peer.node.create_timer(0.1, lambda: publisher.publish(message()))
 
