@@ -142,7 +142,8 @@ def _tell_of_confinement(walls: Walls) -> None:
         say_error(
             _(
                 "deck: here, what is graded cannot be kept in a room of its own (neither by "
-                "bubblewrap nor by user namespaces): it sees your files and this machine's network"
+                "bubblewrap nor by user namespaces): it sees your files, and reaches whatever is "
+                "in this machine's network, robots in other domains too"
             )
         )
     if kind is Confinement.NONE:

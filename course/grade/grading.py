@@ -18,6 +18,7 @@ from course.grade.environment import own_places
 from course.grade.examination import EXAMINER, Examination, Examiners
 from course.grade.grades import Grade, StepGrade, filled_up
 from course.grade.protocol import ExamRequest
+from course.grade.removal import remove_tree
 from course.grade.submission import (
     Files,
     Submission,
@@ -108,6 +109,7 @@ async def grade_all(
     everything = [lesson, *(one for one in read if isinstance(one, Files))]
     room = asyncio.Semaphore(jobs)
     examiners = Examiners()
+    apart = [submission.folder for submission in chosen]
 
     async def one(number: int) -> tuple[int, Grade]:
         submission, files = chosen[number], read[number]
@@ -116,7 +118,9 @@ async def grade_all(
                 return number, _not_graded(terms, submission, files)
             # With several jobs another one's nodes may be at it just now.
             before = await asyncio.to_thread(_put_back, everything)
-            grading = _Grading(terms, submission, (lesson, files), domains, on_step, examiners)
+            grading = _Grading(
+                terms, submission, (lesson, files), domains, on_step, examiners, apart
+            )
             grade = await grading.grade()
             after = await asyncio.to_thread(_put_back, everything)
             if terms.adopting:
@@ -177,8 +181,13 @@ class _Grading:
         domains: Domains,
         on_step: Callable[[Submission, StepGrade], object],
         examiners: Examiners,
+        apart: Sequence[Path],
     ) -> None:
-        """`files`: those of the lesson and the learner; `examiners`: the processes of all."""
+        """`files`: those of the lesson and the learner; `examiners`: the processes of all.
+
+        `apart`: the folders of all learners, of which none is seen, only a copy of one.
+        """
+        self._apart = apart
         self._terms = terms
         self._submission = submission
         self._starter = files[0].below(terms.lesson.starter.name)
@@ -244,8 +253,9 @@ class _Grading:
         try:
             request = self._prepared(place, domain)
             # Found out before: they can be had.
-            shut_in = within(self._terms.walls, self._terms.lesson, place, EXAMINER) or EXAMINER
-            examination = Examination(place, request, self._examiners, shut_in)
+            terms = self._terms
+            shut_in = within(terms.walls, terms.lesson, place, EXAMINER, apart=self._apart)
+            examination = Examination(place, request, self._examiners, shut_in or EXAMINER)
             async with aclosing(examination.events()) as events:
                 async for event in events:
                     self._take(event)
@@ -259,7 +269,7 @@ class _Grading:
             grade = replace(self._grade, steps=steps, seed=self._seed, reason=examination.reason)
             return grade, examination.taken and not self._grade.steps
         finally:
-            await asyncio.to_thread(shutil.rmtree, place, ignore_errors=True)
+            await asyncio.to_thread(remove_tree, place)
 
     def _prepared(self, place: Path, domain: int) -> ExamRequest:
         lesson = self._terms.lesson

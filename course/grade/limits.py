@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import resource
+import stat
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +27,11 @@ DISK_BYTES = 512 << 20
 MEMORY_BYTES = 3 << 30
 PROCESSES = 150
 """Most of the folders it writes in, of the memory of all its processes, and of those."""
+IN_MEMORY_BYTES = 512 << 20
+"""Most of each folder that is kept in memory, shared memory included: nobody counts those."""
+FILES = 20_000
+DEEPEST = 60
+"""How many folders may be within each other: a longer path cannot be looked at."""
 
 
 def limit_this_process(longest_s: float) -> None:
@@ -63,6 +69,9 @@ class Taken:
     processes: int
     memory_bytes: int
     disk_bytes: int
+    files: int = 0
+    unseen: str = ""
+    """A folder that cannot be looked into."""
 
     def excess(self) -> str:
         """Say which limit is exceeded; empty if none is."""
@@ -72,35 +81,89 @@ class Taken:
             return say("it took more than {gb} GB of memory", gb=MEMORY_BYTES >> 30)
         if self.disk_bytes > DISK_BYTES:
             return say("it wrote more than {mb} MB", mb=DISK_BYTES >> 20)
+        if self.files > FILES:
+            return say("it made more than {n} files", n=FILES)
+        if self.unseen:
+            return say(
+                "it made a folder that cannot be looked into: {folder}", folder=self.unseen[:200]
+            )
         return ""
 
 
 def taken(pid: int, places: Iterable[Path]) -> Taken:
     """Return what a process, all that descend from it, and some folders take."""
     family = descendants(pid)
+    found = _Found()
+    for place in places:
+        found.look_through(place)
+    for one in family:
+        found.add_removed(one.pid)
+    memory_bytes = sum(_memory_bytes(one.pid) for one in family)
+    if memory_bytes > MEMORY_BYTES:
+        # What they share counts once.
+        memory_bytes = sum(_share_bytes(one.pid) for one in family)
     return Taken(
-        len(family),
-        sum(_memory_bytes(one.pid) for one in family),
-        sum(map(_disk_bytes, places)),
+        len(family), memory_bytes, sum(found.sizes.values()), len(found.sizes), found.unseen
     )
 
 
 def _memory_bytes(pid: int) -> int:
-    """Return what a process has of its own: anonymous memory, not what it shares."""
+    """Return what a process has in memory, but for what is read from files."""
+    return _sum_of(f"/proc/{pid}/status", "RssAnon", "RssShmem")
+
+
+def _share_bytes(pid: int) -> int:
+    """Return its part of that; takes longer (smaps_rollup of proc(5), Linux 5.4)."""
+    return _sum_of(f"/proc/{pid}/smaps_rollup", "Pss_Anon", "Pss_Shmem")
+
+
+def _sum_of(path: str, *names: str) -> int:
+    """Add fields of a file in /proc, which are in kB; 0 of a process that is gone."""
     try:
-        with open(f"/proc/{pid}/statm", "rb") as file:  # noqa: PTH123 - like all reads of /proc
-            fields = file.read().split()
-    except OSError:
+        with open(path, encoding="utf-8", errors="replace") as file:  # noqa: PTH123 - as all of /proc
+            fields = dict(line.split(":", 1) for line in file if ":" in line)
+        return sum(int(fields[name].split()[0]) << 10 for name in names if name in fields)
+    except (OSError, ValueError):
         return 0
-    return (int(fields[1]) - int(fields[2])) * os.sysconf("SC_PAGE_SIZE") if fields else 0
 
 
-def _disk_bytes(folder: Path) -> int:
-    paths = (Path(place, name) for place, _folders, names in os.walk(folder) for name in names)
-    return sum(map(_file_bytes, paths))
+class _Found:
+    """The files of some folders and processes, each counted once."""
 
+    def __init__(self) -> None:
+        self.sizes: dict[tuple[int, int], int] = {}
+        """By device and number."""
+        self.unseen = ""
 
-def _file_bytes(path: Path) -> int:
-    with suppress(OSError):
-        return path.lstat().st_blocks * 512
-    return 0
+    def look_through(self, folder: Path) -> None:
+        """Add all that is in a folder, as far as is allowed to be there."""
+        waiting = [(str(folder), 0)]
+        while waiting and len(self.sizes) <= FILES and not self.unseen:
+            place, depth = waiting.pop()
+            try:
+                with os.scandir(place) as entries:
+                    for entry in entries:
+                        self._add(entry.stat(follow_symlinks=False))
+                        if entry.is_dir(follow_symlinks=False):
+                            waiting.append((entry.path, depth + 1))
+            except (FileNotFoundError, NotADirectoryError):
+                continue
+            except OSError:
+                self.unseen = place
+            if depth > DEEPEST:
+                self.unseen = place
+
+    def add_removed(self, pid: int) -> None:
+        """Add the files that a process has open and that are in no folder any more."""
+        try:
+            opened = os.listdir(f"/proc/{pid}/fd")  # noqa: PTH208
+        except OSError:
+            return
+        for number in opened:
+            with suppress(OSError):
+                seen = os.stat(f"/proc/{pid}/fd/{number}")  # noqa: PTH116
+                if stat.S_ISREG(seen.st_mode) and seen.st_nlink == 0:
+                    self._add(seen)
+
+    def _add(self, seen: os.stat_result) -> None:
+        self.sizes[seen.st_dev, seen.st_ino] = seen.st_blocks * 512

@@ -1,8 +1,9 @@
 """A program inside walls, without bubblewrap: `python -m course.grade.walled ROOT INSIDE COMMAND`.
 
-ROOT is an empty folder, INSIDE a `course.grade.walls.Inside` as JSON. New namespaces for users,
-mounts, processes, network and IPC (namespaces(7)); the command is the first process in them, with
-which all others end. Its root is a copy of this one for reading (mount_setattr(2), Linux 5.12).
+ROOT is an empty folder, INSIDE the layers and the writable folders of a
+`course.grade.walls.Inside`, as JSON. New namespaces for users, mounts, processes, network and IPC
+(namespaces(7)); the command is the first process in them, with which all others end. Its root is a
+copy of this one for reading (mount_setattr(2), Linux 5.12).
 """
 
 from __future__ import annotations
@@ -16,7 +17,9 @@ import socket
 import struct
 import sys
 from pathlib import Path
+from typing import Any
 
+from course.grade.limits import IN_MEMORY_BYTES
 from launcher.processes.confinement import give_up_privileges
 from text.nested import read_json
 
@@ -90,11 +93,11 @@ def _devices(dev: Path) -> None:
         (dev / name).mkdir()
     for name, target in _LINKS.items():
         (dev / name).symlink_to(target)
-    _mount("tmpfs", dev / "shm", "tmpfs", _NOSUID | _NODEV, "mode=1777")
+    _mount("tmpfs", dev / "shm", "tmpfs", _NOSUID | _NODEV, f"mode=1777,size={IN_MEMORY_BYTES}")
     _mount("devpts", dev / "pts", "devpts", _NOSUID | _NOEXEC, "newinstance,ptmxmode=0666,mode=620")
 
 
-def _enter(root: Path, inside: dict[str, list[str]]) -> None:
+def _enter(root: Path, inside: dict[str, Any]) -> None:
     """Make the new root, and be in it."""
     here = Path.cwd()
     _mount("none", Path("/"), flags=_REC | _PRIVATE)
@@ -102,10 +105,12 @@ def _enter(root: Path, inside: dict[str, list[str]]) -> None:
     _read_only(root)
     _devices(root / "dev")
     _mount("proc", root / "proc", "proc", _NOSUID | _NODEV | _NOEXEC)
-    for folder in inside["hidden"]:
-        _mount("tmpfs", root / folder.lstrip("/"), "tmpfs", _NOSUID | _NODEV, "mode=0755")
-    for path in inside["readable"]:
-        _bind(path, root, writable=False)
+    options = f"mode=0755,size={IN_MEMORY_BYTES}"
+    for path, is_hidden in inside["layers"]:
+        if is_hidden:
+            _mount("tmpfs", root / path.lstrip("/"), "tmpfs", _NOSUID | _NODEV, options)
+        else:
+            _bind(path, root, writable=False)
     for path in inside["writable"]:
         _bind(path, root, writable=True)
     os.chdir(root)

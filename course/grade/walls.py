@@ -22,11 +22,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import course
+from course.grade.limits import IN_MEMORY_BYTES
 from launcher.node_program import INSTALLATION
 from launcher.profile.defaults import FOLDERS_OWN
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from course.lessons.lesson import LessonFolder
 
@@ -58,29 +59,50 @@ class Inside:
     writable: tuple[str, ...]
 
     @classmethod
-    def of(cls, lesson: LessonFolder, *places: Path) -> Inside:
-        """What a grading needs: Deck, Python, ROS, the lesson, and folders to write in."""
+    def of(cls, lesson: LessonFolder, *places: Path, apart: Sequence[Path] = ()) -> Inside:
+        """What a grading needs: Deck, Python, ROS, the lesson, and folders to write in.
+
+        Nothing is seen of what is in the folders that are kept `apart`.
+        """
         home = Path.home()
-        hidden = [*HIDDEN, *([] if home == Path("/") else [str(home)])]
+        hidden = [*HIDDEN, *([] if home == Path("/") else [str(home)]), *map(str, apart)]
         wanted = [
             *(INSTALLATION, sys.prefix, sys.base_prefix, *sys.path, str(lesson.path)),
             *(part for name in _LISTS_OF_FOLDERS for part in os.environ.get(name, "").split(":")),
             *(os.environ.get(name, "") for name in _PROFILES_OF_DDS),
         ]
-        out_of_sight = [Path(each).resolve() for each in hidden if Path(each).is_dir()]
+        out_of_sight = {Path(each).resolve() for each in hidden if Path(each).is_dir()}
+        there = {Path(os.path.abspath(each)) for each in wanted if each and Path(each).exists()}  # noqa: PTH100
+        there = (there | {each.resolve() for each in there}) - out_of_sight
         return cls(
-            tuple(map(str, out_of_sight)),
-            tuple(map(str, _brought_back(filter(None, wanted), out_of_sight))),
+            _differing(out_of_sight, there, unless_any=True),
+            _differing(there, out_of_sight),
             tuple(str(place.resolve()) for place in places),
         )
 
+    def layers(self) -> list[tuple[str, bool]]:
+        """Return what to hide (true) and what to bring back (false), each over what it is in."""
+        both = [*((each, True) for each in self.hidden), *((each, False) for each in self.readable)]
+        return sorted(both, key=lambda layer: (layer[0].count("/"), layer))
 
-def _brought_back(wanted: Iterable[str], hidden: Sequence[Path]) -> list[Path]:
-    """Return what of it would be hidden, each by the uppermost that is wanted itself."""
-    there = {Path(os.path.abspath(each)) for each in wanted if Path(each).exists()}  # noqa: PTH100
-    there |= {each.resolve() for each in there}
-    inside = [each for each in there if any(place in each.parents for place in hidden)]
-    return sorted(each for each in inside if not there & {*each.parents} & {*inside})
+
+def _differing(
+    folders: set[Path], others: set[Path], *, unless_any: bool = False
+) -> tuple[str, ...]:
+    """Return those that are within one of the others, and in none of their own kind below it.
+
+    `unless_any`: also those that are within none at all.
+    """
+
+    def depth(path: Path, among: set[Path]) -> int:
+        return max((len(each.parts) for each in among & {*path.parents}), default=0)
+
+    return tuple(
+        str(each)
+        for each in sorted(folders)
+        if depth(each, others) > depth(each, folders)
+        or (unless_any and not depth(each, others) and not depth(each, folders))
+    )
 
 
 def walls_for(lesson: LessonFolder) -> Walls:
@@ -113,7 +135,12 @@ def _runs(command: Sequence[str]) -> bool:
 
 
 def within(
-    kind: Walls, lesson: LessonFolder, place: Path, command: Sequence[str]
+    kind: Walls,
+    lesson: LessonFolder,
+    place: Path,
+    command: Sequence[str],
+    *,
+    apart: Sequence[Path] = (),
 ) -> Sequence[str] | None:
     """Return the command that runs another one inside, where it writes in `place` only.
 
@@ -121,11 +148,11 @@ def within(
     """
     if kind is Walls.NONE:
         return command
-    inside = Inside.of(lesson, place)
+    inside = Inside.of(lesson, place, apart=apart)
     if kind is Walls.NAMESPACES:
         root = place / "root"
         root.mkdir(exist_ok=True)
-        described = json.dumps(vars(inside))
+        described = json.dumps({"layers": inside.layers(), "writable": inside.writable})
         return (sys.executable, "-m", "course.grade.walled", str(root), described, *command)
     bubblewrap = shutil.which("bwrap")
     return None if bubblewrap is None else (bubblewrap, *_options(inside), "--", *command)
@@ -135,10 +162,9 @@ def _options(inside: Inside) -> list[str]:
     options = ["--unshare-user", "--unshare-pid", "--unshare-net", "--unshare-ipc"]
     options += ["--as-pid-1", "--die-with-parent", "--cap-drop", "ALL", "--ro-bind", "/", "/"]
     options += ["--dev", "/dev", "--proc", "/proc"]
-    for folder in inside.hidden:
-        options += ["--tmpfs", folder]
-    for path in inside.readable:
-        options += ["--ro-bind", path, path]
+    for path, is_hidden in (("/dev/shm", True), *inside.layers()):
+        hiding = ["--size", str(IN_MEMORY_BYTES), "--tmpfs", path]
+        options += hiding if is_hidden else ["--ro-bind", path, path]
     for path in inside.writable:
         options += ["--bind", path, path]
     return options

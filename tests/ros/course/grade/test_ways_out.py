@@ -33,7 +33,12 @@ import os, resource, signal, socket, sys, time
 from pathlib import Path
 sys.path.insert(0, DECK)
 
-SESSION, VICTIM, THERE, SOCKETS, MINE = TARGETS
+SESSION, VICTIM, THERE, SOCKETS, MINE, OTHERS = TARGETS
+
+def look():
+    # Where no room of its own can be had, everything is seen.
+    if OTHERS and Path(OTHERS).read_text():
+        print("wild")
 
 def exchange():
     from launcher.control.protocol import VERSION, encode
@@ -72,6 +77,7 @@ for way in (
     lambda: os.chown(THERE, os.getuid(), os.getgid()),
     lambda: os.setxattr(THERE, "user.deck", b"x"),
     lambda: open(THERE, "w"),
+    look,
 ):
     try:
         way()
@@ -102,7 +108,7 @@ class Targets:
         return (
             (stat.S_IMODE(info.st_mode), info.st_mtime_ns, info.st_size),
             os.listxattr(self.there),
-            (numbers[0] in "SR", numbers[16], os.sched_getscheduler(self.victim.pid)),
+            (numbers[0] not in "TtZX", numbers[16], os.sched_getscheduler(self.victim.pid)),
             Path(f"/proc/{self.victim.pid}/limits").read_text(),
         )
 
@@ -164,17 +170,20 @@ async def test_nothing_outside_is_harmed(
         str(targets.there),
         str((targets.place / "sockets").readlink()),
         str(tmp_path / "mine.py"),
+        str(targets.place / "boris" / "talker.py") if walled else "",
     )
     deck = str(Path(__file__).parents[4])
     text = TRIES.replace("TARGETS", repr(aims)).replace("DECK", repr(deck))
     lesson = log_lesson(tmp_path / "lesson")
     before = targets.state()
     terms = Terms(lesson, walls=walls_for(lesson) if walled else Walls.NONE, within_s=60.0)
-    chosen = handed_in(lesson, tmp_path / "class", anna=text)
-    grades: list[Grade] = [
-        grade async for _, grade in grade_all(terms, chosen, domains=Domains([other_domain]))
-    ]
-    assert grades[0].state is GradeState.PASSED, grades[0]
+    if terms.walls is Walls.NONE:
+        text = text.replace(repr(aims[-1]), repr(""))
+    # Not in a folder that is hidden in any case, either.
+    chosen = handed_in(lesson, targets.place, anna=text, boris="print('ready'); input()")
+    coming = grade_all(terms, chosen, domains=Domains([other_domain]))
+    grades: list[Grade] = [grade async for _, grade in coming if grade.student == "anna"]
+    assert grades[0].state is GradeState.PASSED, [step.message for step in grades[0].steps]
     if confinement() is Confinement.NONE and terms.walls is Walls.NONE:
         return
     assert targets.state() == before
