@@ -10,6 +10,8 @@ import shutil
 import signal
 import sys
 import tempfile
+import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -20,6 +22,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from graph.ros import FAST_DDS_VARIABLES, LOCALHOST_ONLY, ONLY_THESE, PEERS
+from launcher.processes.shared_memory_in_hand import release_in_hand
 from tests.domains import DomainPool
 from tests.machine import PLAIN, left_out, needs_of
 from tests.unit.scripts_of_setup import load
@@ -74,6 +77,8 @@ REAL_STDERR = pytest.StashKey[int]()
 AFTER_TIMEOUT_S = 60.0
 """How long after its time a test may still be there, to fail and to clean up."""
 
+_CLEARED_EVERY_S = 1.0
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The option of `make test`."""
@@ -83,6 +88,18 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Keep where a dying process of the run can write: nothing is caught yet."""
     config.stash[REAL_STDERR] = os.dup(2)
+    if config.getoption("numprocesses", None) and not hasattr(config, "workerinput"):
+        threading.Thread(target=_clear_the_way, daemon=True).start()
+
+
+def _clear_the_way() -> None:
+    """Do for the tests what a supervisor does for its nodes, in the process that has no ROS.
+
+    A test kills nodes as they have a message in hand, and ROS in another test waits for them.
+    """
+    while True:
+        release_in_hand()
+        time.sleep(_CLEARED_EVERY_S)
 
 
 @pytest.hookimpl(tryfirst=True)
