@@ -8,7 +8,7 @@ import re
 from typing import TYPE_CHECKING
 
 from launcher.faults.meanings import warning_of
-from launcher.faults.stuck import MENDS
+from launcher.faults.stuck import MENDS, STILL_RUNS
 from launcher.status import NodeFault
 from text.plain import plain
 from text.sentences import say
@@ -64,11 +64,7 @@ def warning_in(line: str, file: str) -> NodeFault | None:
     blocked = _BLOCKED.fullmatch(line)
     if blocked:
         where, number = blocked["file"], int(blocked["line"])
-        words = say(
-            "{name} still runs after {seconds} s",
-            name=blocked["name"],
-            seconds=blocked["seconds"],
-        )
+        words = say(STILL_RUNS, name=blocked["name"], seconds=blocked["seconds"])
         source = linecache.getline(where, number).strip()
         linecache.clearcache()
         mend = MENDS.get(blocked["waits_in"] or "", MENDS[""])

@@ -10,7 +10,7 @@ from launcher.faults.telling import CALLBACK
 from launcher.status import STUCK, NodeFault
 from text.i18n import N_
 from text.plain import plain
-from text.sentences import say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,9 +30,46 @@ MENDS = {
         "A Rate sleeps until its timer has run, which only this very thread can do: put what is"
         " done at each turn into a callback of create_timer."
     ),
+    "group": N_(
+        "call() waits for an answer that its callback group takes in only after this callback. Give"
+        " the client another one: create_client(…,"
+        " callback_group=MutuallyExclusiveCallbackGroup())."
+    ),
+    "pool": N_(
+        "Every thread of the executor waits for an answer that one of them would have to take in."
+        " Have it called back: client.call_async(request).add_done_callback(self.on_answer)."
+    ),
+    "main": N_(
+        "Until the program comes to rclpy.spin(node), nothing is called: let a timer do what stands"
+        " here."
+    ),
+    "main_call": N_(
+        "call() waits for an answer that nobody takes in before rclpy.spin. Here: future ="
+        " client.call_async(request), and rclpy.spin_until_future_complete(node, future)."
+    ),
+    "main_rate": N_(
+        "A Rate sleeps until its timer has run, and before rclpy.spin none does: put what is done"
+        " at each turn into a callback of create_timer."
+    ),
+    "main_service": N_(
+        "It waits for a service that nobody offers: does the node that should run, and is the name"
+        " right?"
+    ),
     "": N_("Until a callback returns, the node hears nothing: let a timer do the waiting."),
 }
 """By what a callback waits in, as `launcher.callback_watch` names it."""
+
+
+STUCK_SINCE = N_("{name} has been stuck since {time}")
+STILL_RUNS = N_("{name} still runs after {seconds} s")
+
+
+def held_by(fault: NodeFault) -> str:
+    """Return the callback that a fault says not to return; empty for other faults."""
+    words = fault.exception
+    if isinstance(words, Words) and words.template in (STUCK_SINCE, STILL_RUNS):
+        return str(words.values["name"])
+    return ""
 
 
 def stuck_in(told: Mapping[str, Any]) -> tuple[NodeFault, bool] | None:
@@ -48,7 +85,7 @@ def stuck_in(told: Mapping[str, Any]) -> tuple[NodeFault, bool] | None:
         return None
     source = linecache.getline(file, line).strip()
     linecache.clearcache()
-    words = say("{name} has been stuck since {time}", name=name, time=since)
+    words = say(STUCK_SINCE, name=name, time=since)
     meaning = say(MENDS.get(waits_in, MENDS[""]))
     fault = NodeFault(STUCK, file, line, 0, plain(source), words, meaning)
     return fault, seen.get("over") is True

@@ -41,8 +41,52 @@ class Own(Node):
 
 
 rclpy.init()
-rclpy.spin(Own())
+{main}
 """
+SPIN = "rclpy.spin(Own())"
+IN_TWO_THREADS = """
+from rclpy.executors import MultiThreadedExecutor
+executor = MultiThreadedExecutor(2)
+node = Own()
+executor.add_node(node)
+executor.spin()"""
+PUBLISHES = """
+from std_msgs.msg import String
+node = rclpy.create_node("own")
+publisher = node.create_publisher(String, "said", 10)
+while True:
+    publisher.publish(String(data="on"))
+    time.sleep(0.5)"""
+SPINS_NOW_AND_THEN = """
+node = Own()
+while True:
+    rclpy.spin_once(node, timeout_sec=0)
+    time.sleep(0.5)"""
+IN_EVERY_THREAD = """
+        from rclpy.callback_groups import ReentrantCallbackGroup
+        self.group = ReentrantCallbackGroup()
+        self.nobody = self.create_client(Trigger, "nobody", callback_group=self.group)
+        self.create_timer(0.1, self.ask, callback_group=self.group)
+
+    def ask(self):
+        self.nobody.call(Trigger.Request())"""
+DEBUGGED = """
+        import io, pdb, sys
+        commands = io.StringIO("self.client.call(Trigger.Request())\\n")
+        pdb.Pdb(stdin=commands, stdout=sys.stdout, readrc=False).set_trace()
+        pass"""
+STOPPED = """
+        if self.count > 1:
+            print("went on", flush=True) if self.count == 2 else None
+            return
+        import os, signal, subprocess
+        def answer():
+            for future in list(self.client._pending_requests.values()):
+                future.set_result(Trigger.Response())
+        threading.Timer(5.0, answer).start()
+        subprocess.Popen(["sh", "-c", f"sleep 4; kill -CONT {os.getpid()}"])
+        threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGSTOP)).start()
+        self.client.call(Trigger.Request())"""
 SPUN = """
         future = self.client.call_async(Trigger.Request())
         rclpy.spin_until_future_complete(self, future)"""
@@ -55,8 +99,8 @@ BUSY = """
             print("went on", flush=True)"""
 
 
-def own(*, begin: str = "pass", work: str = "pass", tick: str = "pass") -> str:
-    return textwrap.dedent(NODE.format(begin=begin, work=work, tick=tick))
+def own(*, begin: str = "pass", work: str = "pass", tick: str = "pass", main: str = SPIN) -> str:
+    return textwrap.dedent(NODE).format(begin=begin, work=work, tick=tick, main=main)
 
 
 async def _ailing(client: SupervisorClient, name: str, kind: str) -> NodeFault:
@@ -102,3 +146,38 @@ async def test_who_is_stuck_or_has_lost_a_thread_is_not_healthy(
 
     assert await until(went_on, "the busy callback ends, and others follow", 60.0)
     assert well(client.nodes["works"])
+
+
+@pytest.mark.timeout(240)
+async def test_who_never_spins_or_waits_in_a_circle_is_not_healthy(
+    start: Launch, tmp_path: Path
+) -> None:
+    """Nor is a deadlock of several threads; a loop that publishes, and a debugger, are neither."""
+    programs = {
+        "hangs": (own(begin="while True: time.sleep(0.1)"), "rclpy.spin(node)"),
+        "waits": (own(main="node = Own()\nwhile True: time.sleep(0.1)"), "rclpy.spin(node)"),
+        "asks": (own(begin="self.client.call(Trigger.Request())"), "spin_until_future_complete"),
+        "grouped": (
+            own(tick="self.client.call(Trigger.Request())", main=IN_TWO_THREADS),
+            "callback group",
+        ),
+        "pooled": (own(begin=IN_EVERY_THREAD, main=IN_TWO_THREADS), "Every thread"),
+        "publishes": (own(main=PUBLISHES), ""),
+        "turns": (own(main=SPINS_NOW_AND_THEN), ""),
+        "debugged": (own(tick=DEBUGGED), ""),
+        "stopped": (own(tick=STOPPED), ""),
+    }
+    for name, (text, _meaning) in programs.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    client = await start({name: {"run": f"./{name}.py"} for name in programs})
+    for name, (_text, meaning) in programs.items():
+        if meaning:
+            assert meaning in (await _ailing(client, name, STUCK)).meaning
+            assert not well(client.nodes[name])
+
+    async def went_on() -> bool:
+        return any("went on" in line.text for line in await client.history("stopped", 100))
+
+    assert await until(went_on, "the stopped one goes on", 60.0)
+    for name in ("publishes", "turns", "debugged", "stopped"):
+        assert not client.nodes[name].ails, name
