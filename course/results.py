@@ -47,7 +47,7 @@ class StepResult:
     points: int
     """How many it is worth."""
     checks: tuple[CheckResult, ...] = ()
-    """As many as the step has, in its order."""
+    """As many as the step has, in its order; one more if its node is not at work."""
     reason: str = ""
     """Why it waits or could not be judged."""
 

@@ -203,6 +203,12 @@ async def _declared(
     there = await evidence.until(
         lambda: MET if evidence.node(node) is not None else Observation(met=False), within_s
     )
+    # What a node serves is told apart from its name, on a busy machine seconds later.
+    served = f"{node}/list_parameters"
+    await evidence.until(
+        lambda: MET if any(row.name == served for row in evidence.update.services) else None,
+        NOTICED_S if there.met else 0.0,
+    )
     if not there.met:
         seen = say("there is no node {node}", node=node)
         return Observation(met=False, seen=seen, look=dead_nodes(evidence))

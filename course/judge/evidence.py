@@ -14,6 +14,7 @@ from graph.data import PROCESS_NUMBERS, GraphUpdate
 from graph.ros import ONLY_LISTENING
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.processes.table import TICKS_PER_S, read_process
+from launcher.status import NodeState
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -32,6 +33,7 @@ KEPT_LINES = 2000
 MARGIN_S = 0.02
 """How much later than it began a node may be known to have begun."""
 TICK_S = 0.1
+CRASHED = (NodeState.FAILED, NodeState.BACKOFF)
 
 
 @dataclass(frozen=True)
@@ -84,11 +86,14 @@ class Evidence:
     _lines: dict[str, deque[LogLine]] = field(default_factory=dict)
     _born: dict[str, tuple[int, float]] = field(default_factory=dict)
     """Of each node its process, and when that began, unix time."""
+    _crashed: dict[str, tuple[float, NodeStatus]] = field(default_factory=dict)
+    """Of each node that has crashed when that was heard, unix time, and what it was told with."""
     _policy_restarts: dict[str, int] = field(default_factory=dict)
     _changed: asyncio.Event = field(default_factory=asyncio.Event)
 
     def __post_init__(self) -> None:
         self.note_starts(self.client.nodes.values())
+        self._note_crashes(self.client.nodes.values())
         self.restarts = 0
 
     @property
@@ -119,6 +124,7 @@ class Evidence:
                     self._lines.setdefault(line.node, deque(maxlen=KEPT_LINES)).append(line)
             elif isinstance(event, StatusEvent):
                 self.note_starts(event.nodes)
+                self._note_crashes(event.nodes)
             elif isinstance(event, ClosedEvent):
                 self.ended = event.reason or "closed"
             self._changed.set()
@@ -138,6 +144,22 @@ class Evidence:
                 self.restarts += _written_s(node.file) > began_s
             elif not again:
                 self.restarts += 1
+
+    def _note_crashes(self, nodes: Iterable[NodeStatus]) -> None:
+        for node in nodes:
+            if node.state in CRASHED:
+                self._crashed[node.name] = (time.time(), node)
+
+    def trouble(self, name: str, since_s: float) -> NodeStatus | None:
+        """Return how a node was when it crashed, or is if it ails; None if it did not since then.
+
+        One that has crashed and was started again afterwards has crashed.
+        """
+        now = self.nodes[name]
+        if now.ails or now.state in CRASHED:
+            return now
+        crashed_s, then = self._crashed.get(name, (-math.inf, now))
+        return then if crashed_s >= since_s else None
 
     def began_s(self, node: str) -> float:
         """Return when the process of a node began, unix time; 0 if there has been none."""

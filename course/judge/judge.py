@@ -6,9 +6,11 @@ import asyncio
 import contextlib
 import time
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
-from course.judge.evidence import MET, Evidence, Observation
+from course.judge.at_work import not_at_work, running
+from course.judge.evidence import CRASHED, MET, Evidence, Observation
 from course.judge.functions import LessonFaultError
 from course.judge.kinds import expected, judged, topics_of
 from course.judge.missing import dead_nodes
@@ -16,7 +18,7 @@ from course.results import CheckResult, LessonResult, State, StepResult
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.observer import Observer
-from launcher.profile.steps.checks import kind_of
+from launcher.profile.steps.checks import EndsCheck, kind_of
 from launcher.profile.steps.draw import draw
 from launcher.profile.steps.expressions import filled
 from launcher.status import NodeState
@@ -93,12 +95,33 @@ class Judge:
         for step in self.steps.values():
             result = self.waits(step, results)
             if result is None:
+                await self._start_crashed()
                 result = await self.step(step)
             results.append(result)
             on_step(result)
             if step.id == until:
                 break
         return LessonResult(self.seed, self.evidence.values, tuple(results))
+
+    async def _start_crashed(self) -> None:
+        """Start the learner's nodes that have crashed, so that each step has one that runs.
+
+        Whether one would be started again by itself, and when, depends on how fast all of it is.
+        """
+        evidence = self.evidence
+        down = [node for node in evidence.nodes.values() if node.file and node.state in CRASHED]
+        names = [node.name for node in down]
+        if not names:
+            return
+        began_s = {name: evidence.began_s(name) for name in names}
+        evidence.touched.update(names)
+        await evidence.client.restart(*names)
+
+        def all_begun() -> Observation | None:
+            return MET if all(evidence.began_s(name) > began_s[name] for name in names) else None
+
+        await evidence.until(all_begun, FOUND_WITHIN_S)
+        await self.settle()
 
     def waits(self, step: StepDocument, results: Iterable[StepResult]) -> StepResult | None:
         """Return the result of a step that needs one that has not passed; None if it can begin."""
@@ -180,23 +203,35 @@ class Judge:
         """
         checks = [self._filled(check) for check in step.checks]
         found = [CheckResult(State.NOT_YET, expected(check)) for check in checks]
-        if before is not None and len(before.checks) == len(found):
+        more: tuple[CheckResult, ...] = ()
+        if before is not None and len(before.checks) >= len(found):
+            more = before.checks[len(found) :]
             found = [
                 replace(one, state=old.state, seen=old.seen, look=old.look)
-                for one, old in zip(found, before.checks, strict=True)
+                for one, old in zip(found, before.checks, strict=False)
             ]
-        state, meanwhile = State.PASSED, before.state if before is not None else State.NOT_YET
-        on_check(StepResult(step.id, meanwhile, step.points, tuple(found)))
-        for number, check in enumerate(checks):
-            found[number] = await self._check(check)
-            if found[number].state is not State.PASSED:
-                state = found[number].state
-                found[number + 1 :] = [
-                    CheckResult(State.NOT_YET, one.what) for one in found[number + 1 :]
-                ]
+        meanwhile = before.state if before is not None else State.NOT_YET
+        on_check(StepResult(step.id, meanwhile, step.points, (*found, *more)))
+        ask = partial(not_at_work, step, self.evidence, time.time())
+        ran, everybody = running(self.evidence), frozenset(self.evidence.nodes)
+        idle: CheckResult | None = None
+        done = 0
+        for check in checks:
+            if isinstance(check, EndsCheck):
+                # Afterwards it is another process, which has done nothing yet.
+                idle = await ask(everybody)
+            if idle is not None:
                 break
-            on_check(StepResult(step.id, meanwhile, step.points, tuple(found)))
-        return StepResult(step.id, state, step.points, tuple(found))
+            found[done] = await self._check(check)
+            if found[done].state is not State.PASSED:
+                break
+            done += 1
+            on_check(StepResult(step.id, meanwhile, step.points, (*found, *more)))
+        all_hold = done == len(found)
+        asked = isinstance(checks[min(done, len(found) - 1)], EndsCheck)
+        if not asked and (all_hold or found[done].state is not State.UNJUDGED):
+            idle = await ask(everybody if all_hold else ran)
+        return _concluded(step, found, done, idle)
 
     async def _check(self, check: CheckDocument) -> CheckResult:
         what = expected(check)
@@ -229,6 +264,21 @@ class Judge:
         everything = _topics_of(self.steps.values())
         topics = everything if steps is None else _topics_of(steps) | (everything & {ROSOUT})
         self.evidence.observer.follow(topics)
+
+
+def _concluded(
+    step: StepDocument, found: list[CheckResult], done: int, idle: CheckResult | None
+) -> StepResult:
+    """Return the result of a step of which so many checks hold, and the next one may not.
+
+    `idle`: what keeps its node from its work, which counts more than what was missed meanwhile.
+    """
+    state = found[done].state if done < len(found) else State.PASSED
+    judged_too = done + (idle is None)
+    found[judged_too:] = [CheckResult(State.NOT_YET, one.what) for one in found[judged_too:]]
+    if idle is not None:
+        return StepResult(step.id, State.FAILED, step.points, (*found, idle))
+    return StepResult(step.id, state, step.points, tuple(found))
 
 
 def _topics_of(steps: Iterable[StepDocument]) -> set[str]:

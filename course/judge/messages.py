@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import time
 from typing import TYPE_CHECKING, Any
@@ -55,9 +56,18 @@ def _rate(
         return MET
     return Observation(
         met=False,
-        seen=say("{topic} comes {hz} times a second", topic=topic, hz=f"{hz:.2f}"),
+        seen=say("{topic} comes {hz} times a second", topic=topic, hz=_about(hz, between)),
         look=say("Look at the period of the timer: it is in seconds, 1 / rate."),
     )
+
+
+def _about(hz: float, between: tuple[float, float]) -> str:
+    """Return a rate so coarsely that it is the same in each run, but not as one that is right."""
+    if not 0 < hz < math.inf:
+        return f"{hz:g}"
+    step = 10 ** math.floor(math.log10(hz)) / 2
+    about = round(hz / step) * step
+    return f"{hz:.2f}" if between[0] <= about <= between[1] else f"{about:g}"
 
 
 def _hz(messages: Sequence[ReceivedMessage], window_s: float) -> float:

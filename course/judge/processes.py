@@ -41,15 +41,16 @@ def log(check: LogCheck, evidence: Evidence, since_s: float) -> Observation:
             seen=say(
                 "{node} logs it as {found}, not as {wanted}: {text}",
                 node=check.log,
-                found=fitting[-1].severity.value,
+                found=fitting[0].severity.value,
                 wanted=check.level,
-                text=fitting[-1].text,
+                text=fitting[0].text,
             ),
         )
     if right:
-        seen = say("{node} logs it {n} times", node=check.log, n=len(right))
+        seen = say("{node} logs it fewer than {n} times", node=check.log, n=check.lines)
     elif lines:
-        seen = say("{node} logs instead: {text}", node=check.log, text=lines[-1].text)
+        # The first: it is the same in each run.
+        seen = say("{node} logs instead: {text}", node=check.log, text=lines[0].text)
     else:
         seen = say("{node} logs nothing", node=check.log)
     return Observation(met=False, seen=seen, look=dead_nodes(evidence))
@@ -141,7 +142,7 @@ def _how(check: EndsCheck, took_s: float, code: int | None, ended_by: str | None
     if took_s > check.within:
         return Observation(
             met=False,
-            seen=say("{node} took {seconds} s to end", node=check.ends, seconds=f"{took_s:.1f}"),
+            seen=say("{node} took more than {n:g} s to end", node=check.ends, n=check.within),
             look=say("Is there a loop or a sleep that does not hear Ctrl-C?"),
         )
     return MET

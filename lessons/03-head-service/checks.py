@@ -26,13 +26,14 @@ def takes_a_second(seen):
     took_s = second_s - first_s
     if took_s < SHORTEST_MOVEMENT_S:
         return {
-            "en": f"the head was there after {took_s:.1f} s: no servo is that fast",
-            "ru": f"голова была на месте через {took_s:.1f} с: таких быстрых сервоприводов нет",
+            "en": f"the head was there within {SHORTEST_MOVEMENT_S} s: no servo is that fast",
+            "ru": f"голова была на месте раньше чем через {SHORTEST_MOVEMENT_S} с: таких быстрых "
+            "сервоприводов нет",
         }
     if took_s > LONGEST_MOVEMENT_S:
         return {
-            "en": f"the head took {took_s:.1f} s instead of 1 s",
-            "ru": f"поворот занял {took_s:.1f} с вместо 1 с",
+            "en": f"the head took more than {LONGEST_MOVEMENT_S:g} s instead of 1 s",
+            "ru": f"поворот занял больше {LONGEST_MOVEMENT_S:g} с вместо 1 с",
         }
     return None
 
@@ -48,8 +49,8 @@ def never_silent(seen):
     if silence_s < LONGEST_SILENCE_S:
         return None
     return {
-        "en": f"/head_state was silent for {silence_s:.1f} s while the head turned",
-        "ru": f"/head_state молчал {silence_s:.1f} с, пока голова поворачивалась",
+        "en": f"/head_state was silent for {silence_s:.0f} s while the head turned",
+        "ru": f"/head_state молчал {silence_s:.0f} с, пока голова поворачивалась",
     }
 
 

@@ -2,6 +2,8 @@
 
 import math
 
+LARGEST_ERROR_M = 0.15
+
 
 def stood_where_it_said(seen):
     """The drive has ended at the goal, with a stop."""
@@ -9,10 +11,11 @@ def stood_where_it_said(seen):
         return {"en": "nothing has moved", "ru": "ничего не двигалось"}
     place = seen.messages["/odom"][-1][1]["pose"]["pose"]["position"]
     left_m = math.hypot(-seen.values["x_m"] - place["x"], seen.values["y_m"] - place["y"])
-    if left_m > 0.15:
+    if left_m > LARGEST_ERROR_M:
         return {
-            "en": f"the result says reached, but the robot is {left_m:.2f} m away from the goal",
-            "ru": f"в результате reached, но до цели ещё {left_m:.2f} м",
+            "en": "the result says reached, but the robot is more than "
+            f"{LARGEST_ERROR_M} m away from the goal",
+            "ru": f"в результате reached, но до цели ещё больше {LARGEST_ERROR_M} м",
         }
     speed = float(seen.messages["/drive"][-1][1]["drive"]["speed"])
     if speed:

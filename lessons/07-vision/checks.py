@@ -15,13 +15,13 @@ def seldom(seen):
     )
     if len(looks_s) < 2:
         return {
-            "en": f"the agent has looked {len(looks_s)} times so far",
-            "ru": f"агент посмотрел пока столько раз: {len(looks_s)}",
+            "en": "the agent has not looked twice so far",
+            "ru": "агент ещё не посмотрел второй раз",
         }
     after_s = looks_s[-1] - looks_s[-2]
     if SHORTEST_S <= after_s <= LONGEST_S:
         return None
     return {
-        "en": f"the agent looks again after {after_s:.1f} s; 3 s is wanted",
-        "ru": f"агент смотрит снова через {after_s:.1f} с, а нужно через 3 с",
+        "en": f"the agent looks again after {after_s:.0f} s; 3 s is wanted",
+        "ru": f"агент смотрит снова через {after_s:.0f} с, а нужно через 3 с",
     }

@@ -9,7 +9,8 @@ def no_word_for_a_distance(seen):
     words = [message["data"] for _, message in seen.messages["/ai_command"]]
     if len(words) <= WORD_OF_BEFORE:
         return None
+    # How many have come by now is chance.
     return {
-        "en": f"distances came and no voice, and /ai_command said {', '.join(words)}",
-        "ru": f"пришли расстояния, голоса не было, а в /ai_command — {', '.join(words)}",
+        "en": f"distances came and no voice, and /ai_command said {words[-1]}",
+        "ru": f"пришли расстояния, голоса не было, а в /ai_command — {words[-1]}",
     }

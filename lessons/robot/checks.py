@@ -16,14 +16,14 @@ def repeats(seen):
     times = [when for when, message in seen.messages[DRIVE] if message["drive"]["speed"] < 0]
     if len(times) < 2 or times[-1] - times[0] < 1.4:
         return {
-            "en": f"/drive came {len(times)} times after the word; wanted: for two seconds",
-            "ru": f"после слова в /drive пришло сообщений: {len(times)}; нужны две секунды",
+            "en": "/drive did not come for two seconds after the word",
+            "ru": "после слова сообщения в /drive не шли две секунды",
         }
     rate = (len(times) - 1) / (times[-1] - times[0])
     if not 7 <= rate <= 13:
         return {
-            "en": f"/drive comes {rate:.1f} times a second, not 10",
-            "ru": f"в /drive приходит {rate:.1f} сообщений в секунду, а не 10",
+            "en": f"/drive comes {rate:.0f} times a second, not 10",
+            "ru": f"в /drive приходит {rate:.0f} сообщений в секунду, а не 10",
         }
     return None
 
@@ -42,8 +42,8 @@ def ends_with_a_stop(seen):
     lasted = seen.messages[DRIVE][-1][0] - first
     if not 1.4 <= lasted <= 3.5:
         return {
-            "en": f"the stop came {lasted:.1f} s after the first message, not 2 s",
-            "ru": f"остановка пришла через {lasted:.1f} с после первого сообщения, а не через 2 с",
+            "en": f"the stop came {lasted:.0f} s after the first message, not 2 s",
+            "ru": f"остановка пришла через {lasted:.0f} с после первого сообщения, а не через 2 с",
         }
     return None
 
@@ -56,8 +56,8 @@ def moves(seen):
     way = math.hypot(places[-1]["x"] - places[0]["x"], places[-1]["y"] - places[0]["y"])
     if way < 0.1:
         return {
-            "en": f"the robot has moved by {way:.2f} m",
-            "ru": f"робот проехал {way:.2f} м",
+            "en": "the robot has moved by less than 0.1 m",
+            "ru": "робот проехал меньше 0.1 м",
         }
     return None
 
@@ -75,8 +75,8 @@ def decides(seen):
     if before and word == ("вперед" if clear else "стоп"):
         return None
     return {
-        "en": f"the word is {word}, and the sonar said {before[-1:]}",
-        "ru": f"слово — {word}, а сонар сообщил {before[-1:]}",
+        "en": f"the word is {word}, and the sonar says {'clear' if clear else 'not clear'}",
+        "ru": f"слово — {word}, а по сонару путь {'свободен' if clear else 'не свободен'}",
     }
 
 
@@ -89,12 +89,12 @@ def stands_before_the_wall(seen):
     nearest = min((each["data"] for _, each in distances if each["data"] > 0), default=math.inf)
     if speed > 0.02:
         return {
-            "en": f"the robot still drives, {speed:.2f} m/s",
-            "ru": f"робот всё ещё едет, {speed:.2f} м/с",
+            "en": f"the robot still drives, {speed:.1f} m/s",
+            "ru": f"робот всё ещё едет, {speed:.1f} м/с",
         }
     if nearest < 0.2:
         return {
-            "en": f"the robot came as near as {nearest:.2f} m",
-            "ru": f"робот подъехал на {nearest:.2f} м",
+            "en": "the robot came nearer than 0.2 m",
+            "ru": "робот подъехал ближе чем на 0.2 м",
         }
     return None

@@ -1,0 +1,153 @@
+"""Whether the learner's own nodes are at work: they run, and answer what every node can be asked.
+
+What keeps a node from its work comes before whatever a check has missed meanwhile: which check that
+is depends on when it happened, and the reason does not.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.judge.evidence import MET, Observation
+from course.results import CheckResult, State
+from graph.data import PROCESS_NUMBERS
+from launcher.faults.stuck import held_by
+from launcher.status import STUCK, NodeState
+from text.sentences import Words, say
+
+if TYPE_CHECKING:
+    from course.judge.evidence import Evidence
+    from launcher.profile.steps.model import StepDocument
+    from launcher.status import NodeFault, NodeStatus
+
+FOUND_WITHIN_S = 10.0
+"""How long the services that every node has may take to be discovered."""
+ANSWERS_WITHIN_S = 20.0
+"""How long a node may take to answer: longer than until it is told that it is stuck."""
+SERVICE, TYPE = "get_parameters", "rcl_interfaces/srv/GetParameters"
+_ADDRESS = re.compile(r" at 0x[0-9a-f]+")
+"""Where an object is: another place in each run."""
+
+
+async def not_at_work(
+    step: StepDocument, evidence: Evidence, since_s: float, ran: frozenset[str]
+) -> CheckResult | None:
+    """Return what keeps a node of this step from its work; None if all are at it.
+
+    `since_s`: a crash since then counts, even if the node has been started again.
+    `ran`: nodes of which the end counts as well, even if it was no crash.
+    """
+    own = [node for node in evidence.nodes.values() if node.file]
+    named = [node.name for node in own if Path(node.file).name == step.file]
+    names = named or [node.name for node in own]
+    # Together, so that one that is silent does not have the others' crashes forgotten.
+    silent = await asyncio.gather(*(_silent_node(name, evidence) for name in names))
+    for name, asked_in_vain in zip(names, silent, strict=True):
+        seen, look = _trouble(name, evidence, since_s, ended_too=name in ran)
+        # Several nodes may run it, and which of them fails first is chance.
+        what = Path(evidence.nodes[name].file).name
+        if not seen and asked_in_vain:
+            seen, look = _silence(asked_in_vain, evidence.nodes[name])
+        if seen:
+            return CheckResult(State.FAILED, say("{program} is at work", program=what), seen, look)
+    return None
+
+
+def _trouble(name: str, evidence: Evidence, since_s: float, *, ended_too: bool) -> tuple[str, str]:
+    """Return how a node has ended, or in what it is stuck; nothing of one that runs."""
+    node = evidence.trouble(name, since_s)
+    if node is None:
+        now = evidence.nodes[name]
+        ended = ended_too and now.state is NodeState.EXITED and _is_of_ros(now.file)
+        return (say("it has ended"), say("rclpy.spin keeps a node running.")) if ended else ("", "")
+    fault = node.fault
+    if fault is not None and node.ails:
+        return _stuck(fault) if held_by(fault) else (_lasting(fault), "")
+    if node.signal is not None:
+        return say("it was killed by {signal}", signal=node.signal), ""
+    if node.exit_code is not None:
+        return say("it has ended with exit code {code}", code=node.exit_code), ""
+    return node.detail or node.state.value, ""
+
+
+def _lasting(fault: NodeFault) -> Words:
+    """Return the words of a fault without what is another in each run."""
+    if isinstance(fault.exception, Words):
+        return fault.words
+    return replace(fault, exception=_ADDRESS.sub("", fault.exception)).words
+
+
+def _stuck(fault: NodeFault) -> tuple[str, str]:
+    file = fault.file.rpartition("/")[2]
+    return say("{name} in {file} does not return", name=held_by(fault), file=file), fault.meaning
+
+
+def _silence(node: str, status: NodeStatus) -> tuple[str, str]:
+    if status.fault is not None and held_by(status.fault):
+        return _stuck(status.fault)
+    seen = say(
+        "{node} does not answer within {seconds} s", node=node, seconds=f"{ANSWERS_WITHIN_S:g}"
+    )
+    return seen, say("Does main come to rclpy.spin, and does every callback return?")
+
+
+async def _silent_node(name: str, evidence: Evidence) -> str:
+    """Return the node of a process that does not answer; empty if all do, or cannot be asked."""
+    for node in _nodes_of(name, evidence):
+        if not await _answers(name, node, evidence):
+            return node
+    return ""
+
+
+def _nodes_of(name: str, evidence: Evidence) -> list[str]:
+    """Return the nodes of the graph that a process has made."""
+    pid = evidence.nodes[name].pid
+    if pid is None:
+        return []
+    number = pid % PROCESS_NUMBERS
+    return [row.name for row in evidence.update.nodes if number in row.processes]
+
+
+async def _answers(name: str, node: str, evidence: Evidence) -> bool:
+    service, pid = f"{node}/{SERVICE}", evidence.nodes[name].pid
+
+    def gone() -> bool:
+        now = evidence.nodes[name]
+        return now.pid != pid or (now.fault is not None and now.fault.kind == STUCK)
+
+    def can_be_asked() -> Observation | None:
+        there = any(row.name == service for row in evidence.update.services)
+        return MET if there else Observation(met=False, final=gone())
+
+    if not (await evidence.until(can_be_asked, FOUND_WITHIN_S)).met:
+        return True
+    call = evidence.observer.call(service, TYPE, {"names": []}, ANSWERS_WITHIN_S)
+    answer = asyncio.ensure_future(asyncio.wrap_future(call))
+
+    def answered() -> Observation:
+        met = answer.done() and answer.result().ok
+        return Observation(met=met, final=answer.done() or gone())
+
+    try:
+        met = (await evidence.until(answered, ANSWERS_WITHIN_S + 1)).met
+        # Of one that has ended there is more to say than that it does not answer.
+        return met or evidence.nodes[name].pid != pid
+    finally:
+        answer.cancel()
+
+
+def running(evidence: Evidence) -> frozenset[str]:
+    """Return the names of the nodes that run."""
+    return frozenset(node.name for node in evidence.nodes.values() if node.state.alive)
+
+
+def _is_of_ros(file: str) -> bool:
+    """Whether a program is of ROS: another one may end when it has done its work."""
+    try:
+        return "rclpy" in Path(file).read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
