@@ -88,7 +88,9 @@ def add_grade(parser: Parser) -> None:
         help=_("how long a folder may take, 180 s by default"),
     )
     add_domain(parser, _("ROS domain, with one job; by default one that nobody is in"))
-    add_seed(parser)
+    add_seed(
+        parser, _("draw the values from this number; by default one that is made of the files")
+    )
     parser.epilog = _(
         "The folders are left as they are. Exit code: 0 if all steps of all folders have passed, 1"
         " if not, 2 for a wrong request, 3 if a folder could not be graded; with --format"

@@ -91,12 +91,12 @@ def add_running(parser: Parser) -> None:
     )
 
 
-def add_seed(parser: Parser) -> None:
-    """Add the number that draws the values of tasks."""
+def add_seed(parser: Parser, words: str = "") -> None:
+    """Add the number that draws the values of tasks; `words`: the help, if it is not as usual."""
     parser.add_argument(
         "--seed",
         metavar="N",
         type=whole,
         default=0,
-        help=_("draw the values from this number; by default another one in each run"),
+        help=words or _("draw the values from this number; by default another one in each run"),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import hashlib
 import shutil
 import tempfile
 import time
@@ -32,7 +33,7 @@ from course.proof.places import Places
 from course.protocol import unpack_step
 from course.results import State
 from launcher.profile.defaults import FOLDERS_OWN
-from launcher.profile.steps.draw import new_seed
+from launcher.profile.steps.draw import LARGEST_SEED
 from text.packing import unpack_text
 from text.sentences import say
 
@@ -51,7 +52,7 @@ class Terms:
 
     lesson: LessonFolder
     seed: int = 0
-    """What the values are drawn from; 0: another one for each folder."""
+    """What the values are drawn from; 0: other files, another one, see `seed_of`."""
     bags: Path | None = None
     """Where to keep recordings."""
     within_s: float = WITHIN_S
@@ -137,6 +138,19 @@ async def grade_all(
         await asyncio.gather(*tasks, return_exceptions=True)
 
 
+def seed_of(files: Files) -> int:
+    """Return what the values for these files are drawn from: each time the same.
+
+    So the same files get the same grade in the same words. Whoever writes the values into a file
+    has made another one, for which others are drawn.
+    """
+    found = hashlib.sha256()
+    for path, content in sorted(files.contents.items()):
+        found.update(f"{path} {len(content)} ".encode(errors="surrogateescape"))
+        found.update(content)
+    return int.from_bytes(found.digest()[:8], "big") % LARGEST_SEED + 1
+
+
 def _read(folder: Path) -> Files | str:
     try:
         return Files.read(folder)
@@ -195,7 +209,7 @@ class _Grading:
         self._examiners = examiners
         self._domains = domains
         self._on_step = on_step
-        self._seed = terms.seed or new_seed()
+        self._seed = terms.seed or seed_of(self._files)
         self._began_s = time.monotonic()
         self._grade = Grade(
             terms.lesson,
