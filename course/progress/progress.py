@@ -43,6 +43,8 @@ class StepProgress:
     """The state of the files that it passed with, see `course.progress.files`."""
     at: int = 0
     """When, as Unix time; 0 if that is not known."""
+    graded: str = ""
+    """The state of the files with which it has passed in a grading of the whole lesson."""
 
 
 class StepChanges(TypedDict, total=False):
@@ -54,6 +56,7 @@ class StepChanges(TypedDict, total=False):
     solution: bool
     files: str
     at: int
+    graded: str
 
 
 @dataclass(frozen=True)

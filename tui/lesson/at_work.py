@@ -20,6 +20,7 @@ from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import host_of
 from tui.lesson.reading import StepTexts
+from tui.session.requests import WholeGrade
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from tui.frame.host import Host
     from tui.session.messages import SessionChanged
     from tui.session.ports import JudgeLink
-    from tui.session.requests import WholeGrade
 
 ACTS = frozenset({"publish", "service", "action", "parameter", "ends"})
 """Checks that do something to the nodes: not done again for a change of a file alone."""
@@ -144,10 +144,12 @@ class LessonAtWork:
         ids = [step.id for step in folder.steps]
         self._step = next((id_ for id_ in ids if id_ not in self.passed), ids[0])
         self._again = self._to_be_judged_again()
+        self._remember_grade()
         self._changed()
         if not self.own:
             return
         self.note()
+        self._grade_if_done()
         judge = await opener.judge(folder, session, passed)
         self._judge = judge
         try:
@@ -170,8 +172,9 @@ class LessonAtWork:
         files = await asyncio.to_thread(state_of, self._own_files)
         if files == self.files:
             return
-        self.files, self._results, self._judged, self.grade = files, {}, "", None
+        self.files, self._results, self._judged = files, {}, ""
         self._again = self._to_be_judged_again()
+        self._remember_grade()
         self._ask_judge()
         self._changed()
 
@@ -214,6 +217,16 @@ class LessonAtWork:
             screen = next(iter(self._shown_by))
             screen.app.run_worker(self._grade(), group="grade")
 
+    def _remember_grade(self) -> None:
+        """Take the grade of before, if it was of these files and all of it was right."""
+        self.grade = None
+        lesson = self.folder
+        if lesson is None or not self.files or not lesson.steps:
+            return
+        known = [self.progress.step(lesson.name, step.id) for step in lesson.steps]
+        if all(each.passed and each.graded == self.files for each in known):
+            self.grade, self._graded = WholeGrade(lesson.points, lesson.points, {}), self.files
+
     async def _grade(self) -> None:
         """Ask for the grade; a step that does not pass there has lost its tick."""
         lesson, node, files = self.folder, self.node, self.files
@@ -227,6 +240,8 @@ class LessonAtWork:
             return
         self.grade = grade
         for step in lesson.steps:
+            if step.id not in grade.failed and not grade.ungraded:
+                self.note(step.id, graded=files)
             if step.id in grade.failed:
                 self.note(step.id, passed=False)
                 why = grade.failed[step.id]
@@ -274,8 +289,9 @@ class LessonAtWork:
 
     @property
     def _crashed(self) -> bool:
-        nodes = self._host.feed.nodes.values()
-        return any(node.file and node.state is NodeState.FAILED for node in nodes)
+        nodes = [node for node in self._host.feed.nodes.values() if node.file]
+        down = (NodeState.FAILED, NodeState.BACKOFF)
+        return any(node.ails or node.state in down for node in nodes)
 
     @property
     def _own_files(self) -> list[str]:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
+import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -18,7 +21,8 @@ from course.judge.kinds import expected
 from course.judging import ValuesDrawn
 from course.lessons.catalog import SHIPPED
 from course.lessons.lesson import LessonFolder
-from course.progress.progress import load_progress
+from course.progress.files import state_of
+from course.progress.progress import load_progress, noted
 from course.results import CheckResult, State, StepResult
 from launcher.status import NodeFault, NodeState, NodeStatus
 from tests.tui.app_runs import opened
@@ -30,6 +34,7 @@ from tests.waiting import until
 from text.i18n import set_language
 from text.sentences import say
 from tui.app import DeckApp
+from tui.lesson import words
 from tui.session.ports import SessionLink
 from tui.session.requests import OpenRequest, WholeGrade
 from tui.session.watching import watched
@@ -39,6 +44,8 @@ LONG_TASK = "03-head-service"
 WORD = re.compile(r"[^\W\d_]{4,}|/\w+")
 """What can be found again however it is wrapped."""
 SEED = 4711
+AT_12_03, AT_12_45 = 1767268980, 1767271500
+"""Unix times of one day, in UTC."""
 SEEN = StepResult(
     "topic",
     State.FAILED,
@@ -71,9 +78,11 @@ class Watching(RecordedOpener):
         return watched(42)
 
 
-def own_opener(file: str = "/home/eve/deck-course/02-sonar-safety/mock_sonar.py") -> RecordedOpener:
-    """Lesson 2 with the learner's own sonar, which has a mistake."""
-    fault = NodeFault("crash", file, 12, 0, "self.publiser = 1", "NameError: name 'x'", "")
+def own_opener(file: str = "") -> RecordedOpener:
+    """Lesson 2 with the learner's own sonar: this file, or one that has a mistake."""
+    wrong = "/home/eve/deck-course/02-sonar-safety/mock_sonar.py"
+    crash = NodeFault("crash", wrong, 12, 0, "self.publiser = 1", "NameError: name 'x'", "")
+    fault, file = (None, file) if file else (crash, wrong)
     nodes = {
         "sonar_front": NodeStatus(
             "sonar_front", "./mock_sonar.py", NodeState.READY, pid=7, file=file, fault=fault
@@ -111,6 +120,32 @@ def test_a_step_that_is_not_right_looks(look: Look, snap_compare: SnapCompare) -
     async def judge(pilot: Pilot[Any]) -> None:
         await look.settle(pilot)
         await until(lambda: opener.judged.asked, "the first step to be judged")
+        opener.judged.say(ValuesDrawn(SEED))
+        opener.judged.say(SEEN)
+        assert isinstance(pilot.app, DeckApp)
+        app = pilot.app
+        await until(lambda: "→" in text(app, "checks"), "the result")
+        await pilot.pause()
+
+    assert snap_compare(look.app("lesson", opener), terminal_size=look.size, run_before=judge)
+
+
+@both_languages
+def test_a_tick_that_has_faded_looks(
+    look: Look, snap_compare: SnapCompare, course: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first step was right at 12:03, with another file; it is no tick, and gives no points."""
+    now = SimpleNamespace(
+        localtime=lambda at_s=AT_12_45: time.localtime(at_s), strftime=time.strftime
+    )
+    monkeypatch.setattr(words, "time", now)
+    step = {"passed": True, "points": 2, "files": "0123456789abcdef", "at": AT_12_03}
+    (course / "progress.json").write_text(json.dumps({"lessons": {LESSON: {"topic": step}}}))
+    opener = own_opener()
+
+    async def judge(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        await until(lambda: opener.judged.asked == ["topic"], "the first step to be judged")
         opener.judged.say(ValuesDrawn(SEED))
         opener.judged.say(SEEN)
         assert isinstance(pilot.app, DeckApp)
@@ -248,6 +283,29 @@ async def test_a_lesson_ends_with_its_grade_and_what_fails_there_loses_its_tick(
         assert "ends" not in load_progress().passed(LESSON)
 
 
+async def test_a_lesson_that_is_opened_again_has_its_grade_and_another_file_has_none(
+    course: Path,
+) -> None:
+    file = course / "mock_sonar.py"
+    file.write_text("right = 1\n")
+    lesson = LessonFolder(SHIPPED / LESSON)
+    files = state_of([str(file)])
+    for step in lesson.steps:
+        noted(LESSON, step.id, {"passed": True, "points": step.points, "files": files, "at": 1})
+    # It was closed before it was graded.
+    opener = own_opener(str(file))
+    async with opened(opener, "lesson") as (app, _pilot):
+        await until(lambda: "10 of 10" in text(app, "checks"), "the grade")
+    assert opener.graded == [course]
+    again = own_opener(str(file))
+    async with opened(again, "lesson") as (app, _pilot):
+        await until(lambda: "10 of 10" in text(app, "checks"), "the grade of before")
+        file.write_text("other = 1\n")
+        again.link.set_state("sonar_front", NodeState.READY, pid=9)
+        await until(lambda: "10 of 10" not in text(app, "checks"), "no grade")
+    assert again.graded == []
+
+
 async def test_a_node_that_has_crashed_holds_no_tick(course: Path) -> None:
     file = course / "mock_sonar.py"
     file.write_text("right = 1\n")
@@ -257,6 +315,10 @@ async def test_a_node_that_has_crashed_holds_no_tick(course: Path) -> None:
         await until(lambda: text(app, "overview").startswith("[✓]"), "the tick")
         opener.link.set_state("sonar_front", NodeState.FAILED)
         await until(lambda: text(app, "overview").startswith("[○]"), "the tick to fade")
+        opener.link.set_state("sonar_front", NodeState.READY)
+        await until(lambda: text(app, "overview").startswith("[✓]"), "the tick again")
+        opener.link.set_state("sonar_front", NodeState.BACKOFF)
+        await until(lambda: text(app, "overview").startswith("[○]"), "the tick to fade again")
 
 
 async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(
