@@ -7,7 +7,8 @@ JSON has one object per line, distinguished by `event`:
     log       a line of a node: node, seq, time (unix), severity, text, logger, source
     skipped   node and lines: so many lines were left out here, the log file has them
     summary   the last one: healthy, exit_code, reason (what ended the run if nobody here did),
-              seconds, and nodes as for `status` with `healthy`
+              seconds, and nodes as for `status` with `healthy`, and `asked`: false if nothing
+              is known but that its process runs
 """
 
 from __future__ import annotations
@@ -130,7 +131,7 @@ class TextReport:
         rows = [
             (
                 node.name,
-                _("healthy") if healthy[node.name] else _("FAILED"),
+                _result(node) if healthy[node.name] else _("FAILED"),
                 _(node.state.value),
                 str(node.restarts),
                 localized(node.why),
@@ -150,6 +151,10 @@ class TextReport:
             parts.append(
                 _("ended from elsewhere: {reason}").format(reason=localized(summary.reason))
             )
+        unasked = [node.name for node in nodes if healthy[node.name] and node.unasked]
+        if not parts and unasked:
+            words = _("no node has failed; not asked whether at work: {names}")
+            parts.append(words.format(names=", ".join(unasked)))
         words = plain("; ".join(parts)) or _("every node stayed healthy")
         self._write(
             _("{words}; {seconds:.1f} s").format(
@@ -161,6 +166,11 @@ class TextReport:
         prefix = f"[{node}]".ljust(self._width)
         colour = self._colours.get(node, BOLD)
         self._write(f"{self._paint(prefix, colour)} {text}")
+
+
+def _result(node: NodeStatus) -> str:
+    """Return the word for a node that is not known to have failed."""
+    return _("runs") if node.unasked else _("healthy")
 
 
 class JsonReport:
@@ -218,7 +228,11 @@ class JsonReport:
             reason=summary.reason,
             seconds=round(summary.seconds, 3),
             nodes=[
-                {**status_fields(node), "healthy": summary.healthy[node.name]}
+                {
+                    **status_fields(node),
+                    "healthy": summary.healthy[node.name],
+                    "asked": not node.unasked,
+                }
                 for node in summary.nodes
             ],
         )

@@ -146,6 +146,14 @@ class NodeStatus:
         return self.state is NodeState.RUNNING and self.detail.startswith(NOT_READY)
 
     @property
+    def unasked(self) -> bool:
+        """Whether only its process is known to run: nobody has asked whether it is at work.
+
+        Of a learner's own program more is known: see `launcher.callback_watch`.
+        """
+        return self.state is NodeState.RUNNING and not self.late and not self.file
+
+    @property
     def serves(self) -> bool:
         """Whether nodes that need it may start: it runs, and is ready if it has a condition."""
         return self.state in (NodeState.READY, NodeState.RUNNING) and not self.late
