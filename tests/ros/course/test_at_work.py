@@ -6,7 +6,6 @@ import asyncio
 import textwrap
 from pathlib import Path
 
-import pytest
 import yaml
 
 from course.judge.judge import judging
@@ -55,7 +54,6 @@ NODES: dict[str, tuple[dict[str, str], str]] = {
 """What is unlike a node that is at work, and what is seen of it."""
 
 
-@pytest.mark.timeout(240)
 async def test_a_step_passes_only_if_its_node_is_at_work(tmp_path: Path, ros_domain: int) -> None:
     """Each has done what its check asks for; the whole of what is said is the same each time."""
     parts = {"begin": "pass", "tick": "pass", "spin": SPIN}

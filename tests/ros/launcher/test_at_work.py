@@ -148,7 +148,6 @@ async def test_who_is_stuck_or_has_lost_a_thread_is_not_healthy(
     assert well(client.nodes["works"])
 
 
-@pytest.mark.timeout(240)
 async def test_who_never_spins_or_waits_in_a_circle_is_not_healthy(
     start: Launch, tmp_path: Path
 ) -> None:

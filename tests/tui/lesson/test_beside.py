@@ -84,7 +84,7 @@ async def test_where_there_is_no_room_it_is_not_shown_until_there_is() -> None:
     ],
 )
 def test_it_looks(look: Look, dump_compare: SnapCompare) -> None:
-    opener = own_opener()
+    opener = own_opener(kind="crash")
 
     async def judge(pilot: Pilot[Any]) -> None:
         await look.settle(pilot)

@@ -78,11 +78,11 @@ class Watching(RecordedOpener):
         return watched(42)
 
 
-def own_opener(file: str = "") -> RecordedOpener:
-    """Lesson 2 with the learner's own sonar: this file, or one that has a mistake."""
-    wrong = "/home/eve/deck-course/02-sonar-safety/mock_sonar.py"
-    crash = NodeFault("crash", wrong, 12, 0, "self.publiser = 1", "NameError: name 'x'", "")
-    fault, file = (None, file) if file else (crash, wrong)
+def own_opener(
+    file: str = "/home/eve/deck-course/02-sonar-safety/mock_sonar.py", kind: str = "warning"
+) -> RecordedOpener:
+    """Lesson 2 with the learner's own sonar, which has a mistake of this kind."""
+    fault = NodeFault(kind, file, 12, 0, "self.publiser = 1", "NameError: name 'x'", "")
     nodes = {
         "sonar_front": NodeStatus(
             "sonar_front", "./mock_sonar.py", NodeState.READY, pid=7, file=file, fault=fault
@@ -115,7 +115,7 @@ def seen(app: DeckApp) -> str:
 @both_languages
 def test_a_step_that_is_not_right_looks(look: Look, snap_compare: SnapCompare) -> None:
     """Text, the check with what was seen and where to look, file and fault; not yet passed."""
-    opener = own_opener()
+    opener = own_opener(kind="crash")
 
     async def judge(pilot: Pilot[Any]) -> None:
         await look.settle(pilot)
@@ -141,7 +141,7 @@ def test_a_tick_that_has_faded_looks(
     monkeypatch.setattr(words, "time", now)
     step = {"passed": True, "points": 2, "files": "0123456789abcdef", "at": AT_12_03}
     (course / "progress.json").write_text(json.dumps({"lessons": {LESSON: {"topic": step}}}))
-    opener = own_opener()
+    opener = own_opener(kind="crash")
 
     async def judge(pilot: Pilot[Any]) -> None:
         await look.settle(pilot)
