@@ -19,6 +19,7 @@ from text.plain import plain, plain_lines
 if TYPE_CHECKING:
     from agents.arguments import CallArguments, PublishArguments
     from agents.session import RobotSession
+    from agents.view import GraphView
 
 SOUND = "std_msgs/msg/ByteMultiArray"
 SENT_WITHIN_S = 3.0
@@ -33,11 +34,13 @@ async def stop(session: RobotSession) -> dict[str, object]:
     sending = session.observer.publish(EMERGENCY_STOP, BOOL, {"data": True}, latched=True)
     session.has_stopped = True
     view, emergency = session.view, session.emergency
-    row = view.topic(EMERGENCY_STOP)
-    if row is None or not row.subscribers:
+    heard = _is_heard(view)
+    if heard:
+        # Beside it the road that needs no ROS; where no node listens it would be kept in vain.
+        session.link.emergency_stop(True)
+    else:
         await session.settled()
-        row = view.topic(EMERGENCY_STOP)
-    heard = row is not None and row.subscribers > 0
+        heard = _is_heard(view)
     ended: list[str] = []
     if not heard:
         ended = [node.name for node in session.link.nodes.values() if node.state.alive]
@@ -52,6 +55,11 @@ async def stop(session: RobotSession) -> dict[str, object]:
         "nodes_ended": ended,
         "released_by": "a person at the screen, never an agent",
     }
+
+
+def _is_heard(view: GraphView) -> bool:
+    row = view.topic(EMERGENCY_STOP)
+    return row is not None and row.subscribers > 0
 
 
 async def say_aloud(session: RobotSession, text: str) -> dict[str, object]:

@@ -36,6 +36,7 @@ HANDLERS = {
     "ps": ("cli.background", "ps_command"),
     "logs": ("cli.background", "logs_command"),
     "down": ("cli.background", "down_command"),
+    "stop": ("cli.stop", "stop_command"),
     "record": ("cli.record", "record_command"),
     "replay": ("cli.replay", "replay_command"),
     "view": ("cli.viewing.command", "view_command"),

@@ -116,6 +116,17 @@ def add_watch(parser: Parser) -> None:
     parser.epilog = _("Deck starts and stops nothing here.")
 
 
+def add_stop(parser: Parser) -> None:
+    """Add the options of `deck stop`."""
+    parser.add_argument(
+        "name", nargs="?", metavar=_("NAME"), help=_("name of the profile; without it, all stop")
+    )
+    parser.epilog = _(
+        "Exit code: 0 if all nodes that report on the emergency stop obey it, 1 if that is not "
+        "confirmed within seconds. The stop holds until it is released."
+    )
+
+
 def add_level(parser: Parser) -> None:
     """Add the options of `deck level`."""
     parser.add_argument("node", metavar=_("NODE"), help=_("a node by its name in the graph"))

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Iterable, Mapping
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from graph.housekeeping import is_housekeeping
+from launcher.client.running import running_records
+from launcher.client.stop_road import StopRoad
 from launcher.consent import Agents
 
 if TYPE_CHECKING:
@@ -21,11 +24,38 @@ WATCH = "watch"
 """The name of the session, where a profile's would stand."""
 
 
+class StopRoads:
+    """Asks the supervisors of this user in a domain for the emergency stop, or its release.
+
+    They are looked up each time: a session may have begun or ended meanwhile.
+    """
+
+    def __init__(self, domain: int) -> None:
+        self._domain = domain
+        self._carrying = ThreadPoolExecutor(1, "stop roads")
+        """One after the other: a release must not overtake its stop."""
+        self._roads: dict[Path, StopRoad] = {}
+
+    def __call__(self, engaged: bool) -> None:
+        """Give the stop, or release it: on any thread, without waiting."""
+        self._carrying.submit(self._carry, engaged)
+
+    def _carry(self, engaged: bool) -> None:
+        for record in running_records():
+            if record.session.domain == self._domain:
+                road = self._roads.setdefault(record.folder, StopRoad(record.folder, self._domain))
+                road(engaged)
+
+
 class NodelessLink:
     """A `SessionLink` without nodes: there is nothing to start, stop or restart."""
 
-    def __init__(self, session: SessionInfo) -> None:
+    def __init__(
+        self, session: SessionInfo, emergency_stop: Callable[[bool], None] = lambda _engaged: None
+    ) -> None:
+        """`emergency_stop`: the road beside the topic; a recording has none."""
         self.session = session
+        self.emergency_stop = emergency_stop
         self.own = False
         self.nodes: Mapping[str, NodeStatus] = {}
         self.strays: tuple[Stray, ...] = ()
@@ -39,9 +69,6 @@ class NodelessLink:
         for event in nothing:
             yield event
         await self._closed.wait()
-
-    def emergency_stop(self, engaged: bool) -> None:
-        """No supervisor is there for it: the topic is the only road."""
 
     async def start(self, *names: str) -> None:
         """Nothing to start."""
@@ -97,7 +124,8 @@ def watched(domain: int, discovery: str = "localhost") -> NodelessLink:
             discovery=discovery,
             hardware="",
             foreground=False,
-        )
+        ),
+        StopRoads(domain),
     )
 
 

@@ -19,6 +19,7 @@ from robot.safety.stop_file import StopFile
 from tests.ros.node_process import NodeProcess
 from tests.ros.supervised import SLEEPER, Launch, running_pid
 from tests.waiting import until, wait_until
+from tui.session.watching import StopRoads
 
 if TYPE_CHECKING:
     from launcher.client.client import SupervisorClient
@@ -73,6 +74,21 @@ async def test_where_the_supervisor_hangs_the_screen_writes_the_file(
         await until(place(ros_domain).exists, "the stop on disk")
     finally:
         os.kill(pid, signal.SIGCONT)
+
+
+async def test_a_screen_that_only_watches_takes_the_same_road(
+    session: SupervisorClient, ros_domain: int, other_domain: int
+) -> None:
+    del session
+    StopRoads(other_domain)(True)
+    roads = StopRoads(ros_domain)
+    roads(True)
+    await until(place(ros_domain).exists, "the stop on disk")
+    for _ in range(5):
+        roads(True)
+        roads(False)
+    await until(lambda: not place(ros_domain).exists(), "the release")
+    assert not place(other_domain).exists()
 
 
 def test_a_session_that_is_gone_is_stopped_on_disk_too(tmp_path: Path, ros_domain: int) -> None:
