@@ -39,8 +39,8 @@ class Sample(NamedTuple):
 
     hours: float
     screen_mb: float
-    others_mb: float
-    """Supervisor, and what else the screen needs."""
+    observer_mb: float
+    supervisor_mb: float
     tabs: int
 
 
@@ -51,13 +51,14 @@ def all_ready(screen: str) -> bool:
 
 def samples(terminal: Terminal) -> Iterator[Sample]:
     """Change tabs at a steady pace, and yield the memory now and then."""
-    screen, *others = screen_processes(terminal)
     began_s, sampled_s = time.monotonic(), -SAMPLE_S
     for number, tab in enumerate(cycle(TABS)):
         passed_s = time.monotonic() - began_s
         if passed_s - sampled_s >= SAMPLE_S:
             sampled_s = passed_s
-            yield Sample(passed_s / 3600, pss_mb([screen]), pss_mb(others), number)
+            # The observer may have been made anew.
+            screen, observer, supervisor = (pss_mb([pid]) for pid in screen_processes(terminal))
+            yield Sample(passed_s / 3600, screen, observer, supervisor, number)
         if passed_s > 60 * MINUTES:
             return
         terminal.press(tab)
@@ -79,14 +80,18 @@ def main() -> None:
             print(*(f"{figure:.3f}" for figure in sample), file=sys.stderr, flush=True)
     settled = [each for each in taken if each.hours >= SETTLED * taken[-1].hours]
     hours = [each.hours for each in settled]
-    screen = [each.screen_mb for each in settled]
-    others = [each.others_mb for each in settled]
-    print(f"{MINUTES:.0f} minutes, {taken[-1].tabs} changes of tab\n")
+    figures = {
+        "screen": [each.screen_mb for each in settled],
+        "observer": [each.observer_mb for each in settled],
+        "supervisor": [each.supervisor_mb for each in settled],
+    }
+    changes = taken[-1].tabs
+    print(f"{MINUTES:.0f} minutes, {changes} changes of tab; load {os.getloadavg()[0]:.1f}\n")
     print("| | begins with | ends with | growth in an hour | goal |")
     print("| --- | --- | --- | --- | --- |")
-    for what, figures in (("screen", screen), ("supervisor", others)):
-        ends = f"{figures[0]:.1f} MB | {figures[-1]:.1f} MB"
-        print(f"| {what} | {ends} | {growth_mb_h(hours, figures):+.1f} MB | 1 MB |")
+    for what, megabytes in figures.items():
+        ends = f"{megabytes[0]:.1f} MB | {megabytes[-1]:.1f} MB"
+        print(f"| {what} | {ends} | {growth_mb_h(hours, megabytes):+.1f} MB | 1 MB |")
 
 
 if __name__ == "__main__":

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from bench.processes import children, command, cpu_s, pss_mb
@@ -121,6 +122,18 @@ def key_delays_ms(terminal: Terminal) -> list[float]:
     return delays
 
 
+def stopped_delays_ms(terminal: Terminal) -> list[float]:
+    """Return the same while the observer's process does not run."""
+    _screen, observer, _supervisor = screen_processes(terminal)
+    os.kill(observer, signal.SIGSTOP)
+    try:
+        return key_delays_ms(terminal)
+    finally:
+        # Found to hang, it is ended, and made anew.
+        with suppress(ProcessLookupError):
+            os.kill(observer, signal.SIGCONT)
+
+
 def marked_row(terminal: Terminal) -> int:
     """Return the row of the selected node."""
     rows = terminal.text().splitlines()
@@ -169,6 +182,7 @@ def main() -> None:
             time.sleep(5)
             cpu, pss, sent = at_rest(terminal, screen_processes(terminal))
             keys = key_delays_ms(terminal)
+            stopped = stopped_delays_ms(terminal)
         delays, growth, written, kept = flooded(folder)
     print("| what | measured | goal |")
     print("| --- | --- | --- |")
@@ -178,6 +192,8 @@ def main() -> None:
     print(f"| screen and supervisor at rest, PSS | {pss:.0f} MB | 150 MB |")
     print(f"| to the terminal at rest | {sent / 1000:.1f} kB/s | 8 kB/s |")
     print(f"| a key to its effect, median | {statistics.median(keys):.0f} ms | 50 ms |")
+    print(f"| the same, observer stopped, median | {statistics.median(stopped):.0f} ms | 50 ms |")
+    print(f"| the same, observer stopped, longest | {max(stopped):.0f} ms | - |")
     print(f"| a key under 10 000 lines/s, median | {statistics.median(delays):.0f} ms | 200 ms |")
     print(f"| a key under 10 000 lines/s, longest | {max(delays):.0f} ms | 500 ms |")
     print(f"| memory grown in {FLOOD_S:.0f} s of flood, buffers full | {growth:+.1f} MB | flat |")

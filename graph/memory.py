@@ -12,7 +12,7 @@ M_ARENA_MAX = -8
 LARGEST_BYTES = 4_000_000
 MOST_ARENAS = 2
 KEPT_BYTES = 2 * LARGEST_BYTES
-GIVEN_BACK_EVERY_S = 30.0
+GIVEN_BACK_EVERY_S = 10.0
 """Whatever large messages have left behind by then is small against what the programs need."""
 
 
