@@ -67,7 +67,7 @@ def _listen(domain: int, discovery: str | tuple[str, ...], seconds: float) -> Gr
 
     observer = Observer(domain, discovery)
     observer.watch_frames(True)
-    observer.measure(all_topics=True)
+    observer.measure(all_topics=True, images=False)
     observer.start(take)
     try:
         _wait(newest, seconds)

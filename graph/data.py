@@ -124,6 +124,8 @@ class TopicRow:
     """The frame that the header of the newest message names; empty without a header."""
     measured: bool = False
     """Whether Deck is subscribed now."""
+    pictures_from: str = ""
+    """The topic that its pictures are taken from, if that is another one."""
     trouble: Trouble | None = None
     detail: str = ""
     """The trouble in English words: which endpoints are incompatible, which type is missing. It may

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 NAME_PREFIX = "_deck_"
 """The underscore keeps it out of `ros2 node list`."""
 ONLY_LISTENING = tuple(
-    f"/{NAME_PREFIX}{role}_" for role in ("observer", "recorder", "agents", "view")
+    f"/{NAME_PREFIX}{role}_" for role in ("observer", "recorder", "agents", "view", "relay")
 )
 """Prefixes of the full names of observing nodes, in this or in another process of Deck."""
 DOMAINS = range(233)

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[1]
 ALONE = ("--net", "--mount")
+SHOT, KEPT = 2, 0
+"""What a filter says of a packet. Source: linux/pkt_cls.h, TC_ACT_SHOT and TC_ACT_OK."""
 FIRST_DYNAMIC_PORT = 32768
 """Below it is what somebody chose: the ports of the domains 1 to 101 are, those of senders not."""
 
@@ -68,6 +70,20 @@ class Machine:
             for address, port in sockets
             if int(port, 16) < FIRST_DYNAMIC_PORT
         ]
+
+    def lose(self, share: float) -> None:
+        """Lose this share of the packets that come by the cable, at random."""
+        self._run("tc", "qdisc", "add", "dev", "cable", "clsact")
+        # Not netem, which many kernels lack. BPF: load a random number; from the bound on keep it.
+        random, bound = 0xFFFFF038, int(share * 2**32)
+        program = f"4,32 0 0 {random},53 1 0 {bound},6 0 0 {SHOT},6 0 0 {KEPT}"
+        here = ("filter", "add", "dev", "cable", "ingress")
+        self._run("tc", *here, "bpf", "direct-action", "bytecode", program)
+
+    def received_bytes(self) -> int:
+        """Return what has come by the cable so far."""
+        table = self._run("cat", "/proc/net/dev").splitlines()
+        return next(int(line.split()[1]) for line in table if line.split()[0] == "cable:")
 
     def _lay_cable_to(self, other: Machine) -> None:
         end = ("peer", "name", "cable", "netns", str(other._holder.pid))

@@ -20,6 +20,10 @@ class Interest:
     """Whether nodes are asked for their lifecycle, and containers for their components."""
     frames: bool = False
     """Whether the frames of /tf and /tf_static are wanted."""
+    pictures: frozenset[str] = frozenset()
+    """Topics of which the newest picture is wanted, from the topic that carries it cheapest."""
+    all_images: bool = True
+    """Whether `all_topics` includes those with pictures, as far as they come from this machine."""
 
     @property
     def named(self) -> frozenset[str]:

@@ -79,9 +79,13 @@ class ObserverLoop:
         """Hand over every message."""
         self._look_at(followed=frozenset(topics))
 
-    def measure(self, all_topics: bool) -> None:
+    def watch_pictures(self, topics: Iterable[str]) -> None:
+        """Hand over the newest picture."""
+        self._look_at(pictures=frozenset(topics))
+
+    def measure(self, wanted: tuple[bool, bool]) -> None:
         """Measure rates."""
-        self._look_at(all_topics=all_topics)
+        self._look_at(all_topics=wanted[0], all_images=wanted[1])
 
     def watch_goals(self, actions: Iterable[str]) -> None:
         """Report goals of others."""

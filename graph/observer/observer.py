@@ -81,9 +81,20 @@ class Observer:
         """Hand over every message of exactly these topics, up to 200 of each in one update."""
         self._client.want("follow", frozenset(topics))
 
-    def measure(self, all_topics: bool) -> None:
-        """Measure the rates of all topics, or only of those watched and followed."""
-        self._client.want("measure", all_topics)
+    def watch_pictures(self, topics: Iterable[str]) -> None:
+        """Hand over the newest picture of exactly these topics in each update.
+
+        Where the same pictures are offered compressed they are taken from there: the samples are
+        those of the topic asked for, and of another type.
+        """
+        self._client.want("watch_pictures", frozenset(topics))
+
+    def measure(self, all_topics: bool, *, images: bool = True) -> None:
+        """Measure the rates of all topics, or only of those watched and followed.
+
+        Without `images`, of none that carries any; never of those of another machine's.
+        """
+        self._client.want("measure", (all_topics, images))
 
     def watch_goals(self, actions: Iterable[str]) -> None:
         """Report in each update the goals that others have sent to exactly these actions."""

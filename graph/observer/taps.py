@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING
 from graph.data import Sample, TopicRow, Trouble
 from graph.frames.book import FRAME_TOPICS
 from graph.frames.reading import TF_MESSAGE
+from graph.heavy_types import IMAGES
 from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.observer.interest import Interest
 from graph.observer.rates import QUIET_S
 from graph.observer.tap import FOLLOWED, LARGE_TYPES, Tap, first_depth
 from graph.observer.troubles import Diagnosis, quiet, structural
+from graph.pictures.source import THINNED, host_of, is_away, picture_source, raw_from_afar, to_see
 from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
 from graph.scan.endpoints import TopicEnds
 from graph.scan.scan import Scan
@@ -51,6 +53,14 @@ class Taps:
         """Since when nobody wants a topic that is subscribed, Unix time."""
         self._fresh: set[str] = set()
         """Topics whose newest message is owed to a screen that has just begun to look."""
+        self._sources: dict[str, str] = {}
+        """Topic of which pictures are wanted to the one that they are taken from."""
+        self._needed: frozenset[str] = frozenset()
+        """Topics that are subscribed whether they exist or not."""
+        self._frame_ids: dict[str, str] = {}
+        """What headers have named on topics that are subscribed no more."""
+        self._host = b""
+        """What identifiers of this machine begin with; empty as long as that is not known."""
 
     @property
     def any_open(self) -> bool:
@@ -65,18 +75,27 @@ class Taps:
             for topic in interest.followed - self._interest.followed
             if topic in self._taps and self._taps[topic].qos.durability == TRANSIENT_LOCAL
         }
-        self._fresh &= interest.named
+        sources = {topic: picture_source(topic, scan.topics) for topic in interest.pictures}
+        self._fresh |= {
+            source for topic, source in sources.items() if source != self._sources.get(topic)
+        }
+        self._sources, self._needed = sources, interest.named.union(sources.values())
+        self._fresh &= self._needed
         if not interest.frames:
             self._frames.clear()
         self._scan, self._interest = scan, interest
+        self._host = next(
+            (host_of(end) for ends in scan.topics.values() for end in ends.own_publishers), b""
+        )
         self._rows = {}
-        for topic in set(self._taps) - scan.topics.keys():
+        for topic in (self._taps.keys() | self._frame_ids.keys()) - scan.topics.keys():
             self._close(topic)
+            self._frame_ids.pop(topic, None)
         for topic, ends in scan.topics.items():
             unknown = self._tune_one(topic, ends)
-            if topic in interest.named or not ends.is_deserted:
+            if topic in self._needed or topic in sources or not ends.is_deserted:
                 self._rows[topic] = self._still_row(topic, ends, unknown)
-        for topic in interest.named - scan.topics.keys():
+        for topic in self._needed.union(sources) - scan.topics.keys():
             self._rows[topic] = self._still_row(topic, TopicEnds(topic, ()), None)
         self._rows = dict(sorted(self._rows.items()))
 
@@ -85,7 +104,7 @@ class Taps:
 
         `serve_urgent` is called between two topics.
         """
-        samples = {}
+        samples: dict[str, tuple[Sample, ...]] = {}
         for topic, tap in self._taps.items():
             serve_urgent()
             found = tap.drain(
@@ -96,8 +115,18 @@ class Taps:
                 if found:
                     self._fresh.discard(topic)
             if found:
-                samples[topic] = found
+                self._hand_out(topic, found, samples)
         return samples
+
+    def _hand_out(
+        self, topic: str, found: tuple[Sample, ...], samples: dict[str, tuple[Sample, ...]]
+    ) -> None:
+        """Put the samples under each name by which they are wanted."""
+        if topic in self._interest.named:
+            samples[topic] = found
+        for wanted, source in self._sources.items():
+            if source == topic and wanted not in samples:
+                samples[wanted] = tuple(replace(sample, topic=wanted) for sample in found)
 
     def need_tuning(self) -> bool:
         """Return whether a queue turned out to have the wrong depth, or has lingered enough."""
@@ -110,19 +139,30 @@ class Taps:
     def rows(self) -> tuple[TopicRow, ...]:
         """Return a row for each topic that exists or is wanted, sorted by name."""
         now_s = time.time()
-        return tuple(
-            _measured(row, self._taps[topic], now_s) if topic in self._taps else row
-            for topic, row in self._rows.items()
-        )
+        return tuple(self._row(topic, row, now_s) for topic, row in self._rows.items())
 
     def close(self) -> None:
         """End all subscriptions."""
         for topic in list(self._taps):
             self._close(topic)
 
+    def _row(self, topic: str, row: TopicRow, now_s: float) -> TopicRow:
+        if topic in self._taps:
+            measured = _measured(row, self._taps[topic], now_s)
+            return _lost_on_the_way(measured) if self._comes_raw(topic) else measured
+        source = self._sources.get(topic)
+        if source in self._taps:
+            return _seen_by(row, _measured(self._rows[source], self._taps[source], now_s))
+        return replace(row, frame_id=self._frame_ids.get(topic, ""))
+
+    def _comes_raw(self, topic: str) -> bool:
+        ends = self._scan.topics.get(topic)
+        return topic in self._sources and ends is not None and raw_from_afar(ends, self._host)
+
     def _tune_one(self, topic: str, ends: TopicEnds) -> UnknownTypeError | None:
         heard = bool(ends.everyone_publishing)
-        wanted = topic in self._interest.named or (self._interest.all_topics and heard)
+        measured = self._interest.all_topics and heard and not self._is_spared(topic, ends)
+        wanted = topic in self._needed or measured
         if not wanted:
             if not self._lingers(topic):
                 self._close(topic)
@@ -134,8 +174,17 @@ class Taps:
             return None
         return self._open(topic, ends)
 
+    def _is_spared(self, topic: str, ends: TopicEnds) -> bool:
+        """Whether to leave a topic alone that nobody looks at: a camera fills a network."""
+        if IMAGES.isdisjoint(ends.type_names):
+            return False
+        spared = not self._interest.all_images or topic.endswith(THINNED)
+        return spared or is_away(ends, self._host)
+
     def _open(self, topic: str, ends: TopicEnds) -> UnknownTypeError | None:
         type_name, qos = _type_to_show(ends), to_hear(ends.everyone_publishing)
+        if topic in self._sources.values() and topic not in self._interest.named:
+            qos = to_see(ends)
         every = self._interest.frames and topic in FRAME_TOPICS and type_name == TF_MESSAGE
         if every and topic == TF_STATIC:
             qos = _as_tf2_hears(ends)
@@ -169,7 +218,7 @@ class Taps:
         The middleware keeps a little of each subscription that there ever was.
         """
         tap, now_s = self._taps.get(topic), time.time()
-        if tap is None or tap.every or tap.type_name in LARGE_TYPES:
+        if tap is None or tap.every or tap.type_name in LARGE_TYPES | IMAGES:
             return False
         left_s = self._left_s.setdefault(topic, now_s)
         is_light = (tap.meter.bytes_per_s(now_s) or 0) <= LIGHT_BYTES_PER_S
@@ -179,6 +228,8 @@ class Taps:
         self._left_s.pop(topic, None)
         tap = self._taps.pop(topic, None)
         if tap:
+            # One that was made anew has heard nothing yet.
+            self._frame_ids[topic] = tap.frame_id or self._frame_ids.get(topic, "")
             tap.close()
 
     def _one_publisher(self, topic: str) -> bool:
@@ -188,7 +239,7 @@ class Taps:
     def _how_many(self, topic: str) -> int:
         if topic in self._interest.followed:
             return FOLLOWED
-        return 1 if topic in self._interest.watched else 0
+        return 1 if topic in self._interest.watched.union(self._sources.values()) else 0
 
     def _still_row(self, topic: str, ends: TopicEnds, unknown: UnknownTypeError | None) -> TopicRow:
         finding = structural(ends, _type_to_show(ends), unknown)
@@ -227,6 +278,27 @@ def _measured(row: TopicRow, tap: Tap, now_s: float) -> TopicRow:
         detail=finding.detail,
         facts=finding.facts,
     )
+
+
+def _seen_by(row: TopicRow, source: TopicRow) -> TopicRow:
+    """Return the row of a topic whose pictures are taken from another one."""
+    return replace(
+        row,
+        age_s=source.age_s,
+        frame_id=source.frame_id,
+        pictures_from=source.name,
+        trouble=source.trouble,
+        detail=source.detail,
+        facts=source.facts,
+    )
+
+
+def _lost_on_the_way(row: TopicRow) -> TopicRow:
+    """Return the row of raw pictures from another machine: silence may be loss."""
+    if row.trouble is not Trouble.QUIET:
+        return row
+    words = f"{row.detail}; raw pictures from another machine are lost with any of their packets"
+    return replace(row, detail=words, facts={**row.facts, "raw": row.name})
 
 
 def _finding(row: TopicRow, tap: Tap, now_s: float) -> Diagnosis:

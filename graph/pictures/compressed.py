@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,8 @@ JPEG, PNG = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
 JPEG_END, PNG_END = b"\xff\xd9", b"IEND\xaeB`\x82"
 DEPTH_HEAD = struct.Struct("<iff")
 """Header before the PNG of the transport compressedDepth: format, and two numbers for 32FC1."""
+_FULL_SIZE = re.compile(r"; of (\d{1,5})x(\d{1,5})$")
+"""What Deck's own relay adds to the format: the size of the camera's picture."""
 _SIZED = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 """JPEG segments that contain height and width (source: ITU T.81, table B.1)."""
 _ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
@@ -50,6 +53,8 @@ def read_compressed(value: Mapping[str, Value], fit: Fit) -> Picture:
     if head is not None:
         encoding = words.split(";")[0].strip()
         return numbers_picture(_depths(thin[..., 0], encoding, head), width, height, encoding)
+    full = _FULL_SIZE.search(words)
+    width, height = map(int, full.groups()) if full else (width, height)
     return Picture(thin[:, :, ::-1], width, height, "jpeg" if raw[:3] == JPEG else "png")
 
 

@@ -61,6 +61,8 @@ class Replay:
             notes=self.bag.notes,
         )
         self._start_s = start_s
+        self._watched: frozenset[str] = frozenset()
+        self._pictures: frozenset[str] = frozenset()
         self._interest = Interest()
         self._shown = Interest()
         self._orders: deque[Callable[[Player], None]] = deque()
@@ -92,13 +94,19 @@ class Replay:
 
     def watch(self, topics: Iterable[str]) -> None:
         """Decode the newest message of exactly these topics each period."""
-        self._look_at(replace(self._interest, watched=frozenset(topics)))
+        self._watched = frozenset(topics)
+        self._look_at(replace(self._interest, watched=self._watched | self._pictures))
+
+    def watch_pictures(self, topics: Iterable[str]) -> None:
+        """Watch these as well: there is no network to be spared."""
+        self._pictures = frozenset(topics)
+        self._look_at(replace(self._interest, watched=self._watched | self._pictures))
 
     def follow(self, topics: Iterable[str]) -> None:
         """Decode every message of exactly these topics."""
         self._look_at(replace(self._interest, followed=frozenset(topics)))
 
-    def measure(self, all_topics: bool) -> None:
+    def measure(self, all_topics: bool, *, images: bool = True) -> None:
         """Do nothing: every topic of a bag is measured."""
 
     def watch_goals(self, actions: Iterable[str]) -> None:

@@ -33,6 +33,7 @@ from launcher.spawn_server.spawner import Spawner
 from launcher.status import SessionInfo, Severity, Stray
 from launcher.supervisor.orphans import Orphans
 from launcher.supervisor.own_files import OwnFiles
+from launcher.supervisor.picture_relay import relay_pictures
 from launcher.supervisor.plan import Plan
 from launcher.supervisor.process import ProcessLauncher, ProcessScan
 from launcher.supervisor.session import Session
@@ -209,6 +210,7 @@ class Supervisor:
         _answer({"folder": str(self._run_folder.record.folder)})
         helpers = [
             asyncio.create_task(self._session.measure()),
+            asyncio.create_task(relay_pictures(self._plan, self._spawner, self._reaper)),
             asyncio.create_task(self._look_for_strays()),
             asyncio.create_task(self._run_folder.keep(self.control.serve, self._warn)),
             asyncio.create_task(self._watch_owner(stdin)),

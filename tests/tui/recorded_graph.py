@@ -41,6 +41,9 @@ class RecordedGraph:
     watched: set[str] = field(default_factory=set)
     followed: set[str] = field(default_factory=set)
     measured: bool = False
+    measured_images: bool = True
+    pictures: set[str] = field(default_factory=set)
+    """Topics of which pictures are wanted."""
     stopped: bool = False
     published: list[tuple[str, str, Mapping[str, Any], bool]] = field(default_factory=list)
     """(topic, type, value, latched)."""
@@ -107,8 +110,11 @@ class RecordedGraph:
     def follow(self, topics: Iterable[str]) -> None:
         self.followed = set(topics)
 
-    def measure(self, all_topics: bool) -> None:
-        self.measured = all_topics
+    def watch_pictures(self, topics: Iterable[str]) -> None:
+        self.pictures = set(topics)
+
+    def measure(self, all_topics: bool, *, images: bool = True) -> None:
+        self.measured, self.measured_images = all_topics, images
 
     def watch_inner_states(self, wanted: bool) -> None:
         self.inner_wanted = wanted

@@ -42,7 +42,8 @@ class TopicsStage(ScreenStage[TopicsScreen]):
         """Choose a topic and wait until it is asked for."""
         self.screen.table.choose(topic)
         await until(
-            lambda: self.graph.watched == {topic}, lambda: f"{topic}, but {self.graph.watched}"
+            lambda: self.graph.watched | self.graph.pictures == {topic},
+            lambda: f"{topic}, but {self.graph.watched}, {self.graph.pictures}",
         )
         await self.pilot.pause()
 

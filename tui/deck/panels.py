@@ -70,6 +70,10 @@ class DeckPanels:
         """Return the topics that the panels show."""
         return set().union(*(panel.watched() for panel in self.all))
 
+    def pictures(self) -> set[str]:
+        """Return the topics of which the panels show the pictures now."""
+        return set().union(*(panel.pictures() for panel in self.all))
+
     def kept(self) -> set[str]:
         """Return the topics whose history a panel shows."""
         return set().union(*(panel.kept() for panel in self.all))

@@ -320,6 +320,10 @@ class LessonDeck(DeckScreen):
         """The topics that the panels show."""
         return self._panels.watched() | self._dock.topics
 
+    def picture_topics(self) -> set[str]:
+        """The topics of the panels with pictures that are on the screen."""
+        return self._panels.pictures()
+
     def keep_topics(self) -> set[str]:
         """The topics whose history a panel shows."""
         return self._panels.kept()

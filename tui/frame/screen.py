@@ -74,6 +74,8 @@ class DeckScreen(Screen[None], Acting, Working):
     """Seconds between two updates of the graph while this screen is in front."""
     measure_all: bool = False
     """Whether the rates of every topic are wanted while this screen is in front."""
+    measure_images: bool = True
+    """Whether those of topics with pictures are, too, as far as they come from this machine."""
     wants_frames: bool = False
     """Whether the frames of /tf and /tf_static are wanted while this screen is in front."""
     _styled_for: tuple[str, frozenset[str], frozenset[str]] | None = None
@@ -104,6 +106,10 @@ class DeckScreen(Screen[None], Acting, Working):
 
     def watch_topics(self) -> set[str]:
         """Return the topics whose newest message is needed while this screen is in front."""
+        return set()
+
+    def picture_topics(self) -> set[str]:
+        """Return the topics of which it shows the pictures now."""
         return set()
 
     def follow_topics(self) -> set[str]:
@@ -188,6 +194,10 @@ class DeckScreen(Screen[None], Acting, Working):
     def on_unmount(self) -> None:
         """Stop receiving updates."""
         self.feed.forget(self)
+
+    def on_pictures_changed(self) -> None:
+        """Request the pictures that are shown now, and those only."""
+        self.topics_changed()
 
     def on_screen_resume(self) -> None:
         """Request the topics of this screen."""

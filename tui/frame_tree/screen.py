@@ -49,6 +49,7 @@ class FramesScreen(DeckScreen):
     parts: ClassVar[tuple[str, ...]] = ("FrameTable", "#frames-side")
     wants_frames = True
     measure_all = True
+    measure_images = False
     BINDINGS: ClassVar = bindings(*FRAMES_ACTIONS)
     DEFAULT_CSS = """
     FramesScreen {

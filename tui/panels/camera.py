@@ -5,6 +5,7 @@ from __future__ import annotations
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.pictures.images import to_rgb
 from graph.pictures.pixels import ImageError
 from robot.topics import CAMERA
@@ -12,15 +13,17 @@ from text.figures import whole
 from text.i18n import N_, _, localized
 from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, newest, row_of, trouble_of
+from tui.session.messages import PicturesChanged
 from tui.widgets.image_view import ImageView
-from tui.widgets.trouble import trouble_words
+from tui.widgets.newest_picture import NewestPicture
+from tui.widgets.trouble import lost_words, trouble_words
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
-    from graph.data import GraphUpdate
+    from graph.data import GraphUpdate, Sample
+    from graph.pictures.picture import Picture
 
-TYPE = "sensor_msgs/msg/Image"
 PERIOD_S = 0.3
 """Three pictures a second are enough for a terminal, and for SSH."""
 
@@ -37,14 +40,32 @@ class CameraPanel(Panel):
         self._shown_s = float("-inf")
         self._refused = False
         """Whether an error message is shown because the last message was not a picture."""
+        self._in_sight = False
+        self._hz = ""
+        self._compressed = NewestPicture(
+            self,
+            self._fit,
+            self._show_read,
+            self._refuse_read,
+        )
 
     def compose(self) -> ComposeResult:
         """The picture."""
         yield ImageView(bits=4)
 
-    def watched(self) -> set[str]:
-        """The picture."""
-        return {CAMERA}
+    def pictures(self) -> set[str]:
+        """The picture, unless the panel is on another page: it is a megabyte ten times a second."""
+        return {CAMERA} if self._in_sight else set()
+
+    def on_show(self) -> None:
+        """Ask for pictures."""
+        self._in_sight = True
+        self.post_message(PicturesChanged())
+
+    def on_hide(self) -> None:
+        """Ask for no more."""
+        self._in_sight = False
+        self.post_message(PicturesChanged())
 
     def show(self, update: GraphUpdate) -> None:
         """Show the newest picture, at most as often as the line allows."""
@@ -53,28 +74,48 @@ class CameraPanel(Panel):
         trouble, detail, age_s = trouble_of(update, CAMERA)
         if trouble is not None:
             self._refused = False
-            view.show_words(trouble_words(trouble, age_s), detail)
+            row = row_of(update, CAMERA)
+            words = lost_words() if row and "raw" in row.facts else None
+            view.show_words(*(words or (trouble_words(trouble, age_s), detail)))
             return
         if sample is None:
             if not view.has_picture and not self._refused:
                 view.show_words(_("waiting for the first picture"), CAMERA)
             return
-        if (wrong := other_type(sample, TYPE)) is not None:
+        is_compressed = sample.type_name == COMPRESSED_IMAGE
+        if not is_compressed and (wrong := other_type(sample, IMAGE)) is not None:
             self._refuse(view, *wrong)
             return
         now_s = monotonic()
         if view.has_picture and now_s - self._shown_s < PERIOD_S:
             return
         self._shown_s = now_s
+        row = row_of(update, CAMERA)
+        if row is not None and row.pictures_from:
+            row = row_of(update, row.pictures_from)
+        self._hz = "" if row is None or row.hz is None else whole(row.hz)
+        if is_compressed:
+            self._compressed.take(sample)
+            return
         try:
             picture = to_rgb(sample.value)
         except ImageError as error:
-            self._refuse(view, _("this picture cannot be shown"), localized(error.words))
+            self._refuse_read(sample, error)
             return
         self._refused = False
-        row = row_of(update, CAMERA)
-        hz = "" if row is None or row.hz is None else whole(row.hz)
-        view.show(picture, f"{picture.shape[1]}×{picture.shape[0]}", hz=hz)
+        view.show(picture, f"{picture.shape[1]}×{picture.shape[0]}", hz=self._hz)
+
+    def _fit(self, width: int, height: int) -> tuple[int, int]:
+        return self.query_one(ImageView).wanted(width, height)
+
+    def _show_read(self, _sample: Sample, picture: Picture) -> None:
+        self._refused = False
+        size = f"{picture.width}×{picture.height}"
+        self.query_one(ImageView).show(picture.rgb, size, hz=self._hz)
+
+    def _refuse_read(self, _sample: Sample, error: ImageError) -> None:
+        words = localized(error.words)
+        self._refuse(self.query_one(ImageView), _("this picture cannot be shown"), words)
 
     def _refuse(self, view: ImageView, headline: str, detail: str) -> None:
         self._refused = True

@@ -84,6 +84,10 @@ class Panel(Vertical):
         """Return the topics whose newest message is needed."""
         return set()
 
+    def pictures(self) -> set[str]:
+        """Return the topics of which it shows the pictures now."""
+        return set()
+
     def kept(self) -> set[str]:
         """Return the watched topics that are needed even while another tab is in front."""
         return set()

@@ -51,6 +51,8 @@ class SessionScreen(Protocol):
     """Seconds between two updates of the graph while it is in front."""
     measure_all: bool
     """Whether the rates of every topic are needed while it is in front."""
+    measure_images: bool
+    """Whether those of topics with pictures are, too."""
     wants_frames: bool
     """Whether the frames of /tf and /tf_static are needed while it is in front."""
 
@@ -62,6 +64,9 @@ class SessionScreen(Protocol):
 
     def keep_topics(self) -> set[str]:
         """Return the watched topics that are needed even while another is in front."""
+
+    def picture_topics(self) -> set[str]:
+        """Return the topics of which it shows the pictures now."""
 
     def watch_goals(self) -> set[str]:
         """Return the actions whose goals from others are needed while it is in front."""
@@ -314,10 +319,14 @@ class Feed:
         )
         kept: set[str] = set().union(*(screen.keep_topics() for screen in self._screens))
         graph.watch(kept if front is None else kept | front.watch_topics())
+        graph.watch_pictures(set() if front is None else front.picture_topics())
         graph.follow(followed)
         graph.watch_goals(set() if front is None else front.watch_goals())
         graph.watch_frames(front is not None and front.wants_frames)
-        graph.measure(self._measures_all or (front is not None and front.measure_all))
+        graph.measure(
+            self._measures_all or (front is not None and front.measure_all),
+            images=self._measures_all or (front is not None and front.measure_images),
+        )
         graph.period_s = 0.25 if front is None else front.period_s
 
     def measure_all(self, wanted: bool) -> None:

@@ -48,6 +48,10 @@ class GraphChanged(Message, bubble=False):
         self.update = update
 
 
+class PicturesChanged(Message):
+    """Other pictures are shown than before: from a widget to the screen around it."""
+
+
 class SessionChanged(Message, bubble=False):
     """A session was opened or has ended; the feed's `session` says which."""
 

@@ -124,8 +124,14 @@ class GraphLink(Protocol):
     def follow(self, topics: Iterable[str]) -> None:
         """Decode every message of exactly these topics."""
 
-    def measure(self, all_topics: bool) -> None:
-        """Measure the rates of all topics, or only of those watched and followed."""
+    def watch_pictures(self, topics: Iterable[str]) -> None:
+        """Report the newest picture of exactly these topics, from wherever it costs least."""
+
+    def measure(self, all_topics: bool, *, images: bool = True) -> None:
+        """Measure the rates of all topics, or only of those watched and followed.
+
+        Without `images`, of none that carries any.
+        """
 
     def watch_goals(self, actions: Iterable[str]) -> None:
         """Report the goals that others have sent to exactly these actions."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from text.i18n import _, decimal, localized
 from text.plain import plain
 from tui.topics.table.columns import hz_text
 from tui.widgets.image_view import ImageScale
+from tui.widgets.newest_picture import NewestPicture
 
 if TYPE_CHECKING:
     from graph.data import Sample, TopicRow
@@ -47,9 +47,7 @@ class TopicPictures:
         self._detail = detail
         self._is_wanted = is_wanted
         self._row = row
-        self._waiting: Sample | None = None
-        """The newest image that arrived while another was being decoded."""
-        self._decoding = False
+        self._compressed = NewestPicture(detail, self._fit, self._show, self._refuse_wanted)
 
     def show(self, sample: Sample) -> None:
         """Show this image; a compressed one after decoding it."""
@@ -60,27 +58,18 @@ class TopicPictures:
             except ImageError as error:
                 self._refuse(sample, error)
             return
-        self._waiting = sample
-        if not self._decoding:
-            self._decoding = True
-            self._detail.run_worker(self._decode(), group="pictures")
+        self._compressed.take(sample)
 
-    async def _decode(self) -> None:
-        """Decode the newest image until none is waiting."""
-        try:
-            while self._waiting is not None:
-                sample, self._waiting = self._waiting, None
-                fit = self._detail.picture.wanted
-                try:
-                    found = await asyncio.to_thread(read_picture, COMPRESSED, sample.value, fit)
-                except ImageError as error:
-                    if self._is_wanted(sample):
-                        self._refuse(sample, error)
-                else:
-                    if self._is_wanted(sample):
-                        self._put(found)
-        finally:
-            self._decoding = False
+    def _fit(self, width: int, height: int) -> tuple[int, int]:
+        return self._detail.picture.wanted(width, height)
+
+    def _show(self, sample: Sample, picture: Picture) -> None:
+        if self._is_wanted(sample):
+            self._put(picture)
+
+    def _refuse_wanted(self, sample: Sample, error: ImageError) -> None:
+        if self._is_wanted(sample):
+            self._refuse(sample, error)
 
     def _put(self, picture: Picture) -> None:
         row = self._row()

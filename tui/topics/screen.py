@@ -127,8 +127,21 @@ class TopicsScreen(DeckScreen):
         return self.query_one("#topics-filter", Input)
 
     def watch_topics(self) -> set[str]:
-        """The chosen topic."""
-        return set() if self.table.chosen is None else {self.table.chosen}
+        """The chosen topic; of one with images only its messages as a tree."""
+        if self.table.chosen is None or (self.shows_image and not self._shows_tree):
+            return set()
+        return {self.table.chosen}
+
+    def picture_topics(self) -> set[str]:
+        """The chosen topic if it is one with images, unless they are shown as a tree."""
+        hidden = self.detail.as_endpoints or self._shows_tree or not self.shows_image
+        return set() if hidden or self.table.chosen is None else {self.table.chosen}
+
+    @property
+    def _shows_tree(self) -> bool:
+        """Whether a message is shown as a tree; the first of a topic may become a picture."""
+        detail = self.detail
+        return not (detail.as_endpoints or detail.as_picture or detail.sample is None)
 
     def follow_topics(self) -> set[str]:
         """Plotted topics, and the chosen one while an expression examines each message."""
@@ -277,6 +290,7 @@ class TopicsScreen(DeckScreen):
         """Show the endpoints of the chosen topic with their QoS, or its message."""
         self.detail.show_as_endpoints(not self.detail.as_endpoints)
         self._keep_pace()
+        self.topics_changed()
         self.refresh_bindings()
 
     @property
@@ -291,6 +305,7 @@ class TopicsScreen(DeckScreen):
         else:
             self.detail.show_as_picture(not self.detail.as_picture)
         self._keep_pace()
+        self.topics_changed()
 
     def show_plot(self, place: PlotPlace) -> None:
         """Show the plot in this place, possibly over a picture."""

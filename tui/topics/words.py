@@ -8,6 +8,7 @@ from rich.cells import cell_len
 
 from graph.data import Trouble
 from text.i18n import _, decimal, ngettext
+from text.plain import plain
 from tui.topics.table.columns import age_text, bandwidth_text, hz_text
 from tui.widgets.figures import count_text, seconds_text
 from tui.widgets.trouble import names, no_data_words
@@ -19,12 +20,15 @@ if TYPE_CHECKING:
 
 KILO = 1000
 BETWEEN = " · "
+LONGEST = 200
 OURSELVES = "Deck"
 
 
 def figures(row: TopicRow, size_bytes: int | None) -> list[str]:
     """Rate, bandwidth, age, jitter, latency, losses and size, or why there are none."""
-    if not row.measured:
+    if row.pictures_from:
+        parts = [_("pictures from {topic}").format(topic=plain(row.pictures_from, LONGEST))]
+    elif not row.measured:
         parts = [_("not measured: Deck is not subscribed")]
     elif row.trouble is Trouble.QUIET and row.age_s is not None:
         parts = [no_data_words(row.age_s)]

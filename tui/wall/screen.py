@@ -118,8 +118,12 @@ class WallScreen(DeckScreen):
                     yield VoicePanel()
 
     def watch_topics(self) -> set[str]:
-        """The numbers, and the picture."""
-        return {*NUMBERS, *(self.query_one(CameraPanel).watched() if self._sees else ())}
+        """The numbers."""
+        return set(NUMBERS)
+
+    def picture_topics(self) -> set[str]:
+        """The picture."""
+        return self.query_one(CameraPanel).pictures() if self._sees and self.is_mounted else set()
 
     def follow_topics(self) -> set[str]:
         """What is said, as long as the wall is in front."""

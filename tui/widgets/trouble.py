@@ -40,10 +40,24 @@ def no_data_words(age_s: float) -> str:
     return _("no data for {minutes} min").format(minutes=elapsed(age_s / 60))
 
 
+def lost_words() -> tuple[str, str]:
+    """Say why no raw picture of another machine comes, and the fix."""
+    return (
+        _("no whole picture comes over the network"),
+        _(
+            "Raw pictures take hundreds of packets each, and with any of them the whole is lost; "
+            "or the camera is silent. A session of Deck on that machine sends them small, or "
+            "image_transport compressed."
+        ),
+    )
+
+
 def advice(row: TopicRow) -> tuple[str, str]:
     """Why the topic cannot be shown, and the fix; both empty if there is no trouble."""
     if row.trouble is None:
         return "", _remark(row)
+    if row.trouble is Trouble.QUIET and "raw" in row.facts:
+        return lost_words()
     if row.trouble is Trouble.QUIET and not row.publishers:
         return _("only Deck itself publishes here"), _what_deck_sent(row)
     return trouble_words(row.trouble, row.age_s), plain(_way_out(row, row.trouble), LONGEST)

@@ -17,6 +17,7 @@ waits for any more; the end."""
 WANTED = (
     "watch",
     "follow",
+    "watch_pictures",
     "measure",
     "watch_goals",
     "watch_inner_states",

@@ -247,14 +247,14 @@ async def test_the_trail_of_a_json_shows_without_the_composer() -> None:
 async def test_only_what_is_shown_is_asked_for() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (_app, pilot):
-        assert "/camera/color/image_raw" in opener.graph.watched
+        assert opener.graph.pictures == {"/camera/color/image_raw"}
         assert {"/audio/mic_raw", "/emergency_stop", "/safety_state"} <= opener.graph.followed
         before = opener.graph.measured
         assert not before
         await pilot.press("2")
         await pilot.pause()
         assert opener.graph.measured
-        assert "/camera/color/image_raw" not in opener.graph.watched
+        assert "/camera/color/image_raw" not in opener.graph.watched | opener.graph.pictures
         assert "/audio/mic_raw" in opener.graph.followed
 
 

@@ -23,9 +23,9 @@ from tests.tui.topics_stage import (
     opened,
     with_camera,
 )
-from tui.topics import pictures as topics_pictures
 from tui.topics.detail import TopicDetail
 from tui.topics.pictures import TopicPictures
+from tui.widgets import newest_picture
 
 
 @pytest.fixture
@@ -148,7 +148,7 @@ async def test_late_pictures_are_left_out_while_one_is_decoded(
         assert release.wait(30)
         return read_picture(type_name, value, fit)
 
-    monkeypatch.setattr(topics_pictures, "read_picture", slow)
+    monkeypatch.setattr(newest_picture, "read_picture", slow)
     await stage.choose(CAMERA)
     for number in range(5):
         value = {**jpeg_message(), "number": number}

@@ -14,6 +14,7 @@ from graph.data import Value
 from graph.pictures.picture import COMPRESSED, IMAGE, RAMP, ramp_colours, rounded
 from graph.pictures.pixels import ImageError
 from graph.pictures.reading import read_picture
+from graph.pictures.thinning import thinned_picture
 
 ORANGE = (250, 120, 10)
 
@@ -130,6 +131,32 @@ def test_compressed_pictures_have_their_colours_and_size(ending: str, encoding: 
     assert (picture.width, picture.height, picture.encoding) == (1280, 720, encoding)
     assert picture.rgb.shape == (4, 8, 3)
     assert np.abs(picture.rgb.astype(int) - ORANGE).max() <= 3
+
+
+@pytest.mark.parametrize("encoding", ["rgb8", "mono8"])
+def test_a_thinned_picture_is_small_and_tells_the_size_of_the_camera(encoding: str) -> None:
+    shape = (720, 1280, 3) if encoding == "rgb8" else (720, 1280)
+    words, data = thinned_picture(image(np.full(shape, 90, np.uint8), encoding))
+    assert len(data) < 10_000
+    picture = read_picture(COMPRESSED, {"format": words, "data": data}, whole)
+    assert (picture.width, picture.height) == (1280, 720)
+    assert picture.rgb.shape == (225, 400, 3)
+    assert (abs(picture.rgb.astype(int) - 90) < 3).all()
+
+
+@pytest.mark.parametrize(("encoding", "unit"), [("16UC1", 1000), ("32FC1", 1.0)])
+def test_thinned_depth_stays_depth(encoding: str, unit: float) -> None:
+    kind = np.uint16 if encoding == "16UC1" else np.float32
+    metres = np.full((480, 640), 2.0)
+    metres[:, 320:] = 4.0
+    words, data = thinned_picture(image((metres * unit).astype(kind), encoding))
+    picture = read_picture(COMPRESSED, {"format": words, "data": data}, whole)
+    assert picture.range_m == pytest.approx((2.0, 4.0), abs=0.1)
+
+
+def test_what_is_no_picture_is_not_thinned() -> None:
+    with pytest.raises(ImageError):
+        thinned_picture({"width": 4, "height": 4, "step": 12, "encoding": "rgb8", "data": b""})
 
 
 def test_compressed_grey_is_grey() -> None:

@@ -1,0 +1,34 @@
+"""The relay of camera pictures that a session has whose nodes can be seen from other machines."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+from typing import TYPE_CHECKING
+
+from launcher.spawn_server.spawner import SpawnError, SpawnRequest
+from launcher.supervisor.helper import helping
+
+if TYPE_CHECKING:
+    from launcher.processes.exit import Reaper
+    from launcher.spawn_server.spawner import Spawner
+    from launcher.supervisor.plan import Plan
+
+MODULE = "graph.picture_relay"
+AFTER_S = 3.0
+"""The nodes go first; and so long after the end of one relay another is started."""
+
+
+async def relay_pictures(plan: Plan, spawner: Spawner, reaper: Reaper) -> None:
+    """Keep the relay running until this is cancelled; a local session needs none."""
+    if plan.discovery == "localhost":
+        return
+    where = json.dumps([plan.domain, plan.discovery])
+    request = SpawnRequest("module", "deck_relay", "deck: relay", (MODULE, where), "/", plan.env)
+    while True:
+        await asyncio.sleep(AFTER_S)
+        with contextlib.suppress(SpawnError):
+            async with helping(spawner, reaper, request) as words:
+                async for _line in words:
+                    pass
