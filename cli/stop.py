@@ -28,8 +28,10 @@ if TYPE_CHECKING:
     from launcher.runs.record import RunRecord
 
 CARRIED_WITHIN_S = 3.0
-CONFIRMED_WITHIN_S = 5.0
-"""In which the graph is found, too."""
+CONFIRMED_WITHIN_S = 30.0
+"""A busy machine takes so long to look into the graph and to hear it; the stop is given before."""
+FOUND_WITHIN_S = 5.0
+"""If by then nobody is seen who could say anything, nobody will."""
 SETTLED_S = 1.5
 """Nodes report once a second: after this no other is expected."""
 LOOK_S = 0.02
@@ -98,10 +100,14 @@ def _reports(domain: int) -> Mapping[str, NodeStop]:
         LauncherError: if ROS cannot be used.
     """
     nodes: dict[str, NodeStop] = {}
-    began_s = changed_s = time.monotonic()
+    changed_s = time.monotonic()
+    last_s, deadline_s = changed_s + CONFIRMED_WITHIN_S, 0.0
     with domain_view(domain, follow=(EMERGENCY_STATE,)) as view:
-        while time.monotonic() < began_s + CONFIRMED_WITHIN_S:
+        while time.monotonic() < (deadline_s or last_s):
             for update in view.updates():
+                deadline_s = deadline_s or time.monotonic() + FOUND_WITHIN_S
+                if any(row.name == EMERGENCY_STATE and row.publishers for row in update.topics):
+                    deadline_s = last_s
                 known, nodes = nodes, present(reported_stops(nodes, update), update)
                 if known.keys() != nodes.keys():
                     changed_s = time.monotonic()

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 STOP, KEPT = "■ EMERGENCY STOP", "■ EMERGENCY STOP (from earlier)"
 RELEASE = "^r Release"
+STARTED_WITHIN_S = 180.0
+"""On a machine that is busy with other tests; `deck up` itself waits for a minute."""
 
 
 @pytest.fixture
@@ -71,7 +73,7 @@ def wheels(ros_domain: int) -> Iterator[Wheels]:
 
 
 def up(deck: Deck, profile: str) -> None:
-    assert deck.open("up", profile).wait_exit(60.0) == 0
+    assert deck.open("up", profile).wait_exit(STARTED_WITHIN_S) == 0
 
 
 def attached(deck: Deck) -> Terminal:
@@ -138,7 +140,7 @@ def test_it_outlives_the_screen_the_gate_and_the_supervisor(
     wheels.wait_moving()
     wheels.quiet()
     detach(terminal)
-    assert deck.open("down").wait_exit(60.0) == 0
+    assert deck.open("down").wait_exit(STARTED_WITHIN_S) == 0
 
 
 def test_where_nobody_listens_the_release_starts_again_what_the_stop_has_ended(

@@ -22,6 +22,8 @@ from tests.waiting import comes, wait_until
 
 ROOT = Path(__file__).resolve().parents[3]
 PASTE, END = b"\x1b[200~", b"\x1b[201~"
+ENDED_WITHIN_S = 10.0
+"""The promise is 2 s, on a machine that is not busy."""
 
 
 class Stuck:
@@ -126,7 +128,7 @@ def test_whatever_the_main_thread_does_it_does_not_outlive_its_terminal(
         app.type(b"h")
         app.wait_for("key h")
     app.hang_up()
-    assert app.process.wait(30) == 128 + signal.SIGHUP
+    assert app.process.wait(ENDED_WITHIN_S) == 128 + signal.SIGHUP
     assert "lost" in app.told()
 
 
