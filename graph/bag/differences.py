@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from graph.bag.errors import BagError
     from graph.bag.files import BagFiles
     from graph.bag.part import BagPart, Channel
-    from graph.bag.stated import Stated
+    from graph.bag.stated import Stated, StatedTopic
 
 NAMED = 5
 """So many topics are named in a sentence; of more their number is told."""
@@ -94,22 +94,21 @@ def _counts(stated: Stated, parts: Sequence[BagPart]) -> Iterator[Note]:
     whole = max(stated.messages or 0, said.total())
     fewer = {name: count for name, count in said.items() if held[name] < count}
     if held.total() < whole or fewer:
-        words = say(
-            "metadata.yaml counts {said} messages, the files hold {held}{topics}",
-            said=whole,
-            held=held.total(),
-            topics=_by_topic(fewer, held),
-        )
+        words = count_words(whole, held.total(), _by_topic(fewer, held))
         yield Note(words, incomplete=True)
     elif held.total() > whole and not any(part.cut_bytes is not None for part in parts):
         more = {name: said[name] for name in held if held[name] > said[name]}
-        words = say(
-            "metadata.yaml counts {said} messages, the files hold {held}{topics}",
-            said=whole,
-            held=held.total(),
-            topics=_by_topic(more, held),
-        )
-        yield Note(words)
+        yield Note(count_words(whole, held.total(), _by_topic(more, held)))
+
+
+def count_words(said: int, held: int, topics: str = "") -> Words:
+    """Say that the metadata count another number of messages than there are."""
+    return say(
+        "metadata.yaml counts {said} messages, the files hold {held}{topics}",
+        said=said,
+        held=held,
+        topics=topics,
+    )
 
 
 def _by_topic(said: Mapping[str, int], held: Mapping[str, int]) -> str:
@@ -145,6 +144,26 @@ def _types(stated: Stated, parts: Sequence[BagPart]) -> Iterator[Note]:
                 found=", ".join(sorted(encodings)),
             )
             yield Note(words)
+        yield from _offers(topic, channels)
+
+
+def _offers(topic: StatedTopic, channels: Sequence[Channel]) -> Iterator[Note]:
+    """Yield where the QoS of the metadata is another than that of the files, by which is played."""
+    for channel in channels:
+        pairs = (
+            (channel.reliability, topic.offer.reliability),
+            (channel.durability, topic.offer.durability),
+        )
+        other = [(held, said) for held, said in pairs if held and said and held != said]
+        if other:
+            words = say(
+                "metadata.yaml gives {topic} the QoS {stated}, the files {found}; these count",
+                topic=topic.name,
+                stated=", ".join(said for _held, said in other),
+                found=", ".join(held for held, _said in other),
+            )
+            yield Note(words)
+            return
 
 
 def _cut(path: Path, parts: Sequence[BagPart]) -> list[Words]:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from graph.bag import kinds
+from graph.bag.counting import messages_of
+from graph.bag.differences import count_words
 from graph.bag.stated import Stated, stated_in
 from text.os_words import os_reason
 from text.sentences import Words, say
@@ -66,8 +68,20 @@ def _listed(path: Path) -> ListedBag | None:
     if stated is None or stated.seconds is None or stated.messages is None:
         broken = say("its metadata.yaml is missing or damaged")
         return ListedBag(path.name, path, size, changed_s, trouble=broken)
-    figures = stated.seconds, len(stated.topics), stated.messages
-    return ListedBag(path.name, path, size, changed_s, *figures)
+    held = _held(parts, stated)
+    fewer = held is not None and held < stated.messages
+    messages = held if held is not None and fewer else stated.messages
+    figures = stated.seconds, len(stated.topics), messages
+    broken = count_words(stated.messages, messages) if fewer else ""
+    return ListedBag(path.name, path, size, changed_s, *figures, trouble=broken)
+
+
+def _held(parts: list[Path], stated: Stated) -> int | None:
+    """Return how many messages the files hold by their own account, None where one has none."""
+    if stated.compression:
+        return None
+    counts = [messages_of(file) for file in parts]
+    return None if None in counts else sum(count or 0 for count in counts)
 
 
 def _missing(stated: Stated | None, names: set[str]) -> Words | None:

@@ -73,6 +73,12 @@ def index_of(file: BinaryIO, size: int) -> Index:
     return scanned
 
 
+def counted_in_summary(file: BinaryIO, size: int) -> int | None:
+    """Return how many messages an open file holds by its statistics, None if it has none."""
+    _index, counted = _by_summary(file, size)
+    return None if counted is None else counted.messages
+
+
 def _by_summary(file: BinaryIO, size: int) -> tuple[Index | None, Statistics | None]:
     """Return the index if the summary is complete, and the statistics if there are any."""
     index, counted, chunks = Index(), None, []

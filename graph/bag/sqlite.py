@@ -97,7 +97,7 @@ class SqlitePart:
 
     def _opened(self, file: Path) -> sqlite3.Connection:
         mode = "immutable=1"
-        if any(_holds_something(Path(f"{file}{ending}")) for ending in BESIDE):
+        if is_being_written(file):
             file, mode = self._copied(file), "mode=rw"
         address = f"file:{quote(str(file.absolute()))}?{mode}"
         # It is opened by one thread and read by another, never by two at once.
@@ -198,6 +198,11 @@ class SqlitePart:
             )
             for number, topic, kind, encoding, profiles in rows
         ]
+
+
+def is_being_written(file: Path) -> bool:
+    """Whether a part of the database stands in a file beside it."""
+    return any(_holds_something(Path(f"{file}{ending}")) for ending in BESIDE)
 
 
 def _holds_something(file: Path) -> bool:

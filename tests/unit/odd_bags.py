@@ -159,3 +159,9 @@ def write_metadata(
     text = yaml.safe_dump({"rosbag2_bagfile_information": content}, sort_keys=False)
     (folder / "metadata.yaml").write_text(text)
     return folder
+
+
+def write_lossy_bag(folder: Path) -> Path:
+    """A bag that holds 20 of the 40 messages that its metadata count."""
+    write_mcap(folder / "lossy_0.mcap")
+    return write_metadata(folder, ["lossy_0.mcap"], 40)

@@ -18,6 +18,7 @@ from tests.tui.recorded import RecordedOpener
 from tests.tui.replayed import BagOpener
 from tests.tui.snapshots import Look, SnapCompare, every_look, settle
 from tests.unit.bags import write_bag, write_robot_bag
+from tests.unit.odd_bags import write_lossy_bag
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.bags.listing import RecordingsScreen
@@ -92,6 +93,14 @@ async def test_they_are_listed_with_what_is_known_of_them_the_newest_first() -> 
         assert sonar[0] == "02-sonar-safety-2026"
         assert str(folder / "cut") in said(app)
         assert "✗ cut.mcap is empty, nothing was written to it" in said(app)
+
+
+async def test_one_with_fewer_messages_than_it_counts_is_marked() -> None:
+    aged(write_lossy_bag(recordings_path() / "lossy"), 0)
+    async with picking() as (app, pilot):
+        await listed(app, pilot, 1)
+        assert rows(app)[1][1:3] == ["✗", "lossy"]
+        assert "✗ metadata.yaml counts 40 messages, the files hold 20" in said(app)
 
 
 async def test_enter_plays_the_chosen_one() -> None:

@@ -76,6 +76,29 @@ def test_qos_that_is_written_otherwise_in_metadata_costs_no_message(
         )
 
 
+@pytest.mark.parametrize(
+    ("other", "told"),
+    [
+        ({"reliability": "reliable"}, "reliable, the files best_effort"),
+        ({"durability": "volatile"}, "volatile, the files transient_local"),
+        (
+            {"reliability": "reliable", "durability": "volatile"},
+            "reliable, volatile, the files best_effort, transient_local",
+        ),
+    ],
+)
+def test_another_qos_in_the_metadata_is_told_and_that_of_the_file_counts(
+    tmp_path: Path, other: dict[str, str], told: str
+) -> None:
+    write_mcap(tmp_path / "walk" / "walk_0.mcap", qos=NUMBERED_QOS)
+    stated = [{**NAMED_QOS, **other}]
+    write_metadata(tmp_path / "walk", ["walk_0.mcap"], topics={"offered_qos_profiles": stated})
+    (note,) = all_of(tmp_path / "walk", 20)
+    assert note == f"metadata.yaml gives /chatter the QoS {told}; these count"
+    with open_bag(tmp_path / "walk") as bag:
+        assert bag.topics[0].reliability == "best_effort"
+
+
 @pytest.mark.parametrize("stated", [[NAMED_QOS], NUMBERED_QOS])
 def test_qos_that_only_the_metadata_know_is_theirs(tmp_path: Path, stated: object) -> None:
     write_sqlite(tmp_path / "walk_0.db3", qos=None)
