@@ -48,14 +48,17 @@ def _robot(robot: Element) -> RobotModel:
         )
     materials = Materials(robot)
     links = _by_name(robot.all("link"), lambda element: read_link(element, materials))
-    joints = _by_name(robot.all("joint"), read_joint)
+    swapped: list[str] = []
+    joints = _by_name(robot.all("joint"), lambda element: read_joint(element, swapped))
     if not links:
         raise robot.wrong(say("<robot> has no <link>"), say("a robot has at least one"))
     elements = {name_of(element).strip(): element for element in robot.all("joint")}
     _check_ends(joints, elements, links)
     joints, unfollowed = _without_vain_mimics(joints, elements)
     root = _root(robot, joints, elements, links)
-    return RobotModel(name_of(robot), root, links, joints, (*materials.warnings, *unfollowed))
+    return RobotModel(
+        name_of(robot), root, links, joints, (*materials.warnings, *swapped, *unfollowed)
+    )
 
 
 def _refuse_xacro(robot: Element) -> None:

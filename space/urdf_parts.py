@@ -44,27 +44,36 @@ _WRITE_LIMIT = {
     ),
     JointType.PRISMATIC: N_('write <limit lower="0" upper="0.1" effort="1" velocity="1"/>'),
 }
+_BYTE = 255.0
+"""The most of a colour as other programs write it."""
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 
 
 class Materials:
-    """Colours by name: those of the robot, and those that visuals define in passing."""
+    """Colours by name: those of the robot, and those that visuals define in passing.
+
+    urdfdom (`urdf_parser/src/link.cpp`, `model.cpp`) goes on without a colour that is not between 0
+    and 1 and without an undefined material, both with a word; a second definition below <robot> it
+    refuses, which is said here, and the first counts.
+    """
 
     def __init__(self, robot: Element) -> None:
         """Read the definitions. Raises XmlError."""
         self.warnings: list[str] = []
-        """What is left out, as urdfdom does it, sentences with the line."""
+        """What is left out or mended, sentences with the line."""
         self._colours: dict[str, Colour | None] = {}
         places = [robot, *(visual for link in robot.all("link") for visual in link.all("visual"))]
         for place in places:
             for element in place.all("material"):
                 name = name_of(element)
                 if place is robot and written(element, "name") in self._colours:
-                    raise element.wrong(
-                        say("there is a material {name} already", name=name), say("rename one")
+                    again = element.wrong(
+                        say("there is a material {name} already", name=name),
+                        say("rename one: RViz refuses two, here the first counts"),
                     )
-                if element.children and name:
-                    self._colours.setdefault(name, _colour(element))
+                    self.warnings.append(reason_of(again))
+                elif element.children and name:
+                    self._colours.setdefault(name, self._colour(element))
 
     def of(self, visual: Element) -> tuple[Colour | None, str]:
         """Return the colour of a visual, None without one, and its material.
@@ -75,7 +84,7 @@ class Materials:
         if element is None:
             return None, ""
         if element.children:
-            return _colour(element), name_of(element)
+            return self._colour(element), name_of(element)
         name = written(element, "name")
         if name not in self._colours:
             unknown = element.wrong(
@@ -86,6 +95,25 @@ class Materials:
             self.warnings.append(reason_of(unknown))
         return self._colours.get(name), name
 
+    def _colour(self, material: Element) -> Colour | None:
+        element = material.first("color")
+        if element is None:
+            return None
+        red, green, blue, opacity = numbers(element, "rgba", 4)
+        if all(0.0 <= part <= 1.0 for part in (red, green, blue, opacity)):
+            return red, green, blue, opacity
+        wrong = element.wrong(
+            say("a part of rgba is not between 0 and 1"), say("divide each by 255")
+        )
+        words = reason_of(wrong)
+        if words not in self.warnings:
+            self.warnings.append(words)
+        if not all(0.0 <= part <= _BYTE for part in (red, green, blue, opacity)):
+            return None
+        # An opacity of 1 is whole in either way of writing.
+        whole = opacity if opacity <= 1.0 else opacity / _BYTE
+        return red / _BYTE, green / _BYTE, blue / _BYTE, whole
+
 
 def read_link(element: Element, materials: Materials) -> ModelLink:
     """Return a link with its visuals. Raises XmlError."""
@@ -93,11 +121,11 @@ def read_link(element: Element, materials: Materials) -> ModelLink:
     return ModelLink(written(element, "name"), visuals)
 
 
-def read_joint(element: Element) -> ModelJoint:
-    """Return a joint. Raises XmlError."""
+def read_joint(element: Element, warnings: list[str]) -> ModelJoint:
+    """Return a joint; what urdfdom does not check is added to the warnings. Raises XmlError."""
     name = written(element, "name")
     kind = JointType(one_of(element, "type", [each.value for each in JointType]))
-    lower, upper, velocity = _limits(element, kind)
+    lower, upper, velocity = _limits(element, kind, warnings)
     return ModelJoint(
         name,
         kind,
@@ -133,16 +161,6 @@ def _solid(shape: Element) -> Solid:
     return Mesh(written(shape, "filename"), vector(shape, "scale", _ONES))
 
 
-def _colour(material: Element) -> Colour | None:
-    element = material.first("color")
-    if element is None:
-        return None
-    red, green, blue, opacity = numbers(element, "rgba", 4)
-    if not all(0.0 <= part <= 1.0 for part in (red, green, blue, opacity)):
-        raise element.wrong(say("a part of rgba is not between 0 and 1"), say("divide each by 255"))
-    return red, green, blue, opacity
-
-
 def _axis(element: Element, kind: JointType) -> Vector:
     found = element.first("axis")
     if found is None:
@@ -159,8 +177,11 @@ def _axis(element: Element, kind: JointType) -> Vector:
     return x / size, y / size, z / size
 
 
-def _limits(element: Element, kind: JointType) -> tuple[float, float, float]:
-    """Return the lowest and highest position, and the highest speed."""
+def _limits(element: Element, kind: JointType, warnings: list[str]) -> tuple[float, float, float]:
+    """Return the lowest and highest position, and the highest speed.
+
+    Whether the lower limit is the lower one, urdfdom (`urdf_parser/src/joint.cpp`) does not look.
+    """
     found = element.first("limit")
     if found is None:
         if kind not in LIMITED:
@@ -175,11 +196,12 @@ def _limits(element: Element, kind: JointType) -> tuple[float, float, float]:
         return -math.inf, math.inf, velocity
     lower, upper = number(found, "lower", 0.0), number(found, "upper", 0.0)
     if lower > upper:
-        raise found.wrong(
+        wrong = found.wrong(
             say("the lower limit of joint {name} is above the upper one", name=name_of(element)),
             say("swap them"),
         )
-    return lower, upper, velocity
+        warnings.append(reason_of(wrong))
+    return min(lower, upper), max(lower, upper), velocity
 
 
 def _mimic(element: Element) -> Mimic | None:

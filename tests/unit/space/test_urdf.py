@@ -237,10 +237,6 @@ HOSTILE = {
     "a box of two sizes": (visual("<box size='1 2'/>"), "size of <box> has 2 numbers, and not 3"),
     "an endless cylinder": (visual("<cylinder radius='1' length='1e300'/>"), r"is 1e\+300 m"),
     "no shape": (visual("<cone/>"), "<geometry> has no shape; it can be: box,"),
-    "a colour to 255": (
-        visual("<sphere radius='1'/>", "<material name='x'><color rgba='255 0 0 1'/></material>"),
-        "divide each by 255",
-    ),
     "a place far away": (robot(joint("<origin xyz='1e9 0 0'/>")), "more than"),
     "an axis of no length": (robot(joint("<axis xyz='0 0 0'/>", "continuous")), "has no length"),
     "a hinge without limits": (robot(joint(kind="revolute")), "without a <limit>; write <limit lo"),
@@ -252,10 +248,6 @@ HOSTILE = {
         robot(joint("<limit lower='0' upper='1' effort='1'/>", "revolute")),
         "<limit> has no velocity",
     ),
-    "swapped limits": (
-        robot(joint("<limit lower='1' upper='0' effort='1' velocity='1'/>", "revolute")),
-        "above the upper one; swap them",
-    ),
 }
 
 
@@ -266,12 +258,29 @@ def test_what_is_no_robot_is_told_by_line_and_mend(case: str) -> None:
     assert re.search(said, told), told
 
 
+def coloured(material: str, above: str = "") -> str:
+    """A robot of one link, whose only visual has this material."""
+    return (
+        f"<robot>{above}<link name='a'><visual><geometry><sphere radius='1'/></geometry>"
+        f"{material}</visual></link></robot>"
+    )
+
+
 WARNED = {
+    "a colour to 255": (
+        coloured("<material name='x'><color rgba='255 0 0 1'/></material>"),
+        "a part of rgba is not between 0 and 1; divide each by 255",
+    ),
+    "a material twice": (
+        robot("<material name='m'><color rgba='1 0 0 1'/></material>" * 2, joint()),
+        "there is a material m already; rename one: RViz refuses two, here the first counts",
+    ),
+    "swapped limits": (
+        robot(joint("<limit lower='1' upper='0' effort='1' velocity='1'/>", "revolute")),
+        "the lower limit of joint j is above the upper one; swap them",
+    ),
     "an unknown material": (
-        (
-            "<robot><link name='a'><visual><geometry><sphere radius='1'/></geometry>"
-            "<material name='x'/></visual></link></robot>"
-        ),
+        coloured("<material name='x'/>"),
         "there is no material x; define it below <robot>: ",
     ),
     "a joint that follows itself": (
@@ -294,6 +303,40 @@ def test_what_urdfdom_warns_of_or_does_not_check_is_warned_of_and_left_out(case:
     assert said in warning
     assert all(joint.mimic is None for joint in model.joints.values())
     assert model.followed({}) == {}
+
+
+def test_limits_that_are_swapped_are_those_that_were_meant() -> None:
+    limits = "<limit lower='1' upper='-0.5' effort='1' velocity='1'/>"
+    (turning,) = read_urdf(robot(joint(limits, "revolute"))).joints.values()
+    assert (turning.lower, turning.upper) == (-0.5, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("255 51 0 1", (1.0, 0.2, 0.0, 1.0)),
+        ("255 51 0 127.5", (1.0, 0.2, 0.0, 0.5)),
+        ("0.5 0 -0.5 1", None),
+        ("300 0 0 1", None),
+    ],
+)
+def test_colours_to_255_are_divided_and_others_left_out(
+    written: str, meant: tuple[float, ...] | None
+) -> None:
+    material = f"<material name='x'><color rgba='{written}'/></material>"
+    model = read_urdf(coloured(material))
+    (shape,) = next(iter(model.links.values())).visuals
+    assert shape.colour == (None if meant is None else pytest.approx(meant))
+    assert len(model.warnings) == 1
+
+
+def test_of_two_materials_of_one_name_the_first_counts() -> None:
+    twice = (
+        "<material name='m'><color rgba='1 0 0 1'/></material>"
+        "<material name='m'><color rgba='0 0 1 1'/></material>"
+    )
+    model = read_urdf(coloured("<material name='m'/>", twice))
+    assert model.links["a"].visuals[0].colour == (1.0, 0.0, 0.0, 1.0)
 
 
 def test_of_joints_that_follow_each_other_one_does_not() -> None:
