@@ -51,8 +51,14 @@ def read_compressed(value: Mapping[str, Value], fit: Fit) -> Picture:
     pixels = _decoded(raw, _reduction(width, height, fit), as_they_are=head is not None)
     thin = thinned(pixels, fit)
     if head is not None:
-        encoding = words.split(";")[0].strip()
-        return numbers_picture(_depths(thin[..., 0], encoding, head), width, height, encoding)
+        encoding, read = words.split(";")[0].strip(), head
+        return numbers_picture(
+            _depths(thin[..., 0], encoding, head),
+            width,
+            height,
+            encoding,
+            lambda: _depths(pixels[..., 0], encoding, read),
+        )
     full = _FULL_SIZE.search(words)
     width, height = map(int, full.groups()) if full else (width, height)
     return Picture(thin[:, :, ::-1], width, height, "jpeg" if raw[:3] == JPEG else "png")

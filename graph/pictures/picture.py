@@ -49,18 +49,30 @@ class Picture:
 
 
 def numbers_picture(
-    numbers: NDArray[np.generic], width: int, height: int, encoding: str
+    numbers: NDArray[np.generic],
+    width: int,
+    height: int,
+    encoding: str,
+    all_of: Callable[[], NDArray[np.generic]],
 ) -> Picture:
-    """Return numbers of shape (height, width) as a picture: depth by the ramp, others in grey."""
+    """Return numbers of shape (height, width) as a picture: depth by the ramp, others in grey.
+
+    `all_of` returns all numbers of the message, of which the others are a choice: whether there is
+    any distance is judged by them.
+    """
     if encoding not in METRES:
         return Picture(grey(numbers), width, height, encoding)
     import numpy as np
 
     metres = numbers.astype(np.float64) * METRES[encoding]
     valid = np.isfinite(metres) & (metres > 0)
-    if not valid.any():
+    distances = metres[valid]
+    if not distances.size:
+        every = all_of().astype(np.float64) * METRES[encoding]
+        distances = every[np.isfinite(every) & (every > 0)]
+    if not distances.size:
         return Picture(np.zeros((*metres.shape, 3), np.uint8), width, height, encoding)
-    near, far = rounded(*np.percentile(metres[valid], (100 - FARTHEST, FARTHEST)).tolist())
+    near, far = rounded(*np.percentile(distances, (100 - FARTHEST, FARTHEST)).tolist())
     share = np.clip((np.where(valid, metres, near) - near) / (far - near), 0.0, 1.0)
     rgb = ramp_colours()[(share * 255).astype(np.uint8)]
     rgb[~valid] = 0

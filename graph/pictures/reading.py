@@ -43,8 +43,11 @@ def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Pictur
         kind = (">" if value.get("is_bigendian") else "<") + DEPTHS[encoding]
         size = int(kind[-1])
         rows = pixel_rows(data, width, height, step, size)
-        numbers = thinned(rows.reshape(height, width, size), fit).copy().view(kind)[:, :, 0]
-        return numbers_picture(numbers, width, height, encoding)
+        every = rows.reshape(height, width, size)
+        numbers = thinned(every, fit).copy().view(kind)[:, :, 0]
+        return numbers_picture(
+            numbers, width, height, encoding, lambda: every.copy().view(kind)[:, :, 0]
+        )
     if encoding in YUV or encoding in BAYER:
         return Picture(thinned(to_rgb(value), fit), width, height, encoding)
     raise UnknownEncodingError(encoding)

@@ -103,6 +103,20 @@ def test_depth_without_a_reading_is_black_and_has_no_range() -> None:
     assert not picture.rgb.any()
 
 
+@pytest.mark.parametrize("shape", [IMAGE, COMPRESSED])
+def test_a_distance_between_the_pixels_that_are_shown_is_one(shape: str) -> None:
+    numbers = np.zeros((80, 160), np.uint16)
+    assert read_picture(IMAGE, image(numbers, "16UC1"), small).is_empty_depth
+    numbers[1, 1] = 1500
+    value = image(numbers, "16UC1")
+    if shape == COMPRESSED:
+        value = compressed(numbers, ".png", "16UC1; compressedDepth png")
+        value["data"] = struct.pack("<iff", 0, 0.0, 0.0) + value["data"]  # type: ignore[operator]
+    picture = read_picture(shape, value, small)
+    assert not picture.rgb.any()
+    assert not picture.is_empty_depth
+
+
 def test_one_stray_reading_does_not_take_all_colours() -> None:
     numbers = np.full((100, 100), 1500, "<u2")
     numbers[:50] = 1000
