@@ -6,8 +6,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from graph.housekeeping import is_hidden
+from text.plain import plain
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rclpy.node import Node
 
 
@@ -28,9 +31,9 @@ def split_name(full: str) -> tuple[str, str]:
 
 
 def nodes(node: Node, *, hidden: bool) -> list[str]:
-    """Return the full names of the nodes, as often as they are there."""
+    """Return the full names of the nodes, as often as they are there, each for one line."""
     return [
-        full_name(name, namespace)
+        plain(full_name(name, namespace))
         for name, namespace in node.get_node_names_and_namespaces()
         if hidden or not name.startswith("_")
     ]
@@ -58,8 +61,25 @@ def servers(node: Node, service: str, type_name: str, *, hidden: bool) -> list[s
 def shown(
     names_and_types: list[tuple[str, list[str]]], *, hidden: bool
 ) -> list[tuple[str, list[str]]]:
-    """Return topics or services without those that are hidden."""
-    return [(name, types) for name, types in names_and_types if hidden or not is_hidden(name)]
+    """Return topics or services without those that are hidden, each for one line.
+
+    Whoever is no node of ROS may have any name, with line breaks in it.
+    """
+    return [
+        (plain(name), [plain(each) for each in types])
+        for name, types in names_and_types
+        if hidden or not is_hidden(name)
+    ]
+
+
+def count(topic: str, counted: Callable[[str], int]) -> int:
+    """Return how many ends a topic has, 0 of one whose name rclpy refuses."""
+    from rclpy.exceptions import InvalidTopicNameException
+
+    try:
+        return counted(topic)
+    except (ValueError, InvalidTopicNameException):
+        return 0
 
 
 def expanded(topic: str, node: Node) -> str:

@@ -36,6 +36,18 @@ class _Dumper(yaml.Dumper):
     """Keeps the order of the fields."""
 
 
+class _Name(str):
+    """A text that is one of several fields, such as the name of a frame: it stays in its line."""
+
+    __slots__ = ()
+
+
+_Dumper.add_representer(
+    _Name,
+    lambda _dumper, data: yaml.ScalarNode("tag:yaml.org,2002:str", str(data), style='"'),
+)
+
+
 _Dumper.add_representer(
     dict,
     lambda dumper, data: yaml.MappingNode(
@@ -60,7 +72,15 @@ def to_tree(message: Any, shape: Shape = WHOLE) -> dict[str, Tree]:  # noqa: ANN
     """Return the fields of a message in order."""
     names = message.get_fields_and_field_types()
     kinds = zip(names, message.SLOT_TYPES, strict=False)
-    return {name: _value(getattr(message, name), shape, kind) for name, kind in kinds}
+    tree = {name: _value(getattr(message, name), shape, kind) for name, kind in kinds}
+    return tree if len(tree) < 2 else {name: _in_line(value) for name, value in tree.items()}
+
+
+def _in_line(value: Tree) -> Tree:
+    """Have texts with line breaks written with escapes; a message of one text may be a page."""
+    if isinstance(value, list):
+        return [_in_line(each) for each in value]
+    return _Name(value) if isinstance(value, str) and "\n" in value else value
 
 
 def _value(value: Any, shape: Shape, kind: object = None) -> Tree:  # noqa: ANN401

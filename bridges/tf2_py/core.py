@@ -118,7 +118,7 @@ class BufferCore:
         """Return one line for each frame that has a parent."""
         with self._lock:
             return "".join(
-                f"Frame {name} exists with parent {history.parent}.\n"
+                f"Frame {_in_line(name)} exists with parent {_in_line(history.parent)}.\n"
                 for name, history in self._histories.items()
             )
 
@@ -269,6 +269,11 @@ def _unconnected(target: str, source: str) -> str:
         f"Could not find a connection between '{target}' and '{source}' because they are not part "
         "of the same tree. Tf has two or more unconnected trees."
     )
+
+
+def _in_line(name: str) -> str:
+    """Keep a name with line breaks, as anybody may publish one, in its line."""
+    return name.replace("\n", "\N{SYMBOL FOR LINE FEED}").replace("\r", "")
 
 
 def _yaml(name: str, history: History) -> str:

@@ -30,6 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int | str | None:
     """Print its clients and servers."""
     from rclpy.action import graph
+    from rclpy.node import NodeNameNonExistentError
 
     clients: list[str] = []
     servers: list[str] = []
@@ -41,7 +42,11 @@ def main(args: argparse.Namespace) -> int | str | None:
                 (clients, graph.get_action_client_names_and_types_by_node),
                 (servers, graph.get_action_server_names_and_types_by_node),
             ):
-                types = dict(ask(me.node, *who)).get(name)
+                try:
+                    types = dict(ask(me.node, *who)).get(name)
+                except NodeNameNonExistentError:
+                    # It left in between.
+                    continue
                 if types:
                     found.append(f"{full} [{', '.join(types)}]" if args.show_types else full)
     print(f"Action: {args.action_name}")

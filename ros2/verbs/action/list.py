@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ros2 import options
+from ros2 import naming, options
 from ros2.joining import joined
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def main(args: argparse.Namespace) -> int | str | None:
     from rclpy.action import get_action_names_and_types
 
     with joined(args, settled=True) as me:
-        found = get_action_names_and_types(me.node)
+        found = naming.shown(get_action_names_and_types(me.node), hidden=True)
     if args.count_actions:
         print(len(found))
         return None

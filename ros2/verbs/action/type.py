@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ros2 import options
 from ros2.joining import joined
+from text.plain import plain
 
 if TYPE_CHECKING:
     import argparse
@@ -27,5 +28,5 @@ def main(args: argparse.Namespace) -> int | str | None:
         types = dict(get_action_names_and_types(me.node)).get(args.action_name, [])
     if not types:
         return 1
-    print(*types, sep="\n")
+    print(*map(plain, types), sep="\n")
     return None

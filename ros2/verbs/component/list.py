@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ros2 import options
 from ros2.joining import joined
 from ros2.naming import absolute, servers
+from text.plain import plain
 
 if TYPE_CHECKING:
     import argparse
@@ -59,4 +60,4 @@ def _print_components(me: Guest, container: str, indent: str) -> None:
         raise RuntimeError(f"The type {LIST_NODES_TYPE} is not installed") from error
     answer = me.call(f"{container}{LIST_NODES}", ListNodes, container)
     for number, name in zip(answer.unique_ids, answer.full_node_names, strict=True):
-        print(f"{indent}{number}  {name}")
+        print(f"{indent}{number}  {plain(name)}")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ros2 import lifecycle, options
 from ros2.joining import joined
+from text.plain import plain
 
 if TYPE_CHECKING:
     import argparse
@@ -37,7 +38,7 @@ def main(args: argparse.Namespace) -> int | str | None:
             if not node:
                 return lifecycle.NOT_FOUND
             state = lifecycle.state(me, node)
-            print(f"{state.label} [{state.id}]")
+            print(f"{plain(state.label)} [{state.id}]")
             return None
         told = [_print_state(me, node) for node in lifecycle.nodes(me, hidden=hidden)]
     return 0 if all(told) else 1
@@ -49,5 +50,5 @@ def _print_state(me: Guest, node: str) -> bool:
     except RuntimeError as error:
         print(error, file=sys.stderr)
         return False
-    print(f"{node}: {state.label} [{state.id}]")
+    print(f"{node}: {plain(state.label)} [{state.id}]")
     return True

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ros2 import lifecycle, options
 from ros2.joining import joined
+from text.plain import plain
 
 if TYPE_CHECKING:
     import argparse
@@ -33,8 +34,8 @@ def main(args: argparse.Namespace) -> int | str | None:
             return lifecycle.NOT_FOUND
         for each in lifecycle.transitions(me, node, of_all=args.all):
             print(
-                f"- {each.transition.label} [{each.transition.id}]\n"
-                f"\tStart: {each.start_state.label}\n"
-                f"\tGoal: {each.goal_state.label}"
+                f"- {plain(each.transition.label)} [{each.transition.id}]\n"
+                f"\tStart: {plain(each.start_state.label)}\n"
+                f"\tGoal: {plain(each.goal_state.label)}"
             )
     return None

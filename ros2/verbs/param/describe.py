@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ros2 import options, parameters
 from ros2.joining import joined
+from text.plain import plain
 
 if TYPE_CHECKING:
     import argparse
@@ -30,7 +31,7 @@ def main(args: argparse.Namespace) -> int | str | None:
             return parameters.NOT_FOUND
         response = parameters.call(me, node, "DescribeParameters", names=args.parameter_names)
     for each in response.descriptors:
-        print("Parameter name:", each.name)
+        print("Parameter name:", plain(each.name))
         print("  Type:", parameters.TYPES[each.type])
         if each.description:
             print("  Description:", each.description)

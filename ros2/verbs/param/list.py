@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ros2 import naming, options, parameters
 from ros2.joining import joined
+from text.plain import plain
 
 if TYPE_CHECKING:
     import argparse
@@ -53,12 +54,13 @@ def main(args: argparse.Namespace) -> int | str | None:
         for node in found:
             response = parameters.call(me, node, "ListParameters", prefixes=args.param_prefixes)
             names = [name for name in sorted(response.result.names) if pattern.search(name)]
+            lines = [plain(name) for name in names]
             if not args.node_name:
                 print(f"{node}:")
             if not args.param_type:
-                print("".join(f"  {name}\n" for name in names), end="")
+                print("".join(f"  {line}\n" for line in lines), end="")
                 continue
             described = parameters.call(me, node, "DescribeParameters", names=names)
             for each in described.descriptors:
-                print(f"  {each.name} (type: {parameters.TYPES[each.type]})")
+                print(f"  {plain(each.name)} (type: {parameters.TYPES[each.type]})")
     return None

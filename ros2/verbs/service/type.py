@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ros2 import options
 from ros2.joining import joined
+from text.plain import plain
 
 if TYPE_CHECKING:
     import argparse
@@ -31,5 +32,5 @@ def main(args: argparse.Namespace) -> int | str | None:
 
         if not me.await_until(there):
             return 1
-    print(*found, sep="\n")
+    print(*map(plain, found), sep="\n")
     return None

@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING
 
 from ros2 import naming, options
 from ros2.joining import joined
+from text.plain import plain
 
 if TYPE_CHECKING:
     import argparse
+
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 SUMMARY = "Print information about a topic"
 
@@ -36,13 +39,21 @@ def main(args: argparse.Namespace) -> int | str | None:
         if not types:
             return f"Unknown topic '{topic}'"
         end = "\n\n" if args.verbose else "\n"
-        print(f"Type: {types[0] if len(types) == 1 else types}", end=end)
+        print(f"Type: {plain(types[0]) if len(types) == 1 else types}", end=end)
         print(f"Publisher count: {me.node.count_publishers(topic)}", end=end)
         if args.verbose:
             for info in me.node.get_publishers_info_by_topic(topic):
-                print(info, end=end)
+                print(_named(info), end=end)
         print(f"Subscription count: {me.node.count_subscribers(topic)}", end=end)
         if args.verbose:
             for info in me.node.get_subscriptions_info_by_topic(topic):
-                print(info, end=end)
+                print(_named(info), end=end)
     return None
+
+
+def _named(info: TopicEndpointInfo) -> TopicEndpointInfo:
+    """Keep each name in its line."""
+    info.node_name = plain(info.node_name)
+    info.node_namespace = plain(info.node_namespace)
+    info.topic_type = plain(info.topic_type)
+    return info

@@ -52,7 +52,7 @@ def _print_ends(
 ) -> None:
     print(f"{title} topics:")
     for name, types in topics:
-        if ends := count(name):
+        if ends := naming.count(name, count):
             plural = "s" if ends > 1 else ""
             print(f" * {name} [{', '.join(types)}] {ends} {what}{plural}")
     print()

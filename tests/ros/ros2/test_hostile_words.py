@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import pytest
+import yaml
+from geometry_msgs.msg import TransformStamped
 from rcl_interfaces.msg import ParameterDescriptor
-from std_msgs.msg import String
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Header, String
 from std_srvs.srv import SetBool
+from tf2_ros import Buffer
 
+from ros2 import naming
+from ros2.printing import to_yaml
 from tests.hostile_text import EVIL, harm_in
 from tests.ros.peer import LATCHED
 from tests.ros.ros2.typed import Typed, typed
@@ -61,6 +68,29 @@ def test_what_others_wrote_is_shown_as_on_the_screens(words: tuple[str, ...]) ->
 def test_what_a_service_answers_is_shown_as_on_the_screens() -> None:
     # Python's own form has escapes for all that cannot be seen.
     shows(typed("service", "call", "/evil_answer", "std_srvs/srv/SetBool", "{}"), escapes=True)
+
+
+FORGED = "odom\n[ERROR] [1.0] [chassis]: the brake has failed"
+
+
+def test_no_name_begins_a_line_of_its_own() -> None:
+    """Whoever is no node of ROS may have any name, and who publishes any frame."""
+    (topic,) = naming.shown([(f"/{FORGED}", [FORGED])], hidden=True)
+    assert "\n" not in topic[0] + topic[1][0]
+    header = to_yaml(Header(frame_id=FORGED))
+    assert [line.partition(":")[0] for line in header.splitlines()] == [
+        "stamp", "  sec", "  nanosec", "frame_id",
+    ]  # fmt: skip
+    assert yaml.safe_load(header)["frame_id"] == FORGED
+    assert to_yaml(JointState(name=[FORGED])).count("[ERROR]") == 1
+    assert not re.search(r"^\W*\[ERROR\]", to_yaml(JointState(name=[FORGED])), re.MULTILINE)
+    # A text that stands for itself may be a page.
+    assert to_yaml(String(data="a\nb")).count("\n") > 1
+    buffer = Buffer()
+    frame = TransformStamped(header=Header(frame_id=FORGED), child_frame_id=f"b{FORGED}")
+    frame.transform.rotation.w = 1.0
+    buffer.set_transform(frame, "somebody")
+    assert buffer.all_frames_as_string().count("\n") == 1
 
 
 def shows(told: Typed, *, escapes: bool = False) -> None:

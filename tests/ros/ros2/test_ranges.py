@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from tests.ros.ros2.world import World
 
 BYTES = "std_msgs/msg/ByteMultiArray"
+BOUNDED_TEXT = "type_description_interfaces/msg/IndividualTypeDescription"
+BOUNDED_LIST = "shape_msgs/msg/SolidPrimitive"
 
 
 @pytest.mark.parametrize(
@@ -51,12 +53,43 @@ BYTES = "std_msgs/msg/ByteMultiArray"
             "integer_range: [{}, {}]",
             "integer_range: expected at most 1 elements, got 2",
         ),
+        ("example_interfaces/msg/WString", "data: 5", "data: expected a string, got 5"),
+        ("example_interfaces/msg/WString", '{data: "a\\0b"}', "data: a ROS string cannot hold the"),
+        (
+            BOUNDED_TEXT,
+            f"type_name: {'x' * 256}",
+            "type_name: expected at most 255 characters, got",
+        ),
+        (
+            "rmw_dds_common/msg/ParticipantEntitiesInfo",
+            f"node_entities_info_seq: [{{node_name: {'x' * 257}}}]",
+            "node_entities_info_seq[0].node_name: expected at most 256 characters, got 257",
+        ),
+        (
+            BOUNDED_LIST,
+            "dimensions: [1, 2, 3, 4]",
+            "dimensions: expected at most 3 elements, got 4",
+        ),
     ],
 )
 def test_a_message_is_refused(kind: str, values: str, why: str) -> None:
     refused = typed("topic", "pub", "--once", "/nobody_hears", kind, values)
     assert (refused.code, refused.out) == (1, "")
     assert refused.err.startswith(f"Failed to populate field: {why}"), refused.err
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "sent"),
+    [
+        ("example_interfaces/msg/WString", 'data: "мир 🌍"', "data='мир 🌍'"),
+        (BOUNDED_TEXT, f"type_name: {'x' * 255}", f"type_name='{'x' * 255}'"),
+        (BOUNDED_LIST, "dimensions: [1, 2, 3]", "dimensions=[1.0, 2.0, 3.0]"),
+    ],
+)
+def test_what_fits_is_sent(kind: str, values: str, sent: str) -> None:
+    told = typed("topic", "pub", "--once", "-w", "0", "/nobody_hears_this", kind, values)
+    assert (told.code, told.err) == (0, "")
+    assert sent in told.out
 
 
 def test_a_request_and_a_goal_are_refused() -> None:
