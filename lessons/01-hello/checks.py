@@ -3,6 +3,7 @@
 import re
 
 INFO = 20
+SEVERITIES = {10: "debug", 20: "info", 30: "warning", 40: "error", 50: "fatal"}
 
 
 def greets(seen):
@@ -13,10 +14,24 @@ def greets(seen):
     # The first: it is the same in each run.
     if any(re.search("hello|привет", text, re.IGNORECASE) for text in lines):
         return None
+    others = [
+        SEVERITIES.get(line["level"], "?")
+        for _time, line in seen.messages["/rosout"]
+        if line["name"] in nodes and re.search("hello|привет", line["msg"], re.IGNORECASE)
+    ]
+    if others:
+        return {
+            "en": f"the greeting is logged, with the severity {others[-1]} and not info: "
+            "use self.get_logger().info(...)",
+            "ru": f"приветствие записано в журнал с уровнем {others[-1]}, а не info: "
+            "нужен self.get_logger().info(...)",
+        }
     if any(re.search("hello|привет", text, re.IGNORECASE) for text in seen.logs["hello"]):
         return {
-            "en": "the greeting is printed, not logged: use self.get_logger().info(...)",
-            "ru": "приветствие напечатано, а не записано: нужен self.get_logger().info(...)",
+            "en": "the greeting is only printed, hello has not logged it: "
+            "use self.get_logger().info(...)",
+            "ru": "приветствие только напечатано, hello не записал его в журнал: "
+            "нужен self.get_logger().info(...)",
         }
     if lines:
         return {
