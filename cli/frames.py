@@ -10,7 +10,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-from cli.running_domain import running_domain
+from cli.running_domain import beyond_this_machine, running_domain
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from text.i18n import _, localized
@@ -52,6 +52,8 @@ def frames_command(options: Namespace) -> int:
         write(json_text({"domain": domain, "frames": rows, "findings": found}, indent=2))
     else:
         _show(tree, findings, domain)
+        if not update.frames and (hint := beyond_this_machine(discovery)):
+            write(localized(hint))
     return 1 if findings or not update.frames else 0
 
 

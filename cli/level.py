@@ -8,7 +8,7 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING
 
-from cli.running_domain import running_domain
+from cli.running_domain import beyond_this_machine, running_domain
 from graph.observer.observer import Observer
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from text.i18n import localized
@@ -49,6 +49,8 @@ def level_command(options: Namespace) -> int:
         observer.stop()
     if result.error:
         say_error(f"deck: {plain(localized(result.error))}")
+        if not seen.is_set() and (hint := beyond_this_machine(discovery)):
+            say_error(f"deck: {localized(hint)}")
         return 1
     write(plain(result.level))
     return 0

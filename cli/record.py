@@ -18,13 +18,13 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cli.running_domain import running_domain
+from cli.running_domain import beyond_this_machine, running_domain
 from graph.bag.errors import BagError
 from graph.heavy_types import IMAGES, POINT_CLOUD
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.rundir import new_recording
-from text.i18n import _
+from text.i18n import _, localized
 from text.output import BOLD, Paint, json_text, keep_stdout_to_ourselves, table, write
 from text.plain import plain
 from text.ros_names import TOPIC_NAME
@@ -69,7 +69,7 @@ def record_command(options: Namespace) -> int:
         _tell_until(recorder, stop, options)
     finally:
         status = recorder.stop()
-    return _end(status, as_json=options.json)
+    return _end(status, beyond_this_machine(discovery), as_json=options.json)
 
 
 def _topic(name: str) -> str:
@@ -104,11 +104,12 @@ def _tell_until(recorder: Recorder, stop: threading.Event, options: Namespace) -
             write(progress(status))
 
 
-def _end(status: RecordingStatus, *, as_json: bool) -> int:
-    """Report the result; return the exit code."""
+def _end(status: RecordingStatus, hint: str, *, as_json: bool) -> int:
+    """Report the result, with the hint where nothing came; return the exit code."""
     found = list(complaints(status))
     if not status.messages and not status.error:
         found.append(_("nothing was recorded: nobody has published anything"))
+        found += [localized(hint)] if hint else []
     code = 1 if status.error or not status.messages else 0
     if as_json:
         rows = [vars(row) for row in status.topics]

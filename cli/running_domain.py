@@ -33,3 +33,10 @@ def running_domain(
     wide = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() == "SUBNET"
     domain = choose_domain(asked, None, os.environ)
     return f"domain-{domain}", domain, wanted or ("subnet" if wide else "localhost")
+
+
+def beyond_this_machine(discovery: str | tuple[str, ...]) -> str:
+    """Return where else somebody may be who was not found, empty if that was looked at."""
+    if discovery != "localhost":
+        return ""
+    return say("only this machine was looked at: --discovery subnet looks on the network, too")

@@ -2,7 +2,8 @@
 
 The shell replaces this process, so its exit code, its signals and its terminal are its own. It
 reads the user's settings as always; after them, a file of ours puts Deck's folders first on the
-path again and shows lesson and domain in the prompt.
+path again, shows lesson and domain in the prompt, and says what there is instead of programs such
+as RViz.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cli.elsewhere import for_bash, for_fish, for_zsh
 from cli.running_domain import running_domain
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
@@ -134,17 +136,17 @@ def _interactive(shell: str, environ: dict[str, str]) -> list[str]:
     # The shell replaces this process, so nobody is left to remove them: the files do it themselves.
     gone = f"rm -rf -- {shlex.quote(str(folder))}\n"
     if kind == "bash":
-        (folder / "bashrc").write_text(gone + _BASH, encoding="utf-8")
+        (folder / "bashrc").write_text(gone + _BASH + for_bash(), encoding="utf-8")
         return [shell, "--rcfile", str(folder / "bashrc"), "-i"]
     if kind == "zsh":
         environ["DECK_ZDOTDIR"] = environ.get("ZDOTDIR", environ.get("HOME", "/"))
         environ["DECK_OWN_ZDOTDIR"] = environ["ZDOTDIR"] = str(folder)
         (folder / ".zshenv").write_text(_ZSH_ENV, encoding="utf-8")
-        (folder / ".zshrc").write_text(gone + _ZSH, encoding="utf-8")
+        (folder / ".zshrc").write_text(gone + _ZSH + for_zsh(), encoding="utf-8")
         return [shell, "-i"]
     if kind == "fish":
         folder.rmdir()
-        return [shell, "--init-command", _FISH, "-i"]
+        return [shell, "--init-command", _FISH + for_fish(), "-i"]
     environ["DECK_ENV"] = environ.get("ENV", "")
     environ["ENV"] = str(folder / "shrc")
     again = 'ENV=$DECK_ENV; unset DECK_ENV; [ -n "$ENV" ] || unset ENV\n'

@@ -71,6 +71,23 @@ def test_the_prompt_tells_the_domain_and_the_users_settings_are_read(
     assert not list(Path(os.environ.get("TMPDIR", "/tmp")).glob(f"deck-shell-*-{terminal.pid}"))
 
 
+@pytest.mark.parametrize("own", ["", 'command_not_found_handle() { echo "own word for $1"; }\n'])
+def test_what_is_not_there_is_told_with_what_is(own: str, home: Path, ros_domain: int) -> None:
+    (home / ".bashrc").write_text(f"PS1='mine> '\n{own}")
+    terminal = pexpect.spawn(
+        DECK[0], list(DECK[1:]), env={**os.environ, "SHELL": "/bin/bash", "PATH": "/usr/bin:/bin"},
+        cwd=str(home), encoding="utf-8", timeout=WITHIN_S,
+    )  # fmt: skip
+    terminal.expect_exact(f"(domain {ros_domain}) mine> ")
+    terminal.sendline("rviz2 --help; echo code $?")
+    terminal.expect_exact("rviz2 is not in Deck: the Space tab and `deck view` show frames")
+    terminal.expect_exact("code 127")
+    terminal.sendline("no_such_program; exit")
+    terminal.expect_exact("own word for no_such_program" if own else "no_such_program: command not")
+    terminal.expect(pexpect.EOF)
+    terminal.close()
+
+
 def test_without_a_terminal_it_reads_its_commands(home: Path, ros_domain: int) -> None:
     seen = subprocess.run(
         DECK,
