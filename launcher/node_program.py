@@ -41,6 +41,7 @@ def prepare(argv: tuple[str, ...], *, tells: bool = True) -> None:
     if tells and "/" in name:
         sys.excepthook = _report_and_tell
         _report_threads()
+        _report_actions()
     sys.orig_argv = [sys.executable, __file__, *argv]
     # The `-m` tells the nodes' packages that one of their modules is being started.
     sys.argv = [name if "/" in name else "-m", *argv[1:]]
@@ -93,6 +94,21 @@ def _report_threads() -> None:
             tell(ended.exc_value, sys.argv[0], "thread")
 
     threading.excepthook = report
+
+
+def _report_actions() -> None:
+    """Tell of an exception in the callback of an action's server, too, which rclpy only logs."""
+    import traceback
+
+    shown = traceback.print_exc
+
+    def report(*arguments: object, **options: object) -> None:
+        shown(*arguments, **options)  # type: ignore[arg-type]
+        error, asked = sys.exc_info()[1], sys._getframe(1).f_code.co_filename  # noqa: SLF001
+        if error is not None and asked.endswith("/rclpy/action/server.py"):
+            tell(error, sys.argv[0], "warning")
+
+    traceback.print_exc = report
 
 
 def tell(error: BaseException, file: str, kind: str) -> None:

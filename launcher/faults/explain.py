@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING
 from launcher.faults.failure import Failure
 from launcher.faults.ros_arguments import meaning_of_arguments
 from launcher.faults.rules import (
+    actions,
     attributes,
     callbacks,
     calling,
     creating,
     fields,
+    handed,
     imports,
     names,
     operating,
@@ -35,9 +37,12 @@ RULES: tuple[Rule, ...] = (
     lambda failure: meaning_of_arguments(str(failure.error)),
     *callbacks.RULES,
     *names.RULES[:1],
+    actions.result,
     *fields.RULES,
     *creating.RULES,
     *ros.RULES,
+    *actions.RULES,
+    *handed.RULES,
     *imports.RULES,
     *names.RULES[1:],
     *ros.LAST,

@@ -35,11 +35,27 @@ def remedy(failure: Failure, node: ast.AST | None, value: Any = UNKNOWN) -> Word
     return None if kind is None else _of_type(failure, what, node, kind)
 
 
+def of_list(what: str, call: str) -> Words:
+    """Say that a function of one number was given many."""
+    return say(
+        "{what} is a list: take one of its values, {call}({what}[0]), or all,"
+        " [{call}(v) for v in {what}].",
+        what=what,
+        call=call,
+    )
+
+
 def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
     """Say that an expression is None, and what that may come from."""
     what, call = shown(node), failure.given_by(node)
     if isinstance(node, ast.Constant) or node is None:
-        return say("None is not a value here: has nothing been put there yet?")
+        return is_none_here("None")
+    if _read_from(failure, node):
+        return say(
+            "No picture has come, and {what} is None: then the first of the two that read() gives"
+            " is False. Is the camera there?",
+            what=what,
+        )
     if call is not None:
         return _nothing_given(call)
     if isinstance(node, ast.Call):
@@ -49,10 +65,25 @@ def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
 
 def is_none_here(what: str) -> Words:
     """Say that a value that was handed over is None."""
+    if what == "None":
+        return say("None is not a value here: has nothing been put there yet?")
     return say(
         "{what} is None: nothing has been put there yet, such as a first message. Ask before:"
         " if {what} is None: return.",
         what=what,
+    )
+
+
+def _read_from(failure: Failure, node: ast.AST) -> bool:
+    """Whether a name stands for the second of two that a camera's read has given."""
+    return any(
+        isinstance(each, ast.Assign)
+        and isinstance(each.value, ast.Call)
+        and isinstance(each.value.func, ast.Attribute)
+        and each.value.func.attr == "read"
+        and isinstance(each.targets[0], ast.Tuple)
+        and shown(node) in [shown(target) for target in each.targets[0].elts[1:]]
+        for each in ast.walk(failure.tree)
     )
 
 
@@ -63,6 +94,12 @@ def _nothing_given(call: ast.Call) -> Words:
         return say(
             "result() of a future gives None until its answer is there: ask for it in a done"
             " callback, future.add_done_callback(self.on_answer)."
+        )
+    if name == "imread":
+        return say(
+            "{what} gives None: there is no such file, or it is no picture. A name without a slash"
+            " in front is looked for where the program was started.",
+            what=shown(call),
         )
     if name in ("append", "sort", "reverse", "extend", "update", "add", "insert"):
         return say(
@@ -98,8 +135,10 @@ def listed(names: list[str]) -> str:
     return ", ".join(names[:FEW]) + (", …" if len(names) > FEW else "")
 
 
-def future(what: str) -> Words:
-    """Say how to get at the answer that a future promises."""
+def future(what: str, of: Any = None) -> Words:  # noqa: ANN401 - a future, if it is known
+    """Say how to get at the answer that a future promises, or has."""
+    if of is not None and of.done():
+        return say("{what} is the future; the answer is in it: {what}.result().", what=what)
     return say(
         "{what} is a future: the answer is not there yet. Have it called back,"
         " future.add_done_callback(self.on_answer), and read future.result() there.",

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.faults.rules.imports import missing_module
+from launcher.faults.rules.imports import missing_import
 from launcher.faults.rules.syntax import encoding_of, syntax
 from launcher.status import IDLE, NodeFault
 from text.plain import plain
@@ -129,5 +129,5 @@ def _missing(file: str, name: str, node: ast.stmt, lines: list[str]) -> NodeFaul
         column=node.col_offset + 1,
         source_line=plain(lines[node.lineno - 1].strip()),
         exception=f"ModuleNotFoundError: No module named '{plain(name)}'",
-        meaning=missing_module(name, file.rpartition("/")[0]),
+        meaning=missing_import(name, node, file.rpartition("/")[0]),
     )

@@ -213,6 +213,9 @@ class Session:
         fault = fault_in(told)
         if fault is not None and fault.kind in ("crash", "syntax"):
             self._faults[name] = fault
+        elif fault is not None and fault.kind == "warning":
+            self.say(name, Severity.WARN, fault.words)
+            node.warn(fault)
         elif fault is not None:
             node.ail(fault)
         stuck = stuck_in(told)

@@ -21,7 +21,7 @@ from launcher.faults.failure import (
 )
 from launcher.faults.homes import ROS1, home_of, ros1
 from launcher.faults.remedy import future, is_none, parameter
-from launcher.faults.rules.fields import no_field
+from launcher.faults.rules.fields import no_field, time_now
 from text.sentences import Words, say
 from text.suggestions import nearest
 
@@ -42,8 +42,20 @@ OTHER_NAMES = {
     ("RcutilsLogger", "warning_once"): ".warn(…, once=True)",
     ("RcutilsLogger", "critical"): ".fatal(…)", ("Clock", "time"): ".now()",
     ("Rate", "wait"): ".sleep()",
+    ("ServerGoalHandle", "set_succeeded"): ".succeed()",
+    ("ServerGoalHandle", "succeeded"): ".succeed()",
+    ("ServerGoalHandle", "set_aborted"): ".abort()",
+    ("ServerGoalHandle", "aborted"): ".abort()",
+    ("ServerGoalHandle", "set_canceled"): ".canceled()",
+    ("ServerGoalHandle", "set_preempted"): ".canceled()",
+    ("ServerGoalHandle", "send_feedback"): ".publish_feedback(feedback)",
+    ("ActionClient", "wait_for_service"): ".wait_for_server()",
+    ("ActionClient", "call_async"): ".send_goal_async(goal)",
+    ("ActionClient", "call"): ".send_goal_async(goal)",
 }  # fmt: skip
 """What beginners call by another name, or need not call at all."""
+_CHANGES = ("append", "add", "extend", "insert", "remove", "sort", "pop")
+_LOGGER = ("logger", "log", "info", "warn", "warning", "error", "debug", "fatal", "get_log")
 
 
 def wanted(failure: Failure) -> tuple[Any, str] | None:
@@ -70,7 +82,10 @@ def unsettable(failure: Failure) -> Words | None:
     """A name of rclpy's own in every node was given another value."""
     if not isinstance(failure.error, AttributeError):
         return None
+    asked = getattr(failure.error, "name", None)
     for each in failure.all(ast.Attribute):
+        if asked not in (None, each.attr):
+            continue
         of = failure.value(each.value)
         found = inspect.getattr_static(type(of), each.attr, None)
         if isinstance(each.ctx, ast.Store) and isinstance(found, property):
@@ -184,6 +199,8 @@ def of_class(failure: Failure) -> Words | None:
         )
     if is_message_class(kind):
         return no_field(kind, name)
+    if name == "now" and kind.__name__ == "Time":
+        return time_now()
     return _near(kind.__name__, name, [each for each in dir(kind) if not each.startswith("_")])
 
 
@@ -199,6 +216,13 @@ def of_routine(failure: Failure) -> Words | None:
         return None
     node = expression(failure, found[1])
     what = shown(node.value) if node is not None else found[0].__name__
+    if found[0].__name__.startswith("create_") and is_of_rclpy(found[0]):
+        return say(
+            "{what} makes what is asked for: keep what it gives, self.x = {what}(…), and use that:"
+            " self.x.{name}.",
+            what=what,
+            name=found[1],
+        )
     return say(
         "{what} is a function: its brackets are missing, {what}().{name}.",
         what=what,
@@ -215,7 +239,13 @@ def of_rclpy(failure: Failure) -> Words | None:
     node = expression(failure, name)
     what = shown(node.value) if node is not None else "x"
     if is_from(of, "rclpy", "Future", "Task"):
-        return future(what)
+        return future(what, of)
+    if is_from(of, "rclpy", "Subscription") and name == "publish":
+        return say(
+            "{what} is a subscription, which hears; what publishes is made by"
+            " self.create_publisher(…).",
+            what=what,
+        )
     if is_from(of, "rclpy", "Parameter"):
         return parameter(what)
     for kind in type(of).__mro__:
@@ -227,6 +257,13 @@ def of_rclpy(failure: Failure) -> Words | None:
             '{what} is a dictionary: its values are had by key, {what}["{name}"].',
             what=what,
             name=name,
+        )
+    if isinstance(of, tuple) and name in _CHANGES:
+        return say(
+            "{what} is of type {type}, which cannot be changed: make a new one, such as"
+            " list({what}).",
+            what=what,
+            type=type(of).__name__,
         )
     if isinstance(of, (int, float, str, bool)) and name == "data":
         return say(
@@ -269,6 +306,9 @@ def unmade(failure: Failure) -> Words | None:
             " anything of the node is used."
         )
     if type(of).__module__ != "__main__" and not _is_own(of, failure):
+        if not failure.is_own:
+            # What a library asks of it says nothing about the learner's own line.
+            return None
         return _near(
             name_of(type(of)), name, [each for each in dir(of) if not each.startswith("_")]
         )
@@ -352,6 +392,14 @@ def _made_where(failure: Failure, name: str) -> Words | None:
                     method=method.name,
                     line=each.lineno,
                 )
+            if isinstance(each, ast.FunctionDef) and each is not method and each.name == name:
+                return say(
+                    "{name} (line {line}) stands within {method}, since it is indented too deep:"
+                    " its def belongs at the depth of that of {method}.",
+                    name=name,
+                    line=each.lineno,
+                    method=method.name,
+                )
             if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store) and each.id == name:
                 return say(
                     "In line {line} {name} is made without self, and is forgotten when {method}"
@@ -364,7 +412,14 @@ def _made_where(failure: Failure, name: str) -> Words | None:
 
 
 def _near_own(of: Any, name: str) -> Words:  # noqa: ANN401
-    known = [each for each in dir(of) if not each.startswith("__")]
+    known = [each for each in dir(of) if each[0] != "_" or (name[0] == "_" and each[1:2] != "_")]
+    if is_from(of, "rclpy", "Node") and name == "publish":
+        return say(
+            "It is not the node that publishes, but its publisher: self.pub ="
+            " self.create_publisher(…), self.pub.publish(msg)."
+        )
+    if is_from(of, "rclpy", "Node") and name in _LOGGER:
+        return say("A node logs by self.get_logger().info(…), .warn(…) and .error(…).")
     if name in ROS1:
         return ros1(name)
     meant = nearest(name, known)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import array
 import ast
 import inspect
+import re
 from types import ModuleType
 from typing import Any
 
@@ -17,10 +18,16 @@ from launcher.faults.failure import (
     name_of,
     shown,
 )
-from launcher.faults.remedy import is_none, listed, remedy
+from launcher.faults.remedy import is_none, listed, of_list, remedy
 from text.sentences import Words, say
 from text.suggestions import nearest
 
+_PLACE = re.compile(r"%[-+ 0#]*\d*(?:\.\d+)?[dfsgeixr]")
+"""Where a value is put into a text by the operator %."""
+_REFUSED = re.compile(r"'(?P<type>[\w.]+)' object is not (?P<able>callable|subscriptable)")
+"""What the interpreter says of a value that it knows and the source does not tell."""
+_UNPACKED = re.compile(r"cannot unpack non-iterable (?P<type>\w+) object")
+_INIT = "__init__"
 _LOGS = ("debug", "info", "warn", "warning", "error", "fatal")
 
 
@@ -36,6 +43,16 @@ def logger(failure: Failure) -> Words | None:
                 or is_from(failure.value(call.func.value), "rclpy", "RcutilsLogger")
             )
         ):
+            text = failure.value(call.args[0]) if call.args else ""
+            if isinstance(text, str) and _PLACE.search(text):
+                return say(
+                    "The logger does not fill in {place} as printf does:"
+                    " {call}({text} % ({values})).",
+                    place=_PLACE.findall(text)[0],
+                    call=shown(call.func),
+                    text=shown(call.args[0]),
+                    values=", ".join(map(shown, call.args[1:])),
+                )
             if not call.args:
                 return say('The text is missing: {call}("…").', call=shown(call.func))
             return say(
@@ -88,6 +105,34 @@ def base(failure: Failure) -> Words | None:
     return None
 
 
+def unwritten_init(failure: Failure) -> Words | None:
+    """A node's class has no `__init__`, or has one that is not written as Python asks for."""
+    for call in _calls(failure):
+        kind = failure.value(call.func)
+        if not isinstance(kind, type) or not any(
+            each.__name__ == "Node" and each.__module__ == "rclpy.node" for each in kind.__mro__[1:]
+        ):
+            continue
+        if call.args or call.keywords or _INIT in vars(kind):
+            continue
+        like = next((each for each in vars(kind) if _is_like_init(each)), "")
+        if like:
+            return say(
+                "{name} is not {init}, with two underscores on either side, and is never run.",
+                name=like,
+                init=_INIT,
+            )
+        return say(
+            'The node has no name yet: in {name}, def __init__(self): super().__init__("my_node").',
+            name=kind.__name__,
+        )
+    return None
+
+
+def _is_like_init(name: str) -> bool:
+    return name.strip("_").lower() in ("init", "int", "innit", "inti", "intit") and name != _INIT
+
+
 def arguments(failure: Failure) -> Words | None:
     """A function was called with other arguments than it asks for."""
     for call in _calls(failure):
@@ -104,6 +149,14 @@ def not_callable(failure: Failure) -> Words | None:
     """Brackets stand behind something that cannot be called."""
     for call in _calls(failure):
         value, what = failure.value(call.func), shown(call.func)
+        if value is UNKNOWN and _is_the_one(failure, call):
+            found = _REFUSED.search(str(failure.error))
+            if found and found["able"] == "callable" and found["type"] != "NoneType":
+                return say(
+                    "{what} is a value of type {type}, not a function: write it without brackets.",
+                    what=what,
+                    type=found["type"],
+                )
         if value is UNKNOWN or callable(value):
             continue
         if value is None:
@@ -132,6 +185,14 @@ def not_callable(failure: Failure) -> Words | None:
             type=name_of(type(value)),
         )
     return None
+
+
+def _is_the_one(failure: Failure, call: ast.Call) -> bool:
+    """Whether this is the call that failed: by its place, or as the only one of an unknown."""
+    if not isinstance(failure.node, ast.stmt):
+        return call is failure.node
+    unknown = [each for each in failure.all(ast.Call) if failure.value(each.func) is UNKNOWN]
+    return unknown == [call]
 
 
 def not_indexable(failure: Failure) -> Words | None:
@@ -177,9 +238,31 @@ def not_indexable(failure: Failure) -> Words | None:
                 what=what,
                 type=type(value).__name__,
             )
-        words = remedy(failure, each.value)
+        words = _no_order(failure, each) or _fraction(each.slice) or remedy(failure, each.value)
         if words is not None:
             return words
+    return None
+
+
+def _no_order(failure: Failure, node: ast.Subscript) -> Words | None:
+    """Say that a set, or a function whose brackets are missing, has no values by number."""
+    what, found = shown(node.value), _REFUSED.search(str(failure.error))
+    if isinstance(failure.value(node.value), (set, frozenset)):
+        return say("{what} is a set, which has no order: list({what}) has.", what=what)
+    only = isinstance(failure.node, ast.stmt) and len(failure.all(ast.Subscript)) == 1
+    if (node is failure.node or only) and found and found["type"] in ("method", "function"):
+        return say("{what} is a function: it is called with round brackets, {what}(…).", what=what)
+    return None
+
+
+def _fraction(node: ast.expr) -> Words | None:
+    """Say that / gives a fraction where a whole number is needed."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
+        whole = ast.BinOp(node.left, ast.FloorDiv(), node.right)
+        return say(
+            "/ always gives a fraction; a whole number is had by //: {what}.",
+            what=shown(ast.copy_location(whole, node)),
+        )
     return None
 
 
@@ -193,8 +276,17 @@ def builtin(failure: Failure) -> Words | None:
             continue
         for each in call.args:
             value = failure.value(each)
-            if function is range and isinstance(value, float):
-                return say("range takes whole numbers: range(int({what})).", what=shown(each))
+            if function is range and (words := _counted(call, each, value)) is not None:
+                return words
+            if isinstance(getattr(function, "__self__", None), array.array):
+                return say(
+                    "{what} is a list of numbers of one type, and {given} is of type {type}.",
+                    what=shown(getattr(call.func, "value", None)),
+                    given=shown(each),
+                    type=name_of(type(value)) if value is not UNKNOWN else "?",
+                )
+            if function is sum and isinstance(value, (list, tuple)):
+                return _summed(shown(each), value)
             if _is_join(call) or function in (bytes, bytearray):
                 words = _bytes(call, value)
                 if words is not None:
@@ -204,15 +296,33 @@ def builtin(failure: Failure) -> Words | None:
                     "{what} is one number: only a list or a text has a length.", what=shown(each)
                 )
             if function in (float, int) and isinstance(value, (list, tuple, array.array)):
-                return say(
-                    "{what} is a list: take one of its values, {call}({what}[0]), or all,"
-                    " [{call}(v) for v in {what}].",
-                    what=shown(each),
-                    call=shown(call.func),
-                )
+                return of_list(shown(each), shown(call.func))
             words = remedy(failure, each)
             if words is not None:
                 return words
+    return None
+
+
+def _counted(call: ast.Call, node: ast.expr, value: Any) -> Words | None:  # noqa: ANN401
+    """Say that a range counts in whole numbers."""
+    if isinstance(value, float) and len(call.args) == 3:
+        return say(
+            "range takes whole numbers, for its steps as well: [i * {step} for i in range(…)], or"
+            " np.arange({arguments}).",
+            step=shown(call.args[2]),
+            arguments=", ".join(map(shown, call.args)),
+        )
+    if isinstance(value, float):
+        return say("range takes whole numbers: range(int({what})).", what=shown(node))
+    return _fraction(node)
+
+
+def _summed(what: str, values: Any) -> Words | None:  # noqa: ANN401
+    if any(isinstance(each, str) for each in values):
+        return say(
+            "{what} has texts in it, and sum adds numbers: sum(float(v) for v in {what}).",
+            what=what,
+        )
     return None
 
 
@@ -229,12 +339,39 @@ def not_iterable(failure: Failure) -> Words | None:
         gone.append(statement.value)
     for each in gone:
         value = failure.value(each)
+        if isinstance(statement, ast.Assign) and isinstance(value, (int, float)):
+            return _no_pairs(failure, gone)
         if isinstance(value, int):
             return say("{what} is a number: for i in range({what}) counts to it.", what=shown(each))
+        if isinstance(value, float):
+            return say(
+                "{what} is one number, and not a list that is gone through.", what=shown(each)
+            )
         words = remedy(failure, each)
         if words is not None:
             return words
-    return None
+    return _no_pairs(failure, gone)
+
+
+def _no_pairs(failure: Failure, gone: list[ast.expr]) -> Words | None:
+    """Say that one value stands where several names are to get one each."""
+    found, statement = _UNPACKED.search(str(failure.error)), failure.statement
+    if not found or not gone:
+        return None
+    if isinstance(statement, ast.Assign):
+        if found["type"] == "NoneType":
+            return is_none(failure, gone[0])
+        return say(
+            "{what} is one value of type {type}, and several names stand left of the equals sign.",
+            what=shown(gone[0]),
+            type=found["type"],
+        )
+    return say(
+        "Each round gives one value of type {type}, and there are several names for it: for i, x in"
+        " enumerate({what}) numbers them.",
+        type=found["type"],
+        what=shown(gone[0]),
+    )
 
 
 def context(failure: Failure) -> Words | None:
@@ -437,6 +574,7 @@ RULES = (
     logger,
     of_super,
     base,
+    unwritten_init,
     context,
     awaited,
     not_callable,

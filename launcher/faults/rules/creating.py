@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import itertools
 from typing import TYPE_CHECKING, Any
@@ -14,8 +15,10 @@ from launcher.faults.failure import (
     is_message_class,
     is_service_class,
     name_of,
+    shown,
 )
-from launcher.faults.remedy import of_message
+from launcher.faults.homes import home_of
+from launcher.faults.remedy import of_message, parameter
 from launcher.faults.rules.callbacks import SUBSCRIPTION, asks_for_other, not_handed_over
 from text.sentences import say
 
@@ -37,12 +40,17 @@ FITS: dict[str, Callable[[Any], bool]] = {
     "qos_profile": lambda value: (
         is_from(value, "rclpy", "QoSProfile") or (type(value) is int and value >= 0)
     ),
-    "timer_period_sec": lambda value: type(value) in (int, float),
+    "timer_period_sec": lambda value: type(value) in (int, float) and value >= 0,
     "node": lambda value: is_from(value, "rclpy", "Node"),
     "name": lambda value: isinstance(value, str),
     "node_name": lambda value: isinstance(value, str),
 }
 """What the arguments of rclpy's functions have to be, by rclpy's own names of them."""
+_EXAMPLES = {
+    "msg_type": ("std_msgs.msg", "Float32"),
+    "srv_type": ("example_interfaces.srv", "AddTwoInts"),
+    "action_type": ("example_interfaces.action", "Fibonacci"),
+}
 _MAKERS = ("ActionClient", "ActionServer")
 _NAMED = ("topic", "srv_name", "action_name", "name", "node_name")
 
@@ -63,7 +71,18 @@ def arguments(failure: Failure) -> Words | None:
             call=_name(level),
             arguments=", ".join(_required(level)),
         )
+    if is_from(given[wrong[0]], "rclpy", "Parameter"):
+        return parameter(_written(failure, given[wrong[0]]))
     return _wrong(level, wrong[0], given[wrong[0]])
+
+
+def _written(failure: Failure, value: object) -> str:
+    """Return the learner's expression for what was handed over."""
+    for call in failure.all(ast.Call):
+        for each in (*call.args, *(keyword.value for keyword in call.keywords)):
+            if failure.value(each) is value:
+                return shown(each)
+    return "x"
 
 
 def _callback(level: TraceLevel, given: dict[str, Any]) -> Words | None:
@@ -130,6 +149,8 @@ def _wrong(level: TraceLevel, name: str, value: Any) -> Words | None:  # noqa: A
             " QoSProfile(depth=10, …).",
             call=call,
         )
+    if name == "timer_period_sec" and type(value) in (int, float):
+        return say("{call}: the period is a number of seconds, and not below 0.", call=call)
     if name == "timer_period_sec" and is_message(value):
         return of_message(name, type(value))
     if name == "timer_period_sec":
@@ -165,10 +186,16 @@ def _wrong_type(call: str, name: str, value: Any) -> Words | None:  # noqa: ANN4
             module=value.__name__,
         )
     if isinstance(value, str):
+        kind = value.rpartition("/")[2]
+        home = home_of(kind)
+        if not home:
+            home, kind = _EXAMPLES[name]
         return say(
             "{call}: the type is a class that is imported, and stands without quotes:"
-            " from std_msgs.msg import Float32.",
+            " from {home} import {type}.",
             call=call,
+            home=home,
+            type=kind,
         )
     kinds = (
         (is_service_class, say("a service")),

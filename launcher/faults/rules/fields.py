@@ -6,7 +6,7 @@ import array
 import ast
 import inspect
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from typing import Any
 
@@ -66,6 +66,17 @@ def unknown_field(failure: Failure) -> Words | None:
 def no_field(kind: Any, name: str) -> Words:  # noqa: ANN401 - a class of messages
     """Say that a message has no such field, and which it has."""
     fields = list(fields_of(kind))
+    special = _of_header(kind, name)
+    if special is not None:
+        return special
+    paths = list(_inside(kind, name))
+    if paths:
+        return say(
+            "{type} has no field {field} itself; what has it is in it: {paths}.",
+            type=name_of(kind),
+            field=name,
+            paths=listed(paths),
+        )
     meant = nearest(name, fields)
     if meant:
         return say(
@@ -82,6 +93,73 @@ def no_field(kind: Any, name: str) -> Words:  # noqa: ANN401 - a class of messag
         field=name,
         fields=listed(fields),
     )
+
+
+def _inside(kind: Any, name: str, depth: int = 3) -> Iterator[str]:  # noqa: ANN401
+    """Yield the ways to a field of this name within the fields of a message: `pose.position`."""
+    made = kind()
+    for field in fields_of(kind):
+        inner = getattr(made, field, None)
+        if is_message(inner):
+            if name in fields_of(inner):
+                yield f"{field}.{name}"
+            elif depth > 1:
+                yield from (f"{field}.{way}" for way in _inside(type(inner), name, depth - 1))
+
+
+def _of_header(kind: Any, name: str) -> Words | None:  # noqa: ANN401
+    """Say what has taken the place of what ROS 1 has in headers and times."""
+    if kind.__name__ == "Header" and name == "seq":
+        return say("seq is of ROS 1: a header of ROS 2 has stamp and frame_id.")
+    if not kind.__module__.startswith("builtin_interfaces."):
+        return None
+    if name == "now":
+        return time_now()
+    if name in ("to_sec", "to_nsec", "seconds", "nanoseconds"):
+        return say(
+            "The {type} of a message has sec and nanosec. As one number:"
+            " {type}.from_msg(stamp).nanoseconds / 1e9, from rclpy.{module} import {type}.",
+            type=kind.__name__,
+            module=kind.__name__.lower(),
+        )
+    meant = {"secs": "sec", "nsec": "nanosec", "nsecs": "nanosec", "nanosecs": "nanosec"}.get(name)
+    if meant is None:
+        return None
+    return say(
+        "{type} has no field {field}; did you mean {meant}?",
+        type=kind.__name__,
+        field=name,
+        meant=meant,
+    )
+
+
+def time_now() -> Words:
+    """Say how the time of this moment is had."""
+    return say(
+        "The time of this moment is self.get_clock().now(), and for a message"
+        " self.get_clock().now().to_msg()."
+    )
+
+
+def hollow(failure: Failure) -> Words | None:
+    """A list of messages that is published has one of another type in it."""
+    inner = failure.inner
+    if inner is None or inner.function != "publish" or not inner.is_in("rclpy", "publisher"):
+        return None
+    message = inner.values.get("msg")
+    return _hollow(message) if is_message(message) else None
+
+
+def _hollow(message: Any) -> Words | None:  # noqa: ANN401
+    for name, of in fields_of(message).items():
+        value, parts = getattr(message, name), _LIST.fullmatch(of)
+        if parts is not None and isinstance(value, (list, tuple)):
+            words = _value_in_list(name, parts["of"] or parts["fixed"], list(value))
+        else:
+            words = _hollow(value) if is_message(value) else None
+        if words is not None:
+            return words
+    return None
 
 
 def positional_field(failure: Failure) -> Words | None:
@@ -160,13 +238,22 @@ def _published(failure: Failure, value: Any, kind: Any) -> Words | None:  # noqa
             wanted=name,
             given=name_of(type(value)),
         )
-    if "data" in fields_of(kind):
+    if _suits(fields_of(kind).get("data", ""), value):
         return say(
             "publish takes a whole message: self.pub.publish({type}(data={what})).",
             type=name,
             what=what,
         )
     return say("publish takes a whole message of type {type}, not {what}.", type=name, what=what)
+
+
+def _suits(of: str, value: Any) -> bool:  # noqa: ANN401
+    """Whether a field of this type may be what a value was meant for."""
+    if of in _FLOATS or _BITS.fullmatch(of):
+        return isinstance(value, (int, float))
+    if of in _TEXTS:
+        return not _is_listlike(value)
+    return of == "boolean" or (_LIST.fullmatch(of) is not None and isinstance(value, (list, tuple)))
 
 
 def _asked(failure: Failure, value: Any, pair: Any, wanted: Any) -> Words | None:  # noqa: ANN401
@@ -223,6 +310,8 @@ def _one(name: str, what: str, of: str, value: Any) -> Words | None:  # noqa: AN
         return _float(name, what, of, value)
     if of in _TEXTS:
         return _text(name, what, value)
+    if of == "boolean" and isinstance(value, str):
+        return say("The field {field} is True or False, without quotes.", field=name)
     if of == "boolean":
         return say("The field {field} is True or False: bool({what}).", field=name, what=what)
     if of == "octet":
@@ -458,4 +547,4 @@ def _is_listlike(value: Any) -> bool:  # noqa: ANN401
     )
 
 
-RULES = (field_value, unknown_field, positional_field, not_made, sent)
+RULES = (field_value, unknown_field, positional_field, not_made, sent, hollow)

@@ -9,7 +9,7 @@ from launcher.faults.failure import Failure
 from launcher.faults.homes import KINDS, PACKAGES, ROS1, home_of, ros1
 from launcher.faults.rules.attributes import shadowing
 from text.sentences import Words, say
-from text.suggestions import nearest
+from text.suggestions import near, nearest
 
 OF_ROS1 = (
     "rospy",
@@ -66,7 +66,34 @@ def missing(failure: Failure) -> Words | None:
         home = home_of(name, error.name)
         if home:
             return say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
-    return missing_module(error.name, failure.folder)
+    return missing_import(error.name, statement, failure.folder)
+
+
+def missing_import(name: str, statement: ast.stmt | None, folder: str) -> Words:
+    """Say what is meant by a module that a statement imports and that is not there."""
+    if isinstance(statement, ast.ImportFrom):
+        package, _, kind = (statement.module or "").partition(".")
+        if package == name and kind in KINDS:
+            return missing_messages(package, kind, [each.name for each in statement.names])
+    return missing_module(name, folder)
+
+
+def missing_messages(package: str, kind: str, names: list[str]) -> Words:
+    """Say what is meant by a package of messages that is not there, or how it is to be had."""
+    meant = "" if package in PACKAGES else next(iter(near(package, PACKAGES, cutoff=0.8)), "")
+    if meant:
+        return say("There is no module {name}; did you mean {meant}?", name=package, meant=meant)
+    if package in (*OF_ROS1, *OF_ROS):
+        return missing_module(package, "")
+    for name in names:
+        home = home_of(name)
+        if home == f"example_interfaces.{kind}":
+            return say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
+    return say(
+        "The message package {name} is not here: is it spelled right? One of your own goes into"
+        " interfaces/, and make setup builds it.",
+        name=package,
+    )
 
 
 def missing_module(name: str, folder: str) -> Words:
@@ -80,7 +107,7 @@ def missing_module(name: str, folder: str) -> Words:
         )
     if rest:
         return _within(name, first, rest, folder)
-    meant = "" if first in KNOWN else nearest(first, KNOWN)
+    meant = "" if first in KNOWN else next(iter(near(first, KNOWN, cutoff=0.75)), "")
     if first in OF_ROS:
         return say(
             "{name} is a package of ROS that Deck does not bring: with a ROS of its own,"
@@ -98,10 +125,7 @@ def missing_module(name: str, folder: str) -> Words:
             package=OF_PYPI[first],
         )
     if first.endswith(("_msgs", "_srvs", "_interfaces")):
-        return say(
-            "The message package {name} is not here: is it spelled right, is it built and sourced?",
-            name=first,
-        )
+        return missing_messages(first, "", [])
     return say(
         "The module {name} is not installed; put its file beside this one, or install it with pip.",
         name=first,

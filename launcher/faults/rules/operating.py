@@ -109,7 +109,12 @@ def _pairs(failure: Failure) -> list[tuple[ast.expr, str, ast.expr]]:
     pairs += (
         []
         if isinstance(node, ast.Compare)
-        else [(each.left, SIGNS[type(each.op)], each.right) for each in failure.all(ast.BinOp)]
+        else [
+            (each.left, SIGNS[type(each.op)], each.right)
+            for each in failure.all(ast.BinOp)
+            # Of what has a value it is known that the operator goes.
+            if failure.type_of(each) is None
+        ]
     )
     for compare in failure.all(ast.Compare):
         values = [compare.left, *compare.comparators]
@@ -236,7 +241,14 @@ def _is_time(kind: type) -> bool:
 def serialized(failure: Failure) -> Words | None:
     """`json` was given something that is no JSON, or no text."""
     inner = failure.inner
-    if not isinstance(failure.error, TypeError) or inner is None or "/json/" not in inner.file:
+    if inner is None or "/json/" not in inner.file:
+        return None
+    if isinstance(failure.error, AttributeError) and inner.function == "load":
+        return say(
+            "json.load reads from a file that is open: with open(…) as file: json.load(file). Of a"
+            " text it is json.loads."
+        )
+    if not isinstance(failure.error, TypeError):
         return None
     if inner.function == "default" and "o" in inner.values:
         return _dumped(inner.values["o"])

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import ast
 
-from launcher.faults.failure import Failure, is_from, name_of, shown
+from launcher.faults.failure import Failure, is_from, is_message, name_of, shown
 from launcher.faults.rules.attributes import taken_name
 from text.i18n import N_
 from text.sentences import Words, say
+from text.suggestions import nearest
 
 SENTENCES = {
     "NotInitializedException": N_("rclpy.init() has to be called before a node is made."),
@@ -56,9 +57,15 @@ def named(failure: Failure) -> Words | None:
 def undeclared(failure: Failure) -> Words | None:
     """A parameter that was not declared, or that has no value."""
     kind = type(failure.error).__name__
-    call = failure.first(ast.Call)
-    name = shown(call.args[0]) if call is not None and call.args else "name"
+    name = _parameter(failure)
     if kind == "ParameterNotDeclaredException":
+        node = failure.named("self")
+        known = list(node._parameters) if is_from(node, "rclpy", "Node") else []  # noqa: SLF001
+        meant = nearest(name.strip("'"), known)
+        if meant:
+            return say(
+                "No parameter {name} is declared; did you mean {meant!r}?", name=name, meant=meant
+            )
         return say(
             "Declare the parameter before you read it, in __init__: self.declare_parameter({name},"
             " 0.0).",
@@ -72,6 +79,20 @@ def undeclared(failure: Failure) -> Words | None:
             name=name,
         )
     return None
+
+
+def _parameter(failure: Failure) -> str:
+    """Return the name of the parameter that the learner's own line asks for, in quotes."""
+    calls = [each for call in failure.all(ast.Call) for each in ast.walk(call)]
+    for call in calls:
+        if isinstance(call, ast.Call) and call.args:
+            name = failure.value(call.args[0])
+            if isinstance(name, str):
+                return repr(name)
+    first = failure.first(ast.Call)
+    if first is not None and first.args and not isinstance(first.args[0], (ast.List, ast.Tuple)):
+        return shown(first.args[0])
+    return "name"
 
 
 def bad_name(failure: Failure) -> Words | None:
@@ -251,6 +272,9 @@ def opencv(failure: Failure) -> Words | None:
     if {"imshow", "waitKey", "namedWindow", "destroyAllWindows"} & set(names):
         return say("This OpenCV has no windows: publish the picture, and look at it in Topics.")
     if type(error).__name__ == "CvBridgeError":
+        words = _encoding(failure)
+        if words is not None:
+            return words
         return say(
             "The picture has another encoding than is asked for: look at msg.encoding, or ask for"
             ' "passthrough".'
@@ -258,12 +282,56 @@ def opencv(failure: Failure) -> Words | None:
     for call in failure.all(ast.Call):
         for each in call.args:
             value = failure.value(each)
+            if is_message(value):
+                return say(
+                    "{what} is a message, not a picture:"
+                    ' CvBridge().imgmsg_to_cv2({what}, "bgr8") makes one of it.',
+                    what=shown(each),
+                )
             if value is None or getattr(value, "size", 1) == 0:
                 return say(
                     "{what} is not a picture, or is an empty one: was it read, has one arrived?",
                     what=shown(each),
                 )
     return say("OpenCV does not take this picture: look at its shape and dtype before the call.")
+
+
+def _encoding(failure: Failure) -> Words | None:
+    """Say that there is no such encoding, or that an array cannot have it."""
+    level = next((each for each in failure.levels if each.is_in("cv_bridge", "bridge")), None)
+    if level is None:
+        return None
+    from cv_bridge.encodings import encoding  # Only where it has failed: it loads numpy.
+
+    names = ("desired_encoding", "encoding", "dst_format")
+    name = next((level.values[each] for each in names if each in level.values), "")
+    picture = level.values.get("cvim")
+    if isinstance(name, str) and name != "passthrough" and encoding(name) is None:
+        return say(
+            "ROS has no encoding {name!r}; the usual ones are bgr8, rgb8, mono8, 16UC1 and 32FC1.",
+            name=name,
+        )
+    if picture is None or not hasattr(picture, "shape"):
+        return None
+    return say(
+        "The array has the shape {shape} and the type {type}, which is not {name}: mono8 has one"
+        " channel, bgr8 has three, both uint8.",
+        shape=str(picture.shape),
+        type=str(picture.dtype),
+        name=name,
+    )
+
+
+def asynchronous(failure: Failure) -> Words | None:
+    """`asyncio` was awaited, which rclpy does not run."""
+    if not isinstance(failure.error, RuntimeError) or "/asyncio/" not in (
+        failure.inner.file if failure.inner is not None else ""
+    ):
+        return None
+    return say(
+        "rclpy does not run asyncio: in its callbacks await goes with futures of rclpy, such as"
+        " client.call_async(request); for a pause take a timer."
+    )
 
 
 def other_names(failure: Failure) -> Words | None:
@@ -275,5 +343,6 @@ def other_names(failure: Failure) -> Words | None:
 
 RULES = (
     spun, named, undeclared, bad_name, started_twice, two_types, severity, looked_up, opencv,
+    asynchronous,
 )  # fmt: skip
 LAST = (other_names,)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import array
 import ast
+import errno
 import sys
 
-from launcher.faults.failure import UNKNOWN, Failure, shown
-from launcher.faults.remedy import is_none, listed
+from launcher.faults.failure import UNKNOWN, Failure, is_from, shown
+from launcher.faults.remedy import is_none, listed, of_list
 from text.sentences import Words, say
 from text.suggestions import nearest
 
@@ -28,6 +30,10 @@ def number(failure: Failure) -> Words | None:
                 what=what,
                 value=str(value),
             )
+        if isinstance(value, (list, tuple, array.array)):
+            return of_list(what, shown(call.func))
+        if value is not UNKNOWN:
+            return None
         return say("{what} is a text that is not a number: look at what it is first.", what=what)
     return None
 
@@ -73,11 +79,30 @@ def mathematics(failure: Failure) -> Words | None:
                 name=name,
                 what=what,
             )
-        if name in ("sqrt", "log", "log10", "log2"):
+        if name == "sqrt":
+            return say("{name} has no value for {what}: it is negative.", name=name, what=what)
+        if name in ("log", "log10", "log2"):
             return say(
                 "{name} has no value for {what}: it is negative, or zero.", name=name, what=what
             )
         return say("{name} has no value for {what}.", name=name, what=what)
+    return None
+
+
+def nothing_to_choose(failure: Failure) -> Words | None:
+    """The least or the largest of nothing."""
+    if not isinstance(failure.error, ValueError) or not failure.is_own:
+        return None
+    for call in failure.all(ast.Call):
+        if failure.value(call.func) in (min, max) and len(call.args) == 1:
+            value, what = failure.value(call.args[0]), shown(call.args[0])
+            if value is UNKNOWN or (hasattr(value, "__len__") and not len(value)):
+                return say(
+                    "{what} is empty, and has neither a least nor a largest value: ask before, or"
+                    " {call}(…, default=0.0).",
+                    what=what,
+                    call=shown(call.func),
+                )
     return None
 
 
@@ -249,6 +274,25 @@ def files(failure: Failure) -> Words | None:
     return None
 
 
+def device(failure: Failure) -> Words | None:
+    """A serial port is not there, or is another's."""
+    error = failure.error
+    if type(error).__name__ != "SerialException":
+        return None
+    call = failure.first(ast.Call)
+    port = failure.value(call.args[0]) if call is not None and call.args else UNKNOWN
+    if not isinstance(port, str):
+        return None
+    number = getattr(error, "errno", None)
+    if number == errno.ENOENT:
+        return say("{port} is not there: is the device plugged in?", port=port)
+    if number == errno.EACCES:
+        return say("{port} may not be opened: is the user in the group dialout?", port=port)
+    if number == errno.EBUSY:
+        return say("{port} is in use by another program.", port=port)
+    return None
+
+
 def texts(failure: Failure) -> Words | None:
     """Bytes that are no text, text that is no JSON, JSON that does not fit."""
     error = failure.error
@@ -342,12 +386,39 @@ def missing_value(failure: Failure) -> Words | None:
     if not isinstance(failure.error, TypeError) or not failure.is_own:
         return None
     for each in ast.walk(failure.statement or ast.Pass()):
+        if isinstance(each, ast.Call) and (words := _unset_parameter(failure, each)) is not None:
+            return words
         if isinstance(each, (ast.Name, ast.Attribute)) and failure.value(each) is None:
             return is_none(failure, each)
     return None
 
 
+def _unset_parameter(failure: Failure, call: ast.Call) -> Words | None:
+    """Say that a parameter has no value, if it is asked for here and has none."""
+    node = failure.named("self")
+    if (
+        not isinstance(call.func, ast.Attribute)
+        or not call.args
+        or not is_from(node, "rclpy", "Node")
+    ):
+        return None
+    name = failure.value(call.args[0])
+    if (
+        call.func.attr != "get_parameter"
+        or not isinstance(name, str)
+        or not node.has_parameter(name)
+    ):
+        return None
+    if node.get_parameter(name).value is not None:
+        return None
+    return say(
+        "The parameter {name!r} has no value: declare it with a default,"
+        " self.declare_parameter({name!r}, 0.0), or set it in the profile.",
+        name=name,
+    )
+
+
 RULES = (
-    number, mathematics, pause, unpacked, index, key, zero, recursion, files, texts, arrays,
-    asserted, missing_value,
+    number, mathematics, nothing_to_choose, pause, unpacked, index, key, zero, recursion, device,
+    files, texts, arrays, asserted, missing_value,
 )  # fmt: skip

@@ -77,4 +77,7 @@ def test_each_of_several_publishers_is_named(peer: Peer, ros_domain: int) -> Non
 def test_no_frames_are_no_success(ros_domain: int) -> None:
     run = deck("frames", "--for", "0.5", "--lang", "en")
     assert run.finish() == 1
-    assert run.lines == [f"no frames in domain {ros_domain}"]
+    assert run.lines == [
+        f"no frames in domain {ros_domain}",
+        "only this machine was looked at: --discovery subnet looks on the network, too",
+    ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.ros.launcher.mistakes import language, messages, nodes
+from tests.ros.launcher.mistakes import actions, language, messages, nodes
 
 GROUPS: tuple[dict[str, str], ...] = (
     messages.FIELDS,
@@ -15,6 +15,8 @@ GROUPS: tuple[dict[str, str], ...] = (
     nodes.CLOCKS,
     nodes.SEEN,
     nodes.LOGGED,
+    actions.CLIENTS,
+    actions.SERVERS,
     language.IMPORTS,
     language.NAMES,
     language.ATTRIBUTES,

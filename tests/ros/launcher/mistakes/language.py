@@ -25,6 +25,8 @@ IMPORTS = {
     "with a point": "from .beside import x\n",
     "import with Cyrillic": "from std_msgs.msg import Stringо\n",
     "init_node": script('rclpy.init_node("x")'),
+    "messages of the tutorials": "from action_tutorials_interfaces.action import Fibonacci\n",
+    "services that are not built": "from my_package.srv import Move\n",
 }
 NAMES = {
     "self has another name": ticking("self.x = 1").replace("def tick(self)", "def tick(me)"),
@@ -106,6 +108,18 @@ CALLS = {
     "service's call without a request": ticking(
         "self.c.call()", init='self.c = self.create_client(Trigger, "/t")'
     ),
+    "readings for float": bare_heard("float(msg.ranges)", "LaserScan(ranges=[1.0])"),
+    "sum of texts": bare('sum(["1", "2"])'),
+    "number gone through": bare_heard("for x in msg.data:\n    pass"),
+    "pairs of numbers": bare("for i, x in [1, 2]:\n    pass"),
+    "pair of nothing": script("def f():\n    1\na, b = f()"),
+    "one number for two names": bare("a, b = 1.0"),
+    "half of a length": bare("for i in range(len([1, 2]) / 2):\n    pass"),
+    "step of a range": bare("for i in range(0, 1, 0.1):\n    pass"),
+    "middle of a list": bare("a = [1, 2]\na[len(a) / 2]"),
+    "first of a set": bare("a = {1, 2}\na[0]"),
+    "append to a tuple": bare("a = ()\na.append(1)"),
+    "json.load of a text": bare('json.load("x.json")'),
 }
 OPERATORS = {
     "message compared": bare_heard("if msg < 0.5:\n    pass"),
@@ -167,6 +181,11 @@ VALUES = {
     "recursion": script("def f():\n    f()\nf()"),
     "no such file": script('open("settings_of_nobody.yaml")'),
     "own assert": bare("x = 3\nassert x == 4"),
+    "least of nothing": bare_heard("min(msg.ranges)", "LaserScan()"),
+    "sqrt of a negative number": bare("math.sqrt(-1.0)"),
+    "serial port that is not there": bare(
+        'import serial\nserial.Serial("/dev/ttyNowhere", 115200)'
+    ),
 }
 SYNTAX = {
     "no block": f"{HEAD}def main():\nprint(1)\n",

@@ -54,6 +54,16 @@ FIELDS = {
     "brackets behind a field": bare_heard("x = msg.data()"),
     "square brackets for a field": bare_heard('x = msg["data"]'),
     "data of a number": bare_heard("x = msg.data\ny = x.data"),
+    "field deeper in the message": bare("m = Twist()\nm.x = 1.0"),
+    "field two deeper": bare_heard("msg.position", "Odometry()"),
+    "seq of ROS 1": bare_heard("msg.header.seq", "Range()"),
+    "now of a message's time": bare(
+        "from builtin_interfaces.msg import Time as Stamp\nm = Range()\nm.header.stamp = Stamp.now()"
+    ),
+    "to_sec of a stamp": bare_heard("msg.header.stamp.to_sec()", "Range()"),
+    "secs of a stamp": bare_heard("msg.header.stamp.secs", "Range()"),
+    "text for bool": bare('m = Bool()\nm.data = "False"'),
+    "None written for text": bare("m = String()\nm.data = None"),
 }
 SENT = {
     "another type published": ticking("self.p.publish(String())"),
@@ -98,5 +108,31 @@ SENT = {
     "done callback without future": node(
         SERVICE + "\nself.future.add_done_callback(self.done)",
         "def add(self, request, response):\n    return response\ndef done(self):\n    pass",
+    ),
+    "a dictionary published": ticking('self.p.publish({"data": 1.0})'),
+    "another message in a list": ticking(
+        "from nav_msgs.msg import Path\nq = self.create_publisher(Path, '/path', 10)\n"
+        "q.publish(Path(poses=[]))\nm = Path()\nm.poses.append(Point())\nq.publish(m)"
+    ),
+    "text in an array of numbers": bare(
+        'm = Float32MultiArray()\nm.data = [1.0]\nm.data.append("x")'
+    ),
+    "publish of the node": ticking("self.publish(Float32())"),
+    "publish of the function that makes": ticking("self.create_publisher.publish(Float32())"),
+    "publish of a subscription": ticking(
+        "self.s.publish(Float32())",
+        init='self.s = self.create_subscription(Float32, "/x", print, 10)',
+    ),
+    "request and response swapped": node(
+        SERVICE,
+        "def add(self, response, request):\n    response.sum = request.a\n    return response",
+    ),
+    "class of the response returned": node(
+        SERVICE, "def add(self, request, response):\n    return AddTwoInts.Response"
+    ),
+    "future for its answer": node(
+        f"{SERVICE}\nself.future.add_done_callback(self.done)",
+        "def add(self, request, response):\n    return response\n\n"
+        "def done(self, answer):\n    print(answer.sum)",
     ),
 }

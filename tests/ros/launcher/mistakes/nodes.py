@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from tests.ros.launcher.mistakes.programs import HEAD, bare, heard, node, script, ticking
+from tests.ros.launcher.mistakes.programs import (
+    HEAD,
+    bare,
+    bare_heard,
+    heard,
+    node,
+    script,
+    ticking,
+)
 
 PUBLISHER = 'self.create_publisher(Float32, "/out", 10)'
 CB = "def cb(self, msg):\n    pass"
@@ -93,6 +101,22 @@ CREATED = {
     "keyword misspelt": node('self.create_publisher(Float32, "/out", qos=10)'),
     "profile without depth": node("QoSProfile()"),
     "profile without a name": node("QoSProfile(10)"),
+    "negative period": node("self.create_timer(-0.5, print)"),
+    "callback as text": node('self.create_timer(0.0, "tick")', "def tick(self):\n    pass"),
+    "service as text": node('self.create_client("AddTwoInts", "/add")'),
+    "f missing in a topic": node('self.create_publisher(Float32, "/{name}/x", 10)'),
+    "policy as text": node('QoSProfile(depth=10, reliability="best_effort")'),
+    "method within __init__": node("self.create_timer(0.1, self.tick)\ndef tick(self):\n    pass"),
+    "executor with a class": script(
+        "from rclpy.executors import MultiThreadedExecutor\nrclpy.init()\n"
+        "e = MultiThreadedExecutor()\ne.add_node(Node)\ne.spin()"
+    ),
+    "executor made with a node": script(
+        "from rclpy.executors import MultiThreadedExecutor\nrclpy.init()\n"
+        'MultiThreadedExecutor(Node("x"))'
+    ),
+    "init misspelt": node("pass").replace("__init__(self)", "__int__(self)"),
+    "no init in the class": script("class N(Node):\n    pass\nrclpy.init()\nN()"),
 }
 PARAMETERS = {
     "parameter not declared": node('self.get_parameter("speed")'),
@@ -128,6 +152,21 @@ PARAMETERS = {
     ),
     "name and value swapped": node('self.declare_parameter(1.0, "v")'),
     "get_param of ROS 1": node('self.get_param("v")'),
+    "parameter misspelt": node('self.declare_parameter("speed", 1.0)\nself.get_parameter("sped")'),
+    "no value, calculated with": node(
+        'self.declare_parameter("speed", None)\nx = self.get_parameter("speed").value * 2.0'
+    ),
+    "value with brackets": node(
+        'self.declare_parameter("v", 1.0)\nx = self.get_parameter("v").value()'
+    ),
+    "dictionary as a parameter": node('self.declare_parameter("gains", {"p": 1.0})'),
+    "list of two types": node('self.declare_parameter("gains", [1, 2.0])'),
+    "one parameter set": node(
+        'self.declare_parameter("v", 1.0)\nself.set_parameters(Parameter("v", value=2.0))'
+    ),
+    "pair set": node('self.declare_parameter("v", 1.0)\nself.set_parameters([("v", 2.0)])'),
+    "undeclared set": node('self.set_parameters([Parameter("speed", value=2.0)])'),
+    "type and value of a parameter": bare('Parameter("v", Parameter.Type.DOUBLE, 2)'),
 }
 CLOCKS = {
     "stamp subtracted from now": heard(
@@ -145,6 +184,8 @@ CLOCKS = {
     "time.sleep of text": bare('time.sleep("1")'),
     "negative sleep": bare("time.sleep(-1)"),
     "timer stopped": ticking("self.t.stop()", init="self.t = self.create_timer(1.0, print)"),
+    "now of the class": bare("Time.now()"),
+    "function of a time": ticking("self.get_clock().now().seconds_nanoseconds[0]"),
 }
 SEEN = {
     "buffer without a listener": ticking(
@@ -176,6 +217,36 @@ SEEN = {
     "pixels reshaped": bare("a = np.zeros(10)\nb = a.reshape(3, 4)"),
     "arrays of other shapes": bare("a = np.zeros(3)\nb = np.zeros(4)\nc = a + b"),
     "if of an array": bare("a = np.zeros(3)\nif a > 0:\n    pass"),
+    "time-out is a number": ticking(
+        'self.buffer.lookup_transform("map", "base_link", Time(), 1.0)', init=LISTENER
+    ),
+    "another message is sent as a transform": ticking(
+        "from tf2_ros import TransformBroadcaster\n"
+        "TransformBroadcaster(self).sendTransform(Twist())"
+    ),
+    "message for a picture": bare_heard("import cv2\ncv2.cvtColor(msg, 6)", "Image()"),
+    "encoding that there is none": bare(
+        "from cv_bridge import CvBridge\n"
+        'CvBridge().cv2_to_imgmsg(np.zeros((4, 4, 3), np.uint8), "bgr")'
+    ),
+    "array of another encoding": bare(
+        "from cv_bridge import CvBridge\n"
+        'CvBridge().cv2_to_imgmsg(np.zeros((4, 4), np.uint8), "bgr8")'
+    ),
+    "bridge without brackets": bare(
+        'from cv_bridge import CvBridge\nself.b = CvBridge\nself.b.imgmsg_to_cv2(Image(), "bgr8")'
+    ),
+    "class for a picture": bare(
+        'from cv_bridge import CvBridge\nCvBridge().imgmsg_to_cv2(Image, "bgr8")'
+    ),
+    "list for a picture": bare(
+        'from cv_bridge import CvBridge\nCvBridge().cv2_to_imgmsg([1, 2, 3], "bgr8")'
+    ),
+    "picture that is not there": bare('import cv2\nf = cv2.imread("nothing.png")\nf.shape'),
+    "no picture of the camera": bare(
+        "class Camera:\n    def read(self):\n        return False, None\n"
+        "ok, f = Camera().read()\nf.shape"
+    ),
 }
 LOGGED = {
     "logger without brackets": ticking('self.get_logger.info("x")'),
@@ -188,4 +259,8 @@ LOGGED = {
     ),
     "input in a node": bare('x = input("name? ")'),
     "loginfo of ROS 1": script('rclpy.loginfo("x")'),
+    "logger with a number": ticking("self.get_logger().info(1.0)"),
+    "logger like printf": ticking('self.get_logger().info("v = %.2f", 1.0)'),
+    "logger's option": ticking('self.get_logger().info("x", throttle=1.0)'),
+    "logger of the node": ticking('self.logger.info("x")'),
 }
