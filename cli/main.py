@@ -45,7 +45,7 @@ HANDLERS = {
     "lesson": ("cli.lesson", "lesson_command"),
     "grade": ("cli.grade", "grade_command"),
     "model": ("cli.model", "model_command"),
-    "shell": ("cli.shell", "shell_command"),
+    "shell": ("cli.shell.command", "shell_command"),
     "diagnostics": ("cli.diagnostics", "diagnostics_command"),
     "doctor": ("cli.doctor.command", "doctor_command"),
 }

@@ -158,7 +158,7 @@ def _lines(opened: ViewOpened, ssh: str) -> list[str]:
 
 def _rviz(domain: int, discovery: str | tuple[str, ...]) -> NoReturn:
     """Become RViz2."""
-    from cli.shell import environment_in
+    from cli.shell.command import environment_in
     from launcher.profile.text import SHIPPED
     from view.installed import rviz_program
 

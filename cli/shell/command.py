@@ -16,8 +16,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cli.elsewhere import for_bash, for_fish, for_zsh
 from cli.running_domain import running_domain
+from cli.shell.elsewhere import for_bash, for_fish, for_zsh
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
 from launcher.errors import NotRunningError

@@ -1,0 +1,1 @@
+"""`deck shell`: a shell in the domain of the lesson, and its words on what is not here."""
