@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import re
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,11 +17,13 @@ from course.judge.evidence import MET, Observation
 from course.results import CheckResult, State
 from graph.data import PROCESS_NUMBERS
 from launcher.faults.stuck import held_by
+from launcher.processes.table import read_process
 from launcher.status import STUCK, NodeState
 from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from course.judge.evidence import Evidence
+    from graph.data import CallResult
     from launcher.profile.steps.model import StepDocument
     from launcher.status import NodeFault, NodeStatus
 
@@ -28,7 +31,11 @@ FOUND_WITHIN_S = 10.0
 """How long the services that every node has may take to be discovered."""
 ANSWERS_WITHIN_S = 20.0
 """How long a node may take to answer: longer than until it is told that it is stuck."""
+SETTLED_WITHIN_S = 10.0
+"""How long a node may take to start, or the supervisor to tell that its process has ended."""
+AGAIN_S = 0.2
 SERVICE, TYPE = "get_parameters", "rcl_interfaces/srv/GetParameters"
+_ON_THE_WAY = (NodeState.WAITING, NodeState.STARTING, NodeState.STOPPING)
 _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 """Where an object is: another place in each run."""
 
@@ -44,7 +51,7 @@ async def not_at_work(
     own = [node for node in evidence.nodes.values() if node.file]
     named = [node.name for node in own if Path(node.file).name == step.file]
     names = named or [node.name for node in own]
-    # Together, so that one that is silent does not have the others' crashes forgotten.
+    await evidence.until(lambda: MET if _settled(names, evidence) else None, SETTLED_WITHIN_S)
     silent = await asyncio.gather(*(_silent_node(name, evidence) for name in names))
     for name, asked_in_vain in zip(names, silent, strict=True):
         seen, look = _trouble(name, evidence, since_s, ended_too=name in ran)
@@ -95,8 +102,23 @@ def _silence(node: str, status: NodeStatus) -> tuple[str, str]:
     return seen, say("Does main come to rclpy.spin, and does every callback return?")
 
 
+def _settled(names: list[str], evidence: Evidence) -> bool:
+    """Whether none of these nodes is on its way, or has ended without having been told of yet."""
+    nodes = [evidence.nodes[name] for name in names]
+    processes = (read_process(node.pid) for node in nodes if node.pid is not None)
+    ended = any(process is None or process.zombie for process in processes)
+    return not ended and not any(node.state in _ON_THE_WAY for node in nodes)
+
+
 async def _silent_node(name: str, evidence: Evidence) -> str:
     """Return the node of a process that does not answer; empty if all do, or cannot be asked."""
+    pid = evidence.nodes[name].pid
+    if pid is not None and _is_of_ros(evidence.nodes[name].file):
+        # One that is crashing leaves the graph before its process ends.
+        await evidence.until(
+            lambda: MET if _nodes_of(name, evidence) or evidence.nodes[name].pid != pid else None,
+            FOUND_WITHIN_S,
+        )
     for node in _nodes_of(name, evidence):
         if not await _answers(name, node, evidence):
             return node
@@ -125,19 +147,25 @@ async def _answers(name: str, node: str, evidence: Evidence) -> bool:
 
     if not (await evidence.until(can_be_asked, FOUND_WITHIN_S)).met:
         return True
-    call = evidence.observer.call(service, TYPE, {"names": []}, ANSWERS_WITHIN_S)
-    answer = asyncio.ensure_future(asyncio.wrap_future(call))
+    deadline_s = time.monotonic() + ANSWERS_WITHIN_S
+    while (left_s := deadline_s - time.monotonic()) > 0 and not gone():
+        call = evidence.observer.call(service, TYPE, {"names": []}, left_s)
+        answer = asyncio.ensure_future(asyncio.wrap_future(call))
+        try:
+            seen = await evidence.until(lambda it=answer: _in(it, gone()), left_s + 1)  # type: ignore[misc]
+        finally:
+            answer.cancel()
+        if seen.met:
+            return True
+        # It may have been asked while it was ending, or before it served.
+        await evidence.wait(AGAIN_S)
+    # Of one that has ended there is more to say than that it does not answer.
+    return evidence.nodes[name].pid != pid
 
-    def answered() -> Observation:
-        met = answer.done() and answer.result().ok
-        return Observation(met=met, final=answer.done() or gone())
 
-    try:
-        met = (await evidence.until(answered, ANSWERS_WITHIN_S + 1)).met
-        # Of one that has ended there is more to say than that it does not answer.
-        return met or evidence.nodes[name].pid != pid
-    finally:
-        answer.cancel()
+def _in(answer: asyncio.Future[CallResult], gone: bool) -> Observation:
+    met = answer.done() and not answer.cancelled() and answer.result().ok
+    return Observation(met=met, final=answer.done() or gone)
 
 
 def running(evidence: Evidence) -> frozenset[str]:

@@ -45,6 +45,8 @@ AGAIN_S = 2.0
 """How long a failed step rests before it is judged again, if nothing happens."""
 REST_S = {"publish": 5.0, "service": 5.0, "parameter": 5.0, "action": 60.0, "ends": 3600.0}
 """The same after a check that does something: it must not play with the robot all the time."""
+IDLE_S = 5.0
+"""The same where a node was not at work: it may be at any time."""
 
 _SETTLED = (NodeState.READY, NodeState.RUNNING, NodeState.FAILED, NodeState.EXITED)
 
@@ -183,6 +185,8 @@ class Judge:
         checks = self.steps[shown.id].checks if shown else ()
         kind = kind_of(checks[failed]) if failed < len(checks) else None
         longest_s = REST_S.get(str(kind), AGAIN_S)
+        if shown is not None and len(shown.checks) > len(checks):
+            longest_s = IDLE_S
         until_s = time.monotonic() + longest_s
         while (
             (left_s := until_s - time.monotonic()) > 0
