@@ -97,7 +97,7 @@ def _nothing_given(call: ast.Call) -> Words:
         )
     if name == "imread":
         return say(
-            "{what} gives None: there is no such file, or it is no picture. A name without a slash"
+            "{what} gives None: there is no such file, or it is not a picture. A name without a slash"
             " in front is looked for where the program was started.",
             what=shown(call),
         )
