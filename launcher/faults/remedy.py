@@ -97,8 +97,8 @@ def _nothing_given(call: ast.Call) -> Words:
         )
     if name == "imread":
         return say(
-            "{what} gives None: there is no such file, or it is not a picture. A name without a slash"
-            " in front is looked for where the program was started.",
+            "{what} gives None: there is no such file, or it is not a picture. A name without a"
+            " slash in front is looked for where the program was started.",
             what=shown(call),
         )
     if name in ("append", "sort", "reverse", "extend", "update", "add", "insert"):
