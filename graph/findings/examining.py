@@ -34,7 +34,7 @@ def examine(
         *kinds.missing(update),
         *quality.misfits(update),
         *quality.losses(update),
-        *unserved.unfed(update, norms),
+        *unserved.unfed(update, norms, one_has_failed=bool(failures)),
         *unserved.unserved(update),
         *clocks.clocks(update),
         *silence.silences(update, norms),

@@ -18,10 +18,13 @@ if TYPE_CHECKING:
     from graph.findings.finding import GraphNorms
 
 
-def unfed(update: GraphUpdate, norms: GraphNorms) -> Iterator[GraphFinding]:
+def unfed(
+    update: GraphUpdate, norms: GraphNorms, *, one_has_failed: bool = False
+) -> Iterator[GraphFinding]:
     """Yield topics that somebody hears and nobody publishes, with the name that was meant.
 
-    A topic that may wait for somebody is one of them only if its name nearly matches.
+    A topic that may wait for somebody is one of them only if its name nearly matches; one that
+    commands the robot also if a node has failed, which may be who published it.
     """
     fed = {
         row.name: set(row.type_names)
@@ -36,7 +39,8 @@ def unfed(update: GraphUpdate, norms: GraphNorms) -> Iterator[GraphFinding]:
             continue
         instead = meant(row.name, _of_one_type(row, fed))
         waits = row.name in norms.may_wait
-        waits = waits or any(norms.moves(row.name, kind) for kind in row.type_names)
+        if not one_has_failed:
+            waits = waits or any(norms.moves(row.name, kind) for kind in row.type_names)
         if not instead and (waits or is_housekeeping(row.name)):
             continue
         place = FindingPlace("topic", row.name)

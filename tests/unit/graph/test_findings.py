@@ -405,3 +405,11 @@ def test_a_node_that_has_ended_for_good_is_told_at_once() -> None:
     assert finding.what == "It has failed, and is not started again: exit code 1"
     lasting.take(GraphUpdate(0.0, (FED,)), 1.0)
     assert lasting.told(1.0) == ()
+
+
+def test_where_a_node_has_failed_commands_that_nobody_sends_are_told() -> None:
+    rows = (FED, topic("/drive", "", "/safety_stop", DRIVE), topic("/say", "", "/voice", STRING))
+    assert found(*rows) == []
+    findings = examine(GraphUpdate(0.0, rows), NORMS, {"/ai_driver": "exit code 1"})
+    told = [(finding.rule, finding.place.name) for finding in findings]
+    assert told == [("failed", "/ai_driver"), ("unfed", "/drive")]
