@@ -110,7 +110,10 @@ async def grade_all(
     everything = [lesson, *(one for one in read if isinstance(one, Files))]
     room = asyncio.Semaphore(jobs)
     examiners = Examiners()
-    apart = [submission.folder for submission in chosen]
+    # What comes with the lesson is for every learner to see, and may be run by it.
+    within_lesson = terms.lesson.path.resolve()
+    folders = [submission.folder for submission in chosen]
+    apart = [each for each in folders if within_lesson not in each.resolve().parents]
 
     async def one(number: int) -> tuple[int, Grade]:
         submission, files = chosen[number], read[number]
