@@ -13,8 +13,9 @@ if TYPE_CHECKING:
     from ros2.joining import Guest
 
 AGAIN_S = 0.1
-OTHERS_S = 2.0
-"""So long are a topic's other publishers waited for once there is one."""
+OTHERS_S = 5.0
+"""So long are a topic's other publishers waited for once there is one, while somebody is there who
+has not told all: Fast DDS announces a participant each 3 s."""
 
 
 def type_of(me: Guest, topic: str) -> type[Any] | None:

@@ -10,7 +10,7 @@ import itertools
 import json
 import shutil
 import subprocess
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.request import urlopen
@@ -125,7 +125,9 @@ class Browser:
     def _end(self) -> None:
         self._open.close()
         self._process.terminate()
-        self._process.wait()
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(10)
+        self._process.kill()
 
 
 def _port(file: Path) -> int:

@@ -7,7 +7,7 @@ import os
 import subprocess
 import sys
 import threading
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -68,9 +68,11 @@ class Seeing:
         return self
 
     def __exit__(self, *_: object) -> None:
-        # Not killed: an incomplete port in shared memory might hold up the next one there.
+        # Not killed at once: an incomplete port in shared memory might hold up the next one there.
         self._process.terminate()
-        self._process.wait(10)
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(10)
+        self._process.kill()
         self._reader.join()
 
     def wait_for_robot(self, which: str) -> None:

@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 import pytest
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 SLOW = "slow_to_tell"
 LOOKS = 4
+ENDS_WITHIN_S = 5.0
 LISTENING = """
 import rclpy
 rclpy.init()
@@ -63,8 +64,11 @@ def announcing_rarely(domain: int, program: str) -> Iterator[str]:
         try:
             yield SLOW
         finally:
+            # A signal that comes just as rclpy begins to wait is forgotten.
             process.terminate()
-            process.communicate()
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(ENDS_WITHIN_S)
+            process.kill()
 
 
 @pytest.fixture

@@ -103,7 +103,8 @@ def test_one_that_is_stopped_holds_up_nobody_and_is_replaced(
     wait_until(lambda: seen_by(watcher, pid), "another has taken over", within_s=40)
     assert is_gone(pid)
     # What moves nothing and what stops was not lost; what waits for an answer is told.
-    assert stop.result(20) == 1
+    # It is latched: who has not been found at that moment hears it later.
+    assert stop.result(20) in (0, 1)
     wait_until(lambda: "True" in str(teller.heard.get("/stop")), "the stop was heard")
     assert "hung" in call.result(1).error
     (ended,) = watcher.update.publications
