@@ -145,6 +145,11 @@ class Failure:
         """Return the expression of a kind that has failed, None if there is none."""
         return next(iter(self.all(kind)), None)
 
+    def refused_calls(self) -> list[ast.Call]:
+        """Return the calls of the learner's own line, one of which Python may have refused."""
+        is_refused = isinstance(self.error, TypeError) and self.is_own
+        return self.all(ast.Call) if is_refused else []
+
     @cached_property
     def own_class(self) -> ast.ClassDef | None:
         """The class whose method failed."""

@@ -21,7 +21,7 @@ from launcher.faults.failure import (
 )
 from launcher.faults.homes import ROS1, home_of, ros1
 from launcher.faults.remedy import future, is_none, parameter
-from launcher.faults.rules.fields import no_field, time_now
+from launcher.faults.rules.field_names import no_field, time_now
 from text.sentences import Words, say
 from text.suggestions import nearest
 

@@ -12,7 +12,6 @@ from typing import Any
 from launcher.faults.failure import (
     UNKNOWN,
     Failure,
-    is_from,
     is_message,
     is_message_class,
     name_of,
@@ -22,120 +21,14 @@ from launcher.faults.remedy import is_none, listed, of_list, remedy
 from text.sentences import Words, say
 from text.suggestions import nearest
 
-_PLACE = re.compile(r"%[-+ 0#]*\d*(?:\.\d+)?[dfsgeixr]")
-"""Where a value is put into a text by the operator %."""
 _REFUSED = re.compile(r"'(?P<type>[\w.]+)' object is not (?P<able>callable|subscriptable)")
 """What the interpreter says of a value that it knows and the source does not tell."""
 _UNPACKED = re.compile(r"cannot unpack non-iterable (?P<type>\w+) object")
-_INIT = "__init__"
-_LOGS = ("debug", "info", "warn", "warning", "error", "fatal")
-
-
-def logger(failure: Failure) -> Words | None:
-    """A method of the logger was given several things, as print takes them."""
-    for call in _calls(failure):
-        if (
-            isinstance(call.func, ast.Attribute)
-            and call.func.attr in _LOGS
-            and len(call.args) != 1
-            and (
-                "logger" in shown(call.func)
-                or is_from(failure.value(call.func.value), "rclpy", "RcutilsLogger")
-            )
-        ):
-            text = failure.value(call.args[0]) if call.args else ""
-            if isinstance(text, str) and _PLACE.search(text):
-                return say(
-                    "The logger does not fill in {place} as printf does:"
-                    " {call}({text} % ({values})).",
-                    place=_PLACE.findall(text)[0],
-                    call=shown(call.func),
-                    text=shown(call.args[0]),
-                    values=", ".join(map(shown, call.args[1:])),
-                )
-            if not call.args:
-                return say('The text is missing: {call}("…").', call=shown(call.func))
-            return say(
-                'The logger takes one text, not several as print does: {call}(f"{text}'
-                ' {{{value}}}").',
-                call=shown(call.func),
-                text=_text_of(call.args[0]),
-                value=shown(call.args[1]),
-            )
-    return None
-
-
-def of_super(failure: Failure) -> Words | None:
-    """`super().__init__` of a node was called without a name, or `super` without brackets."""
-    for call in _calls(failure):
-        func = call.func
-        if not isinstance(func, ast.Attribute) or func.attr != "__init__":
-            continue
-        if isinstance(func.value, ast.Name) and func.value.id == "super":
-            return say("The brackets of super() are missing: super().__init__(…).")
-        me = failure.named("self")
-        if me is UNKNOWN:
-            continue
-        if not is_from(me, "rclpy", "Node"):
-            return say(
-                "The class {name} is not a node yet: class {name}(Node).", name=type(me).__name__
-            )
-        if not call.args and not call.keywords:
-            return say('A node needs a name: super().__init__("my_node").')
-        return say(
-            'A node is given its name, and nothing before or after it: super().__init__("my_node").'
-        )
-    return None
-
-
-def base(failure: Failure) -> Words | None:
-    """A class was derived from a module or from a node."""
-    statement = failure.statement
-    if not isinstance(failure.error, TypeError) or not isinstance(statement, ast.ClassDef):
-        return None
-    for each in statement.bases:
-        value = failure.value(each)
-        if isinstance(value, ModuleType):
-            return say(
-                "{what} is a module, and a class cannot be made of it: from rclpy.node import Node,"
-                " and class {name}(Node).",
-                what=shown(each),
-                name=statement.name,
-            )
-    return None
-
-
-def unwritten_init(failure: Failure) -> Words | None:
-    """A node's class has no `__init__`, or has one that is not written as Python asks for."""
-    for call in _calls(failure):
-        kind = failure.value(call.func)
-        if not isinstance(kind, type) or not any(
-            each.__name__ == "Node" and each.__module__ == "rclpy.node" for each in kind.__mro__[1:]
-        ):
-            continue
-        if call.args or call.keywords or _INIT in vars(kind):
-            continue
-        like = next((each for each in vars(kind) if _is_like_init(each)), "")
-        if like:
-            return say(
-                "{name} is not {init}, with two underscores on either side, and is never run.",
-                name=like,
-                init=_INIT,
-            )
-        return say(
-            'The node has no name yet: in {name}, def __init__(self): super().__init__("my_node").',
-            name=kind.__name__,
-        )
-    return None
-
-
-def _is_like_init(name: str) -> bool:
-    return name.strip("_").lower() in ("init", "int", "innit", "inti", "intit") and name != _INIT
 
 
 def arguments(failure: Failure) -> Words | None:
     """A function was called with other arguments than it asks for."""
-    for call in _calls(failure):
+    for call in failure.refused_calls():
         function = failure.called(call)
         if function is UNKNOWN or not callable(function):
             continue
@@ -147,7 +40,7 @@ def arguments(failure: Failure) -> Words | None:
 
 def not_callable(failure: Failure) -> Words | None:
     """Brackets stand behind something that cannot be called."""
-    for call in _calls(failure):
+    for call in failure.refused_calls():
         value, what = failure.value(call.func), shown(call.func)
         if value is UNKNOWN and _is_the_one(failure, call):
             found = _REFUSED.search(str(failure.error))
@@ -270,7 +163,7 @@ def builtin(failure: Failure) -> Words | None:
     """`float`, `len`, `range` and the like were given something that they do not take."""
     if not isinstance(failure.error, TypeError) or not failure.is_own:
         return None
-    for call in _calls(failure):
+    for call in failure.refused_calls():
         function = failure.value(call.func)
         if inspect.isfunction(function) or inspect.ismethod(function):
             continue
@@ -414,17 +307,6 @@ def awaited(failure: Failure) -> Words | None:
         " self.client.call_async(request).",
         what=shown(found.value),
     )
-
-
-def _calls(failure: Failure) -> list[ast.Call]:
-    if not isinstance(failure.error, TypeError) or not failure.is_own:
-        return []
-    return failure.all(ast.Call)
-
-
-def _text_of(node: ast.expr) -> str:
-    value = node.value if isinstance(node, ast.Constant) else None
-    return value if isinstance(value, str) else "{" + shown(node) + "}"
 
 
 def _is_join(call: ast.Call) -> bool:
@@ -571,10 +453,6 @@ def _says(
 
 
 RULES = (
-    logger,
-    of_super,
-    base,
-    unwritten_init,
     context,
     awaited,
     not_callable,

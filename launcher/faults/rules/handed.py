@@ -18,12 +18,10 @@ from launcher.faults.failure import (
 )
 from launcher.faults.remedy import listed
 from text.sentences import say
-from text.suggestions import nearest
 
 if TYPE_CHECKING:
     from text.sentences import Words
 
-_OPTIONS = ("throttle_duration_sec", "throttle_time_source_type", "skip_first", "once", "name")
 _SETTERS = ("set_parameters", "set_parameters_atomically", "_check_undeclared_parameters")
 _LIBRARIES = ("rclpy", "tf2_ros", "cv_bridge")
 
@@ -111,42 +109,6 @@ def _other(function: str, name: str, kind: type, value: object) -> Words:
         type=kind.__name__,
         given=name_of(value if isinstance(value, type) else type(value)),
     )
-
-
-def logger(failure: Failure) -> Words | None:
-    """The logger was given a number, or an option that it has not."""
-    inner, call = failure.inner, failure.first(ast.Call)
-    if inner is None or call is None or not isinstance(failure.error, TypeError):
-        return None
-    if not inner.is_in("rclpy", "rcutils_logger"):
-        return None
-    what = shown(call.func)
-    unknown = next((each.arg for each in call.keywords if each.arg not in (*_OPTIONS, None)), None)
-    if unknown is not None:
-        meant = next((each for each in _OPTIONS if each.startswith(unknown)), "")
-        meant = meant or nearest(unknown, _OPTIONS)
-        if meant:
-            return say(
-                "{what} has no argument {name}; did you mean {meant}?",
-                what=what,
-                name=unknown,
-                meant=meant,
-            )
-        return say(
-            "{what} has no argument {name}; it has: {known}.",
-            what=what,
-            name=unknown,
-            known=", ".join(_OPTIONS),
-        )
-    message = inner.values.get("message")
-    if call.args and not isinstance(message, str):
-        return say(
-            "The logger takes a text, and {what} is of type {type}: {call}(str({what})).",
-            what=shown(call.args[0]),
-            type=name_of(message if isinstance(message, type) else type(message)),
-            call=what,
-        )
-    return None
 
 
 def parameters(failure: Failure) -> Words | None:
@@ -282,6 +244,6 @@ def substitution(failure: Failure) -> Words | None:
 
 
 RULES = (
-    on_class, logger, parameters, parameter_value, policy, executor, transform, picture,
+    on_class, parameters, parameter_value, policy, executor, transform, picture,
     substitution, annotated,
 )  # fmt: skip
