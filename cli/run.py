@@ -18,7 +18,6 @@ from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.profile.catalog import find_profile
 from launcher.profile.load import load_profile
 from launcher.serial_ports import serial_ports
-from launcher.status import NodeState
 from text.i18n import _, language, localized, ngettext
 from text.output import Paint, drop_output, say_error
 
@@ -191,7 +190,7 @@ class Run:
         if self._told.get(node.name) == now:
             return
         self._told[node.name] = now
-        bad = node.state in (NodeState.FAILED, NodeState.BACKOFF) or node.restarts
+        bad = node.crashed or node.restarts
         if bad and not self._asked_to_stop and not self._profile.nodes[node.name].document.optional:
             self._ever_bad.add(node.name)
         self.report.status(node)

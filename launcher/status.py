@@ -146,6 +146,11 @@ class NodeStatus:
         return self.state is NodeState.RUNNING and self.detail.startswith(NOT_READY)
 
     @property
+    def crashed(self) -> bool:
+        """Whether it has ended by a mistake, and is not started again, or not yet."""
+        return self.state in (NodeState.FAILED, NodeState.BACKOFF)
+
+    @property
     def unasked(self) -> bool:
         """Whether only its process is known to run: nobody has asked whether it is at work.
 

@@ -14,7 +14,6 @@ from graph.data import PROCESS_NUMBERS, GraphUpdate
 from graph.ros import ONLY_LISTENING
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.processes.table import TICKS_PER_S, read_process
-from launcher.status import NodeState
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -33,7 +32,6 @@ KEPT_LINES = 2000
 MARGIN_S = 0.02
 """How much later than it began a node may be known to have begun."""
 TICK_S = 0.1
-CRASHED = (NodeState.FAILED, NodeState.BACKOFF)
 
 
 @dataclass(frozen=True)
@@ -147,7 +145,7 @@ class Evidence:
 
     def _note_crashes(self, nodes: Iterable[NodeStatus]) -> None:
         for node in nodes:
-            if node.state in CRASHED:
+            if node.crashed:
                 self._crashed[node.name] = (time.time(), node)
 
     def trouble(self, name: str, since_s: float) -> NodeStatus | None:
@@ -156,7 +154,7 @@ class Evidence:
         One that has crashed and was started again afterwards has crashed.
         """
         now = self.nodes[name]
-        if now.ails or now.state in CRASHED:
+        if now.ails or now.crashed:
             return now
         crashed_s, then = self._crashed.get(name, (-math.inf, now))
         return then if crashed_s >= since_s else None

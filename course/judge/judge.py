@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from course.judge.at_work import not_at_work, running
-from course.judge.evidence import CRASHED, MET, Evidence, Observation
+from course.judge.evidence import MET, Evidence, Observation
 from course.judge.functions import LessonFaultError
 from course.judge.kinds import expected, judged, topics_of
 from course.judge.missing import dead_nodes
@@ -111,7 +111,7 @@ class Judge:
         Whether one would be started again by itself, and when, depends on how fast all of it is.
         """
         evidence = self.evidence
-        down = [node for node in evidence.nodes.values() if node.file and node.state in CRASHED]
+        down = [node for node in evidence.nodes.values() if node.file and node.crashed]
         names = [node.name for node in down]
         if not names:
             return

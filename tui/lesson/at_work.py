@@ -15,7 +15,6 @@ from course.progress.files import state_of
 from course.progress.progress import Progress, load_progress, noted
 from course.results import State, StepResult
 from launcher.profile.steps.checks import kind_of
-from launcher.status import NodeState
 from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import host_of
@@ -289,9 +288,8 @@ class LessonAtWork:
 
     @property
     def _crashed(self) -> bool:
-        nodes = [node for node in self._host.feed.nodes.values() if node.file]
-        down = (NodeState.FAILED, NodeState.BACKOFF)
-        return any(node.ails or node.state in down for node in nodes)
+        nodes = self._host.feed.nodes.values()
+        return any(node.file and (node.ails or node.crashed) for node in nodes)
 
     @property
     def _own_files(self) -> list[str]:
