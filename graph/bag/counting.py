@@ -5,11 +5,10 @@ from __future__ import annotations
 import sqlite3
 from contextlib import closing
 from typing import TYPE_CHECKING
-from urllib.parse import quote
 
 from graph.bag.kinds import MCAP, SQLITE, storage_of
 from graph.bag.mcap_index import counted_in_summary
-from graph.bag.sqlite import is_being_written
+from graph.bag.sqlite import address, is_being_written
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,9 +27,8 @@ def messages_of(file: Path) -> int | None:
 
 
 def _in_database(file: Path) -> int | None:
-    address = f"file:{quote(str(file.absolute()))}?immutable=1"
     try:
-        with closing(sqlite3.connect(address, uri=True)) as base:
+        with closing(sqlite3.connect(address(file), uri=True)) as base:
             (found,) = base.execute("SELECT count(*) FROM messages").fetchone()
     except sqlite3.Error:
         return None

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
     from contextlib import ExitStack
 
+UNCHANGED = "immutable=1"
+"""Reads only, and makes no files beside it."""
 BESIDE = ("-wal", "-journal")
 """Endings of the files in which SQLite keeps what is not, or no longer, in the file itself."""
 
@@ -96,12 +98,11 @@ class SqlitePart:
         return raw if isinstance(raw, bytes) else None
 
     def _opened(self, file: Path) -> sqlite3.Connection:
-        mode = "immutable=1"
+        mode = UNCHANGED
         if is_being_written(file):
             file, mode = self._copied(file), "mode=rw"
-        address = f"file:{quote(str(file.absolute()))}?{mode}"
         # It is opened by one thread and read by another, never by two at once.
-        found = sqlite3.connect(address, uri=True, check_same_thread=False)
+        found = sqlite3.connect(address(file, mode), uri=True, check_same_thread=False)
         self._stack.callback(found.close)
         # Otherwise SQLite refuses a file that is shorter than it says of itself as a whole.
         found.execute("PRAGMA writable_schema = ON")
@@ -198,6 +199,11 @@ class SqlitePart:
             )
             for number, topic, kind, encoding, profiles in rows
         ]
+
+
+def address(file: Path, mode: str = UNCHANGED) -> str:
+    """Return where a database is, for `sqlite3.connect` with `uri=True`."""
+    return f"file:{quote(str(file.absolute()))}?{mode}"
 
 
 def is_being_written(file: Path) -> bool:

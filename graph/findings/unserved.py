@@ -38,9 +38,8 @@ def unfed(
         if row.name == CLOCK:
             continue
         instead = meant(row.name, _of_one_type(row, fed))
-        waits = row.name in norms.may_wait
-        if not one_has_failed:
-            waits = waits or any(norms.moves(row.name, kind) for kind in row.type_names)
+        rests = not one_has_failed and any(norms.moves(row.name, kind) for kind in row.type_names)
+        waits = rests or row.name in norms.may_wait
         if not instead and (waits or is_housekeeping(row.name)):
             continue
         place = FindingPlace("topic", row.name)

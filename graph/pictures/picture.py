@@ -64,12 +64,11 @@ def numbers_picture(
         return Picture(grey(numbers), width, height, encoding)
     import numpy as np
 
-    metres = numbers.astype(np.float64) * METRES[encoding]
-    valid = np.isfinite(metres) & (metres > 0)
+    metres, valid = _measured(numbers, encoding)
     distances = metres[valid]
     if not distances.size:
-        every = all_of().astype(np.float64) * METRES[encoding]
-        distances = every[np.isfinite(every) & (every > 0)]
+        every, known = _measured(all_of(), encoding)
+        distances = every[known]
     if not distances.size:
         return Picture(np.zeros((*metres.shape, 3), np.uint8), width, height, encoding)
     near, far = rounded(*np.percentile(distances, (100 - FARTHEST, FARTHEST)).tolist())
@@ -77,6 +76,16 @@ def numbers_picture(
     rgb = ramp_colours()[(share * 255).astype(np.uint8)]
     rgb[~valid] = 0
     return Picture(rgb, width, height, encoding, (near, far))
+
+
+def _measured(
+    numbers: NDArray[np.generic], encoding: str
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return numbers in metres, and which of them are distances."""
+    import numpy as np
+
+    metres: NDArray[np.float64] = numbers.astype(np.float64) * METRES[encoding]
+    return metres, np.isfinite(metres) & (metres > 0)
 
 
 def ramp_colours(steps: int = 256) -> Rgb:
