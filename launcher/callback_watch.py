@@ -258,12 +258,17 @@ def _unspun(stack: FrameType, folder: str) -> list[_Callback]:
     first = next(each for each in reversed(frames) if _is_in(each, folder))
     callback = _Callback(first, own.f_lineno, where, UNSPUN_S, alone=False)
     callback.name = own.f_code.co_name
-    node = getattr(sys.modules.get("rclpy.node"), "Node", ())
+    node = _class_of("rclpy.node", "Node")
     callback.in_constructor = any(
         each.f_code.co_name == "__init__" and isinstance(each.f_locals.get("self"), node)
         for each in frames
     )
     return [callback]
+
+
+def _class_of(module: str, name: str) -> Any:  # noqa: ANN401
+    """Return a class for `isinstance`; one that nothing is of, where it has not been imported."""
+    return getattr(sys.modules.get(module), name, ())
 
 
 def _is_proven(callback: _Callback) -> bool:
@@ -273,8 +278,7 @@ def _is_proven(callback: _Callback) -> bool:
     """
     if callback.waits_in not in (MAIN, MAIN_SERVICE):
         return True
-    node = getattr(sys.modules.get("rclpy.node"), "Node", ())
-    executor = getattr(sys.modules.get("rclpy.executors"), "Executor", ())
+    node, executor = _class_of("rclpy.node", "Node"), _class_of("rclpy.executors", "Executor")
     everything = gc.get_objects()
     if any(isinstance(each, executor) and _has_spun(each) for each in everything):
         return False
