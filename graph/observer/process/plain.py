@@ -73,7 +73,6 @@ class _Unpickler(pickle.Unpickler):
 @lru_cache(maxsize=1)
 def _known() -> dict[tuple[str, str], Any]:
     """Return all that a pickle may name. A process that is started ahead needs none of it yet."""
-    from graph import data, inner_states
     from graph.messages.making import FieldError, NoSuchFieldError
     from graph.messages.types import UnknownTypeError
     from graph.observer.census import Census
@@ -82,19 +81,20 @@ def _known() -> dict[tuple[str, str], Any]:
     from space.transform import Transform
     from text.sentences import InLanguages, Words
 
-    rooms = (data, inner_states)
-    plain = [
-        each
-        for room in rooms
-        for each in vars(room).values()
-        if isinstance(each, type) and (is_dataclass(each) or issubclass(each, Enum))
-    ]
-    others = (Census, HeldCommand, Stamped, Transform, Words, InLanguages)
+    plain = [each for each in _classes() if is_dataclass(each) or issubclass(each, Enum)]
     errors = (*_by_words(), FieldError, NoSuchFieldError, UnknownTypeError)
     others = (Census, HeldCommand, Stamped, Transform, Words, InLanguages)
     makers = (array_of, field_error)
     every: tuple[Any, ...] = (*plain, *others, *errors, *makers)
     return {(each.__module__, each.__qualname__): each for each in every}
+
+
+def _classes() -> list[type]:
+    """Return the classes of the rooms whose data go over."""
+    from graph import data, inner_states
+
+    rooms = (data, inner_states)
+    return [each for room in rooms for each in vars(room).values() if isinstance(each, type)]
 
 
 @lru_cache(maxsize=2)
@@ -104,7 +104,10 @@ def _table(has_numpy: bool) -> dict[type, Callable[[Any], tuple[Any, ...]]]:
     from graph.messages.types import UnknownTypeError
     from text.sentences import Words
 
+    kinds = [each for each in _classes() if issubclass(each, Enum)]
     table: dict[type, Callable[[Any], tuple[Any, ...]]] = {
+        # Python 3.11.0 to 3.11.3 would have `getattr` called.
+        **dict.fromkeys(kinds, lambda member: (type(member), (member.value,))),
         **dict.fromkeys(_by_words(), lambda error: (type(error), (error.words,))),
         **dict.fromkeys((FieldError, NoSuchFieldError), _of_field_error),
         # Its values may be whatever can be written down: an error, for one.

@@ -7,12 +7,22 @@ import pickle
 import socket
 from collections.abc import Iterator
 from dataclasses import replace
+from enum import Enum
 from typing import Any
 
 import numpy as np
 import pytest
 
-from graph.data import EndpointInfo, GraphUpdate, NodeRow, Sample, TopicRow, Trouble, Value
+from graph.data import (
+    EndpointInfo,
+    GoalStatus,
+    GraphUpdate,
+    NodeRow,
+    Sample,
+    TopicRow,
+    Trouble,
+    Value,
+)
 from graph.messages.making import NoSuchFieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.process.plain import PlainError, packed, plain_error, unpacked
@@ -170,3 +180,17 @@ def test_one_who_has_lost_the_thread_is_not_believed(wires: tuple[Wire, Wire]) -
     here._socket.send(b"\xff" * 8)
     with pytest.raises(ConnectionError):
         there.receive()
+
+
+def test_an_enumeration_goes_over_however_python_takes_it_apart(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Python 3.11.2, that of Debian 12, would name `getattr`; others name the class."""
+
+    def by_name(member: Enum, _protocol: int) -> tuple[object, ...]:
+        return getattr, (type(member), member.name)
+
+    for kind in (Trouble, GoalStatus):
+        monkeypatch.setattr(kind, "__reduce_ex__", by_name)
+        for member in kind:
+            assert there_and_back(member) is member
