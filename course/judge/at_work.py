@@ -31,6 +31,7 @@ FOUND_WITHIN_S = 10.0
 """How long the services that every node has may take to be discovered."""
 ANSWERS_WITHIN_S = 20.0
 """How long a node may take to answer: longer than until it is told that it is stuck."""
+ASKED_AGAIN_S = 4.0
 SETTLED_WITHIN_S = 10.0
 """How long a node may take to start, or the supervisor to tell that its process has ended."""
 AGAIN_S = 0.2
@@ -149,15 +150,17 @@ async def _answers(name: str, node: str, evidence: Evidence) -> bool:
         return True
     deadline_s = time.monotonic() + ANSWERS_WITHIN_S
     while (left_s := deadline_s - time.monotonic()) > 0 and not gone():
-        call = evidence.observer.call(service, TYPE, {"names": []}, left_s)
+        once_s = min(left_s, ASKED_AGAIN_S)
+        call = evidence.observer.call(service, TYPE, {"names": []}, once_s)
         answer = asyncio.ensure_future(asyncio.wrap_future(call))
         try:
-            seen = await evidence.until(lambda it=answer: _in(it, gone()), left_s + 1)  # type: ignore[misc]
+            seen = await evidence.until(lambda it=answer: _in(it, gone()), once_s + 1)  # type: ignore[misc]
         finally:
             answer.cancel()
         if seen.met:
             return True
-        # It may have been asked while it was ending, or before it served.
+        # It may have been asked while it was ending, or before it served; and an answer is lost
+        # if the node has not found by then who asks.
         await evidence.wait(AGAIN_S)
     # Of one that has ended there is more to say than that it does not answer.
     return evidence.nodes[name].pid != pid
