@@ -61,7 +61,7 @@ run: catalogues
 
 view: catalogues .venv/.view
 
-PYTEST := .venv/bin/python -m pytest -n 5 --dist loadfile --no-loadscope-reorder
+PYTEST := .venv/bin/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder
 
 test: catalogues .venv/.view
 	@exec $(PYTEST) --plain-machine $(ARGS)

@@ -4,6 +4,9 @@ Other packages use only `main`. Each module is a command, or is shared by comman
 only the requested one.
 """
 
-from cli.main import main
+from launcher.processes.interrupts import silent
+
+with silent():
+    from cli.main import main
 
 __all__ = ["main"]

@@ -6,7 +6,6 @@ Exit codes: 0 success, 1 a failure, 2 an invalid request, 130 interrupted.
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -14,13 +13,13 @@ from typing import TYPE_CHECKING
 from cli.arguments.commands import OPEN, parser_of, split, wanted_language
 from cli.arguments.parser import speak
 from launcher.errors import LauncherError
+from launcher.processes.interrupts import held
 from text.i18n import LANGUAGES, detect, localized, set_language
 from text.output import drop_output, make_streams_safe, say_error
 
 if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Sequence
-    from types import ModuleType
 
 HANDLERS = {
     "open": ("cli.screen", "open_command"),
@@ -64,15 +63,15 @@ CPU time.
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return the exit code."""
-    make_streams_safe()
-    # This also applies to the processes started from here.
-    os.environ.setdefault(*OPENBLAS_PATIENCE)
-    words = list(sys.argv[1:] if arguments is None else arguments)
-    asked = wanted_language(words)
-    set_language(detect(asked if asked in LANGUAGES else None))
-    speak()
-    command, rest = split(words)
     try:
+        make_streams_safe()
+        # This also applies to the processes started from here.
+        os.environ.setdefault(*OPENBLAS_PATIENCE)
+        words = list(sys.argv[1:] if arguments is None else arguments)
+        asked = wanted_language(words)
+        set_language(detect(asked if asked in LANGUAGES else None))
+        speak()
+        command, rest = split(words)
         options = _parsed(command, rest)
         return options if isinstance(options, int) else _run(command, options)
     except LauncherError as error:
@@ -133,24 +132,8 @@ def _run(command: str, options: Namespace) -> int:
 
 def _handle(command: str, options: Namespace) -> int:
     module, function = HANDLERS[command]
-    code: int = getattr(_imported(module), function)(options)
+    with held():
+        loaded = import_module(module)
+    code: int = getattr(loaded, function)(options)
     sys.stdout.flush()
     return code
-
-
-def _imported(module: str) -> ModuleType:
-    """Import a module; an interrupt that comes meanwhile is raised afterwards.
-
-    An interrupted import can end with a traceback of its own, or lose the interrupt.
-    """
-    before = signal.getsignal(signal.SIGINT)
-    if before is not signal.default_int_handler:
-        return import_module(module)
-    interrupts: list[int] = []
-    signal.signal(signal.SIGINT, lambda number, _frame: interrupts.append(number))
-    try:
-        return import_module(module)
-    finally:
-        signal.signal(signal.SIGINT, before)
-        if interrupts:
-            raise KeyboardInterrupt

@@ -68,18 +68,20 @@ THREAD = "thread"
 """That of one that runs, and in which a thread has ended by an exception."""
 IDLE = "idle"
 """That of one that came to its end without having done anything: main() is never called."""
+HALTED = "halted"
+"""That of one, whoever has written it, of which a signal has suspended a process."""
 
 
 @dataclass(frozen=True)
 class NodeFault:
-    """What is wrong with a learner's own file."""
+    """What is wrong with a learner's own file, or with the process of any node."""
 
     kind: str
     """`syntax`: it cannot be read, and an older process may still run; `import`: a module is not
     there; `crash`: its process has ended by an exception; `warning`: it runs, but not as meant;
-    `STUCK`, `THREAD` and `IDLE`: see there."""
-    file: str
-    """Absolute."""
+    `STUCK`, `THREAD`, `IDLE` and `HALTED`: see there."""
+    file: str = ""
+    """Absolute; empty where no file is to blame."""
     line: int = 0
     """From 1; 0 if unknown, as is the next."""
     column: int = 0
@@ -92,6 +94,8 @@ class NodeFault:
     @property
     def words(self) -> Words:
         """All of it in one line."""
+        if not self.file:
+            return say("{exception}. {meaning}", exception=self.exception, meaning=self.meaning)
         place = say("{file}:{line}", file=self.file.rpartition("/")[2], line=self.line)
         if self.meaning:
             return say(
@@ -128,11 +132,11 @@ class NodeStatus:
     file: str = ""
     """The learner's own file that it runs, absolute; empty for other nodes."""
     fault: NodeFault | None = None
-    """What is wrong with that file, as far as it has shown."""
+    """What is wrong with that file, or with its process, as far as it has shown."""
 
     @property
     def ails(self) -> bool:
-        """Whether its own file keeps it from its work, whatever its state: it is not healthy."""
+        """Whether something keeps it from its work, whatever its state: it is not healthy."""
         return self.fault is not None and self.fault.kind != "warning"
 
     @property

@@ -22,7 +22,8 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from graph.ros import FAST_DDS_VARIABLES, LOCALHOST_ONLY, ONLY_THESE, PEERS
-from launcher.processes.shared_memory_in_hand import release_in_hand
+from launcher.processes.shared_memory_held import release_held, release_locks
+from tests.distribution import ALONE, EachTestOnce
 from tests.domains import DomainPool
 from tests.machine import PLAIN, left_out, needs_of
 from tests.unit.scripts_of_setup import load
@@ -45,7 +46,6 @@ os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 TESTS = Path(__file__).resolve().parent
-PROOF_OF_LESSONS = TESTS / "ros" / "course" / "test_lessons.py"
 STATE_DIR = "DECK_STATE_DIR"
 _STATE = "deck-test-state-"
 
@@ -77,7 +77,7 @@ REAL_STDERR = pytest.StashKey[int]()
 AFTER_TIMEOUT_S = 60.0
 """How long after its time a test may still be there, to fail and to clean up."""
 
-_CLEARED_EVERY_S = 1.0
+_CLEARED_EVERY_S = 0.3
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -95,11 +95,13 @@ def pytest_configure(config: pytest.Config) -> None:
 def _clear_the_way() -> None:
     """Do for the tests what a supervisor does for its nodes, in the process that has no ROS.
 
-    A test kills nodes as they have a message in hand, and ROS in another test waits for them.
+    A test kills nodes that hold a lock or a message, and ROS in another test waits for them.
     """
     while True:
-        release_in_hand()
-        time.sleep(_CLEARED_EVERY_S)
+        release_held()
+        for _each in range(3):
+            time.sleep(_CLEARED_EVERY_S)
+            release_locks()
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -144,20 +146,26 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def _order(items: list[pytest.Item]) -> None:
-    """Spread the files of each kind over the run: some wait for processes while others compute.
+    """Spread the files of each folder over the run: some wait for processes while others compute.
 
-    The proof of the lessons comes last: it keeps all cores busy, and has nodes judged by the clock.
+    Those that are run alone come last.
     """
-    kinds: dict[str, list[Path]] = {}
+    folders: dict[tuple[str, ...], list[Path]] = {}
     for path in dict.fromkeys(item.path for item in items):
-        kinds.setdefault(path.relative_to(TESTS).parts[0], []).append(path)
-    place = {
+        folders.setdefault(path.parent.relative_to(TESTS).parts[:2], []).append(path)
+    place: dict[Path, float] = {
         path: (number + 0.5) / len(paths)
-        for paths in kinds.values()
+        for paths in folders.values()
         for number, path in enumerate(paths)
     }
-    place[PROOF_OF_LESSONS] = 1.0
+    place |= {TESTS.parent / name: number for number, name in enumerate(ALONE, 1)}
     items.sort(key=lambda item: place[item.path])
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> EachTestOnce | None:
+    """Hand out the tests so that a run outlives the death of one of its processes."""
+    return EachTestOnce(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 def pytest_collection_finish() -> None:

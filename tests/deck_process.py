@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -12,25 +13,35 @@ from typing import Any
 
 import psutil
 
-from tests.waiting import wait_until
+from tests.middleware_words import own_words
+from tests.waiting import DEADLINE_S, wait_until
+from tests.warm_program import WarmProgram
 
 
 class DeckProcess:
-    """`deck ARGUMENTS` without a terminal; `within` is what its command begins with."""
+    """`deck ARGUMENTS` without a terminal; `within` is what its command begins with.
+
+    It is forked from a process that has its modules; `within` something it is started by Python.
+    """
 
     def __init__(
         self, *arguments: str, cwd: Path | None = None, within: tuple[str, ...] = ()
     ) -> None:
         """Start it."""
-        self.process = subprocess.Popen(
-            [*within, sys.executable, "-m", "tui", *arguments],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-            cwd=cwd,
-        )
+        self.process: WarmProgram | subprocess.Popen[str]
+        if within:
+            self.process = subprocess.Popen(
+                [*within, sys.executable, "-m", "tui", *arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                encoding="utf-8",
+                cwd=cwd,
+            )
+        else:
+            folder = str(cwd or Path.cwd())
+            self.process = WarmProgram(("tui", *arguments), cwd=folder, env=os.environ)
         self.lines: list[str] = []
         self.errors: list[str] = []
         self._readers = [
@@ -42,10 +53,10 @@ class DeckProcess:
 
     def _read(self, stream: Any, lines: list[str]) -> None:
         with stream:
-            for line in stream:
+            for line in filter(own_words, stream):
                 lines.append(line.rstrip("\n"))  # noqa: PERF401 - read while it grows
 
-    def said(self, text: str, within_s: float = 30.0) -> str:
+    def said(self, text: str, within_s: float = DEADLINE_S) -> str:
         """Wait for a line that contains `text`; return it."""
         return wait_until(
             lambda: next((line for line in self.lines if text in line), ""),
@@ -57,7 +68,7 @@ class DeckProcess:
         """Send it a signal."""
         self.process.send_signal(number)
 
-    def finish(self, within_s: float = 40.0) -> int:
+    def finish(self, within_s: float = DEADLINE_S) -> int:
         """Wait for its end; return its exit code."""
         code = self.process.wait(within_s)
         for reader in self._readers:

@@ -9,7 +9,7 @@ import socket
 from pathlib import Path
 
 from launcher.processes.shared_memory import SHARED_MEMORY, names, port_numbers, sweep
-from launcher.processes.shared_memory_in_hand import release_in_hand
+from launcher.processes.shared_memory_held import release_held
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 
 DOMAINS = range(1, 102)
@@ -50,7 +50,7 @@ class DomainPool:
         which somebody's robot runs.
         """
         discard_unfinished(self._shared_memory)
-        release_in_hand(self._shared_memory)
+        release_held(self._shared_memory)
         parts = list(filter(None, map(_PART.fullmatch, names(self._shared_memory))))
         alive = _held_files()
         strange = {

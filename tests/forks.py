@@ -18,7 +18,7 @@ _FORKS = multiprocessing.get_context("forkserver")
 _FORKS.set_forkserver_preload(
     [
         *("cli.main", "cli.listing", "cli.background", "cli.run", "cli.record", "cli.replay"),
-        *("launcher.supervisor.run", "tests.ros.warm_imports"),
+        *("launcher.supervisor.run", "tests.ros.warm_imports", "tests.ros.told_actions"),
     ]
 )
 

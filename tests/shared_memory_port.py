@@ -27,8 +27,8 @@ class SharedMemoryPort:
 
     def __init__(self, number: int) -> None:
         """Map the port of this number, which one process listens at."""
-        path = SHARED_MEMORY / f"fastrtps_port{number}"
-        with path.open("r+b") as file:
+        self._path = SHARED_MEMORY / f"fastrtps_port{number}"
+        with self._path.open("r+b") as file:
             self._memory = mmap.mmap(file.fileno(), 0)
             self._inode = os.fstat(file.fileno()).st_ino
         self._address = ctypes.addressof(ctypes.c_char.from_buffer(self._memory))
@@ -39,8 +39,11 @@ class SharedMemoryPort:
 
     @property
     def in_hand(self) -> bool:
-        """Whether its listener is marked as having a message in hand."""
-        return bool(self._memory[self._slot] & IN_HAND)
+        """Whether its listener is marked as having a message in hand.
+
+        Not once a process of any domain has taken the number: then nobody waits for the listener.
+        """
+        return bool(self._memory[self._slot] & IN_HAND) and not self._is_replaced()
 
     def take_in_hand(self) -> None:
         """Mark that."""
@@ -60,6 +63,15 @@ class SharedMemoryPort:
         """Release it."""
         ctypes.CDLL(None).pthread_mutex_unlock(ctypes.c_void_p(self._address + self._mutex))
 
+    @property
+    def is_locked(self) -> bool:
+        """Whether somebody holds it, alive or dead."""
+        lock = ctypes.c_void_p(self._address + self._mutex)
+        held: bool = ctypes.CDLL(None).pthread_mutex_trylock(lock) != 0
+        if not held:
+            self.unlock()
+        return held
+
     def is_open_in(self, pid: int) -> bool:
         """Whether this process has met the one that listens here, and sends to it."""
         return bool(self._places_in(pid))
@@ -70,6 +82,12 @@ class SharedMemoryPort:
         calls = (task / "syscall" for task in Path(f"/proc/{pid}/task").iterdir())
         words = (call.read_text().split() for call in calls)
         return any(len(word) > 1 and int(word[1], 16) in locks for word in words)
+
+    def _is_replaced(self) -> bool:
+        try:
+            return self._path.stat().st_ino != self._inode
+        except FileNotFoundError:
+            return False
 
     def _places_in(self, pid: int) -> list[int]:
         """Return the addresses at which this process has mapped it."""

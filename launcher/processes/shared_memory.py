@@ -47,6 +47,32 @@ def held_segments(pid: int) -> set[str]:
     return found
 
 
+def mapped_segments(pid: int) -> set[str]:
+    """Return the names of the segments and ports in a process's memory, without removed ones.
+
+    Raises:
+        OSError: if the process has gone, or may not be inspected.
+    """
+    lines = Path(f"/proc/{pid}/maps").read_text(errors="replace").splitlines()
+    found = (line.rpartition(f"{SHARED_MEMORY}/")[2] for line in lines)
+    return {
+        name for name in found if name.startswith("fastrtps_") and not name.endswith(" (deleted)")
+    }
+
+
+def lost_ports(pid: int) -> set[str]:
+    """Return the names of the ports that a process listens at, and nobody can reach any more.
+
+    Fast DDS 2.14 removes a port's memory while somebody listens there, if the one before is just
+    leaving it, or if the listener gets no processor for a second. The lock stays, so the name is
+    taken; who opens the port from then on writes into memory of its own.
+    """
+    held = {name for name in held_segments(pid) if name.startswith(_PORT)}
+    with contextlib.suppress(OSError):
+        return held - mapped_segments(pid)
+    return set()
+
+
 def port_numbers(names: Iterable[str]) -> list[int]:
     """Return the numbers of those names that are ports."""
     return sorted(int(name.removeprefix(_PORT)) for name in names if name.startswith(_PORT))

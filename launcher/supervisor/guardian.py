@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from launcher.processes.abandoned import KILLED_AFTER_S, LEFT_AFTER_S
 from launcher.processes.prctl import become_subreaper
-from launcher.processes.shared_memory_in_hand import release_in_hand
+from launcher.processes.shared_memory_held import release_held
 from launcher.processes.signal import send
 from launcher.processes.table import processes
 from launcher.processes.title import show_name, show_title
@@ -56,7 +56,7 @@ def _end_all() -> None:
     began = time.monotonic()
     told: set[int] = set()
     while left := _descendants():
-        release_in_hand()
+        release_held()
         elapsed = time.monotonic() - began
         if elapsed > LEFT_AFTER_S:
             return
@@ -69,7 +69,7 @@ def _end_all() -> None:
         _reap()
         time.sleep(_LOOK_EVERY_S)
     # Nobody else looks after them any more, and whoever has met these nodes still sends to them.
-    release_in_hand()
+    release_held()
 
 
 def _descendants() -> list[Process]:

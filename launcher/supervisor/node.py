@@ -21,6 +21,7 @@ from launcher.supervisor.words import (
     end_words,
     left_undone,
     stopped_words,
+    suspended,
     who,
 )
 from text.sentences import say
@@ -72,6 +73,8 @@ class SupervisedNode:
         self.fault: NodeFault | None = None
         """What is wrong with the learner's own file."""
         self._clash: NodeFault | None = None
+        self._suspended: NodeFault | None = None
+        """What a signal has done to its process, while that lasts."""
         self._around = around
         self._policy = RestartPolicy(plan.restart)
         self._restarts = 0
@@ -110,7 +113,7 @@ class SupervisedNode:
             memory_bytes=usage.memory_bytes if usage and now else None,
             needs=self.plan.needs,
             file=self.plan.file,
-            fault=self.fault,
+            fault=self.fault if self._suspended is None else self._suspended,
         )
 
     def start(self) -> None:
@@ -177,6 +180,17 @@ class SupervisedNode:
         self._around.say(self.plan.name, Severity.INFO, say("the callback has returned after all"))
         self._around.changed(self.plan.name, self.state)
 
+    def halted(self, pid: int) -> None:
+        """Note which of its processes a signal has suspended; 0: none."""
+        if self._now is None or self._down or bool(pid) is (self._suspended is not None):
+            return
+        self._suspended = suspended(pid) if pid else None
+        if self._suspended is not None:
+            self._around.say(self.plan.name, Severity.ERROR, self._suspended.words)
+        else:
+            self._around.say(self.plan.name, Severity.INFO, say("it runs again, after SIGCONT"))
+        self._around.changed(self.plan.name, self.state)
+
     def clashes(self, fault: NodeFault | None) -> None:
         """Note a topic that has another type elsewhere, or that this is no longer so."""
         if fault == self._clash or self._now is None:
@@ -235,6 +249,8 @@ class SupervisedNode:
     def become(self, state: NodeState, detail: str = "", *, serves: bool = False) -> None:
         """Give it another state; `serves`: the nodes that need it may start."""
         self.state, self.detail, self.serves = state, detail, serves and not self._down
+        if state in (NodeState.READY, NodeState.RUNNING) and self._does_not_compile:
+            self.fault = None
         self._around.changed(self.plan.name, self.state)
 
     async def _live(self) -> None:
@@ -305,7 +321,9 @@ class SupervisedNode:
         """Follow a process; return its end, its age in seconds, and why it was ended by Deck."""
         clock = self._around.clock
         self._now = now = _Now(process, clock.now())
-        self._last = self.usage = self.fault = self._clash = None
+        self._last = self.usage = self._clash = self._suspended = None
+        if not self._does_not_compile:
+            self.fault = None
         self._around.say(self.plan.name, Severity.INFO, say("started, pid {pid}", pid=process.pid))
         process.ended.add_done_callback(lambda _ended: self._nudge.set())
         ready = asyncio.create_task(Readying(self.plan, self._around, self).run())
@@ -323,7 +341,7 @@ class SupervisedNode:
         await self._end_all_of_it(now)
         end = await self._end_of(process)
         await process.close()
-        self._now, self._last = None, end
+        self._now, self._last, self._suspended = None, end, None
         asked = self._down or bool(now.failure)
         self._around.say(
             self.plan.name, self._gravity(end, asked=asked), self._end_words(end, asked=asked)
@@ -429,9 +447,14 @@ class SupervisedNode:
         self.become(NodeState.FAILED, why)
         return False
 
+    @property
+    def _does_not_compile(self) -> bool:
+        """Whether its file was found not to be Python; it may have been mended since."""
+        return self.fault is not None and self.fault.kind == "syntax"
+
     def _is_hopeless(self, end: Exit, lasted: float) -> bool:
         """Whether another attempt would end in the same way."""
-        if self.fault is not None and self.fault.kind == "syntax" and lasted < USAGE_WITHIN_S:
+        if self._does_not_compile and lasted < USAGE_WITHIN_S:
             return True
         if self.plan.module:
             return end.code == USAGE and lasted < USAGE_WITHIN_S

@@ -11,7 +11,7 @@ from launcher.logs.reader import PipeReader, node_pipe
 from launcher.processes.members import Members
 from launcher.processes.ports import BlockedPorts
 from launcher.processes.shared_memory import held_segments, port_numbers, sweep
-from launcher.processes.shared_memory_in_hand import release_in_hand
+from launcher.processes.shared_memory_held import release_held, release_locks
 from launcher.processes.signal import send
 from launcher.spawn_server.spawner import SpawnRequest
 
@@ -92,6 +92,7 @@ class NodeProcess:
         self._launcher.spawner.forget(self.pid)
 
     def _on_end(self, _ended: object) -> None:
+        release_locks()
         self._launcher.scan.forget()
         for reader in self._readers:
             reader.drain()
@@ -120,7 +121,7 @@ class ProcessLauncher:
 
     def sweep_segments(self, name: str) -> None:
         """Remove the shared memory that a node left, and keep others from taking its ports."""
-        release_in_hand()
+        release_held()
         self._blocked.keep(port_numbers(sweep(self._segments.pop(name, ()))))
 
     async def launch(self, node: NodePlan) -> NodeProcess:

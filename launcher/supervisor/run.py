@@ -210,6 +210,7 @@ class Supervisor:
         _answer({"folder": str(self._run_folder.record.folder)})
         helpers = [
             asyncio.create_task(self._session.measure()),
+            asyncio.create_task(self._session.keep_ports_open()),
             asyncio.create_task(relay_pictures(self._plan, self._spawner, self._reaper)),
             asyncio.create_task(self._look_for_strays()),
             asyncio.create_task(self._run_folder.keep(self.control.serve, self._warn)),

@@ -30,12 +30,15 @@ if TYPE_CHECKING:
 
     from launcher.clock import Clock
     from launcher.logs.session_log import SessionLog
+    from launcher.processes.table import Process
     from launcher.status import LogLine, NodeFault
     from launcher.supervisor.plan import NodePlan, Plan
     from launcher.supervisor.process import NodeProcess, ProcessLauncher
     from launcher.supervisor.readiness import Clash, ReadyCondition, Seen
 
 USAGE_EVERY_S = 2.0
+RELEASED_EVERY_S = 0.5
+"""Fast DDS waits 1 s."""
 
 
 class Session:
@@ -160,7 +163,14 @@ class Session:
             for name, node in self.nodes.items():
                 if node.state.alive:
                     node.usage = usages.get(name)
+                    node.halted(_halted_of(members.get(name, ())))
                     self._on_change(name)
+
+    async def keep_ports_open(self) -> None:
+        """Open what others have locked who were killed, before nodes give up waiting for it."""
+        while True:
+            await asyncio.sleep(RELEASED_EVERY_S)
+            self._shared_memory.release()
 
     # The `NodeContext` of the nodes.
 
@@ -271,6 +281,11 @@ class Session:
         for other in self.nodes.values():
             if name in other.plan.needs:
                 other.needs_changed()
+
+
+def _halted_of(processes: Iterable[Process]) -> int:
+    """Return one of these that a signal has suspended, 0 if there is none."""
+    return next((process.pid for process in processes if process.state == "T"), 0)
 
 
 def _with_state(node: SupervisedNode) -> str:

@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING
 
 from launcher.processes.shared_memory import SHARED_MEMORY
-from launcher.processes.shared_memory_in_hand import release_in_hand
+from launcher.processes.shared_memory_held import release_held, release_locks
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.status import Severity
 from text.sentences import say
@@ -38,7 +38,7 @@ class SharedMemory:
     def clear(self) -> None:
         """Remove incomplete files; report once the problems that cannot be fixed here."""
         self._look_for_room()
-        release_in_hand(self._folder)
+        release_held(self._folder)
         found = discard_unfinished(self._folder)
         if found.removed:
             words = say(
@@ -56,6 +56,10 @@ class SharedMemory:
                     file=name,
                 )
                 self._tell(Severity.ERROR, words)
+
+    def release(self) -> None:
+        """Open the locks that cannot wait for the next clearing."""
+        release_locks(self._folder)
 
     def _look_for_room(self) -> None:
         with contextlib.suppress(OSError):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from launcher.processes.exit import UNSEEN
+from launcher.status import HALTED, NodeFault
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -27,6 +28,18 @@ def stopped_words(last: Exit | None) -> str:
     if last is not None and last.code:
         return say("stopped, exit code {code}", code=last.code)
     return say("stopped")
+
+
+def suspended(pid: int) -> NodeFault:
+    """What is wrong with a node of which a signal has suspended this process."""
+    return NodeFault(
+        HALTED,
+        exception=say("suspended by a signal (SIGSTOP, pid {pid})", pid=pid),
+        meaning=say(
+            "It does nothing until it gets SIGCONT: `kill -CONT {pid}`, or restart the node.",
+            pid=pid,
+        ),
+    )
 
 
 def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:

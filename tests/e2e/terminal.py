@@ -25,7 +25,7 @@ from rich.console import Console
 from rich.style import Style
 from rich.text import Text
 
-from tests.waiting import wait_until
+from tests.waiting import DEADLINE_S, wait_until
 
 KEYS = {
     "enter": "\r",
@@ -140,11 +140,11 @@ class Terminal:
         with self._lock:
             return str(self._screen.buffer[row][column].bg)
 
-    def wait_for(self, text: str, within_s: float = 30.0) -> str:
+    def wait_for(self, text: str, within_s: float = DEADLINE_S) -> str:
         """Wait until `text` stands on the screen; return the screen."""
         return self.wait_until(lambda screen: text in screen, f"{text!r} on screen", within_s)
 
-    def wait_for_line(self, line: str, within_s: float = 30.0) -> str:
+    def wait_for_line(self, line: str, within_s: float = DEADLINE_S) -> str:
         """Wait until `line` has been printed, in however many rows; return all rows as one line.
 
         For what is printed without a screen of its own: where the terminal breaks a line that has a
@@ -157,12 +157,12 @@ class Terminal:
 
         return wait_until(printed, lambda: f"{line!r}; the screen:\n{self.text()}", within_s)
 
-    def wait_gone(self, text: str, within_s: float = 30.0) -> str:
+    def wait_gone(self, text: str, within_s: float = DEADLINE_S) -> str:
         """Wait until `text` does not stand on the screen any more; return the screen."""
         return self.wait_until(lambda screen: text not in screen, f"no {text!r}", within_s)
 
     def wait_until(
-        self, condition: Callable[[str], bool], what: str, within_s: float = 30.0
+        self, condition: Callable[[str], bool], what: str, within_s: float = DEADLINE_S
     ) -> str:
         """Wait until `condition` holds of the screen's text; return that text."""
 
@@ -172,7 +172,7 @@ class Terminal:
 
         return wait_until(shown, lambda: f"{what}; the screen:\n{self.text()}", within_s)
 
-    def wait_exit(self, within_s: float = 30.0) -> int:
+    def wait_exit(self, within_s: float = DEADLINE_S) -> int:
         """Wait until the program has ended; return its exit code."""
         return self.process.wait(timeout=within_s)
 

@@ -49,16 +49,16 @@ async def test_a_key_lets_it_drive_refuses_or_stops(deck: Deck, tmp_path: Path) 
         proposal = await agent.proposed(drive(0.1))
         assert (await agent.call("execute", proposal=proposal))["outcome"] == "carried out"
         await agent.call("stop")
-        await asyncio.to_thread(terminal.wait_for, "EMERGENCY STOP")
+        await asyncio.to_thread(terminal.wait_for, "■ EMERGENCY STOP")
         screen = await asyncio.to_thread(
             terminal.wait_until, lambda text: "may drive until" not in text, "no allowance"
         )
-        assert "EMERGENCY STOP" in screen
+        assert "■ EMERGENCY STOP" in screen
         proposal = await agent.proposed(drive(0.1))
         assert "emergency stop is in force" in await agent.refused("execute", proposal=proposal)
         terminal.press("ctrl+r")
         await asyncio.to_thread(
-            terminal.wait_until, lambda text: "EMERGENCY STOP" not in text, "the release"
+            terminal.wait_until, lambda text: "■ EMERGENCY STOP" not in text, "the release"
         )
         # Last: after a refusal nobody is asked for a while.
         assert "has refused" in await answered(terminal, agent, "shift+f9")

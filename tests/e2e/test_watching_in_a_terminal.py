@@ -50,7 +50,7 @@ def test_the_emergency_stop_reaches_who_listens(deck: Deck, ros_domain: int) -> 
         terminal.wait_for("electronic_differential")
         wait_until(lambda: peer.node.count_subscribers("/emergency_stop"), "its subscription")
         terminal.press("space")
-        terminal.wait_for("EMERGENCY STOP")
+        terminal.wait_for("■ EMERGENCY STOP")
         node.wait_for_words("EMERGENCY STOP: the wheels stand")
         terminal.press("ctrl+r")
         node.wait_for_words("released; waiting")

@@ -13,7 +13,7 @@ from tests import ports
 from tests.middleware_words import own_words
 from tests.ros.peer import DISCOVERY, ROOT
 from tests.ros.warm_node import WarmNode
-from tests.waiting import wait_until
+from tests.waiting import DEADLINE_S, wait_until
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -107,7 +107,7 @@ class NodeProcess:
         if number == signal.SIGKILL:
             self.wait()
 
-    def wait(self, within_s: float = 20.0) -> int:
+    def wait(self, within_s: float = DEADLINE_S) -> int:
         """Wait for the end; the exit code comes back.
 
         What it has left in shared memory is swept up then, as a launcher does: a node that hangs at

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import os
 import queue
-import subprocess
-import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +16,8 @@ from graph.observer.process.started import ObserverProcess
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
 from tests import ports
 from tests.ros.observer_thread import ObserverThread
-from tests.waiting import wait_until
+from tests.waiting import DEADLINE_S, wait_until
+from tests.warm_program import PIPE, WarmProgram
 
 ROOT = Path(__file__).parents[2]
 
@@ -33,9 +32,9 @@ class Peer:
         self.heard: dict[str, list[str]] = {}
         self.served: list[str] = []
         self._answers: queue.Queue[Any] = queue.Queue()
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "tests.ros.told_node", name, *options],
-            cwd=ROOT,
+        self.process = WarmProgram(
+            ("tests.ros.told_node", name, *options),
+            cwd=str(ROOT),
             env={
                 **os.environ,
                 "ROS_DOMAIN_ID": str(domain),
@@ -43,13 +42,12 @@ class Peer:
                 # As Deck's own processes have it: found in tenths of a second, not in three.
                 FAST_DDS_VARIABLES[0]: str(fast_dds),
             },
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
+            stdin=PIPE,
+            stderr=2,
         )
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
-        self._answers.get(timeout=30)
+        self._answers.get(timeout=DEADLINE_S)
 
     def __getattr__(self, order: str) -> Any:
         def do(topic: str = "", /, **words: Any) -> Any:
@@ -57,7 +55,7 @@ class Peer:
             assert self.process.stdin is not None
             self.process.stdin.write(json.dumps({"order": order, **words}) + "\n")
             self.process.stdin.flush()
-            return self._answers.get(timeout=30)
+            return self._answers.get(timeout=DEADLINE_S)
 
         return do
 

@@ -7,16 +7,14 @@ one, differs here: tests of that are marked `cold`, and start it as Deck does.
 
 from __future__ import annotations
 
-import atexit
 import os
 import signal
 import subprocess
 import sys
-import threading
-from multiprocessing import reduction
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING
 
 from tests.forks import enter, fork, send
+from tests.warm_program import Passed, end
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -40,7 +38,7 @@ class Popen:
         """Start `PYTHON -m launcher.supervisor ...`; stdin and stdout are pipes."""
         theirs_in, ours_in = os.pipe()
         ours_out, theirs_out = os.pipe()
-        streams = tuple(_Passed(fd) for fd in (theirs_in, theirs_out, stderr))
+        streams = tuple(Passed(fd) for fd in (theirs_in, theirs_out, stderr))
         self._process = fork(_become, tuple(argv[2:]), str(cwd), dict(env), streams, os.getpid())
         os.close(theirs_in)
         os.close(theirs_out)
@@ -63,21 +61,6 @@ class Popen:
 
     def kill(self) -> None:
         self._process.kill()
-
-
-class _Passed:
-    """A descriptor that the process gets; in it, it is a number again."""
-
-    def __init__(self, fd: int) -> None:
-        self._fd = fd
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _number, (reduction.DupFd(self._fd),)
-
-
-def _number(passed: Any) -> int:
-    fd: int = passed.detach()
-    return fd
 
 
 def _become(
@@ -106,23 +89,5 @@ def _become(
     try:
         program.main()
     except BaseException as error:  # noqa: BLE001 - as Python itself
-        _end(error)
-    _end(SystemExit(0))
-
-
-def _end(error: BaseException) -> NoReturn:
-    """End this process as Python ends a program."""
-    code = error.code if isinstance(error, SystemExit) else 1
-    if not isinstance(error, SystemExit):
-        trace = error.__traceback__
-        # Without the frame here.
-        sys.excepthook(type(error), error, trace and trace.tb_next)
-    elif isinstance(code, str):
-        sys.stderr.write(f"{code}\n")
-    threading._shutdown()  # type: ignore[attr-defined]
-    atexit._run_exitfuncs()
-    sys.stdout.flush()
-    if isinstance(error, KeyboardInterrupt):
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        os.kill(os.getpid(), signal.SIGINT)
-    os._exit(1 if isinstance(code, str) else code or 0)
+        end(error)
+    end(SystemExit(0))

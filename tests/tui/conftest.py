@@ -14,6 +14,7 @@ from functools import partial
 
 import pytest
 from syrupy.assertion import SnapshotAssertion
+from textual.app import App
 from textual.css.model import RuleSet
 from textual.css.stylesheet import Stylesheet
 from textual.css.types import CSSLocation
@@ -73,6 +74,24 @@ def _only_what_is_looked_at_is_drawn(
         app._update_mouse_over(screen)
 
     monkeypatch.setattr(Screen, "_compositor_refresh", seen)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _no_timer_runs_at_the_end() -> Iterator[None]:
+    """Take an app down as `App.exit` does, after which no timer calls anything.
+
+    `run_test` leaves that out, and closes the screens that are not in front widget by widget: a
+    timer of a screen would look for what has just been closed.
+    """
+    close_all = App._close_all
+
+    async def close(app: App[object]) -> None:
+        app._exit = True
+        await close_all(app)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(App, "_close_all", close)
+        yield
 
 
 @pytest.fixture(autouse=True)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
 import signal
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
 
+from launcher.processes.shared_memory import held_segments, port_numbers
 from launcher.status import NodeState
+from tests.ros.peer import ROOT
 from tests.ros.supervised import Launch, kill, until_state
 from tests.shared_memory_port import ports_of
 from tests.unfinished_shared_memory import make_old
@@ -50,3 +54,31 @@ async def test_a_node_that_dies_with_a_message_in_hand_holds_up_nobody(
         port.take_in_hand()
     kill(pid if killed == "node" else client.session.supervisor_pid, signal.SIGKILL)
     await until(lambda: not any(port.in_hand for port in ports), "the ports without a mark")
+
+
+DIE_WITH_THE_LOCKS = """
+import os, signal, sys
+from tests.shared_memory_port import SharedMemoryPort
+for number in sys.argv[1:]:
+    SharedMemoryPort(int(number)).lock()
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+async def test_a_lock_of_a_node_that_anybody_dies_with_is_opened(start: Launch) -> None:
+    """The node would make its port anew, and die if it ends meanwhile."""
+    client = await start(NODE)
+    pid = (await until_state(client, "node", NodeState.READY)).pid
+    assert pid is not None
+    # Not to give up before, however slow this machine is.
+    kill(pid, signal.SIGSTOP)
+    try:
+        ports = ports_of(pid)
+        numbers = map(str, port_numbers(held_segments(pid)))
+        holder = await asyncio.create_subprocess_exec(
+            sys.executable, "-c", DIE_WITH_THE_LOCKS, *numbers, cwd=ROOT
+        )
+        assert await holder.wait() == -signal.SIGKILL
+        await until(lambda: not any(port.is_locked for port in ports), "the locks open")
+    finally:
+        kill(pid, signal.SIGCONT)

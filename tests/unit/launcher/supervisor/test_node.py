@@ -191,6 +191,22 @@ async def test_a_file_that_does_not_compile_is_not_tried_again_until_it_is_saved
     assert (node.state, len(session.started)) == (NodeState.RUNNING, 2)
 
 
+async def test_what_is_wrong_with_a_file_stays_while_it_is_tried_until_it_runs(
+    session: FakeSession,
+) -> None:
+    session.absent = "waiting for camera"
+    node = await started(session, replace(PLAN, file="/own/hello.py", ready=TOPIC))
+    fault = NodeFault("syntax", "/own/hello.py", 3, exception="SyntaxError: x")
+    node.saved(fault)
+    session.absent = ""
+    node.needs_changed()
+    await settle()
+    assert (node.state, node.fault) == (NodeState.STARTING, fault)
+    session.is_ready.set()
+    await settle()
+    assert (node.state, node.fault) == (NodeState.READY, None)
+
+
 @pytest.mark.parametrize(
     ("kind", "state", "gravest"),
     [(IDLE, NodeState.FAILED, Severity.ERROR), ("warning", NodeState.EXITED, Severity.WARN)],
@@ -216,6 +232,32 @@ async def test_a_stuck_callback_ails_the_node_until_it_returns(session: FakeSess
     node.go_on()
     assert not node.status().ails
     assert well(node.status())
+
+
+async def test_a_node_that_a_signal_has_suspended_is_not_healthy_until_it_goes_on(
+    session: FakeSession,
+) -> None:
+    node = await started(session, replace(PLAN, file="/own/hello.py"))
+    node.warn(warning := NodeFault("warning", "/own/hello.py", 3, exception="a warning"))
+    node.halted(100)
+    assert (node.status().ails, well(node.status())) == (True, False)
+    assert node.status().why.startswith("suspended by a signal (SIGSTOP, pid 100). ")
+    assert "kill -CONT 100" in node.status().why
+    assert session.gravest is Severity.ERROR
+    told = list(session.lines)
+    node.halted(100)
+    assert session.lines == told, "it is told once"
+    node.halted(0)
+    assert (node.status().fault, well(node.status())) == (warning, True)
+    assert session.lines[-1] == "it runs again, after SIGCONT"
+
+
+async def test_that_it_was_suspended_is_not_told_of_the_next_process(session: FakeSession) -> None:
+    node = await started(session)
+    node.halted(100)
+    node.restart()
+    await settle()
+    assert (node.status().pid, well(node.status())) == (110, True)
 
 
 async def test_a_thread_that_ends_while_the_node_is_stopped_is_no_fault(
