@@ -13,6 +13,7 @@ from launcher.faults.failure import Failure
 from launcher.faults.ros_arguments import meaning_of_arguments
 from launcher.faults.rules import (
     actions,
+    arrays,
     attributes,
     callbacks,
     calling,
@@ -24,7 +25,10 @@ from launcher.faults.rules import (
     imports,
     logger,
     names,
+    opencv,
     operating,
+    outside,
+    parameters,
     ros,
     values,
 )
@@ -44,7 +48,9 @@ RULES: tuple[Rule, ...] = (
     *fields.RULES,
     *field_names.RULES,
     *creating.RULES,
+    *parameters.RULES,
     *ros.RULES,
+    *opencv.RULES,
     *actions.RULES,
     logger.unfit,
     *handed.RULES,
@@ -57,6 +63,9 @@ RULES: tuple[Rule, ...] = (
     *classes.RULES,
     *calling.RULES,
     *values.RULES,
+    *outside.RULES,
+    *arrays.RULES,
+    *values.LAST,
 )
 """In order: the first that recognises the mistake counts."""
 LONGEST = 240

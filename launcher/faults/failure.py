@@ -7,6 +7,7 @@ the first fitting expression of the line is taken.
 
 from __future__ import annotations
 
+import array
 import ast
 import builtins
 import inspect
@@ -148,6 +149,8 @@ class Failure:
     def refused_calls(self) -> list[ast.Call]:
         """Return the calls of the learner's own line, one of which Python may have refused."""
         is_refused = isinstance(self.error, TypeError) and self.is_own
+        if isinstance(self.node, (ast.Subscript, ast.BinOp, ast.Compare, ast.UnaryOp)):
+            return []
         return self.all(ast.Call) if is_refused else []
 
     @cached_property
@@ -172,13 +175,27 @@ class Failure:
             return _item(self.value(node.value), self.value(node.slice))
         if isinstance(node, (ast.List, ast.Tuple)):
             values = [self.value(each) for each in node.elts]
-            return UNKNOWN if UNKNOWN in map(_plainly, values) else values
+            if UNKNOWN in map(_plainly, values):
+                return UNKNOWN
+            return tuple(values) if isinstance(node, ast.Tuple) else values
         if isinstance(node, ast.JoinedStr):
             return ""
+        if isinstance(node, ast.Call):
+            return self._parameter(node)
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
             inner = self.value(node.operand)
             return -inner if isinstance(inner, (int, float)) else UNKNOWN
         return UNKNOWN
+
+    def _parameter(self, call: ast.Call) -> Any:  # noqa: ANN401 - a parameter of rclpy
+        """Return the parameter that a call of a node's `get_parameter` gives."""
+        func = call.func
+        if not isinstance(func, ast.Attribute) or func.attr != "get_parameter" or not call.args:
+            return UNKNOWN
+        node, name = self.value(func.value), self.value(call.args[0])
+        if not is_from(node, "rclpy", "Node") or not isinstance(name, str):
+            return UNKNOWN
+        return node._parameters.get(name, UNKNOWN)  # noqa: SLF001 - get_parameter declares as well
 
     def named(self, name: str) -> Any:  # noqa: ANN401 - of any type
         """Return the value of a variable."""
@@ -317,7 +334,7 @@ def _covers(node: ast.AST, line: int) -> bool:
 
 
 def _item(of: Any, index: Any) -> Any:  # noqa: ANN401 - of any type
-    if isinstance(of, (list, tuple, dict, str, bytes)) and index is not UNKNOWN:
+    if isinstance(of, (list, tuple, dict, str, bytes, array.array)) and index is not UNKNOWN:
         try:
             return of[index]
         except (LookupError, TypeError):
@@ -345,6 +362,8 @@ def _difference(left: type | None, right: type | None) -> type | None:
 def _returned(called: object) -> type | None:
     if called in (input, str):
         return str
+    if getattr(called, "__qualname__", "") == "Parameter.get_parameter_value":
+        return getattr(sys.modules.get("rcl_interfaces.msg"), "ParameterValue", None)
     try:
         returns = typing.get_type_hints(called).get("return")
     except Exception:  # noqa: BLE001 - a hint may be anything
@@ -354,3 +373,5 @@ def _returned(called: object) -> type | None:
 
 Rule = typing.Callable[["Failure"], "Words | None"]
 """What recognises mistakes of one kind, and says what they mean."""
+ENTERING = ("__enter__", "__exit__")
+"""All that Python 3.10 says of a `with` whose object cannot stand there."""

@@ -32,6 +32,14 @@ WARNINGS = (
         r"Publisher already registered for (?:provided )?node name",
         N_("Two nodes have the same name: rename one of them."),
     ),
+    Meaning(
+        r"Callback returned an invalid type, it should return SetParameterResult",
+        N_(
+            "The callback of add_on_set_parameters_callback has to return"
+            " SetParametersResult(successful=True), from rcl_interfaces.msg; without it no"
+            " parameter changes."
+        ),
+    ),
 )
 """Mistakes that show in a line of the log only, while the node runs on."""
 

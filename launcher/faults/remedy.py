@@ -12,6 +12,7 @@ from launcher.faults.failure import (
     UNKNOWN,
     Failure,
     fields_of,
+    is_from,
     is_message_class,
     name_of,
     shown,
@@ -48,6 +49,14 @@ def of_list(what: str, call: str) -> Words:
 def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
     """Say that an expression is None, and what that may come from."""
     what, call = shown(node), failure.given_by(node)
+    if (
+        isinstance(node, ast.Attribute)
+        and node.attr == "value"
+        and isinstance(node.value, ast.Call)
+    ):
+        words = unset_parameter(failure, node.value)
+        if words is not None:
+            return words
     if isinstance(node, ast.Constant) or node is None:
         return is_none_here("None")
     if _read_from(failure, node):
@@ -61,6 +70,31 @@ def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
     if isinstance(node, ast.Call):
         return _nothing_given(node)
     return is_none_here(what)
+
+
+def unset_parameter(failure: Failure, call: ast.Call) -> Words | None:
+    """Say that a parameter has no value, if it is asked for here and has none."""
+    node = failure.named("self")
+    if (
+        not isinstance(call.func, ast.Attribute)
+        or not call.args
+        or not is_from(node, "rclpy", "Node")
+    ):
+        return None
+    name = failure.value(call.args[0])
+    if (
+        call.func.attr != "get_parameter"
+        or not isinstance(name, str)
+        or not node.has_parameter(name)
+    ):
+        return None
+    if node.get_parameter(name).value is not None:
+        return None
+    return say(
+        "The parameter {name!r} has no value: declare it with a default,"
+        " self.declare_parameter({name!r}, 0.0), or set it in the profile.",
+        name=name,
+    )
 
 
 def is_none_here(what: str) -> Words:
@@ -167,7 +201,12 @@ def _of_value(failure: Failure, what: str, node: ast.AST | None, value: Any) -> 
 
 def of_text(what: str, value: str) -> Words | None:
     """Say how a text becomes a number."""
-    if re.fullmatch(r"\s*[-+]?\d+(\.\d*)?\s*", value):
+    if re.fullmatch(r"\s*[-+]?\d+\s*", value):
+        return say(
+            "{what} is a text, not a number: int({what}), or with a fraction float({what}).",
+            what=what,
+        )
+    if re.fullmatch(r"\s*[-+]?\d+\.\d*\s*", value):
         return say("{what} is a text, not a number: float({what}).", what=what)
     return None
 
@@ -175,6 +214,12 @@ def of_text(what: str, value: str) -> Words | None:
 def _of_type(failure: Failure, what: str, node: ast.AST | None, kind: type) -> Words | None:
     if kind is type(None):
         return is_none(failure, node)
+    if is_message_class(kind) and kind.__name__ == "ParameterValue":
+        return say(
+            "{what} is a message around the value; the value alone is"
+            " self.get_parameter(name).value.",
+            what=what,
+        )
     if is_message_class(kind) and not _is_time(kind):
         return of_message(what, kind)
     module, name = kind.__module__.partition(".")[0], kind.__name__

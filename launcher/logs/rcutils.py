@@ -27,6 +27,10 @@ _WORDS = {
     "Warning": Severity.WARN,
     "Error": Severity.ERROR,
 }
+NEXT_PORT = "open_and_lock_file failed"
+"""Fast DDS finds a port of its shared memory taken, and takes the next one: its log calls that an
+error. On a busy machine somebody has removed the file of a port whose owner was silent for 1 s;
+then each start of a node says so (open_port_internal in SharedMemGlobal.hpp of Fast DDS 2.14)."""
 _TRACEBACK = "Traceback (most recent call last):"
 _BETWEEN_TRACEBACKS = ("During handling of the above", "The above exception was the direct")
 
@@ -73,6 +77,8 @@ class SeverityParser:
             return Parsed(_SEVERITIES[name], message, time_s, logger)
         if late:
             self._message = None
+        if NEXT_PORT in text:
+            return Parsed(Severity.DEBUG, text, read_at)
         severity, logger = self._unstamped(text, suggested)
         return Parsed(severity, text, read_at, logger)
 

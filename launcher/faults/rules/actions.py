@@ -6,7 +6,8 @@ import ast
 from typing import TYPE_CHECKING, Any
 
 from launcher.faults.failure import Failure, is_from, is_message_class, name_of, shown
-from launcher.faults.rules.attributes import expression, wanted
+from launcher.faults.rules.attributes import expression
+from launcher.faults.rules.own_attributes import wanted
 from text.sentences import say
 from text.suggestions import nearest
 

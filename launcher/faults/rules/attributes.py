@@ -1,4 +1,4 @@
-"""Attributes that are not there: of None, of a message, of the learner's own node, of a module."""
+"""Attributes that are not there: of None, of a message, of a module, of an object of rclpy's."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 from launcher.faults.failure import (
     UNKNOWN,
     Failure,
+    fields_of,
     is_action_class,
     is_from,
     is_message,
@@ -21,7 +22,9 @@ from launcher.faults.failure import (
 )
 from launcher.faults.homes import ROS1, home_of, ros1
 from launcher.faults.remedy import future, is_none, parameter
+from launcher.faults.rules import own_attributes
 from launcher.faults.rules.field_names import no_field, time_now
+from launcher.faults.rules.own_attributes import near, taken_name, wanted
 from text.sentences import Words, say
 from text.suggestions import nearest
 
@@ -29,7 +32,16 @@ OTHER_NAMES = {
     (list, "push"): "append", (list, "add"): "append", (list, "length"): "len(…)",
     (list, "size"): "len(…)", (str, "length"): "len(…)", (dict, "has_key"): "key in d",
     (str, "decode"): "", (bytes, "encode"): "", (list, "shape"): "np.array(…).shape",
-    (bytes, "shape"): "np.frombuffer(…)", (list, "tolist"): "",
+    (bytes, "shape"): "np.frombuffer(…)", (list, "tolist"): "", ("array", "tolist"): "",
+    ("array", "min"): "min(…)", ("array", "max"): "max(…)", ("array", "sum"): "sum(…)",
+    ("array", "shape"): "np.array(…).shape", ("ndarray", "append"): "np.append(…, x)",
+    ("ndarray", "length"): "len(…)", (str, "append"): "+", (str, "contains"): "x in text",
+    (str, "size"): "len(…)", (str, "toUpperCase"): "upper()", (str, "toLowerCase"): "lower()",
+    (list, "contains"): "x in list", (list, "includes"): "x in list",
+    (list, "forEach"): "for x in list:", (list, "map"): "[f(x) for x in list]",
+    ("Serial", "println"): "write(b\"…\\n\")", ("Serial", "print"): "write(b\"…\")",
+    ("lock", "lock"): "with lock:", ("lock", "unlock"): "with lock:",
+    ("Queue", "push"): "put(x)", ("Queue", "pop"): "get()",
     ("Time", "to_sec"): ".nanoseconds / 1e9", ("Time", "secs"): ".nanoseconds",
     ("Time", "nsecs"): ".nanoseconds", ("Time", "sec"): ".to_msg().sec",
     ("Time", "nanosec"): ".to_msg().nanosec", ("Time", "seconds"): ".nanoseconds / 1e9",
@@ -55,20 +67,6 @@ OTHER_NAMES = {
 }  # fmt: skip
 """What beginners call by another name, or need not call at all."""
 _CHANGES = ("append", "add", "extend", "insert", "remove", "sort", "pop")
-_LOGGER = ("logger", "log", "info", "warn", "warning", "error", "debug", "fatal", "get_log")
-
-
-def wanted(failure: Failure) -> tuple[Any, str] | None:
-    """Return the object and the name of the attribute that it has not."""
-    error = failure.error
-    if not isinstance(error, AttributeError):
-        return None
-    name, of = getattr(error, "name", None), getattr(error, "obj", UNKNOWN)
-    if name is None:
-        for each in failure.all(ast.Attribute):
-            return failure.value(each.value), each.attr
-        return None
-    return of, name
 
 
 def expression(failure: Failure, name: str) -> ast.Attribute | None:
@@ -105,7 +103,25 @@ def unset_field(failure: Failure) -> Words | None:
     if found is None:
         return None
     of, name = found
-    return no_field(type(of), name) if is_message(of) else None
+    if not is_message(of):
+        return None
+    return _one_up(failure, of, name) or no_field(type(of), name)
+
+
+def _one_up(failure: Failure, of: Any, name: str) -> Words | None:  # noqa: ANN401
+    """Say that the message around the one that was asked has the field."""
+    node = expression(failure, name)
+    if node is None or not isinstance(node.value, ast.Attribute):
+        return None
+    around = failure.value(node.value.value)
+    if not is_message(around) or name not in fields_of(around):
+        return None
+    return say(
+        "{type} has no field {field}; the message around it has: {what}.{field}.",
+        type=name_of(type(of)),
+        field=name,
+        what=shown(node.value.value),
+    )
 
 
 def of_taken(failure: Failure) -> Words | None:
@@ -152,7 +168,11 @@ def of_module(failure: Failure) -> Words | None:
         )
     if home:
         return say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
-    meant = nearest(name, [each for each in dir(module) if not each.startswith("_")])
+    known = [each for each in dir(module) if not each.startswith("_")]
+    if module.__name__ == "rclpy" and hasattr(module.node.Node, name):
+        return say("{name} is of the node, not of rclpy: self.{name}(…).", name=name)
+    same = [each for each in known if each.casefold() == name.casefold()]
+    meant = same[0] if same else nearest(name, known)
     if meant:
         return say(
             "{module} has no {name}; did you mean {meant}?",
@@ -201,7 +221,7 @@ def of_class(failure: Failure) -> Words | None:
         return no_field(kind, name)
     if name == "now" and kind.__name__ == "Time":
         return time_now()
-    return _near(kind.__name__, name, [each for each in dir(kind) if not each.startswith("_")])
+    return near(kind.__name__, name, [each for each in dir(kind) if not each.startswith("_")])
 
 
 def is_of_rclpy(function: object) -> bool:
@@ -265,11 +285,12 @@ def of_rclpy(failure: Failure) -> Words | None:
             what=what,
             type=type(of).__name__,
         )
-    if isinstance(of, (int, float, str, bool)) and name == "data":
+    if isinstance(of, (int, float, str, bool)) and name in ("data", "value"):
         return say(
-            "{what} is the value itself, of type {type}: without .data.",
+            "{what} is the value itself, of type {type}: without .{name}.",
             what=what,
             type=type(of).__name__,
+            name=name,
         )
     return None
 
@@ -294,165 +315,6 @@ def _other(what: str, of: Any, name: str, meant: str) -> Words:  # noqa: ANN401
     return say("{type} has no {name}: {meant} does that.", type=kind, name=name, meant=meant)
 
 
-def unmade(failure: Failure) -> Words | None:
-    """The node itself has no such attribute: made elsewhere, later, without self, or misspelt."""
-    found = wanted(failure)
-    if found is None or found[0] is UNKNOWN:
-        return None
-    of, name = found
-    if is_from(of, "rclpy", "Node") and not _is_made(of):
-        return say(
-            "super().__init__(name) has not been called yet: it comes first in __init__, before"
-            " anything of the node is used."
-        )
-    if type(of).__module__ != "__main__" and not _is_own(of, failure):
-        if not failure.is_own:
-            # What a library asks of it says nothing about the learner's own line.
-            return None
-        return _near(
-            name_of(type(of)), name, [each for each in dir(of) if not each.startswith("_")]
-        )
-    return _made_where(failure, name) or _taken(failure, of) or _near_own(of, name)
-
-
-def _is_own(of: Any, failure: Failure) -> bool:  # noqa: ANN401
-    module = sys.modules.get(type(of).__module__)
-    return (getattr(module, "__file__", None) or "").rpartition("/")[0] == failure.folder
-
-
-def _is_made(node: Any) -> bool:  # noqa: ANN401
-    return "_Node__handle" in vars(node) or "_Node__node" in vars(node)
-
-
-def _taken(failure: Failure, of: Any) -> Words | None:  # noqa: ANN401
-    """Say that the learner has used a name that rclpy uses itself, where rclpy fails by it."""
-    return taken_name(failure) if is_from(of, "rclpy", "Node") and not failure.is_own else None
-
-
-def taken_name(failure: Failure) -> Words | None:
-    """A name that rclpy uses itself in each node has another value, or another method."""
-    nodes = [
-        value
-        for level in failure.levels
-        for value in level.values.values()
-        if is_from(value, "rclpy", "Node")
-    ]
-    for node in nodes:
-        base = next(each for each in type(node).__mro__ if each.__module__.startswith("rclpy."))
-        used = {*dir(base), *inspect.unwrap(vars(base)["__init__"]).__code__.co_names}
-        made = {
-            name
-            for each in type(node).__mro__
-            if each.__module__ not in (base.__module__, "builtins")
-            for name in vars(each)
-        }
-        made |= _assigned_names(failure)
-        clash = sorted(name for name in made & used if not name.startswith("__"))
-        if clash:
-            return say(
-                "{name} is a name that rclpy uses itself in every node: give yours another one.",
-                name=clash[0],
-            )
-    return None
-
-
-def _assigned_names(failure: Failure) -> set[str]:
-    return {
-        each.attr
-        for each in ast.walk(failure.tree)
-        if isinstance(each, ast.Attribute)
-        and isinstance(each.ctx, ast.Store)
-        and shown(each.value) == "self"
-    }
-
-
-def _made_where(failure: Failure, name: str) -> Words | None:
-    """Say where the attribute is made, if it is made anywhere."""
-    cls = failure.own_class
-    if cls is None or failure.own is None:
-        return None
-    here = failure.own.function
-    for method in [each for each in cls.body if isinstance(each, ast.FunctionDef)]:
-        for each in ast.walk(method):
-            if (
-                isinstance(each, ast.Attribute)
-                and isinstance(each.ctx, ast.Store)
-                and each.attr == name
-            ):
-                if method.name == here:
-                    return say(
-                        "self.{name} is only made in line {line}, after this one.",
-                        name=name,
-                        line=each.lineno,
-                    )
-                return say(
-                    "self.{name} is only made in {method} (line {line}), which has not run yet:"
-                    " make it in __init__.",
-                    name=name,
-                    method=method.name,
-                    line=each.lineno,
-                )
-            if isinstance(each, ast.FunctionDef) and each is not method and each.name == name:
-                return say(
-                    "{name} (line {line}) stands within {method}, since it is indented too deep:"
-                    " its def belongs at the depth of that of {method}.",
-                    name=name,
-                    line=each.lineno,
-                    method=method.name,
-                )
-            if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store) and each.id == name:
-                return say(
-                    "In line {line} {name} is made without self, and is forgotten when {method}"
-                    " ends: write self.{name} there.",
-                    line=each.lineno,
-                    name=name,
-                    method=method.name,
-                )
-    return None
-
-
-def _near_own(of: Any, name: str) -> Words:  # noqa: ANN401
-    known = [each for each in dir(of) if each[0] != "_" or (name[0] == "_" and each[1:2] != "_")]
-    if is_from(of, "rclpy", "Node") and name == "publish":
-        return say(
-            "It is not the node that publishes, but its publisher: self.pub ="
-            " self.create_publisher(…), self.pub.publish(msg)."
-        )
-    if is_from(of, "rclpy", "Node") and name in _LOGGER:
-        return say("A node logs by self.get_logger().info(…), .warn(…) and .error(…).")
-    if name in ROS1:
-        return ros1(name)
-    meant = nearest(name, known)
-    if meant:
-        return (
-            say("The node has no {name}; did you mean self.{meant}?", name=name, meant=meant)
-            if is_from(of, "rclpy", "Node")
-            else say(
-                "{type} has no {name}; did you mean {meant}?",
-                type=type(of).__name__,
-                name=name,
-                meant=meant,
-            )
-        )
-    return say(
-        "{type} has no {name}: it is made nowhere in this class. Make it in __init__, self.{name}"
-        " = ….",
-        type=type(of).__name__,
-        name=name,
-    )
-
-
-def _near(kind: str, name: str, known: list[str]) -> Words:
-    meant = nearest(name, known)
-    if meant:
-        return say("{type} has no {name}; did you mean {meant}?", type=kind, name=name, meant=meant)
-    return say(
-        "{type} has no {name}: is it spelled right, or is something else meant than {type}?",
-        type=kind,
-        name=name,
-    )
-
-
 RULES = (
     unsettable,
     unset_field,
@@ -462,5 +324,5 @@ RULES = (
     of_class,
     of_routine,
     of_rclpy,
-    unmade,
+    own_attributes.unmade,
 )

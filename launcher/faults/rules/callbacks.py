@@ -84,8 +84,9 @@ def asks_for_other(owner: str, callback: Any) -> Words | None:  # noqa: ANN401
     try:
         inspect.signature(callback).bind(*range(given))
     except ValueError:
+        if inspect.isbuiltin(callback):
+            return None
         # Of a method without any parameter, not even self.
-        pass
     except TypeError:
         pass
     else:

@@ -1,4 +1,4 @@
-"""Calls of the learner's own lines: other arguments than the function asks for, not callable."""
+"""Lines of the learner's own that call, index or go through what is not made for it."""
 
 from __future__ import annotations
 
@@ -10,32 +10,26 @@ from types import ModuleType
 from typing import Any
 
 from launcher.faults.failure import (
+    ENTERING,
     UNKNOWN,
     Failure,
+    fields_of,
     is_message,
-    is_message_class,
     name_of,
     shown,
 )
-from launcher.faults.remedy import is_none, listed, of_list, remedy
+from launcher.faults.remedy import is_none, of_list, remedy
+from launcher.faults.rules import signatures
+from launcher.faults.rules.field_lists import is_listlike
+from launcher.faults.rules.field_names import no_field
 from text.sentences import Words, say
-from text.suggestions import nearest
 
 _REFUSED = re.compile(r"'(?P<type>[\w.]+)' object is not (?P<able>callable|subscriptable)")
 """What the interpreter says of a value that it knows and the source does not tell."""
+_UNORDERED = ("map", "filter", "zip", "generator", "dict_keys", "dict_values", "dict_items")
+_MANY = (sum, max, min, list, tuple, set, sorted, enumerate, any, all)
+"""Functions that go through what they are given."""
 _UNPACKED = re.compile(r"cannot unpack non-iterable (?P<type>\w+) object")
-
-
-def arguments(failure: Failure) -> Words | None:
-    """A function was called with other arguments than it asks for."""
-    for call in failure.refused_calls():
-        function = failure.called(call)
-        if function is UNKNOWN or not callable(function):
-            continue
-        words = _misfit(failure, call, function)
-        if words is not None:
-            return words
-    return None
 
 
 def not_callable(failure: Failure) -> Words | None:
@@ -96,12 +90,7 @@ def not_indexable(failure: Failure) -> Words | None:
         value, what = failure.value(each.value), shown(each.value)
         index = failure.value(each.slice)
         if is_message(value):
-            return say(
-                "{what} is a message, {type}: its fields are had with a point, {what}.{field}.",
-                what=what,
-                type=name_of(type(value)),
-                field=index if isinstance(index, str) else "data",
-            )
+            return _of_message(what, value, index)
         if inspect.isroutine(value):
             return say(
                 "{what} is a function: it is called with round brackets, {what}(…).", what=what
@@ -137,12 +126,35 @@ def not_indexable(failure: Failure) -> Words | None:
     return None
 
 
+def _of_message(what: str, message: Any, index: Any) -> Words:  # noqa: ANN401
+    """Say how the field is had that square brackets were to give."""
+    fields = list(fields_of(message))
+    if isinstance(index, str) and index not in fields:
+        return no_field(type(message), index)
+    if isinstance(index, str):
+        field = index
+    elif "data" in fields:
+        is_list = isinstance(index, int) and is_listlike(message.data)
+        field = f"data[{index}]" if is_list else "data"
+    else:
+        named = isinstance(index, int) and -len(fields) <= index < len(fields)
+        field = fields[index if named else 0]
+    return say(
+        "{what} is a message, {type}: its fields are had with a point, {what}.{field}.",
+        what=what,
+        type=name_of(type(message)),
+        field=field,
+    )
+
+
 def _no_order(failure: Failure, node: ast.Subscript) -> Words | None:
     """Say that a set, or a function whose brackets are missing, has no values by number."""
     what, found = shown(node.value), _REFUSED.search(str(failure.error))
     if isinstance(failure.value(node.value), (set, frozenset)):
         return say("{what} is a set, which has no order: list({what}) has.", what=what)
     only = isinstance(failure.node, ast.stmt) and len(failure.all(ast.Subscript)) == 1
+    if (node is failure.node or only) and found and found["type"] in _UNORDERED:
+        return say("{what} has no values by number: list({what}) has.", what=what)
     if (node is failure.node or only) and found and found["type"] in ("method", "function"):
         return say("{what} is a function: it is called with round brackets, {what}(…).", what=what)
     return None
@@ -180,19 +192,62 @@ def builtin(failure: Failure) -> Words | None:
                 )
             if function is sum and isinstance(value, (list, tuple)):
                 return _summed(shown(each), value)
-            if _is_join(call) or function in (bytes, bytearray):
-                words = _bytes(call, value)
-                if words is not None:
-                    return words
-            if function is len and type(value) in (int, float):
-                return say(
-                    "{what} is one number: only a list or a text has a length.", what=shown(each)
-                )
+            words = _of_bytes(call, function, value) or _of_single(call, function, each, value)
+            if words is not None:
+                return words
             if function in (float, int) and isinstance(value, (list, tuple, array.array)):
                 return of_list(shown(each), shown(call.func))
             words = remedy(failure, each)
             if words is not None:
                 return words
+    return None
+
+
+def _of_bytes(call: ast.Call, function: Any, value: Any) -> Words | None:  # noqa: ANN401
+    is_about = _is_join(call) or function in (bytes, bytearray)
+    return _bytes(call, value) if is_about else None
+
+
+def _of_single(
+    call: ast.Call,
+    function: Any,  # noqa: ANN401
+    node: ast.expr,
+    value: Any,  # noqa: ANN401
+) -> Words | None:
+    """Say that a function takes a list, and was given single numbers."""
+    if type(value) not in (int, float) or node is not call.args[0]:
+        return None
+    if function is len:
+        return say(
+            "{what} is one number: only a list or a text has a length.", what=shown(call.args[0])
+        )
+    if function not in _MANY:
+        return None
+    return say(
+        "{call} takes a list, and {what} is one number: {call}([{arguments}]).",
+        call=shown(call.func),
+        what=shown(call.args[0]),
+        arguments=", ".join(map(shown, call.args)),
+    )
+
+
+def unsorted(failure: Failure) -> Words | None:
+    """Texts and numbers were to be brought into an order."""
+    if "not supported between instances" not in str(failure.error):
+        return None
+    for call in failure.refused_calls():
+        is_sort = isinstance(call.func, ast.Attribute) and call.func.attr == "sort"
+        if not is_sort and failure.value(call.func) not in (sorted, min, max):
+            continue
+        assert isinstance(call.func, ast.Attribute) or call.args
+        value = failure.value(call.func.value if is_sort else call.args[0])  # type: ignore[attr-defined]
+        kinds = sorted({name_of(type(each)) for each in value}) if isinstance(value, list) else []
+        if len(kinds) > 1:
+            return say(
+                "Values of the types {types} have no order among each other: make numbers of all,"
+                " or texts.",
+                types=", ".join(kinds),
+            )
     return None
 
 
@@ -285,6 +340,8 @@ def context(failure: Failure) -> Words | None:
         value = failure.value(item.context_expr)
         if value is None:
             return is_none(failure, item.context_expr)
+        if isinstance(value, type) or inspect.isroutine(value):
+            return remedy(failure, item.context_expr)
         return say(
             "{what} cannot stand behind with: only files, locks and the like can.",
             what=shown(item.context_expr),
@@ -293,8 +350,8 @@ def context(failure: Failure) -> Words | None:
 
 
 def _is_about_with(failure: Failure) -> bool:
-    name = getattr(failure.error, "name", None)
-    return isinstance(failure.error, TypeError) or name in ("__enter__", "__exit__")
+    name = getattr(failure.error, "name", None) or str(failure.error)
+    return isinstance(failure.error, TypeError) or name in ENTERING
 
 
 def awaited(failure: Failure) -> Words | None:
@@ -307,6 +364,17 @@ def awaited(failure: Failure) -> Words | None:
         " self.client.call_async(request).",
         what=shown(found.value),
     )
+
+
+def raised(failure: Failure) -> Words | None:
+    """Something was raised that is no exception."""
+    statement = failure.statement
+    if not isinstance(failure.error, TypeError) or not isinstance(statement, ast.Raise):
+        return None
+    value = failure.value(statement.exc)
+    if not failure.is_own or value is UNKNOWN or isinstance(value, BaseException):
+        return None
+    return say("raise goes with an exception: raise ValueError({what}).", what=shown(statement.exc))
 
 
 def _is_join(call: ast.Call) -> bool:
@@ -327,137 +395,14 @@ def _bytes(call: ast.Call, value: Any) -> Words | None:  # noqa: ANN401
     return None
 
 
-def _misfit(failure: Failure, call: ast.Call, function: Any) -> Words | None:  # noqa: ANN401
-    if any(isinstance(each, ast.Starred) for each in call.args) or is_message_class(function):
-        return None
-    try:
-        signature = inspect.signature(function)
-    except (TypeError, ValueError):
-        return _without_self(call, function)
-    names = [each.arg for each in call.keywords if each.arg is not None]
-    if len(names) < len(call.keywords):
-        return None
-    unbound = not isinstance(call.func, ast.Attribute) or failure.value(call.func) is not UNKNOWN
-    given = (*range(len(call.args) + (not unbound)),)
-    try:
-        signature.bind(*given, **dict.fromkeys(names))
-    except TypeError:
-        return _unbound(failure, call, function, signature) or _says(
-            call, function, signature, names, called_on=not unbound
-        )
-    return None
-
-
-def _unbound(
-    failure: Failure,
-    call: ast.Call,
-    function: Any,  # noqa: ANN401
-    signature: inspect.Signature,
-) -> Words | None:
-    """Say that a method was called on its class, or has no self."""
-    on_class = isinstance(call.func, ast.Attribute) and isinstance(
-        failure.value(call.func.value), type
-    )
-    if on_class and next(iter(signature.parameters), "") == "self":
-        assert isinstance(call.func, ast.Attribute)
-        return say(
-            "{name} belongs to an object, and {owner} is the class: make one first, {owner}().",
-            name=call.func.attr,
-            owner=shown(call.func.value),
-        )
-    return _without_self(call, function)
-
-
-def _without_self(call: ast.Call, function: Any) -> Words | None:  # noqa: ANN401
-    inner = getattr(function, "__func__", None)
-    code = getattr(inner, "__code__", None)
-    if code is None:
-        return None
-    names = code.co_varnames[: code.co_argcount]
-    if not names or (names[0] != "self" and len(call.args) == code.co_argcount):
-        return say(
-            "The first argument of a method is self: def {name}({arguments}).",
-            name=function.__name__,
-            arguments=", ".join(("self", *names)),
-        )
-    return None
-
-
-def _says(
-    call: ast.Call,
-    function: Any,  # noqa: ANN401
-    signature: inspect.Signature,
-    names: list[str],
-    *,
-    called_on: bool,
-) -> Words:
-    parameters = list(signature.parameters.values())[int(called_on) :]
-    known = [each.name for each in parameters]
-    takes = ", ".join(
-        each.name for each in parameters if each.default is each.empty and each.kind in (0, 1)
-    )
-    what = shown(call.func)
-    extra = next((name for name in names if name not in known), "")
-    if extra:
-        meant = next((each for each in known if each.startswith(extra)), "") or nearest(
-            extra, known
-        )
-        if meant:
-            return say(
-                "{what} has no argument {name}; did you mean {meant}?",
-                what=what,
-                name=extra,
-                meant=meant,
-            )
-        return say(
-            "{what} has no argument {name}; it has: {known}.",
-            what=what,
-            name=extra,
-            known=listed(known) or "-",
-        )
-    missing = [
-        each.name
-        for each in parameters[len(call.args) :]
-        if each.default is each.empty and each.kind in (0, 1, 3) and each.name not in names
-    ]
-    if missing == ["qos_profile"]:
-        return say(
-            "The last argument is missing, the queue depth: {what}({takes}), such as 10"
-            " for qos_profile.",
-            what=what,
-            takes=takes,
-        )
-    if missing:
-        return say(
-            "{what} is called without {missing}; it takes {takes}.",
-            what=what,
-            missing=", ".join(missing),
-            takes=takes,
-        )
-    by_name = [each.name for each in parameters if each.kind == each.KEYWORD_ONLY]
-    if function.__name__ == "QoSProfile":
-        by_name = ["depth"]
-    if not takes and by_name:
-        return say(
-            "{what} takes its values by name: {what}({name}={value}).",
-            what=what,
-            name=by_name[0],
-            value=shown(call.args[0]),
-        )
-    return say(
-        "{what} takes {takes}, and is given {count} values.",
-        what=what,
-        takes=takes or say("nothing"),
-        count=len(call.args),
-    )
-
-
 RULES = (
     context,
+    raised,
     awaited,
     not_callable,
     not_indexable,
-    arguments,
+    signatures.arguments,
+    unsorted,
     builtin,
     not_iterable,
 )

@@ -40,6 +40,13 @@ def base(failure: Failure) -> Words | None:
     if not isinstance(failure.error, TypeError) or not isinstance(statement, ast.ClassDef):
         return None
     for each in statement.bases:
+        if isinstance(each, ast.Call) and isinstance(failure.value(each.func), type):
+            return say(
+                "Between the brackets of a class stands the class alone, without brackets of its"
+                " own: class {name}({what}).",
+                name=statement.name,
+                what=shown(each.func),
+            )
         value = failure.value(each)
         if isinstance(value, ModuleType):
             return say(
@@ -59,7 +66,14 @@ def unwritten_init(failure: Failure) -> Words | None:
             each.__name__ == "Node" and each.__module__ == "rclpy.node" for each in kind.__mro__[1:]
         ):
             continue
-        if call.args or call.keywords or _INIT in vars(kind):
+        own = vars(kind).get(_INIT)
+        if own is not None and not own.__code__.co_argcount:
+            return say(
+                "The first argument of a method is self: def {name}({arguments}).",
+                name=_INIT,
+                arguments="self",
+            )
+        if call.args or call.keywords or own is not None:
             continue
         like = next((each for each in vars(kind) if _is_like_init(each)), "")
         if like:

@@ -63,7 +63,7 @@ def arguments(failure: Failure) -> Words | None:
     given = {name: level.values[name] for name in FITS if name in _parameters(level)}
     wrong = [name for name, value in given.items() if not FITS[name](value)]
     if not wrong:
-        return _callback(level, given)
+        return _callback(failure, level, given)
     orders = itertools.permutations(wrong) if len(wrong) > 1 else ()
     if any(_fits_all(wrong, given, order) for order in orders):
         return say(
@@ -85,10 +85,17 @@ def _written(failure: Failure, value: object) -> str:
     return "x"
 
 
-def _callback(level: TraceLevel, given: dict[str, Any]) -> Words | None:
-    if "callback" in given and level.function == "create_subscription":
-        return asks_for_other(SUBSCRIPTION, given["callback"])
-    return None
+def _callback(failure: Failure, level: TraceLevel, given: dict[str, Any]) -> Words | None:
+    if "callback" not in given or level.function != "create_subscription":
+        return None
+    callback = given["callback"]
+    if isinstance(failure.error, ValueError) and inspect.isbuiltin(callback):
+        return say(
+            "rclpy asks what a callback takes, and Python does not tell it of {name}: write lambda"
+            " msg: {name}(msg).",
+            name=callback.__name__,
+        )
+    return asks_for_other(SUBSCRIPTION, callback)
 
 
 def _maker(failure: Failure) -> TraceLevel | None:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import array
 import ast
 import inspect
 import re
-from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 from typing import Any
 
@@ -21,12 +19,19 @@ from launcher.faults.failure import (
     shown,
 )
 from launcher.faults.remedy import future, is_none_here, of_message, parameter
+from launcher.faults.rules import field_lists
+from launcher.faults.rules.conversions import constant_of, listing, single, takes
+from launcher.faults.rules.field_lists import (
+    BITS,
+    FLOATS,
+    LIST,
+    TEXTS,
+    FieldSlot,
+    is_listlike,
+    range_of,
+    value_of_list,
+)
 from text.sentences import Words, say
-
-_LIST = re.compile(r"sequence<(?P<of>.+?)(?:, (?P<most>\d+))?>|(?P<fixed>.+)\[(?P<count>\d+)\]")
-_FLOATS = ("double", "float")
-_TEXTS = ("string", "wstring")
-_BITS = re.compile(r"(u?)int(\d+)")
 
 
 def field_value(failure: Failure) -> Words | None:
@@ -42,33 +47,24 @@ def field_value(failure: Failure) -> Words | None:
         return None
     value, node = inner.values["value"], _given(failure, name)
     what = shown(node) or "x"
-    parts = _LIST.fullmatch(of)
+    field = FieldSlot(type(message), name, of)
+    parts = LIST.fullmatch(of)
     if parts is not None:
-        return _list(name, what, parts, value)
+        return value_of_list(field, what, parts, value)
     if "/" in of:
         return _message(message, name, what, of, value)
-    return _one(name, what, of, value)
+    return _of_comma(field, what, value) or _one(field, what, value)
 
 
-def hollow(failure: Failure) -> Words | None:
-    """A list of messages that is published has one of another type in it."""
-    inner = failure.inner
-    if inner is None or inner.function != "publish" or not inner.is_in("rclpy", "publisher"):
+def _of_comma(field: FieldSlot, what: str, value: Any) -> Words | None:  # noqa: ANN401
+    """Say that a comma at the end of a line has made a tuple."""
+    if not isinstance(value, tuple) or len(value) != 1 or not field.takes(value[0]):
         return None
-    message = inner.values.get("msg")
-    return _hollow(message) if is_message(message) else None
-
-
-def _hollow(message: Any) -> Words | None:  # noqa: ANN401
-    for name, of in fields_of(message).items():
-        value, parts = getattr(message, name), _LIST.fullmatch(of)
-        if parts is not None and isinstance(value, (list, tuple)):
-            words = _value_in_list(name, parts["of"] or parts["fixed"], list(value))
-        else:
-            words = _hollow(value) if is_message(value) else None
-        if words is not None:
-            return words
-    return None
+    return say(
+        "{what} is one value in a tuple, as a comma at the end of a line makes it: take that comma"
+        " away.",
+        what=what,
+    )
 
 
 def not_made(failure: Failure) -> Words | None:
@@ -129,21 +125,24 @@ def _published(failure: Failure, value: Any, kind: Any) -> Words | None:  # noqa
             given=name_of(type(value)),
         )
     if _suits(fields_of(kind).get("data", ""), value):
+        data = FieldSlot(kind, "data", fields_of(kind)["data"])
+        ways = (*single(what, value), *listing(what, value))
+        made = what if data.takes(value) else data.first_fitting(iter(ways))
         return say(
             "publish takes a whole message: self.pub.publish({type}(data={what})).",
             type=name,
-            what=what,
+            what=made or "…",
         )
     return say("publish takes a whole message of type {type}, not {what}.", type=name, what=what)
 
 
 def _suits(of: str, value: Any) -> bool:  # noqa: ANN401
     """Whether a field of this type may be what a value was meant for."""
-    if of in _FLOATS or _BITS.fullmatch(of):
+    if of in FLOATS or BITS.fullmatch(of):
         return isinstance(value, (int, float))
-    if of in _TEXTS:
-        return not _is_listlike(value)
-    return of == "boolean" or (_LIST.fullmatch(of) is not None and isinstance(value, (list, tuple)))
+    if of in TEXTS:
+        return not is_listlike(value)
+    return of == "boolean" or (LIST.fullmatch(of) is not None and isinstance(value, (list, tuple)))
 
 
 def _asked(failure: Failure, value: Any, pair: Any, wanted: Any) -> Words | None:  # noqa: ANN401
@@ -191,44 +190,70 @@ def _given(failure: Failure, field: str) -> ast.AST | None:
     return None
 
 
-def _one(name: str, what: str, of: str, value: Any) -> Words | None:  # noqa: ANN401
+def _one(field: FieldSlot, what: str, value: Any) -> Words | None:  # noqa: ANN401
     """Say why a field that holds one value does not take this one."""
-    unsuitable = _unsuitable(what, value)
+    unsuitable = _unsuitable(field, what, value)
     if unsuitable is not None:
         return unsuitable
-    if of in _FLOATS:
-        return _float(name, what, of, value)
-    if of in _TEXTS:
-        return _text(name, what, value)
-    if of == "boolean" and isinstance(value, str):
-        return say("The field {field} is True or False, without quotes.", field=name)
-    if of == "boolean":
-        return say("The field {field} is True or False: bool({what}).", field=name, what=what)
-    if of == "octet":
-        return say("The field {field} is a single byte: bytes([{what}]).", field=name, what=what)
-    bits = _BITS.fullmatch(of)
-    return _whole(name, what, bits, value) if bits else None
+    if field.of in FLOATS:
+        return _float(field, what, value)
+    if field.of in TEXTS:
+        return _text(field.name, what, value)
+    if field.of == "boolean" and isinstance(value, str):
+        return say("The field {field} is True or False, without quotes.", field=field.name)
+    if field.of == "boolean":
+        return say("The field {field} is True or False: bool({what}).", field=field.name, what=what)
+    if field.of == "octet":
+        return _byte(field, what, value)
+    bits = BITS.fullmatch(field.of)
+    return _whole(field, what, bits, value) if bits else None
 
 
-def _float(name: str, what: str, of: str, value: Any) -> Words:  # noqa: ANN401
+def _byte(field: FieldSlot, what: str, value: Any) -> Words:  # noqa: ANN401
+    if isinstance(value, int) and 0 <= value < 256:
+        return say(
+            "The field {field} is a single byte: bytes([{what}]).", field=field.name, what=what
+        )
+    return field.is_given(what, value)
+
+
+def _float(field: FieldSlot, what: str, value: Any) -> Words:  # noqa: ANN401
     if isinstance(value, float):
         return say(
             "The field {field} is a {type}, and {value:g} is too large for it.",
-            field=name,
-            type="float32" if of == "float" else "float64",
+            field=field.name,
+            type="float32" if field.of == "float" else "float64",
             value=value,
         )
-    if isinstance(value, (int, str)) and re.fullmatch(r"-?\d+", what):
+    if isinstance(value, int) and re.fullmatch(r"-?\d+", what):
         return say(
-            "The field {field} is a float: write {value}.0, not {value}.", field=name, value=what
+            "The field {field} is a float: write {value}.0, not {value}.",
+            field=field.name,
+            value=what,
         )
-    if _is_listlike(value):
+    made = field.first_fitting(single(what, value))
+    if made and not is_listlike(value):
+        return say("The field {field} is a float: write {made}.", field=field.name, made=made)
+    return _no_number(field, what, value)
+
+
+def _no_number(field: FieldSlot, what: str, value: Any) -> Words:  # noqa: ANN401
+    """Say that a value is many, or a text that is no number, or something else."""
+    if isinstance(value, str):
         return say(
-            "The field {field} is one number, and {what} is many: choose one, {what}[0].",
-            field=name,
+            "The field {field} is a number, and {what} is a text that is none.",
+            field=field.name,
             what=what,
         )
-    return say("The field {field} is a float: write float({what}).", field=name, what=what)
+    if is_listlike(value) and not isinstance(value, dict) and len(value):
+        first = next(iter(value))
+        if field.takes(first) and not isinstance(value, AbstractSet):
+            return say(
+                "The field {field} is one number, and {what} is many: choose one, {what}[0].",
+                field=field.name,
+                what=what,
+            )
+    return field.is_given(what, value)
 
 
 def _text(name: str, what: str, value: Any) -> Words:  # noqa: ANN401
@@ -241,38 +266,39 @@ def _text(name: str, what: str, value: Any) -> Words:  # noqa: ANN401
     return say("The field {field} is a text: write str({what}).", field=name, what=what)
 
 
-def _whole(name: str, what: str, bits: re.Match[str], value: Any) -> Words:  # noqa: ANN401
-    low, high = _range(bits)
+def _whole(field: FieldSlot, what: str, bits: re.Match[str], value: Any) -> Words:  # noqa: ANN401
+    low, high = range_of(bits)
     if isinstance(value, int) and not low <= value <= high:
         return say(
             "The field {field} holds {low} to {high}; {value} does not fit.",
-            field=name,
+            field=field.name,
             low=low,
             high=high,
             value=value,
         )
-    if isinstance(value, float):
+    constant = constant_of(field.kind, field.name, value)
+    if constant:
+        return say(
+            "The field {field} is a whole number, which has a name: {constant}, without quotes.",
+            field=field.name,
+            constant=constant,
+        )
+    made = field.first_fitting(single(what, value))
+    if made and isinstance(value, float):
         return say(
             "The field {field} is a whole number: int({what}) cuts the fraction off, round({what})"
             " rounds.",
-            field=name,
+            field=field.name,
             what=what,
         )
-    if _is_listlike(value):
+    if made and not is_listlike(value):
         return say(
-            "The field {field} is one number, and {what} is many: choose one, {what}[0].",
-            field=name,
-            what=what,
+            "The field {field} is a whole number: write {made}.", field=field.name, made=made
         )
-    return say("The field {field} is a whole number: write int({what}).", field=name, what=what)
+    return _no_number(field, what, value)
 
 
-def _range(bits: re.Match[str]) -> tuple[int, int]:
-    size = int(bits[2])
-    return (0, 2**size - 1) if bits[1] else (-(2 ** (size - 1)), 2 ** (size - 1) - 1)
-
-
-def _unsuitable(what: str, value: Any) -> Words | None:  # noqa: ANN401
+def _unsuitable(field: FieldSlot, what: str, value: Any) -> Words | None:  # noqa: ANN401
     """Say what is wrong with a value that fits no field of a single value."""
     if value is None:
         return is_none_here(what)
@@ -282,8 +308,15 @@ def _unsuitable(what: str, value: Any) -> Words | None:  # noqa: ANN401
         return future(what)
     if is_message(value):
         return of_message(what, type(value))
+    if isinstance(value, type):
+        return say(
+            "{what} is a class, and the field {field} takes one value.",
+            what=what,
+            field=field.name,
+        )
     if inspect.isroutine(value):
-        return say("{what} is a function: the brackets are missing, {what}().", what=what)
+        called = f"({what})" if what.startswith("lambda") else what
+        return say("{what} is a function: the brackets are missing, {what}().", what=called)
     return None
 
 
@@ -319,122 +352,16 @@ def _message(message: Any, name: str, what: str, of: str, value: Any) -> Words: 
         " them one by one: msg.{field}.{first} = …",
         field=name,
         type=kind,
-        first=_first_field(message, name),
+        first=_first_field(message, name, value),
     )
 
 
-def _first_field(message: Any, name: str) -> str:  # noqa: ANN401
+def _first_field(message: Any, name: str, value: Any) -> str:  # noqa: ANN401
+    """Return the field that takes the value itself, or else the first one."""
     inner = getattr(message, f"_{name}", None)
-    return next(iter(fields_of(inner)), "x") if is_message(inner) else "x"
+    fields = list(fields_of(inner)) if is_message(inner) else []
+    fits = (each for each in fields if takes(type(inner), each, value))
+    return next(fits, next(iter(fields), "x"))
 
 
-def _list(name: str, what: str, parts: re.Match[str], value: Any) -> Words | None:  # noqa: ANN401
-    """Say why a field that is a list does not take this value."""
-    of = parts["of"] or parts["fixed"]
-    if not _is_listlike(value) or (isinstance(value, dict)):
-        return _no_list(name, what, of, value)
-    kind = type(value).__module__.partition(".")[0]
-    if kind == "numpy" and not parts["count"]:
-        return say(
-            "The field {field} takes a list, not an array of numpy: {what}.tolist().",
-            field=name,
-            what=what,
-        )
-    count = value.size if kind == "numpy" else len(value)
-    if parts["count"] and count != int(parts["count"]):
-        return say(
-            "The field {field} has {count} values, always; this list has {given}.",
-            field=name,
-            count=int(parts["count"]),
-            given=count,
-        )
-    if parts["most"] and count > int(parts["most"]):
-        return say(
-            "The field {field} has {count} values at most; this list has {given}.",
-            field=name,
-            count=int(parts["most"]),
-            given=count,
-        )
-    if kind == "numpy" or isinstance(value, array.array):
-        return say(
-            "The values of {field} are of type {type}: {what}.tolist() makes a list of them that"
-            " is converted.",
-            field=name,
-            type=of,
-            what=what,
-        )
-    return _value_in_list(name, of, list(value))
-
-
-def _no_list(name: str, what: str, of: str, value: Any) -> Words | None:  # noqa: ANN401
-    if isinstance(value, str) and of in ("octet", "uint8"):
-        if of == "octet":
-            return say(
-                "The field {field} is a list of single bytes: [bytes([b]) for b in"
-                " {what}.encode()].",
-                field=name,
-                what=what,
-            )
-        return say(
-            "The field {field} is a list of bytes, and {what} a text: list({what}.encode()).",
-            field=name,
-            what=what,
-        )
-    if is_from(value, "rclpy", "Parameter"):
-        return parameter(what)
-    if value is None:
-        return is_none_here(what)
-    return say("The field {field} is a list: write [{what}].", field=name, what=what)
-
-
-def _value_in_list(name: str, of: str, values: list[Any]) -> Words | None:
-    kind = of.rpartition("/")[2]
-    bits = _BITS.fullmatch(of)
-    for index, value in enumerate(values):
-        if bits and isinstance(value, int):
-            low, high = _range(bits)
-            if not low <= value <= high:
-                return say(
-                    "The values of {field} are {low} to {high}; the one at [{index}] is {value}.",
-                    field=name,
-                    low=low,
-                    high=high,
-                    index=index,
-                    value=value,
-                )
-        elif of in _FLOATS and not isinstance(value, float):
-            return say(
-                "The values of {field} are floats: write 1.0, not 1, or [float(v) for v in …].",
-                field=name,
-            )
-        elif bits:
-            return say("The values of {field} are whole numbers: [int(v) for v in …].", field=name)
-        elif of in _TEXTS and not isinstance(value, str):
-            return say("The values of {field} are texts: [str(v) for v in …].", field=name)
-        elif of == "octet" and not isinstance(value, bytes):
-            return say(
-                "The field {field} is a list of single bytes: [bytes([b]) for b in data].",
-                field=name,
-            )
-        elif of == "boolean" and not isinstance(value, bool):
-            return say("The values of {field} are True or False.", field=name)
-        elif "/" in of and not (is_message(value) and type(value).__name__ == kind):
-            return say(
-                "The values of {field} are messages {type}; the one at [{index}] is {given}.",
-                field=name,
-                type=of,
-                index=index,
-                given=name_of(type(value)),
-            )
-    return None
-
-
-def _is_listlike(value: Any) -> bool:  # noqa: ANN401
-    if type(value).__module__.partition(".")[0] == "numpy":
-        return hasattr(value, "size") and getattr(value, "shape", ()) != ()
-    return isinstance(value, (Sequence, AbstractSet, dict, array.array)) and not isinstance(
-        value, str
-    )
-
-
-RULES = (field_value, not_made, sent, hollow)
+RULES = (field_value, not_made, sent, field_lists.hollow)

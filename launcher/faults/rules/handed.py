@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import typing
 from typing import TYPE_CHECKING
 
@@ -16,13 +17,14 @@ from launcher.faults.failure import (
     name_of,
     shown,
 )
-from launcher.faults.remedy import listed
+from launcher.faults.remedy import listed, of_text
+from launcher.faults.rules.callbacks import not_handed_over
 from text.sentences import say
+from text.suggestions import nearest
 
 if TYPE_CHECKING:
     from text.sentences import Words
 
-_SETTERS = ("set_parameters", "set_parameters_atomically", "_check_undeclared_parameters")
 _LIBRARIES = ("rclpy", "tf2_ros", "cv_bridge")
 
 
@@ -111,66 +113,96 @@ def _other(function: str, name: str, kind: type, value: object) -> Words:
     )
 
 
-def parameters(failure: Failure) -> Words | None:
-    """Parameters were set by something that is no list of them."""
-    level = next((each for each in failure.below("rclpy") if each.function in _SETTERS), None)
-    if level is None or not isinstance(failure.error, (TypeError, AttributeError)):
-        return None
-    given = level.values.get("parameter_list")
-    if is_from(given, "rclpy", "Parameter"):
-        return say("{call} takes a list, even of one parameter: [parameter].", call=level.function)
-    if isinstance(given, (list, tuple)) and not all(
-        is_from(each, "rclpy", "Parameter") for each in given
-    ):
-        return say(
-            "{call} takes a list of parameters: [Parameter('speed', value=2.0)], from"
-            " rclpy.parameter import Parameter.",
-            call=level.function,
-        )
-    return None
-
-
-def parameter_value(failure: Failure) -> Words | None:
-    """A parameter cannot hold such a value, or not as this type."""
-    inner = failure.inner
-    if inner is None or not inner.is_in("rclpy", "parameter"):
-        return None
-    if isinstance(failure.error, TypeError) and inner.function == "from_parameter_value":
-        value = inner.values.get("parameter_value")
-        if isinstance(value, (list, tuple)):
-            return say(
-                "The values of a parameter's list are all of one type, and these are: {types}.",
-                types=listed(sorted({name_of(type(each)) for each in value})),
-            )
-        return say(
-            "A parameter is a number, a text, True or False, or a list of one of them, and not"
-            " {type}.",
-            type=name_of(value if isinstance(value, type) else type(value)),
-        )
-    if isinstance(failure.error, ValueError) and inner.function == "__init__":
-        return say(
-            "The type of the parameter, {type}, and its value, {value}, do not agree:"
-            " Parameter({name!r}, value=…) finds the type by itself.",
-            type=str(getattr(inner.values.get("type_"), "name", "?")),
-            value=str(inner.values.get("value")),
-            name=str(inner.values.get("name")),
-        )
-    return None
-
-
 def policy(failure: Failure) -> Words | None:
     """A policy of a QoS was given as a text."""
     inner = failure.inner
     if inner is None or not isinstance(failure.error, AssertionError):
         return None
+    if inner.is_in("rclpy", "qos") and inner.function == "__init__":
+        return _no_policy(inner)
     if not inner.is_in("rclpy", "qos") or not isinstance(inner.values.get("value"), str):
         return None
+    if inner.function == "depth":
+        return say("The depth of a QoS is a whole number without quotes, such as 10.")
     kind = f"{inner.function.title()}Policy"
     return say(
         "The policies of a QoS are no texts: {kind}.{name}, from rclpy.qos import {kind}.",
         kind=kind,
         name=str(inner.values["value"]).upper(),
     )
+
+
+def _no_policy(level: TraceLevel) -> Words | None:
+    """Say that a QoS has no such argument."""
+    known = [each.lstrip("_") for each in getattr(level.values.get("self"), "__slots__", ())]
+    name = next((each for each in level.values.get("kwargs", ()) if each not in known), "")
+    if not name:
+        return None
+    meant = nearest(name, known)
+    if meant:
+        return say(
+            "{what} has no argument {name}; did you mean {meant}?",
+            what="QoSProfile",
+            name=name,
+            meant=meant,
+        )
+    return say(
+        "{what} has no argument {name}; it has: {known}.",
+        what="QoSProfile",
+        name=name,
+        known=listed(known),
+    )
+
+
+def text_for_number(failure: Failure) -> Words | None:
+    """A function of ROS or of Python was given a number in quotes."""
+    if (
+        failure.own is None
+        or failure.is_own
+        or not isinstance(failure.error, (TypeError, ValueError))
+    ):
+        return None
+    if "str" not in str(failure.error) and "digits" not in str(failure.error):
+        return None
+    for call in failure.all(ast.Call):
+        for each in (*call.args, *(keyword.value for keyword in call.keywords)):
+            value = failure.value(each)
+            if isinstance(value, str) and isinstance(each, ast.Constant) and _is_number(value):
+                return say(
+                    "{call}: a number stands without quotes, {value}.",
+                    call=shown(call.func),
+                    value=value.strip(),
+                )
+            words = of_text(shown(each), value) if isinstance(value, str) else None
+            if words is not None:
+                return words
+    return None
+
+
+def _is_number(text: str) -> bool:
+    return re.fullmatch(r"\s*-?\d+(\.\d*)?\s*", text) is not None
+
+
+def group(failure: Failure) -> Words | None:
+    """The class of a callback group was handed over, and not a group."""
+    for call in failure.all(ast.Call) if not failure.is_own else ():
+        for each in (*call.args, *(keyword.value for keyword in call.keywords)):
+            value = failure.value(each)
+            if isinstance(value, type) and value.__module__ == "rclpy.callback_groups":
+                return say(
+                    "{what} is a class: the brackets are missing, {what}().", what=shown(each)
+                )
+    return None
+
+
+def not_callable(failure: Failure) -> Words | None:
+    """A method was called where a callback had to be handed over."""
+    found = called(failure)
+    if found is None or "allable" not in str(failure.error) or "callback" not in found[1].values:
+        return None
+    if callable(found[1].values["callback"]):
+        return None
+    return not_handed_over(found[1].values["callback"])
 
 
 def executor(failure: Failure) -> Words | None:
@@ -244,6 +276,6 @@ def substitution(failure: Failure) -> Words | None:
 
 
 RULES = (
-    on_class, parameters, parameter_value, policy, executor, transform, picture,
-    substitution, annotated,
+    on_class, not_callable, group, policy, executor, transform, picture, substitution, annotated,
+    text_for_number,
 )  # fmt: skip

@@ -8,17 +8,24 @@ import importlib.util
 import re
 import sys
 import unicodedata
+from collections.abc import Callable
 
 from launcher.faults.failure import UNKNOWN, Failure
-from launcher.faults.homes import home_of
+from launcher.faults.homes import ROS1, home_of, ros1
 from text.sentences import Words, say
-from text.suggestions import near, nearest
+from text.suggestions import near
 
 ALIASES = {"np": "import numpy as np", "cv": "import cv2", "plt": "import matplotlib.pyplot as plt"}
 OTHER_WORDS = {
     "true": "True", "false": "False", "null": "None", "none": "None", "nil": "None",
-    "TRUE": "True", "FALSE": "False",
+    "TRUE": "True", "FALSE": "False", "Error": "Exception", "console": "print(…)",
+    "System": "print(…)", "cout": "print(…)", "printf": "print(…)", "echo": "print(…)",
 }  # fmt: skip
+
+_OF_TODAY = ("sleep", "Time", "Timer", "Service", "get_time")
+"""Names of rospy that other modules have as well."""
+_USUAL = ("time", "math", "random", "functools", "datetime", "threading", "copy", "pathlib")
+"""Modules whose names beginners use without importing them."""
 
 
 def alphabet(failure: Failure) -> Words | None:
@@ -86,14 +93,19 @@ def unknown(failure: Failure) -> Words | None:
         return say(
             "In Python it is written {meant}, not {name}.", meant=OTHER_WORDS[name], name=name
         )
-    if name == "self":
+    if name == "this" and failure.named("self") is not UNKNOWN:
+        return say("In Python it is written {meant}, not {name}.", meant="self", name=name)
+    if name in ("self", "this"):
         return say(
             "self is unknown here: it is the first argument of a method, def on_timer(self), and"
             " outside of a method there is none."
         )
     return (
         _of_self(failure, name)
-        or _importable(name)
+        or _dunder(failure, name)
+        or _alike(failure, name)
+        or _of_ros1(failure, name)
+        or _importable(failure, name)
         or _misspelt(failure, name)
         or say(
             "{name} is unknown here: is it spelled right and imported, is it made above in the same"
@@ -116,15 +128,68 @@ def _of_self(failure: Failure, name: str) -> Words | None:
     return say("{name} belongs to the node: write self.{name}.", name=name)
 
 
-def _importable(name: str) -> Words | None:
+def _dunder(failure: Failure, name: str) -> Words | None:
+    """Say how the name is written that tells whether a file is the program."""
+    values = [each.value for each in failure.all(ast.Constant)]
+    if name not in ("name", "main", "_name_") or "__main__" not in values:
+        return None
+    return say(
+        "{name} has two underscores on either side here: {meant}.", name=name, meant="__name__"
+    )
+
+
+_CYRILLIC = str.maketrans("асеорхукАСЕОРХКМТВН", "aceopxykACEOPXKMTBH")
+
+
+def _alike(failure: Failure, name: str) -> Words | None:
+    """Say that a known name looks the same, and is written in Cyrillic."""
+    known = {*failure.own.values, *failure.own.frame.f_globals} if failure.own is not None else ()
+    for each in known:
+        if not each.isascii() and each.translate(_CYRILLIC) == name:
+            return say(
+                "{name} is unknown here; the {other} above looks the same, and is written in"
+                " Cyrillic letters: type it again on the Latin keyboard.",
+                name=name,
+                other=each,
+            )
+    return None
+
+
+def _of_ros1(failure: Failure, name: str) -> Words | None:
+    """Say what is written instead of a name of rospy."""
+    if name == "rospy":
+        asked = next((each.attr for each in failure.all(ast.Attribute) if each.attr in ROS1), "")
+        return ros1(asked) if asked else None
+    return ros1(name) if name in ROS1 and name not in _OF_TODAY else None
+
+
+def _importable(failure: Failure, name: str) -> Words | None:
     if name in ALIASES:
         return say("{name} is not imported: {line}.", name=name, line=ALIASES[name])
     home = home_of(name)
     if home:
         return say("{name} is not imported: from {home} import {name}.", name=name, home=home)
     if name in sys.stdlib_module_names or (name.isidentifier() and _is_installed(name)):
-        return say("{name} is not imported: import {name}.", name=name)
+        return _module(failure, name)
+    module = next((each for each in _USUAL if hasattr(sys.modules.get(each), name)), "")
+    if module and not name.startswith("_"):
+        return say("{name} is not imported: from {home} import {name}.", name=name, home=module)
     return None
+
+
+def _module(failure: Failure, name: str) -> Words | None:
+    """Say that a module is not imported, if what is asked of the name is in it."""
+    asked = [
+        each.attr
+        for each in failure.all(ast.Attribute)
+        if isinstance(each.value, ast.Name) and each.value.id == name
+    ]
+    if not asked or name in ("this", "antigravity"):
+        return None
+    module = sys.modules.get(name) or importlib.import_module(name)
+    if not any(hasattr(module, each) for each in asked):
+        return None
+    return say("{name} is not imported: import {name}.", name=name)
 
 
 def _is_installed(name: str) -> bool:
@@ -138,18 +203,31 @@ def _misspelt(failure: Failure, name: str) -> Words | None:
     if failure.own is None:
         return None
     me = failure.named("self")
-    known = {*failure.own.values, *failure.own.frame.f_globals, *vars(builtins)}
-    meant = next(iter(near(name, known, cutoff=0.75)), "") or (
-        nearest(name, {*failure.own.values, *failure.own.frame.f_globals} - set(vars(builtins)))
+    own = {*failure.own.values, *failure.own.frame.f_globals} - set(vars(builtins))
+    known = {*own, *vars(builtins)}
+    meant = next(iter(near(name, filter(_is_likely(name), known), cutoff=0.75)), "") or next(
+        iter(near(name, own, cutoff=0.67)), ""
     )
     if meant:
         return say("{name} is unknown here; did you mean {meant}?", name=name, meant=meant)
-    of_self = nearest(name, dir(me)) if me is not UNKNOWN else ""
+    of_self = next(iter(near(name, dir(me), cutoff=0.75)), "") if me is not UNKNOWN else ""
     if of_self:
         return say(
             "{name} is unknown here; did you mean {meant}?", name=name, meant=f"self.{of_self}"
         )
     return None
+
+
+def _is_likely(name: str) -> Callable[[str], bool]:
+    """Return what tells a name of Python's own that is too short, or an exception."""
+
+    def likely(known: str) -> bool:
+        value = vars(builtins).get(known)
+        if isinstance(value, type) and issubclass(value, BaseException):
+            return name.endswith(("Error", "Exception", "Interrupt", "Exit"))
+        return value is None or len(known) > 3 or name.startswith(known)
+
+    return likely
 
 
 RULES = (alphabet, local, unknown)

@@ -10,6 +10,8 @@ from launcher.faults.failure import UNKNOWN, Failure, is_from, is_message_class,
 from launcher.faults.remedy import listed, remedy
 from text.sentences import Words, say
 
+_BYTES = ("a bytes-like object is required, not 'str'", "please encode to bytes")
+"""What Python and pyserial say of a text that is written where bytes go."""
 SIGNS: dict[type[ast.AST], str] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.FloorDiv: "//", ast.Mod: "%",
     ast.Pow: "**", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.In: "in",
@@ -74,6 +76,12 @@ def formatted(failure: Failure) -> Words | None:
     for each in failure.all(ast.FormattedValue):
         if each.format_spec is None:
             continue
+        if failure.type_of(each.value) is float and shown(each.format_spec).endswith("d'"):
+            return say(
+                "{what} is of type float, and d in a format is for whole numbers: .0f rounds, or"
+                " int({what}).",
+                what=shown(each.value),
+            )
         return remedy(failure, each.value) or say(
             "{what} is of type {type}, and the format behind its colon is for numbers:"
             " leave it out, or"
@@ -97,6 +105,24 @@ def operands(failure: Failure) -> Words | None:
         if words is not None:
             return words
     return None
+
+
+def written(failure: Failure) -> Words | None:
+    """A text was written, or split by, where there are bytes."""
+    if failure.own is None or not any(each in str(failure.error) for each in _BYTES):
+        return None
+    for call in failure.all(ast.Call):
+        for each in call.args:
+            if failure.type_of(each) is str or isinstance(each, ast.JoinedStr):
+                of = shown(getattr(call.func, "value", None))
+                if getattr(call.func, "attr", "") in ("split", "strip", "startswith", "replace"):
+                    return say(
+                        "{what} are bytes: {what}.decode() makes a text of them first.", what=of
+                    )
+                return say(
+                    "Bytes go there, and {what} is a text: {what}.encode().", what=shown(each)
+                )
+    return say("Text and bytes do not go together: text.encode() makes bytes, data.decode() text.")
 
 
 def _pairs(failure: Failure) -> list[tuple[ast.expr, str, ast.expr]]:
@@ -153,6 +179,13 @@ def _plain(failure: Failure, left: ast.expr, sign: str, right: ast.expr) -> Word
         return None
     for node, other in ((left, kinds[1]), (right, kinds[0])):
         kind = failure.type_of(node)
+        if kind is str and other in (int, float) and _is_word(failure.value(node), node, sign):
+            return say(
+                "{text} is the text {value!r}, not a number: it does not go with {number}.",
+                text=shown(node),
+                value=failure.value(node),
+                number=shown(left if node is right else right),
+            )
         if kind is str and other in (int, float):
             return _text(node, left if node is right else right, sign)
         if {kind, other} == {str, bytes}:
@@ -166,6 +199,12 @@ def _plain(failure: Failure, left: ast.expr, sign: str, right: ast.expr) -> Word
                 what=shown(node),
                 sign=sign,
             )
+    if set(kinds) == {list, tuple} and sign == "+":
+        return say(
+            "A list and a tuple are not added: list({left}) + list({right}).",
+            left=shown(left),
+            right=shown(right),
+        )
     if kinds[0] in (list, tuple, array.array):
         return say(
             "Lists are not calculated with by {sign}: np.array({left}) {sign} np.array({right})"
@@ -182,6 +221,19 @@ def _plain(failure: Failure, left: ast.expr, sign: str, right: ast.expr) -> Word
         second=name_of(kinds[1]),
         sign=sign,
     )
+
+
+def _is_word(value: object, node: ast.expr, sign: str) -> bool:
+    """Whether it is a text that can become no number, and that is not to be joined to one."""
+    if not isinstance(value, str) or not value:
+        return False
+    if isinstance(node, (ast.Constant, ast.JoinedStr)) and sign == "+":
+        return False
+    try:
+        float(value)
+    except ValueError:
+        return True
+    return False
 
 
 def _text(text: ast.expr, number: ast.expr, sign: str) -> Words:
@@ -281,4 +333,4 @@ def _dumped(value: Any) -> Words:  # noqa: ANN401
     )
 
 
-RULES = (clocks, serialized, percent, formatted, operands)
+RULES = (clocks, serialized, written, percent, formatted, operands)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import ast
 
-from launcher.faults.failure import Failure, is_from, is_message, name_of, shown
-from launcher.faults.rules.attributes import taken_name
+from launcher.faults.failure import Failure, is_from, name_of, shown
+from launcher.faults.rules.own_attributes import taken_name
 from text.i18n import N_
 from text.sentences import Words, say
 from text.suggestions import nearest
@@ -261,67 +261,6 @@ def _unheard(failure: Failure) -> Words | None:
     )
 
 
-def opencv(failure: Failure) -> Words | None:
-    """OpenCV refuses."""
-    error = failure.error
-    if type(error).__module__ != "cv2" and type(error).__name__ != "CvBridgeError":
-        return None
-    names = [
-        each.func.attr for each in failure.all(ast.Call) if isinstance(each.func, ast.Attribute)
-    ]
-    if {"imshow", "waitKey", "namedWindow", "destroyAllWindows"} & set(names):
-        return say("This OpenCV has no windows: publish the picture, and look at it in Topics.")
-    if type(error).__name__ == "CvBridgeError":
-        words = _encoding(failure)
-        if words is not None:
-            return words
-        return say(
-            "The picture has another encoding than is asked for: look at msg.encoding, or ask for"
-            ' "passthrough".'
-        )
-    for call in failure.all(ast.Call):
-        for each in call.args:
-            value = failure.value(each)
-            if is_message(value):
-                return say(
-                    "{what} is a message, not a picture:"
-                    ' CvBridge().imgmsg_to_cv2({what}, "bgr8") makes one of it.',
-                    what=shown(each),
-                )
-            if value is None or getattr(value, "size", 1) == 0:
-                return say(
-                    "{what} is not a picture, or is an empty one: was it read, has one arrived?",
-                    what=shown(each),
-                )
-    return say("OpenCV does not take this picture: look at its shape and dtype before the call.")
-
-
-def _encoding(failure: Failure) -> Words | None:
-    """Say that there is no such encoding, or that an array cannot have it."""
-    level = next((each for each in failure.levels if each.is_in("cv_bridge", "bridge")), None)
-    if level is None:
-        return None
-    from cv_bridge.encodings import encoding  # Only where it has failed: it loads numpy.
-
-    names = ("desired_encoding", "encoding", "dst_format")
-    name = next((level.values[each] for each in names if each in level.values), "")
-    picture = level.values.get("cvim")
-    if isinstance(name, str) and name != "passthrough" and encoding(name) is None:
-        return say(
-            "ROS has no encoding {name!r}; the usual ones are bgr8, rgb8, mono8, 16UC1 and 32FC1.",
-            name=name,
-        )
-    if picture is None or not hasattr(picture, "shape"):
-        return None
-    return say(
-        "The array has the shape {shape} and the type {type}, which is not {name}: mono8 has one"
-        " channel, bgr8 has three, both uint8.",
-        shape=str(picture.shape),
-        type=str(picture.dtype),
-        name=name,
-    )
-
-
 def asynchronous(failure: Failure) -> Words | None:
     """`asyncio` was awaited, which rclpy does not run."""
     if not isinstance(failure.error, RuntimeError) or "/asyncio/" not in (
@@ -342,7 +281,6 @@ def other_names(failure: Failure) -> Words | None:
 
 
 RULES = (
-    spun, named, undeclared, bad_name, started_twice, two_types, severity, looked_up, opencv,
-    asynchronous,
+    spun, named, undeclared, bad_name, started_twice, two_types, severity, looked_up, asynchronous,
 )  # fmt: skip
 LAST = (other_names,)

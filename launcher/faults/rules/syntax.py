@@ -102,10 +102,13 @@ def syntax(error: SyntaxError, lines: list[str]) -> Words:
         _copied(line, lines)
         or _signs(line, error)
         or _indentation(error, lines)
+        or _counting(line)
         or _of_other_languages(line)
         or _colon(line, error)
         or _keyword(line)
         or _said(error)
+        or _habits(line)
+        or _depth(line)
         or say("Python cannot read this line; the mistake may also be in the line above.")
     )
 
@@ -158,12 +161,36 @@ def _indentation(error: SyntaxError, lines: list[str]) -> Words | None:
     if not isinstance(error, IndentationError):
         return None
     above = next((each for each in lines[: (error.lineno or 1) - 1][::-1] if each.strip()), "")
+    opened = re.search(r"on line (\d+)", str(error.msg))
+    if opened and 0 < int(opened[1]) <= len(lines):
+        above = lines[int(opened[1]) - 1]
+    if opened and not any(each.strip() for each in lines[int(opened[1]) :]):
+        return say(
+            "Below {above!r} nothing stands: what belongs to it is indented; pass does nothing.",
+            above=above.strip(),
+        )
     if "expected an indented block" in str(error.msg):
         return say(
             "The lines below {above!r} have to be indented, four blanks deeper.",
             above=above.strip(),
         )
     return _said(error) or say("The indentation is wrong: four blanks a level, and no tabs.")
+
+
+def _counting(line: str) -> Words | None:
+    """Say how a loop counts that is written as in C."""
+    return say(_HABITS[0][1]) if re.match(_HABITS[0][0], line) else None
+
+
+def _depth(line: str) -> Words | None:
+    """Say that an else stands at another depth than its if."""
+    found = re.match(r"\s*(else|elif|except|finally)\b", line)
+    if not found:
+        return None
+    return say(
+        "{word} belongs to an if, for or try at the same depth, directly below its block.",
+        word=found[1],
+    )
 
 
 def _colon(line: str, error: SyntaxError) -> Words | None:
@@ -175,6 +202,79 @@ def _colon(line: str, error: SyntaxError) -> Words | None:
     if _BLOCK.match(code) and not code.endswith(":") and code.count("(") == code.count(")"):
         return say("A line with def, class, if, else, for, while, try or with ends in a colon.")
     return None
+
+
+_HABITS = (
+    (r"^\s*for\s*\(.*;.*;", N_("A loop that counts is written for i in range(3):.")),
+    (
+        r'^(?!\s*(?:if|elif|while|for|with|def|class)\b).*\w\([^{\[]*""\s*:',
+        N_("In round brackets a comma or = stands there; a colon belongs in curly brackets."),
+    ),
+    (r"<>", N_("Not equal is written !=.")),
+    (r"===|!==", N_("Equal is written ==, and not equal !=.")),
+    (r"=<|=>", N_("At most is written <=, at least >=: the equals sign comes last.")),
+    (r"\w->\w", N_("In Python a point stands there, as in self.x, not ->.")),
+    (r"(^|[\s=(])new\s+\w+\s*\(", N_('An object is made without new: Node("name").')),
+    (r"\?.*:", N_("A choice within a line is written a if condition else b.")),
+    (r"^\s*switch\b", N_("Instead of switch Python has if, elif and else.")),
+    (r"^\s*catch\b", N_("What catches an exception is called except.")),
+    (
+        r"^\s*except\s+\w+(\s+\w+\s*:|\s*,)",
+        N_("The name of the exception comes behind as: except Exception as error:."),
+    ),
+    (
+        r"^\s*raise\s+\w+\s*,",
+        N_('An exception is given its text in brackets: raise ValueError("…").'),
+    ),
+    (r"^\s*(if|while)\b.*\bthen\b", N_("Python has no then: behind the condition comes a colon.")),
+    (r"lambda[^:]*:\s*return\b", N_("A lambda has no return: its value stands behind the colon.")),
+    (
+        r"^\s*import\s+([\w.]+\s+)?from\b",
+        N_("It is the other way round: from rclpy.node import Node."),
+    ),
+    (r"^\s*from\s+[\w.]+\s+import\s*$", N_("What is to be imported is missing behind import.")),
+    (
+        r"^\s*from\s+[\w.]+\s+import\s.*,\s*$",
+        N_("The comma at the end of an import has nothing behind it."),
+    ),
+    (
+        r"^\s*(import|from)\s+\w+/",
+        N_("A module is named with points, not with /: from std_msgs.msg import String."),
+    ),
+    (
+        r"^\s*(import|from)\s+\w+-\w",
+        N_("The name of a module has no hyphen in Python: perhaps it is _."),
+    ),
+    (r"^\s*#?\s*using\s+namespace\b", N_("This line is of C++: Python imports, import rclpy.")),
+    (r"^\s*def\s*\(", N_("The function has no name: def main():.")),
+    (
+        r"^\s*def\s+\w+\(.*\b(int|float|str|string|double|bool)\s+\w+",
+        N_("An argument is written without its type, or with a colon: def f(x: int):."),
+    ),
+    (
+        r"^\s*(public|private|static)\b",
+        N_("Python has no public, private and static: leave the word out."),
+    ),
+    (r";\s*;", N_("One ; too many: in Python none is needed at the end of a line.")),
+    (r"=\s+=|=\s*\+\s*$", N_("The equals sign stands alone here: x = 1, or x += 1.")),
+    (
+        r"^\s*(assert|if|elif|while)\b[^=!<>(]*[^=!<>(]=[^=]",
+        N_("A comparison has two equals signs: ==."),
+    ),
+    (r"\w\.\.\w", N_("Between two names stands one point.")),
+    (
+        r"(\band|\bor|\bnot|[-+*/%=])\s*$",
+        N_("The line ends in the middle: something is missing at its end."),
+    ),
+)
+"""What is written otherwise in Python, and how."""
+
+
+def _habits(line: str) -> Words | None:
+    code = _without_texts(line).partition("#")[0].rstrip()
+    if _BLOCK.match(code) and code.endswith(":") and code.count("(") > code.count(")"):
+        return say("A bracket is opened in this line and never closed.")
+    return next((say(words) for part, words in _HABITS if re.search(part, code)), None)
 
 
 def _of_other_languages(line: str) -> Words | None:
@@ -220,7 +320,27 @@ def _keyword(line: str) -> Words | None:
 
 def _said(error: SyntaxError) -> Words | None:
     message = str(error.msg)
+    if message.startswith(("unterminated string", "EOL while")) and _has_mark_inside(
+        error.text or ""
+    ):
+        return say(
+            'A quotation mark is missing at the end of a text, or stands within it: "don\'t" is'
+            " written in the other kind of marks."
+        )
+    if message.startswith("f-string"):
+        return say(
+            "In the curly brackets of an f-string stands an expression, and other quotes than"
+            " around it."
+        )
+    found = re.search(r"in call to '(\w+)'", message)
+    if found and found[1] != "print":
+        return say("{name} is a function: {name}(…), in round brackets.", name=found[1])
     return next((say(words) for part, words in _MESSAGES if part in message), None)
+
+
+def _has_mark_inside(line: str) -> bool:
+    """Whether a mark stands within a text that is bounded by the same marks: 'don't'."""
+    return re.search(r"'[^']*\w'\w[^']*'", line) is not None
 
 
 def _without_texts(line: str) -> str:

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import array
 import ast
-import errno
+import re
 import sys
 
-from launcher.faults.failure import UNKNOWN, Failure, is_from, shown
-from launcher.faults.remedy import is_none, listed, of_list
+from launcher.faults.failure import UNKNOWN, Failure, shown
+from launcher.faults.remedy import is_none, listed, of_list, unset_parameter
 from text.sentences import Words, say
 from text.suggestions import nearest
 
 
 def number(failure: Failure) -> Words | None:
     """A text was to become a number, and is none."""
-    if not isinstance(failure.error, ValueError) or not failure.is_own:
+    if not isinstance(failure.error, (ValueError, OverflowError)) or not failure.is_own:
         return None
     for call in failure.all(ast.Call):
         function = failure.value(call.func)
+        if function is map and failure.value(call.args[0]) in (int, float):
+            return _among_several(failure, call)
         if function not in (int, float) or not call.args:
             continue
         what, value = shown(call.args[0]), failure.value(call.args[0])
@@ -36,6 +38,12 @@ def number(failure: Failure) -> Words | None:
             return None
         return say("{what} is a text that is not a number: look at what it is first.", what=what)
     return None
+
+
+def _among_several(failure: Failure, call: ast.Call) -> Words | None:
+    """Say which of several texts is no number: only the error has it."""
+    found = re.search(r": '(?P<text>[^']*)'$", str(failure.error))
+    return _no_number(shown(call), found["text"]) if found else None
 
 
 def _no_number(what: str, value: str) -> Words:
@@ -124,6 +132,8 @@ def unpacked(failure: Failure) -> Words | None:
     statement = failure.statement
     if not isinstance(failure.error, ValueError) or not failure.is_own:
         return None
+    if "unpack" not in str(failure.error):
+        return None
     if isinstance(statement, ast.Assign) and isinstance(
         statement.targets[0], (ast.Tuple, ast.List)
     ):
@@ -141,6 +151,12 @@ def unpacked(failure: Failure) -> Words | None:
     else:
         return None
     count = len(given) if isinstance(given, (list, tuple, str)) else 0
+    if count == 1:
+        return say(
+            "{what} has a single value, and {count} names stand left of the equals sign.",
+            what=shown(statement.value),
+            count=len(names),
+        )
     if count:
         return say(
             "{what} has {given} values, and {count} names stand left of the equals sign.",
@@ -159,14 +175,26 @@ def index(failure: Failure) -> Words | None:
     """A list has no value of that number."""
     if not isinstance(failure.error, IndexError):
         return None
+    if "only integers" in str(failure.error):
+        return say("The index of an array is a whole number, or several with commas: a[1, 2].")
+    if "Replacement index" in str(failure.error):
+        return say("The text has more places for values than format() is given.")
     for each in failure.all(ast.Subscript):
         of, what, number = failure.value(each.value), shown(each.value), failure.value(each.slice)
         if of is sys.argv:
             return say("The program was given no such argument: look at len(sys.argv) before.")
         if of is UNKNOWN or not hasattr(of, "__len__"):
             continue
+        if not len(of) and isinstance(each.ctx, ast.Store) and hasattr(of, "append"):
+            return say(
+                "{what} is empty, and {what}[…] = … changes only what is there: {what}.append(…)"
+                " adds a value.",
+                what=what,
+            )
         if not len(of) and isinstance(each.value, (ast.Name, ast.Attribute)):
             return say("{what} is empty: ask if {what}: before. Has anything come yet?", what=what)
+        if len(of) == 1:
+            return say("{what} has a single value, {what}[0].", what=what)
         if isinstance(number, int) and len(of):
             return say(
                 "{what} has {count} values, [0] to [{last}]; there is no [{index}].",
@@ -211,6 +239,16 @@ def key(failure: Failure) -> Words | None:
                 key=wanted,
                 meant=meant,
             )
+        if (
+            not of
+            or isinstance(each.ctx, ast.Store)
+            or isinstance(getattr(each, "parent", None), ast.Subscript)
+        ):
+            return say(
+                "{what} has no key {key!r} yet: {what}[{key!r}] = … puts a value there first.",
+                what=what,
+                key=wanted,
+            )
         return say(
             "{what} has no key {key!r}; it has {known}. {what}.get({key!r}) gives None instead.",
             what=what,
@@ -246,127 +284,21 @@ def recursion(failure: Failure) -> Words | None:
     )
 
 
-def files(failure: Failure) -> Words | None:
-    """A file is not there, or is not to be had."""
-    error = failure.error
-    name = getattr(error, "filename", None)
-    if isinstance(error, FileNotFoundError) and name:
-        return say(
-            "There is no file {name}. A name without a slash in front is looked for in the folder"
-            " that the program was started in, not beside its file: Path(__file__).parent / …",
-            name=str(name),
-        )
-    if isinstance(error, IsADirectoryError) and name:
-        return say("{name} is a folder, not a file.", name=str(name))
-    if isinstance(error, PermissionError) and name:
-        return say(
-            "{name} may not be opened: whose is it? For a device, is the user in its group"
-            " (dialout, video, audio)?",
-            name=str(name),
-        )
-    if isinstance(error, ConnectionRefusedError):
-        return say("Nobody listens there: is the server running, and is the port right?")
-    if isinstance(error, EOFError):
-        return say(
-            "A node has no keyboard: input() gets nothing. Take a parameter, or a topic that is"
-            " published to."
-        )
-    return None
-
-
-def device(failure: Failure) -> Words | None:
-    """A serial port is not there, or is another's."""
-    error = failure.error
-    if type(error).__name__ != "SerialException":
+def thread(failure: Failure) -> Words | None:
+    """A thread was made without the name of its argument, or started twice."""
+    if not any(each.file.endswith("threading.py") for each in failure.levels):
         return None
-    call = failure.first(ast.Call)
-    port = failure.value(call.args[0]) if call is not None and call.args else UNKNOWN
-    if not isinstance(port, str):
-        return None
-    number = getattr(error, "errno", None)
-    if number == errno.ENOENT:
-        return say("{port} is not there: is the device plugged in?", port=port)
-    if number == errno.EACCES:
-        return say("{port} may not be opened: is the user in the group dialout?", port=port)
-    if number == errno.EBUSY:
-        return say("{port} is in use by another program.", port=port)
+    made = [each for each in failure.all(ast.Call) if shown(each.func).endswith("Thread")]
+    call = next(iter(made), None)
+    if isinstance(failure.error, AssertionError) and call is not None and call.args:
+        return say(
+            "A thread takes its function by name: {call}(target={what}).",
+            call=shown(call.func),
+            what=shown(call.args[0]),
+        )
+    if isinstance(failure.error, RuntimeError) and "once" in str(failure.error):
+        return say("A thread is started once: make a new one for each time.")
     return None
-
-
-def texts(failure: Failure) -> Words | None:
-    """Bytes that are no text, text that is no JSON, JSON that does not fit."""
-    error = failure.error
-    kind = type(error).__name__
-    if isinstance(error, UnicodeDecodeError):
-        return say('The bytes are not UTF-8: decode("utf-8", errors="replace").')
-    if isinstance(error, UnicodeEncodeError):
-        return say(
-            'The text has letters that {encoding} has not: encode("utf-8").',
-            encoding=error.encoding,
-        )
-    if kind == "JSONDecodeError":
-        document = str(getattr(error, "doc", ""))
-        if not document.strip():
-            return say(
-                "The text is empty, which is not JSON: catch the exception, and move nothing."
-            )
-        if document.lstrip().startswith(("{'", "['")):
-            return say(
-                "JSON has double quotes, and this has single ones: json.dumps writes it right."
-            )
-        return say("The text is not JSON: catch the exception, and move nothing.")
-    if kind == "ValidationError" and type(error).__module__.startswith("pydantic"):
-        return say("The JSON does not fit the model: catch ValidationError, and move nothing.")
-    return None
-
-
-def arrays(failure: Failure) -> Words | None:
-    """Arrays of numpy of other shapes than the line needs."""
-    error = failure.error
-    numpy = sys.modules.get("numpy")
-    if not isinstance(error, (ValueError, TypeError)) or numpy is None or failure.own is None:
-        return None
-    values = [
-        (shown(node), failure.value(node))
-        for node in ast.walk(failure.statement or ast.Pass())
-        if isinstance(node, (ast.Name, ast.Attribute))
-    ]
-    found = [(what, value) for what, value in values if isinstance(value, numpy.ndarray)]
-    statement = failure.statement
-    if (
-        isinstance(error, ValueError)
-        and found
-        and isinstance(statement, (ast.If, ast.While, ast.Assert))
-        and found[0][1].size != 1
-    ):
-        return say(
-            "{what} has many values, and if asks one question: any({what}) or all({what}).",
-            what=_question(statement),
-        )
-    calls = [
-        each.func.attr for each in failure.all(ast.Call) if isinstance(each.func, ast.Attribute)
-    ]
-    if "reshape" in calls and isinstance(error, ValueError) and found:
-        return say(
-            "{what} has {count} values, which is not height × width × channels: look at"
-            " msg.step and msg.encoding, or use cv_bridge.",
-            what=found[0][0],
-            count=found[0][1].size,
-        )
-    if isinstance(error, ValueError) and len(found) > 1:
-        (first, one), (second, two) = found[:2]
-        return say(
-            "{first} has the shape {one}, {second} the shape {two}: they do not fit each other.",
-            first=first,
-            one=str(one.shape),
-            second=second,
-            two=str(two.shape),
-        )
-    return None
-
-
-def _question(statement: ast.If | ast.While | ast.Assert) -> str:
-    return shown(statement.test)
 
 
 def asserted(failure: Failure) -> Words | None:
@@ -386,39 +318,15 @@ def missing_value(failure: Failure) -> Words | None:
     if not isinstance(failure.error, TypeError) or not failure.is_own:
         return None
     for each in ast.walk(failure.statement or ast.Pass()):
-        if isinstance(each, ast.Call) and (words := _unset_parameter(failure, each)) is not None:
+        if isinstance(each, ast.Call) and (words := unset_parameter(failure, each)) is not None:
             return words
         if isinstance(each, (ast.Name, ast.Attribute)) and failure.value(each) is None:
             return is_none(failure, each)
     return None
 
 
-def _unset_parameter(failure: Failure, call: ast.Call) -> Words | None:
-    """Say that a parameter has no value, if it is asked for here and has none."""
-    node = failure.named("self")
-    if (
-        not isinstance(call.func, ast.Attribute)
-        or not call.args
-        or not is_from(node, "rclpy", "Node")
-    ):
-        return None
-    name = failure.value(call.args[0])
-    if (
-        call.func.attr != "get_parameter"
-        or not isinstance(name, str)
-        or not node.has_parameter(name)
-    ):
-        return None
-    if node.get_parameter(name).value is not None:
-        return None
-    return say(
-        "The parameter {name!r} has no value: declare it with a default,"
-        " self.declare_parameter({name!r}, 0.0), or set it in the profile.",
-        name=name,
-    )
-
-
 RULES = (
-    number, mathematics, nothing_to_choose, pause, unpacked, index, key, zero, recursion, device,
-    files, texts, arrays, asserted, missing_value,
+    number, mathematics, nothing_to_choose, pause, unpacked, index, key, zero, recursion, thread,
+    asserted,
 )  # fmt: skip
+LAST = (missing_value,)

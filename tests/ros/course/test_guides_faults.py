@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from launcher.status import NodeState, Severity
+from tests.middleware_words import own_words
 from tests.ros.supervised import Launch, said, until_state
 from tests.waiting import until
 
@@ -71,13 +72,18 @@ async def test_the_guides_files_run_and_their_faults_are_explained(
     assert fault is not None
     assert (fault.meaning, "bytes(message.data)" in fault.source_line) == (BYTES, True)
     await client.stop()
+    ends = []
     for name in client.nodes.keys() - {"ai_brain", "talker"}:
         status = await until_state(client, name, NodeState.EXITED)
-        wanted = CTRL_C if name == "hello" else END
-        # Of eleven that end at once one may hang in the middleware: it is killed in silence.
-        assert wanted in str(status.fault) or "SIGKILL" in status.detail, (name, status)
+        ends.append((name, str(status.fault), status.detail))
+        # Of eleven that end at once one may hang in the middleware: it is killed in silence. One
+        # that a busy machine has not brought as far as rclpy.spin ends by Ctrl-C itself.
+        wanted = next((words for words in (END, CTRL_C) if words in str(status.fault)), "")
+        assert wanted or "SIGKILL" in status.detail, ends[-1]
         told = [line for line in await client.history(name, 100) if wanted in line.text]
-        assert [line.severity for line in told] == [Severity.WARN], name
+        assert not wanted or [line.severity for line in told] == [Severity.WARN], name
+    assert CTRL_C in {name: fault for name, fault, _ in ends}["hello"]
+    assert sum(END in fault for _, fault, _ in ends) > len(ends) / 2, ends
 
 
 def test_in_the_shell_they_run_as_well_and_their_ends_are_explained(
@@ -93,9 +99,9 @@ def test_in_the_shell_they_run_as_well_and_their_ends_are_explained(
         timeout=150,
         check=False,
     )
-    assert done.stdout.splitlines() == [f"{file} 1" for file in FILES], done.stderr
+    assert own_words(done.stdout).splitlines() == [f"{file} 1" for file in FILES], done.stderr
     for file in FILES:
-        *_, last = (folder / f"{file}.log").read_text().splitlines()
+        *_, last = own_words((folder / f"{file}.log").read_text()).splitlines()
         wanted = CTRL_C if file == "hello.py" else END
         assert last.startswith(f"{file}:"), last
         assert wanted in last

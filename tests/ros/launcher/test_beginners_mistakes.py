@@ -6,8 +6,10 @@ down in `sentences.txt` there: `--snapshot-update` writes them anew, and they wa
 
 from __future__ import annotations
 
+import ast
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -22,6 +24,7 @@ from launcher.faults.telling import fault_in, told_in
 from launcher.status import NodeFault
 from tests.ros.launcher.mistakes import MISTAKES, sentences, write
 from tests.ros.launcher.mistakes.language import BYTES
+from tests.ros.launcher.mistakes.messages import FIELDS
 from text.i18n import localized
 from text.sentences import Words
 
@@ -31,6 +34,9 @@ AT_MOST_S = 600
 OF_A_LINE = (
     "now of a message's time", "value with brackets", "function of a time", "duration compared",
     "data of a number", "stamps subtracted", "first message not there", "publishers is rclpy's own",
+    "first of a map", "fraction for a point", "counted and never made", "array of whole numbers",
+    "values without names", "numbers summed one by one", "list and tuple", "number for a point",
+    "thread without target", "square brackets for a vector", "text raised", "this",
 )  # fmt: skip
 """What is told from the part of the line that has failed, where Python tells it."""
 
@@ -111,6 +117,49 @@ def test_the_line_alone_is_enough(module_domain: int, tmp_path: Path) -> None:
         assert both(fault) == sentences()[name], name
 
 
+@pytest.mark.timeout(AT_MOST_S + 30)
+def test_what_a_sentence_says_to_write_mends_the_line(module_domain: int, tmp_path: Path) -> None:
+    """Of each field that was given a wrong value: with the expression of the sentence it runs."""
+    found = {name: _mended(FIELDS[name], sentences()[name][0]) for name in FIELDS}
+    chosen = {name: program for name, program in found.items() if program}
+    assert len(chosen) >= 20
+    for name, (fault, printed) in _told(chosen, tmp_path, module_domain).items():
+        assert fault is None, (name, chosen[name].splitlines()[-4:], printed)
+
+
+def _mended(program: str, sentence: str) -> str:
+    """Return the program with the expression that the sentence makes of what was given."""
+    for node in ast.walk(ast.parse(program)):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Attribute):
+            given = ast.unparse(node.value)
+            line = program.splitlines()[node.lineno - 1]
+            expression = _around(sentence, given)
+            if expression and node.targets[0].attr != "last":
+                made = f"{ast.unparse(node.targets[0])} = {expression}"
+                return program.replace(line.strip(), made)
+    return ""
+
+
+def _around(sentence: str, given: str) -> str:
+    """Return the first call or list in a sentence with the given expression in it."""
+    begins = [found.start() for found in re.finditer(r"(?<= )(?!write )\S", sentence)]
+    for begin in begins:
+        ends = [found.end() for found in re.finditer(r"[\])]|\d(?=[.,]?(?: |$))", sentence[begin:])]
+        parts = [sentence[begin : begin + end] for end in ends[::-1]]
+        for part in parts:
+            is_more = given in part and part not in (given, f"({given})") and ". " not in part
+            if is_more and _is_expression(part):
+                return part
+    return ""
+
+
+def _is_expression(text: str) -> bool:
+    try:
+        return not isinstance(ast.parse(text, mode="eval").body, (ast.Tuple, ast.Compare))
+    except SyntaxError:
+        return False
+
+
 def test_there_are_at_least_a_hundred_and_fifty() -> None:
     assert len(MISTAKES) >= 150
     assert set(sentences()) == set(MISTAKES)
@@ -133,4 +182,8 @@ def test_what_only_the_log_tells_is_explained() -> None:
         "received from it. Last incompatible policy: RELIABILITY"
     )
     assert "same name" in warning_of("Publisher already registered for provided node name.")
+    assert "SetParametersResult" in warning_of(
+        "node.py:911: UserWarning: Callback returned an invalid type, it should return"
+        " SetParameterResult."
+    )
     assert not warning_of("all is well")

@@ -43,6 +43,13 @@ NAMES = {
     "variable of the module": f"{HEAD}count = 0\ndef f():\n    count += 1\nf()\n",
     "variable of one branch": bare("if self.last:\n    x = 1\nprint(x)"),
     "unknown": bare("x = qwertz"),
+    "this": ticking("this.x = 1"),
+    "name of a module for a message": bare("cmd.linear.x = 1.0"),
+    "main that is not there": script("main()"),
+    "name for __name__": script('if name == "__main__":\n    pass'),
+    "print of other languages": bare('console.log("a")'),
+    "Cyrillic x above": bare("х = 1\ny = x + 1"),
+    "publisher of ROS 1": bare('Publisher("/out", Float32)'),
 }
 ATTRIBUTES = {
     "attribute never made": ticking("self.out.publish(Float32())"),
@@ -72,6 +79,16 @@ ATTRIBUTES = {
     ),
     "math misspelt": bare("math.sqroot(2)"),
     "string's method misspelt": bare('"a".uper()'),
+    "counted and never made": ticking("self.count += 1"),
+    "counted, misspelt": ticking("self.conter += 1", init="self.counter = 0"),
+    "made in a branch": node("if self.get_name() == 'x':\n    self.x = 1\nprint(self.x)"),
+    "timer not kept": ticking("self.timer.cancel()"),
+    "method outside of the class": node("self.create_timer(0.1, self.tick)").replace(
+        "rclpy.init()", "def tick(self):\n    pass\n\nrclpy.init()"
+    ),
+    "println of a serial port": bare(
+        'import serial\ns = serial.serial_for_url("loop://")\ns.println("a")'
+    ),
 }
 CALLS = {
     "own function, too few": script("def f(a, b):\n    pass\nf(1)"),
@@ -120,6 +137,13 @@ CALLS = {
     "first of a set": bare("a = {1, 2}\na[0]"),
     "append to a tuple": bare("a = ()\na.append(1)"),
     "json.load of a text": bare('json.load("x.json")'),
+    "thread without target": bare("import threading\nthreading.Thread(print)"),
+    "lock without brackets": bare("import threading\nl = threading.Lock\nwith l:\n    pass"),
+    "numbers summed one by one": bare("x = sum(1, 2)"),
+    "first of a map": bare("x = map(float, [1])[0]"),
+    "shape without brackets": bare("a = np.zeros(2, 2)"),
+    "text raised": bare('raise "error"'),
+    "program with its arguments": bare('import subprocess\nsubprocess.run("ls -l")'),
 }
 OPERATORS = {
     "message compared": bare_heard("if msg < 0.5:\n    pass"),
@@ -145,6 +169,8 @@ OPERATORS = {
     "format of a text": bare('x = "a"\ny = f"{x:.2f}"'),
     "minus None": bare("x = -self.last"),
     "in a message": bare_heard("x = 3 in msg"),
+    "list and tuple": bare("x = [1] + (2,)"),
+    "float formatted as a whole number": bare('x = 1.5\ny = f"{x:d}"'),
 }
 VALUES = {
     "not UTF-8": bare(r'b"\xff".decode()'),
@@ -186,6 +212,18 @@ VALUES = {
     "serial port that is not there": bare(
         'import serial\nserial.Serial("/dev/ttyNowhere", 115200)'
     ),
+    "texts and numbers sorted": bare('sorted([1, "a"])'),
+    "text written as bytes": bare('import io\nio.BytesIO().write("abc")'),
+    "text to a serial port": bare('import serial\nserial.serial_for_url("loop://").write("abc")'),
+    "bytes split by a text": bare('x = b"1,2"\nx.split(",")'),
+    "not YAML": bare('import yaml\nyaml.safe_load("a: [1, 2")'),
+    "place in an empty list": bare("x = []\nx[0] = 1"),
+    "key in an empty dictionary": bare('x = {}\nx["a"] += 1'),
+    "place beyond the only one": bare("x = [1]\nx[3]"),
+    "no number among several": bare('a, b = map(float, "1,x".split(","))'),
+    "places of format": bare('x = "{}, {}".format(1)'),
+    "port of Windows": bare('import serial\nserial.Serial("COM3", 9600)'),
+    "int of infinity": bare_heard("int(msg.ranges[0])", "LaserScan(ranges=[math.inf])"),
 }
 SYNTAX = {
     "no block": f"{HEAD}def main():\nprint(1)\n",
@@ -198,6 +236,7 @@ SYNTAX = {
     "colon": f"{HEAD}def main()\n    pass\n",
     "colon of an if": f"{HEAD}if 1 > 0\n    pass\n",
     "quotation mark": f'{HEAD}print("a)\n',
+    "quotation mark within": f"{HEAD}print('don't')\n",
     "triple quotation mark": f'{HEAD}x = """abc\n',
     "curly quotes": f"{HEAD}print(“a”)\n",
     "guillemets": f"{HEAD}print(«a»)\n",
@@ -226,6 +265,26 @@ SYNTAX = {
     "prompt": f"{HEAD}>>> x = 1\n",
     "conflict": f"{HEAD}<<<<<<< HEAD\nx = 1\n",
     "backslash": f'{HEAD}x = "C:\\Users"\n',
+    "new of Java": f"{HEAD}x = new Node('a')\n",
+    "return in a lambda": f"{HEAD}f = lambda x: return x\n",
+    "loop of C": f"{HEAD}for (i = 0; i < 3; i++):\n    pass\n",
+    "bracket of an if": f"{HEAD}if 'a'.startswith('b':\n    pass\n",
+    "colon in round brackets": f"{HEAD}print('speed': 1.0)\n",
+    "arrow of C": f"{HEAD}self->x = 1\n",
+    "not equal of BASIC": f"{HEAD}if 1 <> 2:\n    pass\n",
+    "three equals signs": f"{HEAD}if 1 === 1:\n    pass\n",
+    "at least, turned round": f"{HEAD}if 1 => 2:\n    pass\n",
+    "then": f"{HEAD}if 1 > 2 then:\n    pass\n",
+    "question mark": f"{HEAD}x = y ? 1 : 2\n",
+    "switch": f"{HEAD}switch x:\n    pass\n",
+    "exception without as": f"{HEAD}try:\n    x = 1\nexcept Exception e:\n    pass\n",
+    "import the other way round": f"{HEAD}import Node from rclpy.node\n",
+    "module with a slash": f"{HEAD}import std_msgs/msg\n",
+    "type before an argument": f"{HEAD}def f(int x):\n    pass\n",
+    "half a line": f"{HEAD}x = 1 +\n",
+    "else at another depth": f"{HEAD}if 1:\n    x = 1\n    else:\n    x = 2\n",
+    "nothing below": f"{HEAD}def f():\n",
+    "exec of Python 2": f'{HEAD}exec "a"\n',
 }
 BYTES = {
     "UTF-16": (script("x = 1").encode("utf-16"), "UTF-16"),

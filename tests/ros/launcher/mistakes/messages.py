@@ -64,6 +64,40 @@ FIELDS = {
     "secs of a stamp": bare_heard("msg.header.stamp.secs", "Range()"),
     "text for bool": bare('m = Bool()\nm.data = "False"'),
     "None written for text": bare("m = String()\nm.data = None"),
+    "values without names": bare("v = Vector3(1.0, 2.0, 3.0)"),
+    "value without a name for a message": bare("t = Twist(0.3, 0.1)"),
+    "whole number without a name": bare("m = Float32(1)"),
+    "value without a name for a list": bare("m = Float32MultiArray([1, 2])"),
+    "field written with _": bare("t = Twist()\nt.linear_x = 1.0"),
+    "field written with _ in the constructor": bare("Twist(linear_x=1.0)"),
+    "field of the message around": bare(
+        "from geometry_msgs.msg import TransformStamped\nt = TransformStamped()\n"
+        't.header.child_frame_id = "base_link"'
+    ),
+    "constant in quotes": bare('r = Range()\nr.radiation_type = "ULTRASOUND"'),
+    "word for int": bare('m = Int32()\nm.data = "seven"'),
+    "fraction as text for int": bare('m = Int32()\nm.data = "7.5"'),
+    "word for float": bare('m = Float32()\nm.data = "fast"'),
+    "dictionary for float": bare("m = Float32()\nm.data = {}"),
+    "class for float": bare("m = Float32()\nm.data = Float32"),
+    "comma after a number": bare("m = Float32()\nm.data = 1.0,"),
+    "comma after a text": bare('p = PoseStamped()\np.header.frame_id = "map",'),
+    "text for a header": bare('p = PoseStamped()\np.header = "map"'),
+    "pixels with three dimensions": bare("m = Image()\nm.data = np.zeros((2, 2, 3), np.uint8)"),
+    "pixels of floats": bare("m = Image()\nm.data = np.zeros((2, 2, 3))"),
+    "array of whole numbers": bare("m = Float32MultiArray()\nm.data = np.array([1, 2])"),
+    "array with two dimensions": bare("m = LaserScan()\nm.ranges = np.array([[1.0, 2.0]])"),
+    "array of texts": bare('m = Float32MultiArray()\nm.data = np.array(["a"])'),
+    "list of lists": bare("m = Float32MultiArray()\nm.data = [[1.0, 2.0], [3.0, 4.0]]"),
+    "list with None": bare("m = JointState()\nm.position = [None]"),
+    "range for floats": bare("m = LaserScan()\nm.ranges = range(3)"),
+    "map for a list": bare("m = LaserScan()\nm.ranges = map(float, [1, 2])"),
+    "dictionary for a list": bare("m = LaserScan()\nm.ranges = {}"),
+    "text with commas for a list": bare('m = Float32MultiArray()\nm.data = "1,2,3"'),
+    "number for a covariance": bare("m = Odometry()\nm.pose.covariance = 0.0"),
+    "rows of a covariance": bare("m = Odometry()\nm.pose.covariance = np.eye(6).tolist()"),
+    "square brackets for a vector": bare_heard("x = msg.linear[1]", "Twist()"),
+    "square brackets for a reading": bare_heard("x = msg[0]", "Float32MultiArray(data=[1.0])"),
 }
 SENT = {
     "another type published": ticking("self.p.publish(String())"),
@@ -121,7 +155,7 @@ SENT = {
     "publish of the function that makes": ticking("self.create_publisher.publish(Float32())"),
     "publish of a subscription": ticking(
         "self.s.publish(Float32())",
-        init='self.s = self.create_subscription(Float32, "/x", print, 10)',
+        init='self.s = self.create_subscription(Float32, "/x", lambda m: None, 10)',
     ),
     "request and response swapped": node(
         SERVICE,
@@ -134,5 +168,10 @@ SENT = {
         f"{SERVICE}\nself.future.add_done_callback(self.done)",
         "def add(self, request, response):\n    return response\n\n"
         "def done(self, answer):\n    print(answer.sum)",
+    ),
+    "a whole number published": ticking("self.p.publish(1)"),
+    "class in a list of messages": ticking(
+        "from tf2_ros import TransformBroadcaster\nfrom geometry_msgs.msg import TransformStamped\n"
+        "TransformBroadcaster(self).sendTransform(TransformStamped)"
     ),
 }

@@ -49,10 +49,21 @@ MADE = {
     "logger is rclpy's own": node("self._logger = None\n" + 'self.get_logger().info("x")'),
     "handle is a method": node(PUBLISHER, "def handle(self, msg):\n    pass"),
     "method called on the class": node("pass").replace("node = Mistaken()", "Mistaken.get_name()"),
+    "init without self": script(
+        'class N(Node):\n    def __init__():\n        super().__init__("n")\nrclpy.init()\nN()'
+    ),
+    "derived from a node that is made": script("class N(Node()):\n    pass"),
+    "name given to init": script('rclpy.init("talker")'),
+    "node spins itself": node("pass").replace("rclpy.spin(node)", "node.spin()"),
+    "rate of rclpy": ticking("r = rclpy.create_rate(10)"),
+    "maker called on the class": ticking('Node.create_publisher(Float32, "/x", 10)'),
 }
 CREATED = {
     "two types for a topic": node(
-        f'{PUBLISHER}\nself.create_subscription(String, "/out", print, 10)'
+        f'{PUBLISHER}\nself.create_subscription(String, "/out", lambda msg: None, 10)'
+    ),
+    "a function that tells nothing of what it takes": node(
+        'self.create_subscription(Float32, "/x", max, 10)'
     ),
     "no queue depth": node('self.create_publisher(Float32, "/out")'),
     "no queue depth for a subscription": node(
@@ -117,6 +128,19 @@ CREATED = {
     ),
     "init misspelt": node("pass").replace("__init__(self)", "__int__(self)"),
     "no init in the class": script("class N(Node):\n    pass\nrclpy.init()\nN()"),
+    "queue_size of ROS 1": node('self.create_publisher(Float32, "/out", queue_size=10)'),
+    "depth in quotes": bare('QoSProfile(depth="10")'),
+    "policy misspelt": bare("QoSProfile(depth=10, durable=True)"),
+    "policy in small letters": bare(
+        "from rclpy.qos import ReliabilityPolicy\nReliabilityPolicy.best_effort"
+    ),
+    "group without brackets": script(
+        "from rclpy.callback_groups import ReentrantCallbackGroup\nrclpy.init()\n"
+        'Node("x").create_timer(1.0, lambda: None, ReentrantCallbackGroup)'
+    ),
+    "wait in quotes": ticking('self.create_client(Trigger, "/s").wait_for_service("1.0")'),
+    "rate in quotes": ticking('self.create_rate("10")'),
+    "arguments too many": node("pass").replace("node = Mistaken()", 'node = Mistaken("x")'),
 }
 PARAMETERS = {
     "parameter not declared": node('self.get_parameter("speed")'),
@@ -167,6 +191,25 @@ PARAMETERS = {
     "pair set": node('self.declare_parameter("v", 1.0)\nself.set_parameters([("v", 2.0)])'),
     "undeclared set": node('self.set_parameters([Parameter("speed", value=2.0)])'),
     "type and value of a parameter": bare('Parameter("v", Parameter.Type.DOUBLE, 2)'),
+    "parameters without pairs": node('self.declare_parameters("", ["v", 1.0])'),
+    "message around a parameter's value": node(
+        'self.declare_parameter("v", 1.0)\nx = self.get_parameter("v").get_parameter_value() * 2'
+    ),
+    "parameter that is a word": node(
+        'self.declare_parameter("v", "fast")\nx = self.get_parameter("v").value + 1'
+    ),
+    "parameter that is a number in quotes": node(
+        'self.declare_parameter("v", "5")\nx = self.get_parameter("v").value * 1.5'
+    ),
+    "one name for a list of names": node('self.get_parameters("speed")'),
+    "callback of parameters without them": node(
+        'self.declare_parameter("v", 1.0)\nself.add_on_set_parameters_callback(self.on)\n'
+        'self.set_parameters([Parameter("v", value=2.0)])',
+        "def on(self):\n    pass",
+    ),
+    "callback of parameters called": node(
+        "self.add_on_set_parameters_callback(self.on())", "def on(self):\n    pass"
+    ),
 }
 CLOCKS = {
     "stamp subtracted from now": heard(
@@ -247,6 +290,37 @@ SEEN = {
         "class Camera:\n    def read(self):\n        return False, None\n"
         "ok, f = Camera().read()\nf.shape"
     ),
+    "fraction for a picture's size": bare(
+        "import cv2\ncv2.resize(np.zeros((4, 4, 3), np.uint8), (2.0, 2.0))"
+    ),
+    "fraction for a point": bare(
+        "import cv2\na = np.zeros((4, 4, 3), np.uint8)\nw = 4\n"
+        "cv2.circle(a, (w / 2, 1), 3, (0, 0, 255))"
+    ),
+    "fraction for a radius": bare(
+        "import cv2\na = np.zeros((4, 4, 3), np.uint8)\ncv2.circle(a, (1, 1), 3.5, (0, 0, 255))"
+    ),
+    "number for a point": bare(
+        "import cv2\na = np.zeros((4, 4, 3), np.uint8)\ncv2.circle(a, 1, 3, (0, 0, 255))"
+    ),
+    "name of a colour": bare(
+        'import cv2\na = np.zeros((4, 4, 3), np.uint8)\ncv2.circle(a, (1, 1), 3, "red")'
+    ),
+    "file for a picture": bare('import cv2\ncv2.cvtColor("a.png", cv2.COLOR_BGR2GRAY)'),
+    "number for a text in a picture": bare(
+        "import cv2\na = np.zeros((4, 4, 3), np.uint8)\ncv2.putText(a, 5, (0, 0), 0, 1, (0, 0, 0))"
+    ),
+    "picture and file swapped": bare(
+        'import cv2\na = np.zeros((4, 4, 3), np.uint8)\ncv2.imwrite(a, "a.png")'
+    ),
+    "thresholds missing": bare("import cv2\na = np.zeros((4, 4), np.uint8)\ncv2.Canny(a)"),
+    "filter of even size": bare(
+        "import cv2\na = np.zeros((4, 4), np.uint8)\ncv2.GaussianBlur(a, (4, 4), 0)"
+    ),
+    "grey picture made grey": bare(
+        "import cv2\na = np.zeros((4, 4), np.uint8)\ncv2.cvtColor(a, cv2.COLOR_BGR2GRAY)"
+    ),
+    "arrays that are not multiplied": bare("np.array([1, 2]) @ np.array([1, 2, 3])"),
 }
 LOGGED = {
     "logger without brackets": ticking('self.get_logger.info("x")'),

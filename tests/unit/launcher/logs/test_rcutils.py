@@ -92,6 +92,15 @@ def test_the_usual_words_of_other_programs(line: str, severity: Severity) -> Non
     assert severities(line) == [severity]
 
 
+def test_that_the_middleware_takes_another_port_is_no_error() -> None:
+    line = (
+        "2026-01-01 10:00:00.123 [RTPS_TRANSPORT_SHM Error] Failed init_port fastrtps_port7016: "
+        "open_and_lock_file failed -> Function open_port_internal"
+    )
+    parsed = SeverityParser().parse(line, NOW, Severity.ERROR)
+    assert (parsed.severity, parsed.text) == (Severity.DEBUG, line)
+
+
 def test_a_colour_counts_where_there_is_no_word() -> None:
     parsed = SeverityParser().parse("no port", NOW, Severity.ERROR)
     assert parsed.severity is Severity.ERROR
