@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import signal
 import sys
 from contextlib import aclosing
 from pathlib import Path
@@ -21,6 +20,8 @@ from course.lessons.catalog import find_lesson
 from course.results import State
 from launcher.errors import UsageError
 from launcher.processes.confinement import Confinement, confinement
+from launcher.processes.ending import ENDING
+from launcher.processes.interrupts import run
 from launcher.processes.prctl import become_subreaper
 from text.i18n import N_, _, language
 from text.os_words import os_reason
@@ -73,7 +74,7 @@ def grade_command(options: Namespace) -> int:
     # What escapes from an examiner that was killed becomes a child of this process, and is ended.
     become_subreaper()
     report = _GradeReport(len(chosen), aloud=writer is None or output is not None)
-    grades = asyncio.run(_graded(terms, chosen, (options.jobs, domains), report))
+    grades = run(_graded(terms, chosen, (options.jobs, domains), report))
     report.end(grades)
     if writer is not None:
         _put(writer(grades), output)
@@ -172,7 +173,7 @@ async def _graded(
     grades: dict[int, Grade] = {}
     loop, task = asyncio.get_running_loop(), asyncio.current_task()
     assert task is not None
-    for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for each in ENDING:
         loop.add_signal_handler(each, task.cancel)
     try:
         async with aclosing(
@@ -187,24 +188,22 @@ async def _graded(
 
 
 class _GradeReport:
-    """What people read: of one folder, each step as it is judged; of several, one table."""
+    """What people read: of one folder, each step; of several, one table."""
 
     def __init__(self, count: int, *, aloud: bool) -> None:
         """`aloud`: on standard output, which otherwise belongs to another format."""
         self.lines: list[str] = []
         self._count = count
         self._done = 0
-        self._shown: set[str] = set()
         self._aloud = aloud
         self._paint = Paint(sys.stdout)
 
     def step(self, _submission: Submission, step: StepGrade) -> None:
-        """A step has been judged."""
-        if self._count == 1:
-            self._say_step(step)
+        """A step has been judged: not for good, for its node may still fail."""
+        if self._count == 1 and self._aloud:
+            say_error(f"{plain(step.step.id)}: {_(_STATES[step.result.state.value])}")
 
     def _say_step(self, step: StepGrade) -> None:
-        self._shown.add(step.step.id)
         state = step.result.state
         words = f"{_(_STATES[state.value]):{_WIDTH}}"
         points = f"{step.result.earned}/{step.result.points}"
@@ -243,8 +242,7 @@ class _GradeReport:
 
     def _end_of_one(self, grade: Grade) -> None:
         for step in grade.steps:
-            if step.step.id not in self._shown:
-                self._say_step(step)
+            self._say_step(step)
         for words in remarks(grade):
             self._write(words)
         self._write(

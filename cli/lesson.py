@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from course.lessons.catalog import find_lesson, lessons
 from course.proof.domains import unused_domains
 from course.proof.proof import ProofVerdict, incomplete, prove, variants
 from course.proof.skeleton import new_lesson
+from launcher.processes.interrupts import run
 from launcher.profile.text import shown
 from text.i18n import _, localized, ngettext
 from text.output import GREEN, RED, Paint, write
@@ -30,7 +30,7 @@ def lesson_command(options: Namespace) -> int:
         write(_("made {path}; next: deck lesson check {path}").format(path=plain(shown(folder))))
         return 0
     chosen = [find_lesson(name) for name in options.lessons] or list(lessons().values())
-    return asyncio.run(_check(chosen, options.jobs, options.seed))
+    return run(_check(chosen, options.jobs, options.seed))
 
 
 async def _check(chosen: Sequence[LessonFolder], jobs: int, seed: int) -> int:

@@ -328,9 +328,13 @@ class _Grading:
         elif event["event"] == "step":
             result = unpack_step(event["step"])
             document = next(step for step in self._terms.lesson.steps if step.id == result.id)
-            step = StepGrade(document, result, float(event["seconds"]))
-            self._grade = replace(self._grade, steps=(*self._grade.steps, step))
-            self._on_step(self._submission, step)
+            known = {one.step.id: one for one in self._grade.steps}
+            # One that is told again has been judged before; something was found out since.
+            before = known.get(result.id)
+            seconds = before.seconds if before is not None else float(event["seconds"])
+            known[result.id] = StepGrade(document, result, seconds)
+            self._grade = replace(self._grade, steps=tuple(known.values()))
+            self._on_step(self._submission, known[result.id])
 
 
 def _bag_in(place: Path) -> Path:

@@ -22,6 +22,8 @@ from launcher.status import STUCK, NodeState
 from text.sentences import Words, say
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from course.judge.evidence import Evidence
     from graph.data import CallResult
     from launcher.profile.steps.model import StepDocument
@@ -41,31 +43,35 @@ _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 """Where an object is: another place in each run."""
 
 
+def learners_nodes(step: StepDocument, evidence: Evidence) -> list[str]:
+    """Return the names of the nodes that must be at work for a step: those of its file, or all."""
+    own = [node for node in evidence.nodes.values() if node.file]
+    named = [node.name for node in own if Path(node.file).name == step.file]
+    return named or [node.name for node in own]
+
+
 async def not_at_work(
-    step: StepDocument, evidence: Evidence, since_s: float, ran: frozenset[str]
+    names: Sequence[str], evidence: Evidence, since_s: float, ran: frozenset[str]
 ) -> CheckResult | None:
-    """Return what keeps a node of this step from its work; None if all are at it.
+    """Return what keeps a node of these from its work; None if all are at it.
 
     `since_s`: a crash since then counts, even if the node has been started again.
     `ran`: nodes of which the end counts as well, even if it was no crash.
     """
-    own = [node for node in evidence.nodes.values() if node.file]
-    named = [node.name for node in own if Path(node.file).name == step.file]
-    names = named or [node.name for node in own]
     await evidence.until(lambda: MET if _settled(names, evidence) else None, SETTLED_WITHIN_S)
     silent = await asyncio.gather(*(_silent_node(name, evidence) for name in names))
     for name, asked_in_vain in zip(names, silent, strict=True):
-        seen, look = _trouble(name, evidence, since_s, ended_too=name in ran)
-        # Several nodes may run it, and which of them fails first is chance.
-        what = Path(evidence.nodes[name].file).name
+        seen, look = trouble(name, evidence, since_s, ended_too=name in ran)
         if not seen and asked_in_vain:
             seen, look = _silence(asked_in_vain, evidence.nodes[name])
         if seen:
+            # Several nodes may run it, and which of them fails first is chance.
+            what = Path(evidence.nodes[name].file).name
             return CheckResult(State.FAILED, say("{program} is at work", program=what), seen, look)
     return None
 
 
-def _trouble(name: str, evidence: Evidence, since_s: float, *, ended_too: bool) -> tuple[str, str]:
+def trouble(name: str, evidence: Evidence, since_s: float, *, ended_too: bool) -> tuple[str, str]:
     """Return how a node has ended, or in what it is stuck; nothing of one that runs."""
     node = evidence.trouble(name, since_s)
     if node is None:
@@ -103,12 +109,14 @@ def _silence(node: str, status: NodeStatus) -> tuple[str, str]:
     return seen, say("Does main come to rclpy.spin, and does every callback return?")
 
 
-def _settled(names: list[str], evidence: Evidence) -> bool:
-    """Whether none of these nodes is on its way, or has ended without having been told of yet."""
+def _settled(names: Sequence[str], evidence: Evidence) -> bool:
+    """Whether none of these nodes is on its way, has ended untold, or is between two crashes."""
     nodes = [evidence.nodes[name] for name in names]
     processes = (read_process(node.pid) for node in nodes if node.pid is not None)
     ended = any(process is None or process.zombie for process in processes)
-    return not ended and not any(node.state in _ON_THE_WAY for node in nodes)
+    return not ended and not any(
+        node.state in _ON_THE_WAY or evidence.may_crash_again(node.name) for node in nodes
+    )
 
 
 async def _silent_node(name: str, evidence: Evidence) -> str:

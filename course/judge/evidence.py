@@ -6,7 +6,7 @@ import asyncio
 import math
 import time
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,6 +32,8 @@ KEPT_LINES = 2000
 MARGIN_S = 0.02
 """How much later than it began a node may be known to have begun."""
 TICK_S = 0.1
+LONGER_S = 1.0
+"""So much longer than the last one must a process live, after a crash, not to be about to crash."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,19 @@ class Observation:
 MET = Observation(met=True)
 
 
+@dataclass(frozen=True)
+class Crash:
+    """The end of a process by a mistake."""
+
+    pid: int
+    heard_s: float
+    """When that was heard first, unix time."""
+    lived_s: float
+    """How old the process was."""
+    status: NodeStatus
+    """What it was told with."""
+
+
 @dataclass
 class Evidence:
     """Everything the judge knows at the moment; lives on the judge's event loop."""
@@ -84,9 +99,11 @@ class Evidence:
     _lines: dict[str, deque[LogLine]] = field(default_factory=dict)
     _born: dict[str, tuple[int, float]] = field(default_factory=dict)
     """Of each node its process, and when that began, unix time."""
-    _crashed: dict[str, tuple[float, NodeStatus]] = field(default_factory=dict)
-    """Of each node that has crashed when that was heard, unix time, and what it was told with."""
+    _crashed: dict[str, Crash] = field(default_factory=dict)
+    """Of each node that has crashed, the last time it did."""
     _policy_restarts: dict[str, int] = field(default_factory=dict)
+    _again: set[str] = field(default_factory=set)
+    """Nodes whose process was started by their policy, after a crash."""
     _changed: asyncio.Event = field(default_factory=asyncio.Event)
 
     def __post_init__(self) -> None:
@@ -136,6 +153,7 @@ class Evidence:
             self._born[node.name] = (node.pid, _began_s(node.pid, node.uptime_s or 0.0))
             again = node.restarts > self._policy_restarts.get(node.name, 0)
             self._policy_restarts[node.name] = node.restarts
+            (self._again.add if again else self._again.discard)(node.name)
             if node.name in self.touched:
                 self.touched.discard(node.name)
                 # Its file may have been saved meanwhile: then one start serves both.
@@ -145,8 +163,14 @@ class Evidence:
 
     def _note_crashes(self, nodes: Iterable[NodeStatus]) -> None:
         for node in nodes:
-            if node.crashed:
-                self._crashed[node.name] = (time.time(), node)
+            if not node.crashed:
+                continue
+            now_s, before = time.time(), self._crashed.get(node.name)
+            pid, began_s = self._born.get(node.name, (0, now_s))
+            if before is not None and before.pid == pid:
+                self._crashed[node.name] = replace(before, status=node)
+            else:
+                self._crashed[node.name] = Crash(pid, now_s, now_s - began_s, node)
 
     def trouble(self, name: str, since_s: float) -> NodeStatus | None:
         """Return how a node was when it crashed, or is if it ails; None if it did not since then.
@@ -156,8 +180,30 @@ class Evidence:
         now = self.nodes[name]
         if now.ails or now.crashed:
             return now
-        crashed_s, then = self._crashed.get(name, (-math.inf, now))
-        return then if crashed_s >= since_s else None
+        crash = self._crashed.get(name)
+        return crash.status if crash is not None and crash.heard_s >= since_s else None
+
+    def forget_earlier_crash(self, name: str) -> None:
+        """Forget the crash of another process of a node than the one that runs.
+
+        It may have been heard of in the moment in which this one began.
+        """
+        crash = self._crashed.get(name)
+        if crash is not None and crash.pid != self._born[name][0]:
+            del self._crashed[name]
+
+    def may_crash_again(self, name: str) -> bool:
+        """Whether a node that was started again after a crash has not lived longer than before."""
+        crash = self._crashed.get(name)
+        if crash is None or name not in self._again or self._born[name][0] == crash.pid:
+            return False
+        return self.lived_s(name) < crash.lived_s + LONGER_S
+
+    def lived_s(self, node: str) -> float:
+        """Return how long a node's process has run, or the one that crashed last."""
+        pid, began_s = self._born.get(node, (0, time.time()))
+        crash = self._crashed.get(node)
+        return crash.lived_s if crash and crash.pid == pid else time.time() - began_s
 
     def began_s(self, node: str) -> float:
         """Return when the process of a node began, unix time; 0 if there has been none."""

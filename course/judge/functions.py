@@ -44,7 +44,13 @@ class SeenMessages:
     """Of each topic, when each message came (unix time) and its fields, oldest first."""
     values: Mapping[str, Drawn]
     logs: Mapping[str, list[str]]
-    """Of each node of the profile, the lines it has logged."""
+    """Of each node of the profile, the lines it has logged or printed."""
+    logged: Mapping[str, list[tuple[float, Mapping[str, str]]]]
+    """Of each node, what it has given to a logger of ROS: when (unix time), `severity` and `text`.
+
+    It is read from what the node writes: a message on /rosout lives for 10 s only, and on a busy
+    machine whoever subscribes may be found later than that.
+    """
 
 
 def load(folder: Path, named: str) -> Callable[[SeenMessages], object]:
@@ -90,6 +96,7 @@ async def _asked(
     evidence: Evidence,
     since_s: float,
 ) -> object:
+    lines = {node: evidence.lines(node, since_s) for node in evidence.nodes}
     seen = SeenMessages(
         messages={
             topic: [
@@ -99,8 +106,14 @@ async def _asked(
             for topic in check.topics
         },
         values=evidence.values,
-        logs={
-            node: [line.text for line in evidence.lines(node, since_s)] for node in evidence.nodes
+        logs={node: [line.text for line in of_it] for node, of_it in lines.items()},
+        logged={
+            node: [
+                (line.time_s, {"severity": line.severity.value, "text": line.text})
+                for line in of_it
+                if line.logger
+            ]
+            for node, of_it in lines.items()
         },
     )
     try:

@@ -9,11 +9,12 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from course.judge.at_work import not_at_work, running
+from course.judge.at_work import learners_nodes, not_at_work, running
 from course.judge.evidence import MET, Evidence, Observation
 from course.judge.functions import LessonFaultError
 from course.judge.kinds import expected, judged, topics_of
 from course.judge.missing import dead_nodes
+from course.judge.unasked import UnaskedFailures, start_anew
 from course.results import CheckResult, LessonResult, State, StepResult
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
     from launcher.profile.steps.model import StepDocument
 
 PERIOD_S = 0.1
-ROSOUT = "/rosout"
 SETTLED_WITHIN_S = 15.0
 NAMED_WITHIN_S = 1.5
 """After this, a node need not have the name of the profile, or not run in the process started."""
@@ -90,19 +90,37 @@ class Judge:
     async def once(
         self, *, until: str = "", on_step: Callable[[StepResult], object] = lambda _: None
     ) -> LessonResult:
-        """Judge every step once, in order; those after the step `until` are left out."""
+        """Judge every step once, in order; those after the step `until` are left out.
+
+        `on_step` hears of each, and once more of one that a later failure of its node changes.
+        """
         self.follow()
         await self.settle()
         results: list[StepResult] = []
+        told: dict[str, StepResult] = {}
+        failures = UnaskedFailures(self.evidence)
+
+        def tell() -> None:
+            for each in results:
+                if told.get(each.id) != each:
+                    told[each.id] = each
+                    on_step(each)
+
+        await failures.look()
         for step in self.steps.values():
-            result = self.waits(step, results)
+            result = self.waits(step, results) or self._failed_unasked(step, failures)
             if result is None:
                 await self._start_crashed()
                 result = await self.step(step)
-            results.append(result)
-            on_step(result)
+                await failures.look_after(step, result)
+            results = self._revised([*results, result], failures)
+            tell()
             if step.id == until:
                 break
+        if not until:
+            await failures.look_on()
+            results = self._revised(results, failures)
+            tell()
         return LessonResult(self.seed, self.evidence.values, tuple(results))
 
     async def _start_crashed(self) -> None:
@@ -110,20 +128,32 @@ class Judge:
 
         Whether one would be started again by itself, and when, depends on how fast all of it is.
         """
-        evidence = self.evidence
-        down = [node for node in evidence.nodes.values() if node.file and node.crashed]
-        names = [node.name for node in down]
-        if not names:
-            return
-        began_s = {name: evidence.began_s(name) for name in names}
-        evidence.touched.update(names)
-        await evidence.client.restart(*names)
+        nodes = self.evidence.nodes.values()
+        names = [node.name for node in nodes if node.file and node.crashed]
+        if names:
+            await start_anew(names, self.evidence)
+            await self.settle()
 
-        def all_begun() -> Observation | None:
-            return MET if all(evidence.began_s(name) > began_s[name] for name in names) else None
+    def _revised(
+        self, results: Iterable[StepResult], failures: UnaskedFailures
+    ) -> list[StepResult]:
+        """Return results as they are by what is known of the nodes now."""
+        revised: list[StepResult] = []
+        for result in results:
+            step = self.steps[result.id]
+            now = self.waits(step, revised) or self._failed_unasked(step, failures)
+            revised.append(now or result)
+        return revised
 
-        await evidence.until(all_begun, FOUND_WITHIN_S)
-        await self.settle()
+    def _failed_unasked(self, step: StepDocument, failures: UnaskedFailures) -> StepResult | None:
+        """Return the result of a step whose node fails whatever is asked of it; None otherwise."""
+        idle = failures.of(step)
+        if idle is None:
+            return None
+        checks = [self._filled(check) for check in step.checks]
+        return _concluded(
+            step, [CheckResult(State.NOT_YET, expected(check)) for check in checks], 0, idle
+        )
 
     def waits(self, step: StepDocument, results: Iterable[StepResult]) -> StepResult | None:
         """Return the result of a step that needs one that has not passed; None if it can begin."""
@@ -216,7 +246,7 @@ class Judge:
             ]
         meanwhile = before.state if before is not None else State.NOT_YET
         on_check(StepResult(step.id, meanwhile, step.points, (*found, *more)))
-        ask = partial(not_at_work, step, self.evidence, time.time())
+        ask = partial(not_at_work, learners_nodes(step, self.evidence), self.evidence, time.time())
         ran, everybody = running(self.evidence), frozenset(self.evidence.nodes)
         idle: CheckResult | None = None
         done = 0
@@ -261,13 +291,8 @@ class Judge:
         return type(check).model_validate(data)
 
     def follow(self, steps: Iterable[StepDocument] | None = None) -> None:
-        """Subscribe to what these steps need, or all steps, and to nothing else but the log.
-
-        What a node logs when it starts is not said again when the turn of a step comes.
-        """
-        everything = _topics_of(self.steps.values())
-        topics = everything if steps is None else _topics_of(steps) | (everything & {ROSOUT})
-        self.evidence.observer.follow(topics)
+        """Subscribe to what these steps need, or all steps, and to nothing else."""
+        self.evidence.observer.follow(_topics_of(self.steps.values() if steps is None else steps))
 
 
 def _concluded(

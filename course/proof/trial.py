@@ -65,13 +65,14 @@ async def trial(
         supervisor=supervisor,
         confined_to=map(str, places.writable) if confined else (),
     )
-    try:
-        async with judging(lesson, client, seed, functions) as judge:
-            yield judge
-    finally:
-        # Nobody needs to wait for nodes that do not want to end.
-        with contextlib.suppress(LauncherError, asyncio.TimeoutError):
-            await asyncio.wait_for(client.shutdown(now=True), PARTING_S)
+    async with contextlib.aclosing(client):
+        try:
+            async with judging(lesson, client, seed, functions) as judge:
+                yield judge
+        finally:
+            # Nobody needs to wait for nodes that do not want to end.
+            with contextlib.suppress(LauncherError, asyncio.TimeoutError):
+                await asyncio.wait_for(client.shutdown(now=True), PARTING_S)
 
 
 def _at_home(profile: Profile, lesson: LessonFolder, places: Places) -> Profile:

@@ -2,31 +2,25 @@
 
 import re
 
-INFO = 20
-SEVERITIES = {10: "debug", 20: "info", 30: "warning", 40: "error", 50: "fatal"}
+GREETING = re.compile("hello|привет", re.IGNORECASE)
 
 
 def greets(seen):
     """The node has said hello to its log."""
     # Both nodes are this file; the greeting of the one that starts first may come too early.
-    nodes = ("hello", "hello_fast")
-    lines = [line["msg"] for node in nodes for _time, line in logged(seen, node)]
-    # The first: it is the same in each run.
-    if any(re.search("hello|привет", text, re.IGNORECASE) for text in lines):
+    lines = [line for node in ("hello", "hello_fast") for _time, line in seen.logged[node]]
+    greetings = [line for line in lines if GREETING.search(line["text"])]
+    if any(line["severity"] == "info" for line in greetings):
         return None
-    others = [
-        SEVERITIES.get(line["level"], "?")
-        for _time, line in seen.messages["/rosout"]
-        if line["name"] in nodes and re.search("hello|привет", line["msg"], re.IGNORECASE)
-    ]
-    if others:
+    if greetings:
+        severity = greetings[-1]["severity"]
         return {
-            "en": f"the greeting is logged, with the severity {others[-1]} and not info: "
+            "en": f"the greeting is logged, with the severity {severity} and not info: "
             "use self.get_logger().info(...)",
-            "ru": f"приветствие записано в журнал с уровнем {others[-1]}, а не info: "
+            "ru": f"приветствие записано в журнал с уровнем {severity}, а не info: "
             "нужен self.get_logger().info(...)",
         }
-    if any(re.search("hello|привет", text, re.IGNORECASE) for text in seen.logs["hello"]):
+    if any(GREETING.search(text) for text in seen.logs["hello"]):
         return {
             "en": "the greeting is only printed, hello has not logged it: "
             "use self.get_logger().info(...)",
@@ -34,9 +28,11 @@ def greets(seen):
             "нужен self.get_logger().info(...)",
         }
     if lines:
+        # It is the same in each run.
+        first = lines[0]["text"]
         return {
-            "en": f"no line with hello or привет; the first one: {lines[0]}",
-            "ru": f"нет строки со словом «привет» или hello; первая: {lines[0]}",
+            "en": f"no line with hello or привет; the first one: {first}",
+            "ru": f"нет строки со словом «привет» или hello; первая: {first}",
         }
     return {"en": "hello logs nothing", "ru": "hello ничего не пишет в журнал"}
 
@@ -55,8 +51,9 @@ def counts(seen, node, period_s):
     """The newest numbers that a node has logged follow each other at this period."""
     numbered = [
         (logged_s, numbers)
-        for logged_s, line in logged(seen, node)
-        if (numbers := {int(each) for each in re.findall(r"(?<!ROS )\d+", line["msg"])})
+        for logged_s, line in seen.logged[node]
+        if line["severity"] == "info"
+        and (numbers := {int(each) for each in re.findall(r"(?<!ROS )\d+", line["text"])})
     ][-3:]
     if len(numbered) < 3:
         return {
@@ -78,13 +75,3 @@ def counts(seen, node, period_s):
             "ru": f"{node} считает каждые {about_s:g} с, а не каждые {period_s:g} с",
         }
     return None
-
-
-def logged(seen, node):
-    """What a node has logged: when, and the message."""
-    lines = [
-        (line["stamp"]["sec"] + line["stamp"]["nanosec"] / 1e9, line)
-        for _, line in seen.messages["/rosout"]
-        if line["name"] == node and line["level"] == INFO
-    ]
-    return sorted(lines, key=lambda each: each[0])

@@ -9,9 +9,7 @@ SHORTEST_S, LONGEST_S = 2.0, 5.0
 def seldom(seen):
     """Tell whether the agent logs about a picture every three seconds."""
     looks_s = sorted(
-        line["stamp"]["sec"] + line["stamp"]["nanosec"] / 1e9
-        for _, line in seen.messages["/rosout"]
-        if line["name"] == "vlm_agent" and SIZE.search(line["msg"])
+        logged_s for logged_s, line in seen.logged["vlm_agent"] if SIZE.search(line["text"])
     )
     if len(looks_s) < 2:
         return {

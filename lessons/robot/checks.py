@@ -4,6 +4,8 @@ import math
 
 DRIVE, ODOM, SONAR = "/drive", "/odom", "/sensor/sonar_front"
 STILL = 1e-3
+STEADY_S, LATE_S = 0.5, 0.2
+"""How long before a word the measurements must agree, and after it: some arrive late."""
 
 
 def speeds(seen):
@@ -49,35 +51,64 @@ def ends_with_a_stop(seen):
 
 
 def moves(seen):
-    """Tell whether the robot has moved by its odometry."""
+    """Tell whether the robot has moved by its odometry, and stands again."""
     places = [message["pose"]["pose"]["position"] for _, message in seen.messages[ODOM]]
     if len(places) < 2:
         return {"en": "no odometry comes", "ru": "одометрия не приходит"}
-    way = math.hypot(places[-1]["x"] - places[0]["x"], places[-1]["y"] - places[0]["y"])
-    if way < 0.1:
+    start = places[0]
+    if max(math.hypot(at["x"] - start["x"], at["y"] - start["y"]) for at in places) < 0.1:
         return {
             "en": "the robot has moved by less than 0.1 m",
             "ru": "робот проехал меньше 0.1 м",
         }
-    return None
+    return still_drives(seen)
+
+
+def still_drives(seen):
+    """Return with which speed the robot drives; None if it stands."""
+    speed = seen.messages[ODOM][-1][1]["twist"]["twist"]["linear"]["x"]
+    if abs(speed) < 0.02:
+        return None
+    return {
+        "en": f"the robot still drives, {speed:.1f} m/s",
+        "ru": f"робот всё ещё едет, {speed:.1f} м/с",
+    }
 
 
 def decides(seen):
-    """Tell whether the word fits what the sonar has just said."""
+    """Tell whether each word fits what the sonar has said, where that can be told."""
     words = seen.messages["/ai_command"]
     if not words:
         return {"en": "no word came on /ai_command", "ru": "в /ai_command не пришло слова"}
-    when, message = words[0]
-    before = [each["data"] for time, each in seen.messages[SONAR] if time <= when + 0.2][-8:]
-    word = message["data"]
-    # One measurement in a thousand fails, and is nan.
-    clear = sum(metres >= 1.0 for metres in before) * 2 > len(before)
-    if before and word == ("вперед" if clear else "стоп"):
+    told = [(message["data"], path_clear(seen, when)) for when, message in words]
+    sure = [(word, clear) for word, clear in told if clear is not None]
+    if not sure:
+        return {
+            "en": "while words came, the sonar said now clear, now not clear",
+            "ru": "пока приходили слова, по сонару путь был то свободен, то нет",
+        }
+    for word, clear in sure:
+        if word != ("вперед" if clear else "стоп"):
+            return {
+                "en": f"the word is {word}, and the sonar says {'clear' if clear else 'not clear'}",
+                "ru": f"слово — {word}, а по сонару путь {'свободен' if clear else 'не свободен'}",
+            }
+    return None
+
+
+def path_clear(seen, when):
+    """Return whether the path was clear around this time; None where the sonar said both.
+
+    By which measurement a word was chosen nobody sees: the robot may be driving, and one
+    measurement in a thousand fails, and is nan.
+    """
+    told = seen.messages[SONAR]
+    if not told or told[0][0] > when - STEADY_S:
         return None
-    return {
-        "en": f"the word is {word}, and the sonar says {'clear' if clear else 'not clear'}",
-        "ru": f"слово — {word}, а по сонару путь {'свободен' if clear else 'не свободен'}",
+    around = {
+        message["data"] >= 1.0 for time, message in told if when - STEADY_S <= time <= when + LATE_S
     }
+    return around.pop() if len(around) == 1 else None
 
 
 def stands_before_the_wall(seen):
@@ -85,13 +116,9 @@ def stands_before_the_wall(seen):
     odometry, distances = seen.messages[ODOM], seen.messages[SONAR]
     if len(odometry) < 2 or not distances:
         return {"en": "no odometry or distance comes", "ru": "нет одометрии или расстояния"}
-    speed = odometry[-1][1]["twist"]["twist"]["linear"]["x"]
     nearest = min((each["data"] for _, each in distances if each["data"] > 0), default=math.inf)
-    if speed > 0.02:
-        return {
-            "en": f"the robot still drives, {speed:.1f} m/s",
-            "ru": f"робот всё ещё едет, {speed:.1f} м/с",
-        }
+    if drives := still_drives(seen):
+        return drives
     if nearest < 0.2:
         return {
             "en": "the robot came nearer than 0.2 m",

@@ -12,6 +12,7 @@ from course.judge.judge import judging
 from course.lessons.lesson import LessonFolder
 from course.results import State, StepResult
 from launcher.client.client import launch
+from tests.waiting import until
 
 NODE = """\
 import threading
@@ -97,6 +98,30 @@ async def test_a_step_passes_only_if_its_node_is_at_work(tmp_path: Path, ros_dom
             assert _last(first[name])[0] == f"{name}.py is at work"
             assert seen in _last(first[name])[1]
     assert "call_async" in _last(first["calls"])[2]
+
+
+async def test_between_two_crashes_it_is_not_at_work(tmp_path: Path, ros_domain: int) -> None:
+    """Each time it does what the check asks for, and answers, for two seconds."""
+    begin = 'threading.Timer(2.0, lambda: os.abort()).start(); print("now", flush=True)'
+    text = textwrap.dedent(NODE).format(name="crashes", begin=begin, tick="pass", spin=SPIN)
+    (tmp_path / "crashes.py").write_text(f"import os\n{text}")
+    node = {"run": "./crashes.py", "restart": "on-failure"}
+    step = {"id": "now", "checks": [{"log": "crashes", "matches": "now", "within": 30}]}
+    lesson_path = tmp_path / "lesson.yaml"
+    lesson_path.write_text(yaml.safe_dump({"nodes": {"crashes": node}, "steps": [step]}))
+    lesson = LessonFolder(tmp_path)
+    client = await launch(lesson_path, domain=ros_domain)
+    try:
+        async with judging(lesson, client, seed=1) as judge:
+            await until(
+                lambda: client.nodes["crashes"].restarts and client.nodes["crashes"].pid,
+                "the next process of one that has crashed",
+            )
+            result = await judge.step(lesson.steps[0])
+    finally:
+        await client.shutdown()
+    assert result.state is State.FAILED
+    assert _last(result)[0] == "crashes.py is at work"
 
 
 def _last(result: StepResult) -> tuple[str, str, str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import aclosing
 from pathlib import Path
@@ -46,6 +48,8 @@ STEPS = [
     {"id": "late", "needs": ["ends"], "checks": [{"node": "/talker"}]},
 ]
 
+SAID_WITHIN_S = 120.0
+
 Begin = Callable[[str], Awaitable[tuple["SupervisorClient", RemoteJudge]]]
 
 
@@ -75,13 +79,20 @@ async def begin(tmp_path: Path, ros_domain: int) -> AsyncIterator[Begin]:
 async def step_in(events: AsyncIterator[JudgeEvent], state: State, seen: str = "") -> StepResult:
     """The next step in this state, of which this was seen; those before are passed over."""
     said: list[str] = []
-    async for event in events:
-        assert not isinstance(event, JudgeEnded), event.reason
-        if isinstance(event, StepResult) and event.state is state:
-            said.append("".join(check.seen for check in event.checks))
-            if seen in said[-1]:
-                return event
-    raise AssertionError(f"the judge has only said: {said}")
+
+    async def found() -> StepResult:
+        async for event in events:
+            assert not isinstance(event, JudgeEnded), event.reason
+            if isinstance(event, StepResult):
+                said.append(f"{event.state.value}: {''.join(check.seen for check in event.checks)}")
+                if event.state is state and seen in said[-1]:
+                    return event
+        raise AssertionError(f"the judge has only said: {said}")
+
+    try:
+        return await asyncio.wait_for(found(), SAID_WITHIN_S)
+    except asyncio.TimeoutError:
+        pytest.fail(f"not within {SAID_WITHIN_S:g} s: {state} {seen!r}; the judge has said: {said}")
 
 
 async def test_a_mended_node_passes_and_a_passed_step_lets_the_next_one_begin(
@@ -151,10 +162,20 @@ async def test_a_flood_is_judged_and_the_judge_ends_with_its_session(begin: Begi
     async with aclosing(judge.events()) as events:
         judge.judge("field")
         assert (await step_in(events, State.PASSED)).points == 1
+        assert judges()
         await client.shutdown()
         last = [event async for event in events][-1]
         assert isinstance(last, JudgeEnded)
     await judge.close()
-    assert not [
-        each for each in psutil.Process().children() if "course.judge" in " ".join(each.cmdline())
-    ]
+    assert not judges()
+
+
+def judges() -> list[int]:
+    """Return the judges that this process has started and that have not ended."""
+    found = []
+    for child in psutil.Process().children():
+        # What has ended has no command line any more: other children may end meanwhile.
+        with contextlib.suppress(psutil.NoSuchProcess):
+            if "course.judge" in " ".join(child.cmdline()):
+                found.append(child.pid)
+    return found

@@ -26,17 +26,24 @@ DRIVE = "deck_interfaces/action/DriveToPoint"
 ADD = "example_interfaces/srv/AddTwoInts"
 STUBBORN = """
 import sys, time
+print("ready", flush=True)
 try:
     time.sleep(1000)
 except KeyboardInterrupt:
     sys.exit(3)
 """
 CHECKS = """
+GREETING = {"severity": "info", "text": "the actor is there"}
+
 def grows(seen):
     values = [message["data"] for _, message in seen.messages["/count"]]
     if len(values) < 3:
         return "too few"
     return None if values == sorted(values) else {"en": "it shrinks", "ru": "убывает"}
+
+def logs(seen):
+    logged = [line for _, line in seen.logged["actor"]][:1] + seen.logged["stubborn"]
+    return None if (logged, seen.logs["stubborn"]) == ([GREETING], ["ready"]) else f"{logged}"
 
 def never(seen):
     return {"en": f"drawn: {seen.values['n']}", "ru": "нет"}
@@ -131,6 +138,8 @@ PASSING: dict[str, dict[str, Any]] = {
     "no-publisher": {"no_publisher": "/count", "except": "/actor"},
     "gate": {"gate": "/shut", "from": "/actor", "distance": "/near", "stop_below": 0.5, "over": 1},
     "python": {"python": "checks.py:grows", "topics": {"/count": FLOAT}},
+    # It needs no topic: /rosout may forget, or be heard too late.
+    "python-logged": {"python": "checks.py:logs"},
 }
 
 FAILING: dict[str, tuple[dict[str, Any], str]] = {

@@ -18,11 +18,11 @@ from course.proof.proof import incomplete, prove, variants
 from tests.conftest import take
 
 if TYPE_CHECKING:
-    from course.proof.proof import Variant
     from tests.domains import DomainPool
 
 PROVEN_AT_ONCE, GRADED_AT_ONCE = 6, 2
 """Together more than the cores of a small machine: most of the time a run waits."""
+NODES_OF_MANY = 10
 MISTAKES_AT_LEAST = 5
 NAMES = [folder.name for folder in folders(SHIPPED)]
 
@@ -55,19 +55,27 @@ def _asked_for(request: pytest.FixtureRequest) -> list[str]:
 
 
 async def _all(chosen: list[LessonFolder], domains: list[int]) -> list[tuple[str, str]]:
-    """Return lesson and complaint, of all that have one."""
+    """Return lesson and complaint, of all that have one; whole robots one at a time, at the end."""
+    robots = [lesson for lesson in chosen if len(lesson.profile.nodes) > NODES_OF_MANY]
+    others = [lesson for lesson in chosen if lesson not in robots]
+    found = await asyncio.gather(
+        _proven(others, domains[:PROVEN_AT_ONCE]), _graded(others, domains[PROVEN_AT_ONCE:])
+    )
+    return [
+        *found[0],
+        *found[1],
+        *await _proven(robots, domains[:1]),
+        *await _graded(robots, domains[:1]),
+    ]
+
+
+async def _proven(chosen: list[LessonFolder], domains: list[int]) -> list[tuple[str, str]]:
+    """Try each starter and each mistake."""
     everything = [each for lesson in chosen for each in variants(lesson)]
     others = [each for each in everything if each.name != "solution"]
-    proven, graded = await asyncio.gather(
-        _proven(others, domains[:PROVEN_AT_ONCE]), _graded(chosen, domains[PROVEN_AT_ONCE:])
-    )
-    return [*proven, *graded]
-
-
-async def _proven(chosen: list[Variant], domains: list[int]) -> list[tuple[str, str]]:
     return [
         (verdict.variant.lesson.name, f"{verdict.variant.name}: {verdict.complaint}")
-        async for verdict in prove(chosen, domains)
+        async for verdict in prove(others, domains)
         if verdict.complaint
     ]
 

@@ -16,7 +16,7 @@ import pytest
 from course.judge.evidence import TICK_S, Evidence
 from course.judge.judge import Judge
 from graph.data import NAMELESS, PROCESS_NUMBERS, EndpointInfo, GraphUpdate, NodeRow, TopicRow
-from launcher.events import LogEvent
+from launcher.events import LogEvent, StatusEvent
 from launcher.status import LogLine, NodeState, NodeStatus, Severity
 
 
@@ -60,6 +60,27 @@ def test_a_start_by_the_judge_counts_as_the_learners_if_the_file_was_saved_meanw
 
     assert started_by_the_judge(os.getppid(), 1.0) == 0
     assert started_by_the_judge(os.getpid(), time.time() + 1.0) == 1
+
+
+async def test_the_crash_before_a_quick_restart_is_not_that_of_the_new_process() -> None:
+    """It is heard of later than the new process began: both are told in one breath."""
+    client = _ToldLate()
+    running = client.nodes["talker"]
+    client.nodes["talker"] = replace(running, pid=os.getppid())
+    told = (replace(running, state=NodeState.FAILED, pid=None), running)
+
+    async def events(*, past: int) -> AsyncIterator[StatusEvent]:  # noqa: ARG001 - as a client's
+        yield StatusEvent(told[:1])
+        client.nodes["talker"] = running
+        yield StatusEvent(told[1:])
+
+    client.events = events  # type: ignore[method-assign, assignment]
+    evidence = Evidence(cast("Any", None), cast("Any", client), Path(), {})
+    await evidence.listen()
+    began_s = evidence.began_s("talker")
+    assert evidence.trouble("talker", began_s) is not None, "in the step it counts"
+    evidence.forget_earlier_crash("talker")
+    assert evidence.trouble("talker", began_s) is None
 
 
 def _graph(pid: int, *nodes: str) -> GraphUpdate:
