@@ -139,7 +139,7 @@ class SafetyStop(LessonNode):
             return
         self._take_in(self._sensors.front, "front_topic", message, info)
         self._judge()
-        tell_front(self.say, self._results[0])
+        tell_front(self.say, self._results[0], stopped=self._emergency.active)
 
     def _see_rear(self, message: Float32, info: dict[str, Any]) -> None:
         if self._sensors.rear is not None and not self._held_up():
@@ -169,7 +169,7 @@ class SafetyStop(LessonNode):
             self._results[0].state == RangeState.SILENT
             and self._results[0].reading.age_s > self._zone.stale_after_s
         ):
-            tell_front(self.say, self._results[0])
+            tell_front(self.say, self._results[0], stopped=self._emergency.active)
         if self._gate is not None:
             self._gate.tick()
         overdue = time.monotonic() - self._told_s > _STATE_EVERY_S

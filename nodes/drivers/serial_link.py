@@ -21,6 +21,7 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes.drivers.serial_frames import SerialFrames
 from nodes.drivers.serial_reads import SerialReads
+from nodes.drivers.serial_writes import SerialWrites
 from robot.frames.protocols import RawReader
 from text.i18n import N_
 from text.sentences import reason_of
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 BAD = (OSError, termios.error, serial.SerialException, TypeError)
 """Errors of pyserial when a cable is pulled; it raises TypeError if its port is closed."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.1, 1.0
-_WRITE_S = 0.1
 _SAY_EVERY_S = 10.0
 
 _OPEN = N_("Connected to {port}, {baud} baud")
@@ -82,7 +82,7 @@ class SerialLink:
         self._heard, self._opened, self._lost = heard, opened, lost
         self.traffic = Traffic()
         self._frames = SerialFrames(node, frames)
-        self._serial: serial.Serial | None = None
+        self._output: SerialWrites | None = None
         self._since_s, self._since = time.monotonic(), ""
         self._problem = ""
         self._writes = threading.Lock()
@@ -93,7 +93,7 @@ class SerialLink:
     @property
     def connected(self) -> bool:
         """Whether the port is open."""
-        return self._serial is not None
+        return self._output is not None
 
     def start(self) -> None:
         """Start opening and reading the port."""
@@ -108,10 +108,11 @@ class SerialLink:
     def write(self, data: bytes) -> bool:
         """Send; return False if that is not possible now. From any thread."""
         with self._writes:
-            if self._serial is None:
+            if self._output is None:
                 return False
             try:
-                self._serial.write(data)
+                if not self._output.write(data):
+                    return False
             except BAD as error:
                 # The reader notices by itself, and reopens the port.
                 self._problem = reason_of(error).splitlines()[0]
@@ -180,14 +181,14 @@ class SerialLink:
 
     def _open(self) -> serial.Serial | None:
         try:
-            port = serial.Serial(self.port, self.baud, write_timeout=_WRITE_S, exclusive=True)
+            port = serial.Serial(self.port, self.baud, exclusive=True)
         except (*BAD, ValueError) as error:
             self._problem = self._explain(error)
             self._say.warn(_CANNOT, every_s=_SAY_EVERY_S, port=self.port, problem=self._problem)
             return None
         self.traffic.connections += 1
         self._since = datetime.now().astimezone().isoformat(timespec="seconds")
-        self._since_s, self._serial = time.monotonic(), port
+        self._since_s, self._output = time.monotonic(), SerialWrites(port)
         self._say.info(_OPEN, port=self.port, baud=self.baud)
         self._opened()
         return port
@@ -209,7 +210,7 @@ class SerialLink:
                 self._say.warn(_LOST, port=self.port, problem=self._problem)
         finally:
             with self._writes:
-                self._serial, self._since_s, self._since = None, time.monotonic(), ""
+                self._output, self._since_s, self._since = None, time.monotonic(), ""
                 with contextlib.suppress(*BAD):
                     port.close()
             self._lost()

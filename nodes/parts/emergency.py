@@ -36,6 +36,7 @@ TOPIC, PICO = "topic", "pico"
 _TOLD_EVERY_S = 1.0
 _AGAIN_S = 0.1
 """What others need not know at once is told with what follows within this time."""
+_JUST_NOW_NS = 1_000_000_000
 _MOST_NAMES = 16
 _CONTRADICTED_S = 10.0
 """So long after a release that had no effect it is said that there was one."""
@@ -67,8 +68,10 @@ class EmergencyStopListener:
 
     There are two subscriptions: the latched one receives a stop from before this node, but ROS does
     not match it with a volatile publisher such as `ros2 topic pub`, which must stop the robot too.
-    Messages from before this node can only stop: with two publishers, one may have released a stop
-    long before the other sent the current one, and their messages arrive in any order.
+    Messages from before can only stop: with two publishers, one may have released a stop long
+    before the other sent the current one, and their messages arrive in any order. A release that is
+    said now counts by either: of a publisher that lives for 0.1 s, such as `ros2 topic pub --once`,
+    often one of them alone hears.
     """
 
     def __init__(
@@ -82,6 +85,7 @@ class EmergencyStopListener:
         `released` is called at each release, even if this node knows of no stop.
         """
         self._node, self._changed, self._was_released = node, changed, released
+        self._began_ns = time.time_ns()
         name = node.get_fully_qualified_name()
         self._file = StopFile(node.context.get_domain_id(), name)
         self._status = DiagnosticStatus(name=name)
@@ -123,6 +127,17 @@ class EmergencyStopListener:
     def _hear_old(self, message: Bool, info: dict[str, Any]) -> None:
         if message.data:
             self._hear_stop(info)
+        elif self._is_said_now(info):
+            self._hear_release(info)
+
+    def _is_said_now(self, info: dict[str, Any]) -> bool:
+        """Whether a release was said since this node obeys the stop, and just now, by our clock."""
+        if self._stop is None:
+            return False
+        # Not by its arrival, as `_named` has it: an old one, too, may arrive now.
+        said_ns, now_ns = info.get("source_timestamp") or 0, time.time_ns()
+        since_ns = max(self._began_ns, int(self._stop.since_s * 1e9))
+        return since_ns < said_ns and 0 <= now_ns - said_ns < _JUST_NOW_NS
 
     def _hear(self, message: Bool, info: dict[str, Any]) -> None:
         if message.data:

@@ -42,6 +42,7 @@ _FRONT_OUT_OF_RANGE = {
 }
 """Used instead for an infinite distance by REP-117."""
 _FRONT_SLOWED = N_("Free to move, slowed to {percent} % ({metres:.2f} m).")
+_FRONT_HELD = N_("{metres:.2f} m ahead; the emergency stop holds the wheels.")
 _LOG_EVERY_S = 0.9
 
 _VERDICTS = {
@@ -68,12 +69,16 @@ _REASONS_OUT_OF_RANGE = {
 }
 
 
-def tell_front(say: TranslatedLogger, result: SensorResult) -> None:
-    """Log the state of the front sonar; each kind of message once a second at most."""
+def tell_front(say: TranslatedLogger, result: SensorResult, *, stopped: bool = False) -> None:
+    """Log the state of the front sonar; each kind of message once a second at most.
+
+    `stopped`: during an emergency stop, when nothing is free to move.
+    """
     log = say.info if result.state == RangeState.FREE else say.warn
     slowed = result.state == RangeState.FREE and result.share < 1
+    slowly = _FRONT_HELD if stopped else _FRONT_SLOWED
     log(
-        _FRONT_SLOWED if slowed else _phrase(result, _FRONT, _FRONT_OUT_OF_RANGE),
+        slowly if slowed else _phrase(result, _FRONT, _FRONT_OUT_OF_RANGE),
         every_s=_LOG_EVERY_S,
         metres=result.reading.distance_m,
         seconds=result.reading.age_s,

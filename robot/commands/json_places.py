@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from json import JSONDecodeError, JSONDecoder
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from robot.commands.not_json import odd, outside
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -24,9 +26,7 @@ _STRINGS = JSONDecoder()
 _BLANK = re.compile(r"[ \t\n\r]*")
 _NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
-_NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)\b", re.IGNORECASE)
-_OTHER_QUOTES = "“”„‟‘’‚«»'`"
-_FENCE = "```"
+_DIGIT = re.compile(r"[.0-9xX]")
 _LONGEST_SHOWN = 24
 _HALF_CHARACTER = re.compile("[\ud800-\udfff]")
 _CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
@@ -63,7 +63,7 @@ def read(text: str) -> PlacedJson:
     value, end = reader.value(reader.blank(0), ())
     end = reader.blank(end)
     if end != len(text):
-        raise JsonError("fence" if text.startswith(_FENCE, end) else "text_after", end)
+        raise reader.fault("text_after", end, ())
     return PlacedJson(value, reader.values, reader.keys)
 
 
@@ -108,14 +108,14 @@ class _JsonScanner:
             return members, at + 1
         while True:
             if not self.text.startswith('"', at):
-                raise self.no_quote(at, path) or JsonError("key_expected", at, path)
+                raise self.fault("key_expected", at, path)
             key, end = self.string(at, path)
             if key in members:
                 raise JsonError("duplicate", at, (*path, key), name=key)
             self.keys[(*path, key)] = at
             end = self.blank(end)
             if not self.text.startswith(":", end):
-                raise JsonError("colon_expected", end, (*path, key))
+                raise self.fault("colon_expected", end, (*path, key))
             members[key], end = self.value(self.blank(end + 1), (*path, key))
             at, done = self.separator(end, path, "}")
             if done:
@@ -139,20 +139,20 @@ class _JsonScanner:
         if self.text.startswith(closing, at):
             return at + 1, True
         if not self.text.startswith(",", at):
-            raise JsonError("comma_expected", at, path, closing=closing)
+            raise self.fault("comma_expected", at, path, closing=closing)
         after = self.blank(at + 1)
         if self.text.startswith(closing, after):
             raise JsonError("trailing_comma", at, path, closing=closing)
         return after, False
 
-    def no_quote(self, at: int, path: Path) -> JsonError | None:
-        """Return the error if a quote stands here that is none of JSON's."""
-        if self.text.startswith(_FENCE, at):
-            return JsonError("fence", at, path)
-        quote = self.text[at : at + 1]
-        if quote and quote in _OTHER_QUOTES:
-            return JsonError("quotes", at, path, quote=quote)
-        return None
+    def fault(self, code: str, at: int, path: Path, **details: str) -> JsonError:
+        """Return the error for something else than what is due here, by its name if it has one."""
+        found = odd(self.text, at)
+        if found is None and code == "value_expected" and not path:
+            found = outside(self.text, at)
+        if found is None:
+            return JsonError(code, at, path, **details)
+        return JsonError(found.code, at, path, **found.details)
 
     def string(self, at: int, path: Path) -> tuple[str, int]:
         try:
@@ -165,9 +165,10 @@ class _JsonScanner:
 
     def number(self, at: int, path: Path) -> tuple[int | float, int]:
         match = _NUMBER.match(self.text, at)
-        if match is None or _NOT_FINITE.match(self.text, at):
-            code = "not_finite" if _NOT_FINITE.match(self.text, at) else "value_expected"
-            raise self.no_quote(at, path) or JsonError(code, at, path)
+        if match is None:
+            raise self.fault("value_expected", at, path)
+        if _DIGIT.match(self.text, match.end()):
+            raise JsonError("number_form", at, path)
         comma = _DECIMAL_COMMA.match(self.text, at)
         if comma and not (path and isinstance(path[-1], int)):
             # In a list a comma may separate two numbers; elsewhere no number can follow a comma.

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from robot.commands.json_places import PlacedJson
 
 _THOUGHTS = re.compile(r"\s*<think>.*?</think>", re.DOTALL)
-_FENCE = re.compile(r"\s*```[A-Za-z0-9]*(?=[\s{\[])")
-_FENCE_BEGUN = re.compile(r"\s*(?:```[A-Za-z0-9]*(?=[\s{\[]|\Z)|`{1,2}\Z)")
-_FENCE_END = re.compile(r"```\s*\Z")
+_FENCE = re.compile(r"\s*(```|~~~)[A-Za-z0-9]*(?=[\s{\[])")
+_FENCE_BEGUN = re.compile(r"\s*(?:(?:```|~~~)[A-Za-z0-9]*(?=[\s{\[]|\Z)|(?:`{1,2}|~{1,2})\Z)")
+_FENCE_END = re.compile(r"(```|~~~)\s*\Z")
 _VISIBLE = re.compile(r"\S")
 _STRAIGHT = str.maketrans(dict.fromkeys("“”„‟", '"'))
 
@@ -48,7 +48,7 @@ def unwrapped(text: str, *, whole: bool = True) -> str:
     if thoughts := _THOUGHTS.match(text):
         text = _blanked(text, thoughts)
     opening, end = _FENCE.match(text), _FENCE_END.search(text)
-    if opening and end and end.start() >= opening.end():
+    if opening and end and opening[1] == end[1] and end.start() >= opening.end():
         return _blanked(_blanked(text, end), opening)
     begun = None if whole else _FENCE_BEGUN.match(text)
     return _blanked(text, begun) if begun else text

@@ -99,6 +99,11 @@ def odometry(x: float = 0.0, y: float = 0.0) -> Odometry:
     return message
 
 
+def off_m(pose: Odometry, x: float, y: float) -> float:
+    """Return the distance of a pose from a point."""
+    return math.dist((pose.pose.pose.position.x, pose.pose.pose.position.y), (x, y))
+
+
 def wait_for_motion(heard: list[AckermannDriveStamped]) -> None:
     wait_until(lambda: any(message.drive.speed for message in heard), "motion on /drive")
 
@@ -129,8 +134,7 @@ def test_it_reaches_the_point_while_the_distance_falls(peer: Peer, ros_domain: i
         assert asker.feedback == sorted(asker.feedback, reverse=True)
         wait_for_stop(drive)
         assert max(message.drive.speed for message in drive) <= 0.5
-        last = poses[-1].pose.pose.position
-        assert math.hypot(last.x - 0.8, last.y - 0.2) <= 0.06
+        wait_until(lambda: off_m(poses[-1], 0.8, 0.2) <= 0.06, "the pose at the point")
         assert poses[-1].header.frame_id == "odom"
         assert transforms[-1].transforms[0].child_frame_id == "base_link"
         node.wait_for_words("Driving to x 0.80, y 0.20 m, to within 0.05 m", "Arrived: ")
@@ -142,6 +146,7 @@ def test_it_reverses_to_a_point_behind(peer: Peer, ros_domain: int) -> None:
         asker = Asker(peer)
         assert asker.ask(-0.4, 0.0)
         assert asker.end()[1].message.startswith("Приехал: до точки 0,")
+        wait_for_stop(drive)
         assert min(message.drive.speed for message in drive) < 0
         assert max(message.drive.speed for message in drive) == 0
 

@@ -228,6 +228,25 @@ def test_a_way_on_which_it_is_slowed_is_not_called_free(
     assert log.lines[-1].endswith(logged)
 
 
+@pytest.mark.parametrize(
+    ("lang", "metres", "logged"),
+    [
+        ("en", 0.61, "0.61 m ahead; the emergency stop holds the wheels."),
+        ("ru", 0.61, "Впереди 0,61 м; колёса держит аварийный стоп."),
+        ("en", 2.0, "The path is clear (2.00 m)."),
+    ],
+)
+def test_nothing_is_called_free_to_move_during_an_emergency_stop(
+    lang: str, metres: float, logged: str
+) -> None:
+    log = Log()
+    sensor = DistanceSensor("front")
+    sensor.see(metres)
+    result = sensor.result(SafetyZone(0.5, 1.0, 60.0))
+    tell_front(TranslatedLogger(log, lang), result, stopped=True)  # type: ignore[arg-type]
+    assert log.lines[-1].endswith(logged)
+
+
 @pytest.mark.parametrize(("slow_m", "state"), [(1.0, RangeState.CLOSE), (0.0, RangeState.FREE)])
 def test_where_slowing_has_come_to_nothing_the_way_is_not_free(
     slow_m: float, state: RangeState

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ from std_msgs.msg import Bool
 
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import DISCOVERY, LATCHED, ROOT, Peer
-from tests.waiting import wait_until
+from tests.waiting import DEADLINE_S, comes, wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -67,9 +68,12 @@ class States:
     def engaged(self, *names: str) -> set[str]:
         return {self.of.get(name, {}).get("engaged", "") for name in names}
 
+    def agree(self, word: str, *names: str) -> bool:
+        return self.engaged(*names) == {word}
+
     def wait(self, engaged: bool, *names: str) -> None:
-        wanted = {str(engaged).lower()}
-        wait_until(lambda: self.engaged(*names) == wanted, f"engaged {engaged} from {names}")
+        word = str(engaged).lower()
+        wait_until(lambda: self.agree(word, *names), f"engaged {engaged} from {names}")
 
 
 def node(
@@ -193,7 +197,9 @@ def test_an_old_latched_stop_that_was_released_does_not_stop_who_comes_later(
 
 def bare(domain: int, word: str) -> None:
     environment = {**os.environ, **DISCOVERY, "ROS_DOMAIN_ID": str(domain)}
-    subprocess.run([sys.executable, "-c", BARE, word], env=environment, check=True, timeout=50)
+    subprocess.run(
+        [sys.executable, "-c", BARE, word], env=environment, check=True, timeout=DEADLINE_S
+    )
 
 
 def pub_once(domain: int, word: str) -> None:
@@ -203,17 +209,18 @@ def pub_once(domain: int, word: str) -> None:
         [sys.executable, "-m", "ros2", *words],
         env=environment,
         check=True,
-        timeout=50,
+        timeout=DEADLINE_S,
         stdout=subprocess.DEVNULL,
         cwd=ROOT,
     )
 
 
-@pytest.mark.parametrize("say", [bare, pub_once])
+@pytest.mark.parametrize(("say", "most"), [(bare, 3), (pub_once, 1)])
 @pytest.mark.timeout(240)
 def test_a_publisher_that_lives_a_tenth_of_a_second_stops_and_releases_all(
-    ros_domain: int, states: States, say: Callable[[int, str], None]
+    ros_domain: int, states: States, say: Callable[[int, str], None], most: int
 ) -> None:
+    """All or none: of the other nodes' own publishers, a few in a thousand are heard by nobody."""
     names = [f"/node{number}" for number in range(4)]
     modules = ["electronic_differential", "safety_stop", "drive_to_point", "safety_stop"]
     processes = [
@@ -222,11 +229,13 @@ def test_a_publisher_that_lives_a_tenth_of_a_second_stops_and_releases_all(
     ]
     try:
         states.wait(False, *names)
-        for _ in range(3):
-            say(ros_domain, "true")
-            states.wait(True, *names)
-            say(ros_domain, "false")
-            states.wait(False, *names)
+        for word in ["true", "false"] * 3:
+            for _ in range(most):
+                say(ros_domain, word)
+                if comes(partial(states.agree, word, *names), 20.0):
+                    break
+                assert len(states.engaged(*names)) == 1
+            assert states.agree(word, *names)
     finally:
         for process in processes:
             process.close()

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rclpy.duration import Duration
 from std_msgs.msg import Bool
 
 from tests.ros.node_process import NodeProcess
@@ -142,6 +144,27 @@ def test_who_comes_late_and_hears_only_latched_words_is_told(ros_domain: int) ->
             (status,) = told[0].status
             assert status.level == DiagnosticStatus.ERROR
             assert status.name == "/electronic_differential"
+
+
+def test_a_release_from_before_a_node_releases_nothing(ros_domain: int) -> None:
+    """It arrives late, and is too old to be compared with the stop by the clock of its sender."""
+    with (
+        NodeProcess("nodes.electronic_differential", ros_domain),
+        Peer(ros_domain) as peer,
+        Peer(ros_domain, "past") as past,
+    ):
+        past.say("/emergency_stop", Bool(data=False), listeners=2, qos=LATCHED)
+        said_s = time.monotonic()
+        peer.say("/emergency_stop", Bool(data=True), listeners=1)
+        holders = Holders(peer)
+        holders.wait(True, {"/electronic_differential"})
+        wait_until(lambda: time.monotonic() - said_s > 4.0, "a release that is old")
+        with NodeProcess("nodes.safety_stop", ros_domain):
+            publisher = past.publisher("/emergency_stop", Bool, LATCHED)
+            wait_until(lambda: publisher.get_subscription_count() == 4, "both nodes")
+            assert publisher.wait_for_all_acked(Duration(seconds=20))
+            for _ in range(2):
+                holders.wait(True, {"/electronic_differential", "/safety_node"})
 
 
 def test_a_state_directory_that_cannot_be_written_is_told_and_stops_all_the_same(

@@ -118,7 +118,7 @@ def test_every_problem_is_told_in_the_order_of_the_text() -> None:
 @pytest.mark.parametrize(
     ("text", "code"),
     [
-        ("", "value_expected"),
+        ("", "nothing"),
         ("[]", "object"),
         ('"drive"', "object"),
         ("{}", "missing"),

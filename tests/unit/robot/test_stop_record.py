@@ -58,9 +58,9 @@ class Fleet:
         self.known[node] = self.disks[node % 2] if has_disk and node != NODES - 1 else StopRecord()
 
     def settle(self, dice: random.Random) -> None:
-        """Everybody hears everybody, late and repeated news among it."""
-        for _ in range(3):
-            news = [*self.wire, *enumerate(self.known)]
+        """Everybody hears everybody, at first among late and repeated news."""
+        for late in (self.wire, [], []):
+            news = [*late, *enumerate(self.known)]
             dice.shuffle(news)
             for _, record in news:
                 for node in dice.sample(range(NODES), NODES):

@@ -22,6 +22,7 @@ CURLY = ANSWER.replace('"', "“")
         f"```JSON {ANSWER} ```\n\n",
         f"```json{ANSWER}```",
         f"```\n{ANSWER}```",
+        f"~~~json\n{ANSWER}\n~~~",
         f"\ufeff<think>{{hm}} ```x``` </think>\n```json\n{ANSWER}\n```",
         CURLY,
         ANSWER.replace('{"', "{„").replace('"', "”"),
@@ -33,8 +34,9 @@ def test_what_is_around_is_taken_away(text: str) -> None:
     assert so_far(text) == (1, ())
 
 
-def test_what_streams_in_a_fence_is_no_mistake() -> None:
-    begun = f"```json\n{ANSWER}"
+@pytest.mark.parametrize("fence", ["```", "~~~"])
+def test_what_streams_in_a_fence_is_no_mistake(fence: str) -> None:
+    begun = f"{fence}json\n{ANSWER}"
     for length in range(len(begun)):
         assert so_far(begun[:length])[1] == (), begun[:length]
 
