@@ -48,7 +48,7 @@ async def stop(session: RobotSession) -> dict[str, object]:
     with contextlib.suppress(LauncherError):  # The session may be ending.
         await session.link.withdraw()
     await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S)
-    await view.until(lambda: bool(emergency.holding), OBEYED_WITHIN_S if heard else 0.0)
+    await view.until(lambda: emergency.is_obeyed, OBEYED_WITHIN_S if heard else 0.0)
     return {
         "stopped": True,
         "held_by": emergency.holding,

@@ -34,6 +34,11 @@ class EmergencyWatch:
         """The nodes that report that they hold."""
         return sorted(plain(name, 200) for name, holds in self._nodes.items() if holds)
 
+    @property
+    def is_obeyed(self) -> bool:
+        """Whether every node that reports says that it holds, and one does."""
+        return bool(self._nodes) and all(self._nodes.values())
+
     def see(self, update: GraphUpdate) -> bool:
         """Take in an update; return whether it holds a stop, even one that was released since."""
         stopped = self.engaged

@@ -149,8 +149,17 @@ class SessionFinder:
         """
         await self._looked.wait()
         if self._now is None:
-            raise refused("no robot to speak to: {why}", why=self._why)
+            raise refused("no robot to speak to: {why}", why=self._told_why())
         return self._now
+
+    def _told_why(self) -> Words | str:
+        if self._discovery in (None, "localhost"):
+            return self._why
+        # Consent, limits and records are those of the robot's session.
+        return say(
+            "{why}. A robot on another machine is spoken to there: start deck mcp on it, over SSH",
+            why=self._why,
+        )
 
     @property
     def now(self) -> RobotSession | None:

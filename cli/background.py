@@ -23,6 +23,7 @@ from launcher.errors import (
     UnknownNodeError,
 )
 from launcher.events import ClosedEvent, LogEvent
+from launcher.processes.interrupts import run
 from launcher.profile.catalog import find_profile
 from text.i18n import _, language, localized, ngettext
 from text.output import RED, Paint, json_text, say_error, write
@@ -42,22 +43,22 @@ STEADY_S = 0.5
 
 def up_command(options: Namespace) -> int:
     """Start a profile in the background, wait until it is up, and show its nodes."""
-    return asyncio.run(_up(options))
+    return run(_up(options))
 
 
 def ps_command(options: Namespace) -> int:
     """Show the running sessions."""
-    return asyncio.run(_ps(options))
+    return run(_ps(options))
 
 
 def logs_command(options: Namespace) -> int:
     """Show the log of one node or of all."""
-    return asyncio.run(_logs(options))
+    return run(_logs(options))
 
 
 def down_command(options: Namespace) -> int:
     """Stop a running session."""
-    return asyncio.run(_down(options))
+    return run(_down(options))
 
 
 async def _up(options: Namespace) -> int:

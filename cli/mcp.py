@@ -6,10 +6,11 @@ import asyncio
 import contextlib
 import logging
 import os
-import signal
 import sys
 from typing import TYPE_CHECKING
 
+from launcher.processes.ending import ENDING
+from launcher.processes.interrupts import run
 from text.i18n import _
 from text.output import say_error, write
 from text.plain import plain
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
 
     from agents.server import AgentServer
-
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class _PlainHandler(logging.Handler):
@@ -89,9 +88,9 @@ def _run(
     async def until_signal() -> None:
         task, loop = asyncio.current_task(), asyncio.get_running_loop()
         assert task is not None
-        for number in SIGNALS:
+        for number in ENDING:
             loop.add_signal_handler(number, task.cancel)
         with contextlib.suppress(asyncio.CancelledError):
             await serving(_server(options))
 
-    asyncio.run(until_signal())
+    run(until_signal())

@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import os
 import shlex
-import signal
 import socket
 import sys
 from ipaddress import ip_address
@@ -20,6 +19,8 @@ from brain.serving.model_file import ModelFile, examine
 from brain.serving.server import Order
 from brain.serving.service import ServedAnswer, Service, installed, require_port
 from brain.settings import load, settings_path
+from launcher.processes.ending import ENDING
+from launcher.processes.interrupts import run
 from launcher.profile.text import shown
 from text.i18n import _, localized
 from text.output import BOLD, RED, YELLOW, Paint, say_error, write
@@ -43,7 +44,7 @@ def model_command(options: Namespace) -> int:
         parser_of("model").print_help()
         return 0
     try:
-        return asyncio.run(_serve(_order(options), verbose=options.verbose))
+        return run(_serve(_order(options), verbose=options.verbose))
     except ServingError as error:
         say_error(localized(error.words))
         return 2
@@ -101,7 +102,7 @@ def _warn_of_little_memory(file: ModelFile, size: int) -> None:
 async def _serve(order: Order, *, verbose: bool) -> int:
     over = asyncio.Event()
     loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in ENDING:
         loop.add_signal_handler(number, over.set)
 
     def tell(answered: ServedAnswer) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import queue
 import sys
 import time
@@ -18,22 +19,58 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from graph.data import GraphUpdate
+    from graph.observer.observer import Observer
 
 FOUND_S = 4.0
 """A peer with the settings of ROS is found within this: it announces itself each 3 s."""
 LOOK_S = 0.2
+BEGIN_S = 20.0
+"""On a busy machine the observer may take as long until it is in the domain."""
 
 
 class DomainView:
     """What an observer tells of one domain."""
 
     def __init__(
-        self, domain: int, updates: queue.SimpleQueue[GraphUpdate], *, alone: bool
+        self,
+        domain: int,
+        discovery: str | tuple[str, ...],
+        observer: Observer,
+        updates: queue.SimpleQueue[GraphUpdate],
     ) -> None:
-        """`alone`: whether only this machine is looked at."""
+        """`updates`: what the observer tells."""
         self.domain = domain
-        self._alone = alone
+        self.discovery = discovery
+        self.observer = observer
         self._updates = updates
+        self._opened_s = time.monotonic()
+        self._joined_s = self._news_s = math.inf
+        """When the observer first told anything, and when it last told of something new."""
+        self._size = (0, 0, 0)
+
+    def listened_s(self) -> float:
+        """Return for how long the domain has been listened to; the start does not count."""
+        now_s = time.monotonic()
+        if now_s - self._opened_s >= BEGIN_S:
+            # Nothing comes: whoever waits for that is not to wait for ever.
+            return now_s - self._opened_s
+        return max(0.0, now_s - self._joined_s)
+
+    def is_at_rest(self) -> bool:
+        """Return whether nothing new has been found for as long as a peer takes to be found."""
+        return time.monotonic() - self._news_s >= FOUND_S
+
+    def finds(self, node: str) -> bool:
+        """Wait until the node of this full name is found, or a peer would have been.
+
+        Raises:
+            UsageError: if ROS cannot be used.
+        """
+        while self.listened_s() < FOUND_S:
+            for update in self.updates():
+                if any(row.name == node for row in update.nodes):
+                    return True
+        return False
 
     def updates(self, within_s: float = LOOK_S) -> Iterator[GraphUpdate]:
         """Yield what has come by then, at least one unless nothing has; return in time.
@@ -49,7 +86,15 @@ class DomainView:
                 return
             if update.error:
                 raise UsageError(update.error)
+            self._note(update)
             yield update
+
+    def _note(self, update: GraphUpdate) -> None:
+        now_s = time.monotonic()
+        self._joined_s = min(self._joined_s, now_s)
+        size = len(update.nodes), len(update.topics), len(update.services)
+        if size != self._size or self._news_s == math.inf:
+            self._size, self._news_s = size, now_s
 
     def refuse_empty(self, update: GraphUpdate) -> None:
         """Raise UsageError if nobody but Deck's own observers is in the domain."""
@@ -62,7 +107,7 @@ class DomainView:
                     "another with --domain, or look on the network with --discovery subnet",
                     domain=self.domain,
                 )
-                if self._alone
+                if self.discovery == "localhost"
                 else say(
                     "no node was found in domain {domain}: start one, or choose another with "
                     "--domain",
@@ -97,7 +142,7 @@ def domain_view(
     observer.measure(all_topics)
     observer.start(updates.put)
     try:
-        yield DomainView(domain, updates, alone=discovery == "localhost")
+        yield DomainView(domain, discovery, observer, updates)
     finally:
         observer.stop()
 

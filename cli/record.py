@@ -11,9 +11,7 @@ With `--json` it writes one object per line, distinguished by `event`:
 from __future__ import annotations
 
 import math
-import signal
 import sys
-import threading
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,6 +20,7 @@ from cli.running_domain import beyond_this_machine, running_domain
 from graph.bag.errors import BagError
 from graph.heavy_types import IMAGES, POINT_CLOUD
 from launcher.errors import UsageError
+from launcher.processes.ending import stop_by_signals
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.rundir import new_recording
 from text.i18n import _, localized
@@ -32,12 +31,12 @@ from text.sentences import say
 from tui.recording.words import complaints, progress, size_words
 
 if TYPE_CHECKING:
+    import threading
     from argparse import Namespace
     from collections.abc import Sequence
 
     from graph.recording.recorder import Recorder, RecordingStatus
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 TOLD_S = 1.0
 
 
@@ -54,9 +53,7 @@ def record_command(options: Namespace) -> int:
     recorder = Recorder(
         domain, discovery, folder, topics or None, hidden=options.hidden, without=without
     )
-    stop = threading.Event()
-    for number in SIGNALS:
-        signal.signal(number, lambda *_: stop.set())
+    stop = stop_by_signals()
     keep_stdout_to_ourselves()
     # There may be no supervisor here that does it.
     discard_unfinished()

@@ -6,13 +6,12 @@ publishes: with a recorded distance beside a measured one a robot would drive in
 
 from __future__ import annotations
 
-import signal
-import threading
 from typing import TYPE_CHECKING
 
 from cli.running_domain import running_domain
 from graph.bag.errors import BagError
 from launcher.errors import UsageError
+from launcher.processes.ending import stop_by_signals
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from robot.safety.moving_topics import STOPPED_BY_ZEROS, moves
 from robot.topics import EMERGENCY_STOP
@@ -23,13 +22,12 @@ from text.sentences import say
 from tui.recording.words import BETWEEN, length_words
 
 if TYPE_CHECKING:
+    import threading
     from argparse import Namespace
     from pathlib import Path
 
     from graph.bag.publishing import BagPublisher, PublishingProgress
     from graph.bag.reading import Bag, TopicInBag
-
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def publish_bag(path: Path, options: Namespace) -> int:
@@ -40,9 +38,7 @@ def publish_bag(path: Path, options: Namespace) -> int:
     from graph.bag.reading import open_bag
 
     _name, domain, discovery = running_domain(options.domain, options.discovery)
-    stop = threading.Event()
-    for number in SIGNALS:
-        signal.signal(number, lambda *_: stop.set())
+    stop = stop_by_signals()
     keep_stdout_to_ourselves()
     try:
         with open_bag(path) as bag:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import signal
 import sys
 import time
 from typing import TYPE_CHECKING
@@ -15,6 +14,8 @@ from cli.shared_domain import in_own_domain
 from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.errors import SessionError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
+from launcher.processes.ending import ENDING
+from launcher.processes.interrupts import run
 from launcher.profile.catalog import find_profile
 from launcher.profile.load import load_profile
 from launcher.serial_ports import serial_ports
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from launcher.profile.load import Profile
     from launcher.status import NodeStatus
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 INTERRUPTED = 130
 PAST_LINES = 1000
 """How many lines are kept of the output before the client has connected."""
@@ -49,7 +49,7 @@ def run_command(options: Namespace) -> int:
     profile = in_own_domain(profile, options.domain)
     if stop_is_kept(profile.domain):
         say_error(stop_words(profile.domain))
-    return asyncio.run(_main(profile, options))
+    return run(_main(profile, options))
 
 
 async def _main(profile: Profile, options: Namespace) -> int:
@@ -66,7 +66,7 @@ async def _main(profile: Profile, options: Namespace) -> int:
         if options.json
         else TextReport(writer.write, list(profile.nodes), Paint(sys.stdout))
     )
-    for number in SIGNALS:
+    for number in ENDING:
         loop.add_signal_handler(number, run.interrupt)
     try:
         return await run.to_the_end()

@@ -146,6 +146,8 @@ class TopicRow:
     """Neither contains Deck's own endpoints."""
     own_publishers: int = 0
     """The number of Deck's own publishers."""
+    from_afar: bool = False
+    """Whether a publisher is on another machine, as far as the middleware tells."""
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ SILENT_S = 6.5
 """So long is waited without any news from those who are there: more than two announcements."""
 LONGEST_S = 20.0
 """A graph that never comes to rest is taken as it is."""
-READY_S = 5.0
+READY_S = 10.0
 """So long may a service of a node that is there take to be found."""
 LOOK_S = 0.05
 KERNEL_S = 0.1

@@ -10,8 +10,12 @@ import threading
 from collections import deque
 from typing import TYPE_CHECKING, Any
 
+from graph.heavy_types import HEAVY_TYPES
 from graph.housekeeping import is_hidden
+from graph.pictures.source import THINNED
+from graph.qos import TRANSIENT_LOCAL
 from graph.recording.relay import Relay
+from graph.recording.topics import TopicChoice
 from text.sentences import reason_of, say
 from view.faults import ViewError
 from view.installed import need_foxglove
@@ -47,7 +51,7 @@ class _Channels:
         """Announce a topic."""
         import foxglove
 
-        if any(offer["durability"] == "transient_local" for offer in topic.offers):
+        if is_latched(topic):
             with self._lock:
                 self._kept[topic.name] = deque(maxlen=LATCHED)
         schema = foxglove.Schema(name=topic.type_name, encoding="ros2msg", data=text.encode())
@@ -65,6 +69,17 @@ class _Channels:
                     self._kept[name].append(message)
             if channel.has_sinks():
                 channel.log(message.raw, log_time=message.stamp_ns)
+
+    def are_asked_for(self, topic: BagTopic) -> bool:
+        """Whether to take the messages of a topic: pictures and clouds only while a client listens.
+
+        They are megabytes, over a network too. What is latched is kept for whoever comes.
+        """
+        if topic.type_name not in HEAVY_TYPES or is_latched(topic):
+            return True
+        with self._lock:
+            channel = self._channels.get(topic.name)
+        return channel is not None and bool(channel.has_sinks())
 
     def ask_for(self, topic: str) -> None:
         """Note that a client begins to listen to a topic; called by the server's thread."""
@@ -115,7 +130,8 @@ class Sharing:
             raise ViewError(
                 say("The server for Foxglove does not start: {reason}", reason=reason_of(error))
             ) from error
-        self._relay = Relay(domain, discovery, channels, _is_shared)
+        choice = TopicChoice(wanted=_is_shared, asked_for=channels.are_asked_for)
+        self._relay = Relay(domain, discovery, channels, choice)
         self._relay.start()
 
     def __enter__(self) -> Self:
@@ -138,10 +154,15 @@ class Sharing:
             self._channels.repeat()
 
 
+def is_latched(topic: BagTopic) -> bool:
+    """Whether anybody latches what is published there."""
+    return any(offer["durability"] == TRANSIENT_LOCAL for offer in topic.offers)
+
+
 def _is_shared(name: str, types: Sequence[str]) -> bool:
-    """Return whether a topic is handed on: whatever is not hidden."""
+    """Return whether a topic is handed on: what is not hidden, and small pictures of cameras."""
     del types
-    return not is_hidden(name)
+    return not is_hidden(name) or name.endswith(THINNED)
 
 
 def _listener(channels: _Channels) -> Any:  # noqa: ANN401

@@ -57,6 +57,9 @@ class Showing:
         page_port = 0 if window else free_port(PAGE_PORT, port)
         with ExitStack() as opening:
             self._viewer = opening.enter_context(_started(program, page_port))
+            if not window:
+                # Another view may have taken it while Rerun came up.
+                page_port = free_port(PAGE_PORT, port)
             self.place = Place(self._viewer.data_port, page_port)
             """Where the page is; a window's page port is 0."""
             if self._viewer.page_port is not None:
@@ -101,9 +104,11 @@ class Showing:
             self.error = update.error
             return
         wanted = self._scene.wanted(update.topics)
-        followed = wanted & self._scene.every_one_of(update.topics)
+        small = wanted & self._scene.seen_small(update.topics)
+        followed = wanted & self._scene.every_one_of(update.topics) - small
         self._observer.follow(followed)
-        self._observer.watch(wanted - followed)
+        self._observer.watch(wanted - followed - small)
+        self._observer.watch_pictures(small)
         pictures = frozenset(
             row.name
             for row in update.topics

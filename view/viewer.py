@@ -10,9 +10,10 @@ import ctypes
 import json
 import os
 import signal
-import socket
 import subprocess
 import time
+from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from text.plain import plain
@@ -23,7 +24,6 @@ from view.place import HERE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from typing_extensions import Self
 
@@ -34,6 +34,8 @@ MEMORY = "512MiB"
 FORCED = "FORCE_RERUN_ANALYTICS"
 _PR_SET_PDEATHSIG = 1
 _LINES = 2
+_LISTEN = "0A"
+"""The state of a socket that listens, in /proc/net/tcp."""
 
 
 class Viewer:
@@ -63,7 +65,7 @@ class Viewer:
                 env=silent_environment(self._folder.path),
                 # Ctrl-C is meant for us, who end it.
                 start_new_session=True,
-                preexec_fn=_die_with_parent,  # noqa: PLW1509 - no thread of ours runs yet
+                preexec_fn=_die_with_parent,  # noqa: PLW1509 - our threads only wait, without a lock
             )
         try:
             self._wait_until_it_listens()
@@ -108,7 +110,9 @@ class Viewer:
 
     def _wait_until_it_listens(self) -> None:
         deadline_s = time.monotonic() + READY_S
-        while not _listens(self.data_port):
+        ports = {port for port in (self.data_port, self.page_port) if port is not None}
+        # Another's that starts meanwhile may have taken one of them: then this one will end.
+        while not ports <= listened_at(self._process.pid):
             if self.ended:
                 code, words = self._process.returncode, self._last_words()
                 raise ViewError(
@@ -145,10 +149,16 @@ def silent_environment(folder: Path) -> dict[str, str]:
     return {**others, "XDG_CONFIG_HOME": str(folder), "CI": "true", "NO_COLOR": "1"}
 
 
-def _listens(port: int) -> bool:
-    with socket.socket() as one:
-        one.settimeout(1.0)
-        return one.connect_ex((HERE, port)) == 0
+def listened_at(pid: int) -> set[int]:
+    """Return the ports of IPv4 at which a process listens, by proc(5): fd and net/tcp."""
+    held: set[str] = set()
+    with suppress(OSError):  # It has ended.
+        for each in Path(f"/proc/{pid}/fd").iterdir():
+            with suppress(OSError):  # It has closed this one just now.
+                held.add(str(each.readlink()))
+    rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+    listening = (row for row in rows if row[3] == _LISTEN)
+    return {int(row[1].partition(":")[2], 16) for row in listening if f"socket:[{row[9]}]" in held}
 
 
 def _die_with_parent() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import time
 from typing import TYPE_CHECKING
@@ -13,6 +12,7 @@ from graph.data import GraphUpdate
 from graph.findings.finding import FORGOTTEN_S, FindingLevel
 from graph.findings.lasting import LastingFindings
 from graph.housekeeping import is_housekeeping
+from launcher.processes.interrupts import run
 from text.i18n import N_, _, localized
 from text.plain import plain
 from tui.session.norms import NORMS
@@ -113,14 +113,13 @@ async def _failures(domain: int) -> dict[str, str]:
 
 def _examined(view: DomainView) -> GraphExamination:
     lasting, update = LastingFindings(NORMS), GraphUpdate(0.0)
-    failures = asyncio.run(_failures(view.domain))
-    began_s = time.monotonic()
+    failures = run(_failures(view.domain))
     while True:
         for update in view.updates(LOOK_S):
             lasting.take(update, time.monotonic(), failures)
         now_s = time.monotonic()
-        passed_s = now_s - began_s
-        settled = lasting.settles_in_s(now_s) is None
+        passed_s = view.listened_s()
+        settled = view.is_at_rest() and lasting.settles_in_s(now_s) is None
         if passed_s >= MOST_S or (passed_s >= LISTEN_S and settled):
             view.refuse_empty(update)
             return GraphExamination(view.domain, update, lasting.told(now_s))

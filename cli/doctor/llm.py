@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-
 from brain.budget import Ledger
 from brain.client import ModelClient
 from brain.faults import ModelError
@@ -13,6 +11,7 @@ from brain.settings import KEY_VARIABLE, ModelSettings, required
 from brain.situation import Memory, Situation, conversation
 from brain.thinking import think
 from cli.doctor.finding import Finding, fail, ok
+from launcher.processes.interrupts import run
 from robot.commands.schema import SpokenResponse, parse_llm
 from text.i18n import _, decimal, localized
 
@@ -36,7 +35,7 @@ def try_model() -> list[Finding]:
     ledger = Ledger()
     client = ModelClient(settings, key, ledger, "doctor")
     try:
-        found += asyncio.run(_ask(client, settings))
+        found += run(_ask(client, settings))
     except ModelError as error:
         found.append(fail("llm.answer", localized(error.words), localized(error.fix)))
     totals = ledger.totals()

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cli.doctor.finding import fail, ok, warn
-from launcher.processes.shared_memory import SHARED_MEMORY
+from launcher.processes.shared_memory import SHARED_MEMORY, mapped_segments
 from launcher.processes.shared_memory_unfinished import unfinished
 from text.i18n import _, ngettext
 
@@ -45,7 +46,7 @@ def collect() -> SharedMemoryFacts:
     stale = [
         path.stat().st_size
         for path in SHARED_MEMORY.glob("fastrtps_*")
-        if not path.name.endswith(("_el", "_sl")) and str(path) not in held and _is_mine(path)
+        if not path.name.endswith(("_el", "_sl")) and path.name not in held and _is_mine(path)
     ]
     free = status.f_bavail * status.f_frsize
     halves = list(unfinished(SHARED_MEMORY))
@@ -95,16 +96,11 @@ def _room(facts: SharedMemoryFacts) -> Finding:
 
 
 def _mapped() -> set[str]:
-    """Return the segments that processes have mapped, as far as they may be inspected."""
+    """Return the names of those that processes have mapped, as far as they may be inspected."""
     held: set[str] = set()
-    for maps in Path("/proc").glob("[0-9]*/maps"):
-        try:
-            lines = maps.read_text(errors="replace").splitlines()
-        except OSError:
-            continue
-        held.update(
-            line[line.index(str(SHARED_MEMORY)) :] for line in lines if "/fastrtps_" in line
-        )
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            held |= mapped_segments(int(folder.name))
     return held
 
 

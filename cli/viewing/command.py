@@ -9,7 +9,6 @@ With `--json` it writes one object when it is open, and ends with its standard i
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import threading
 import webbrowser
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn, Protocol, TypeVar
 
 from cli.running_domain import running_domain
 from launcher.errors import LauncherError, UsageError
+from launcher.processes.ending import stop_by_signals
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from text.i18n import _
 from text.output import json_text, keep_stdout_to_ourselves, write
@@ -33,7 +33,6 @@ T = TypeVar("T")
 
 RVIZ = Path("rviz") / "robot.rviz"
 """Among the profiles."""
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class ViewOpened(NamedTuple):
@@ -111,9 +110,7 @@ def _wait(viewer: Waiting, stop: threading.Event) -> int:
 
 def _stopping(options: Namespace) -> threading.Event:
     """Return what is set when it is to end: by a signal, or by the end of standard input."""
-    stop = threading.Event()
-    for number in SIGNALS:
-        signal.signal(number, lambda *_: stop.set())
+    stop = stop_by_signals()
     keep_stdout_to_ourselves()
     # There may be no supervisor here that does it.
     discard_unfinished()

@@ -11,6 +11,7 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from graph.data import NAMELESS
 from graph.messages.types import UnknownTypeError, load_message
 from graph.qos import Qos, profile
 from graph.scan.endpoints import full_name
@@ -37,6 +38,8 @@ FOUND_AT_LAST_S = 6.0
 POLLED_S = 0.05
 LOOK_S = 0.25
 """How often to look for other publishers of the topics."""
+NAMED_WITHIN_S = 3.0
+"""A publisher is discovered before the name of its node, a moment or, if that is lost, 3 s."""
 TELL_S = 1.0
 ACKED_WITHIN_S = 2.0
 SHARED = frozenset({"/rosout"})
@@ -80,6 +83,8 @@ class BagPublisher:
         self._ros = ros
         self._stopped_by_zeros = frozenset(stopped_by_zeros)
         self._publishers: dict[str, tuple[TopicInBag, Publisher]] = {}
+        self._given_up_s: dict[str, float] = {}
+        """Topics left to nodes whose names are not known yet, and since when."""
         for topic in bag.topics:
             reason = refusal(topic)
             if reason is None and topic.messages:
@@ -108,6 +113,8 @@ class BagPublisher:
             if settled or now_s >= begun_s + FOUND_AT_LAST_S:
                 break
         self._give_way()
+        while self._given_up_s and not stop.wait(POLLED_S):
+            self._name_others()
 
     def play(
         self,
@@ -228,14 +235,25 @@ class BagPublisher:
             return
         node = self._ros.node
         for name in self._publishers.keys() - SHARED:
-            if node.handle.get_count_publishers(name) < 2:
-                continue
-            found = node.get_publishers_info_by_topic(name)
-            names = {full_name(one.node_name, one.node_namespace) for one in found}
-            others = sorted(names - {self._ros.name})
-            if others:
+            if node.handle.get_count_publishers(name) >= 2 and self._others(name):
                 node.destroy_publisher(self._publishers.pop(name)[1])
-                self.progress.left_out[name] = say("{node} publishes it", node=", ".join(others))
+                self._given_up_s[name] = time.monotonic()
+        self._name_others()
+
+    def _name_others(self, *, at_last: bool = False) -> None:
+        """Say who publishes the topics that were given up, as soon as that is known."""
+        for name, since_s in list(self._given_up_s.items()):
+            waited_s = math.inf if at_last else time.monotonic() - since_s
+            reason = left_to(self._others(name), waited_s)
+            if reason is not None:
+                del self._given_up_s[name]
+                self.progress.left_out[name] = reason
+
+    def _others(self, topic: str) -> list[str]:
+        """Return the full names of the other nodes that publish it."""
+        found = self._ros.node.get_publishers_info_by_topic(topic)
+        names = {full_name(one.node_name, one.node_namespace) for one in found}
+        return sorted(names - {self._ros.name})
 
     def _end(self) -> None:
         """Stop what was set in motion, and let messages under way arrive."""
@@ -243,7 +261,19 @@ class BagPublisher:
             if topic.kind.name in self._stopped_by_zeros:
                 publisher.publish(load_message(topic.kind.name)())
         self._ros.wait_until_heard(ACKED_WITHIN_S)
+        self._name_others(at_last=True)
 
 
 def _latched(topic: TopicInBag) -> bool:
     return topic.durability == "transient_local"
+
+
+def left_to(others: Collection[str], waited_s: float) -> str | None:
+    """Return who publishes the topic, as translatable words; None while that may become known.
+
+    `others`: full names of the nodes; a name not known yet ends with NAMELESS.
+    """
+    named = [name for name in others if not name.endswith(NAMELESS)]
+    if named:
+        return say("{node} publishes it", node=", ".join(named))
+    return say("another program publishes it") if waited_s > NAMED_WITHIN_S else None

@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from graph.findings.finding import FindingLevel, FindingPlace, GraphFinding
+from graph.findings.finding import (
+    FORGOTTEN_S,
+    SETTLED_S,
+    FindingLevel,
+    FindingPlace,
+    GraphFinding,
+)
 from graph.findings.names import is_deck, listed, meant
 from graph.findings.publishers import CLOCK
 from graph.housekeeping import is_hidden, is_housekeeping
@@ -32,7 +38,8 @@ def unfed(
         if row.published_by and not is_housekeeping(row.name)
     }
     for row in update.topics:
-        hearers = sorted({end.node for end in row.subscribed_by if not is_deck(end.node)})
+        ends = [end for end in row.subscribed_by if not is_deck(end.node)]
+        hearers = sorted({end.node for end in ends})
         if row.publishers or row.own_publishers or not hearers or is_hidden(row.name):
             continue
         if row.name == CLOCK:
@@ -44,6 +51,8 @@ def unfed(
             continue
         place = FindingPlace("topic", row.name)
         nodes = listed(hearers)
+        # A node's name comes after its endpoints, and of a dead one it goes before them.
+        settled_s = SETTLED_S if any(end.is_named for end in ends) else FORGOTTEN_S
         if instead:
             speakers = next(one.published_by for one in update.topics if one.name == instead)
             yield GraphFinding(
@@ -57,6 +66,7 @@ def unfed(
                 ),
                 _one_name(row.name, instead),
                 tuple(dict.fromkeys((*hearers, *(end.node for end in speakers)))),
+                settled_s,
             )
         else:
             yield GraphFinding(
@@ -66,6 +76,7 @@ def unfed(
                 say("Nobody publishes it, and it is heard by {nodes}.", nodes=nodes),
                 say("Start the node that publishes it, or remap it to a topic that is published."),
                 tuple(hearers),
+                settled_s,
             )
 
 

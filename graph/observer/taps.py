@@ -254,6 +254,7 @@ class Taps:
             published_by=ends.publishers,
             subscribed_by=ends.subscribers,
             own_publishers=len(ends.own_publishers),
+            from_afar=is_away(ends, self._host),
         )
 
 

@@ -60,8 +60,9 @@ class Telling:
         """Subscribe; raises AttributeError and ValueError for a library that is not Jazzy's."""
         from rmw_dds_common.msg import ParticipantEntitiesInfo
 
-        ParticipantEntitiesInfo()  # Loads what its class needs of C.
         kind: Any = type(ParticipantEntitiesInfo)
+        if kind._TYPE_SUPPORT is None:  # noqa: SLF001 - rclpy asks in this way too
+            kind.__import_type_support__()
         self._take = _function(library, "rmw_take", ctypes.c_int, 4)
         self._destroy = _function(library, "rmw_destroy_subscription", ctypes.c_int, 2)
         self._forget_error = library.rcutils_reset_error

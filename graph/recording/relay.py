@@ -8,11 +8,11 @@ import threading
 import time
 from typing import TYPE_CHECKING
 
-from graph.recording.topics import RecordingTopics, Sink, TopicChoice
+from graph.recording.topics import RecordingTopics
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from graph.recording.topics import Sink, TopicChoice
 
 logger = logging.getLogger(__name__)
 
@@ -30,15 +30,15 @@ class Relay:
         domain: int,
         discovery: str | tuple[str, ...],
         sink: Sink,
-        wanted: Callable[[str, Sequence[str]], bool] | None = None,
+        choice: TopicChoice,
     ) -> None:
-        """`sink` is called by the relay's own thread; `wanted` decides by name and types."""
+        """`sink` and what `choice` asks are called by the relay's own thread."""
         self.error = ""
         """Why nothing is handed on any more, as translatable words."""
         self._domain = domain
         self._discovery = discovery
         self._sink = sink
-        self._choice = TopicChoice(wanted=wanted)
+        self._choice = choice
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="deck-relay", daemon=True)
 

@@ -57,8 +57,11 @@ class Sequences:
 class RecordingTap:
     """A subscription; create it, drain it, close it."""
 
-    def __init__(self, node: Node, topic: BagTopic, qos: Qos) -> None:
-        """Subscribe. Raises UnknownTypeError, and what rclpy raises."""
+    def __init__(self, node: Node, topic: BagTopic, qos: Qos, *, listens: bool = True) -> None:
+        """Subscribe, unless it is to listen only later: see `listen`.
+
+        Raises UnknownTypeError, and what rclpy raises.
+        """
         self.topic = topic
         self.qos = qos
         self.lost = 0
@@ -69,13 +72,21 @@ class RecordingTap:
         self._node = node
         self._cls = load_message(topic.type_name)
         self._depth = DEEP_OF_LARGE if topic.type_name in LARGE_TYPES else DEEP
-        self._subscription = self._subscribe()
+        self._subscription = self._subscribe() if listens else None
 
     def reopen(self, qos: Qos) -> None:
         """Request another quality of service, because publishers have changed."""
+        listens = self._subscription is not None
         self.close()
         self.qos = qos
-        self._subscription = self._subscribe()
+        self.listen(wanted=listens)
+
+    def listen(self, *, wanted: bool) -> None:
+        """Subscribe, or end the subscription until it is wanted again."""
+        if not wanted:
+            self.close()
+        elif self._subscription is None:
+            self._subscription = self._subscribe()
 
     def _subscribe(self) -> Subscription:
         from rclpy.event_handler import SubscriptionEventCallbacks
@@ -91,6 +102,8 @@ class RecordingTap:
 
     def drain(self) -> list[Message]:
         """Empty the queue."""
+        if self._subscription is None:
+            return []
         taken: list[Message] = []
         numbers: list[int] = []
         handle = self._subscription.handle
@@ -122,7 +135,9 @@ class RecordingTap:
 
     def close(self) -> None:
         """End the subscription."""
-        self._node.destroy_subscription(self._subscription)
+        if self._subscription is not None:
+            self._node.destroy_subscription(self._subscription)
+            self._subscription = None
 
 
 def _never_called(message: object) -> None:

@@ -34,6 +34,8 @@ class TopicChoice(NamedTuple):
     """Types that "all" does not include."""
     wanted: Callable[[str, Sequence[str]], bool] | None = None
     """Decides, by name and types, in the place of all this."""
+    asked_for: Callable[[BagTopic], bool] = lambda _topic: True
+    """Whether to listen to one of them now; it is asked again and again."""
 
     def takes(self, name: str, types: Sequence[str]) -> bool:
         """Return whether a topic is to be recorded."""
@@ -83,6 +85,8 @@ class RecordingTopics:
                 if count and count != self._publishers.get(name):
                     self._publishers[name] = count
                     self._tune(name, types)
+        for tap in self._taps.values():
+            tap.listen(wanted=self._choice.asked_for(tap.topic))
 
     def drain(self) -> list[Message]:
         """Take the messages of all topics, in order of arrival."""
@@ -130,7 +134,7 @@ class RecordingTopics:
         )
         try:
             text = definition(type_name, digest)
-            tap = RecordingTap(self._node, topic, qos)
+            tap = RecordingTap(self._node, topic, qos, listens=self._choice.asked_for(topic))
         except UnknownTypeError as error:
             self.skipped[name] = error.reason
             return None

@@ -94,6 +94,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int | str | None:
     """Publish until told to stop, or as often as asked."""
+    from rclpy.duration import Duration
     from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
     kind = naming.message_class(args.message_type)
@@ -106,7 +107,7 @@ def main(args: argparse.Namespace) -> int | str | None:
         reliability=ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.TRANSIENT_LOCAL,
     )
-    times = 1 if args.once else args.times
+    times, arrives = 1 if args.once else args.times, Duration(seconds=ARRIVES_S)
     with joined(args, args.node_name) as me:
         publisher = me.node.create_publisher(
             kind, args.topic_name, options.chosen_qos(args, default)
@@ -124,23 +125,24 @@ def main(args: argparse.Namespace) -> int | str | None:
             publisher.publish(message)
             if times and count >= times:
                 break
+            if times and count == 1:
+                # Who has been found may not have found this publisher yet.
+                publisher.wait_for_all_acked(arrives)
             due += 1 / args.rate
             while (left := due - time.monotonic()) > 0:
                 me.spin_once(min(left, LOOK_S))
         if publisher.topic_name == FOR_ALL:
             _reach_the_rest(me, publisher, message, reached)
+        publisher.wait_for_all_acked(arrives)
         time.sleep(args.keep_alive)
     return None
 
 
 def _reach_the_rest(me: Guest, publisher: Publisher, message: Any, reached: int) -> None:  # noqa: ANN401 - any type of message
-    """Publish it again for those who were not found yet, and wait until it has arrived."""
-    from rclpy.duration import Duration
-
+    """Publish it again for those who were not found yet."""
     me.settle()
     if publisher.get_subscription_count() > reached:
         publisher.publish(message)
-    publisher.wait_for_all_acked(Duration(seconds=ARRIVES_S))
 
 
 def _await_subscriptions(args: argparse.Namespace, publisher: Publisher, times: int) -> str:

@@ -185,12 +185,17 @@ async def test_an_emergency_stop_ends_questions_proposals_and_allowances(
         await until_state(link, "llm_parser", NodeState.STARTING, NodeState.WAITING)
         await until_state(link, "llm_parser", NodeState.READY)
         await lets(claude)
-        executing = asyncio.create_task(
-            claude.call("execute", proposal=await claude.proposed(drive(0.1)))
-        )
-        await person.answer(await asked(person), ConsentAnswer.ONCE)
-        assert not (await executing)["stopped_by_emergency_stop"]
-        assert moved(told)
+
+        async def drives() -> bool:
+            proposal = await claude.proposed(drive(0.1))
+            executing = asyncio.create_task(claude.call("execute", proposal=proposal))
+            await person.answer(await asked(person), ConsentAnswer.ONCE)
+            assert not (await executing)["stopped_by_emergency_stop"]
+            return moved(told)
+
+        # The gate may not have found the new node yet, and it drives for 1 s only.
+        await until(drives, "wheels that turn")
+        await until(lambda: told[-1].drive.speed == 0.0, "the end of the drive")
         told.clear()
         asking = await claude.proposed(drive(0.1))
         refusing = asyncio.create_task(claude.refused("execute", proposal=asking))
@@ -215,6 +220,7 @@ async def test_limits_that_no_approval_lifts(tmp_path: Path, ros_domain: int, pe
             assert moved(told)
             over = await claude.proposed(drive(-0.1))
             assert "within five minutes" in await claude.refused("execute", proposal=over)
+        await until(lambda: told[-1].drive.speed == 0.0, "the end of the drive")
         async with agent("--approve", "never") as claude:
             told.clear()
             proposal = await claude.proposed(drive(0.1))

@@ -18,6 +18,7 @@ import pytest
 from launcher.client.client import running
 from tests.forked_deck import forked_deck
 from tests.hostile_text import EVIL, EVIL_NAME, WORST, harm_in, quoted
+from tests.middleware_words import own_words
 from tests.ros.supervised import end_sessions
 from tests.unit.bags import write_bag
 from tests.waiting import wait_until
@@ -110,7 +111,9 @@ def both(output: bytes, errors: bytes) -> bytes:
     """Return the two together; they are not empty, and no traceback."""
     assert b"Traceback" not in errors, errors.decode(errors="replace")
     assert output + errors
-    return output + errors
+    return output + own_words(errors.decode(errors="surrogateescape")).encode(
+        errors="surrogateescape"
+    )
 
 
 def started(*arguments: str, **env: str) -> bytes:

@@ -18,7 +18,7 @@ import pytest
 from launcher.client.client import running
 from tests.deck_process import DeckProcess, alive, deck
 from tests.unit.profile_files import written
-from tests.waiting import wait_until
+from tests.waiting import DEADLINE_S, wait_until
 
 
 @pytest.fixture(autouse=True)
@@ -158,7 +158,7 @@ def test_a_run_directory_that_takes_no_more_is_named_and_left_as_it_was(tmp_path
         [*full, sys.executable, "-m", "tui", "run", str(path)],
         capture_output=True,
         text=True,
-        timeout=40,
+        timeout=DEADLINE_S,
         check=False,
     )
     assert run.returncode == 2
@@ -225,7 +225,7 @@ def test_a_reader_that_goes_stops_the_nodes_and_harms_nobody(tmp_path: Path) -> 
     os.close(writer)
     with os.fdopen(reader) as lines:
         node = next(int(line.split()[-1]) for line in lines if "] pid " in line)
-    _out, errors = process.communicate(timeout=40)
+    _out, errors = process.communicate(timeout=DEADLINE_S)
     assert errors == ""
     assert process.returncode in (0, 1)
     wait_until(lambda: not alive(node), "the node has ended")

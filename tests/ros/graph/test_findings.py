@@ -1,4 +1,4 @@
-"""Each finding made true by real nodes, in one domain; and a healthy robot, which has none."""
+"""Each finding made true by real nodes, in one domain."""
 
 from __future__ import annotations
 
@@ -18,8 +18,6 @@ from std_srvs.srv import Trigger
 from graph.data import GraphUpdate
 from graph.findings.examining import examine
 from graph.findings.finding import GraphFinding
-from graph.findings.lasting import LastingFindings
-from tests.deck_process import DeckProcess
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
@@ -113,28 +111,3 @@ def test_a_stream_that_stops_is_found(ros_domain: int, watcher: Watcher) -> None
             assert found(watcher.update, "silent", "/range") is None
         finding = wait_until(lambda: found(watcher.update, "silent", "/range"), "silence")
         assert "from /sonar, and then nothing" in finding.what
-
-
-@pytest.mark.parametrize(("profile", "nodes", "seconds"), [("robot", 15, 8), ("06-rviz", 4, 6)])
-def test_a_healthy_robot_has_none_while_it_starts_either(
-    watcher: Watcher, profile: str, nodes: int, seconds: int
-) -> None:
-    """Whatever is missing for a moment while fifteen nodes start and end is not told."""
-    watcher.observer.measure(all_topics=True)
-    lasting, told, most = LastingFindings(NORMS), set[str](), 0
-    run = DeckProcess("run", profile, "--for", str(seconds))
-
-    def ended() -> bool:
-        nonlocal most
-        update = watcher.update
-        most = max(most, len(update.nodes))
-        lasting.take(update, update.time_s)
-        told.update(f"{one.key}: {one.what}" for one in lasting.told(update.time_s))
-        return run.process.poll() is not None
-
-    try:
-        wait_until(ended, "its end", 50.0)
-    finally:
-        run.close()
-    assert most >= nodes
-    assert told == set()

@@ -63,7 +63,7 @@ def change(watcher: Watcher, name: str, transition: str) -> tuple[str, str]:
 
 
 def test_only_nodes_with_a_lifecycle_have_a_row(watcher: Watcher) -> None:
-    assert watcher.node("/ordinary") is not None
+    wait_until(lambda: watcher.node("/ordinary"), "the ordinary one")
     assert [each.node for each in watcher.update.lifecycles] == sorted(whole(NAMES))
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,11 @@ from deck_interfaces.action import DriveToPoint
 from example_interfaces.action import Fibonacci
 from example_interfaces.srv import AddTwoInts
 from tf2_msgs.msg import TFMessage
+
+from graph.messages.types import load_message
+from tests.ros.graph.type_hashes import NOTHING, Fields, type_hash, with_service
+from tests.ros.peer import Peer
+from tests.waiting import wait_until
 
 HASHES = {
     "ackermann_msgs/msg/AckermannDrive": (
@@ -36,6 +42,43 @@ HASHES = {
     "tf2_msgs/msg/TFMessage": (
         "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"
     ),
+}
+
+NUMBERS = {
+    "Byte": "byte",
+    "Float32": "float32",
+    "Float64": "float64",
+    "Int8": "int8",
+    "Int16": "int16",
+    "Int32": "int32",
+    "Int64": "int64",
+    "UInt8": "uint8",
+    "UInt16": "uint16",
+    "UInt32": "uint32",
+    "UInt64": "uint64",
+}
+"""Those with an array as well."""
+WORDS = {"Bool": "bool", "Char": "char", "String": "string", "WString": "wstring"}
+LAYOUT, DIMENSION = (f"example_interfaces/msg/MultiArray{part}" for part in ("Layout", "Dimension"))
+EXAMPLES: dict[str, Fields] = {
+    "example_interfaces/msg/Empty": NOTHING,
+    DIMENSION: (("label", "string"), ("size", "uint32"), ("stride", "uint32")),
+    LAYOUT: (("dim", f"{DIMENSION}[]"), ("data_offset", "uint32")),
+    **{
+        f"example_interfaces/msg/{name}": (("data", of),)
+        for name, of in {**NUMBERS, **WORDS}.items()
+    },
+    **{
+        f"example_interfaces/msg/{name}MultiArray": (("layout", LAYOUT), ("data", f"{of}[]"))
+        for name, of in NUMBERS.items()
+    },
+}
+"""All messages of example_interfaces, as ROS 2 defines them."""
+ANSWERED: Fields = (("success", "bool"), ("message", "string"))
+EXAMPLE_SERVICES: dict[str, tuple[Fields, Fields]] = {
+    "example_interfaces/srv/AddTwoInts": ((("a", "int64"), ("b", "int64")), (("sum", "int64"),)),
+    "example_interfaces/srv/SetBool": ((("data", "bool"),), ANSWERED),
+    "example_interfaces/srv/Trigger": ((), ANSWERED),
 }
 
 FIELDS = {
@@ -97,6 +140,36 @@ def described(name: str) -> dict[str, Any]:
 def test_a_type_has_the_hash_of_its_namesake_in_ros(name: str) -> None:
     hashes = {each["type_name"]: each["hash_string"] for each in described(name)["type_hashes"]}
     assert hashes[name] == HASHES[name]
+
+
+def test_a_hash_is_what_the_fields_make_it() -> None:
+    """The one that is known from ROS shows that the others are made as ROS makes them."""
+    name = "example_interfaces/srv/AddTwoInts"
+    assert type_hash(name, with_service(name, *EXAMPLE_SERVICES[name])) == HASHES[name]
+
+
+@pytest.mark.parametrize("name", EXAMPLE_SERVICES)
+def test_an_example_service_has_the_hash_of_its_definition(name: str) -> None:
+    types = with_service(name, *EXAMPLE_SERVICES[name])
+    hashes = {each["type_name"]: each["hash_string"] for each in described(name)["type_hashes"]}
+    assert hashes == {each: type_hash(each, types) for each in types}
+
+
+def test_example_messages_are_announced_by_the_hash_of_their_definition(peer: Peer) -> None:
+    announced = {}
+    for name in EXAMPLES:
+        topic = "/" + name.rpartition("/")[2].lower()
+        peer.publisher(topic, load_message(name))
+        wait_until(partial(peer.node.count_publishers, topic), topic, 30)
+        (info,) = peer.node.get_publishers_info_by_topic(topic)
+        announced[info.topic_type] = str(info.topic_type_hash)
+    assert announced == {name: type_hash(name, EXAMPLES) for name in EXAMPLES}
+
+
+def test_no_example_is_left_out() -> None:
+    folder = Path(__file__).parents[3] / "interfaces" / "example_interfaces"
+    found = {str(file.relative_to(folder.parent).with_suffix("")) for file in folder.glob("*/*")}
+    assert found == {*EXAMPLES, *EXAMPLE_SERVICES, "example_interfaces/action/Fibonacci"}
 
 
 @pytest.mark.parametrize("kind", FIELDS, ids=lambda kind: kind.__name__)

@@ -32,7 +32,8 @@ def told(update):
     for row in update.topics:
         if row.name == topic:
             kinds = [sample.type_name for sample in update.samples.get(topic, ())]
-            print(json.dumps([kinds, row.pictures_from, row.facts.get("raw", "")]), flush=True)
+            told = [kinds, row.from_afar, row.pictures_from, row.facts.get("raw", "")]
+            print(json.dumps(told), flush=True)
 observer = Observer(int(sys.argv[1]), "subnet")
 observer.watch_pictures({topic})
 observer.start(told)
@@ -47,6 +48,7 @@ class Desk:
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self.kinds: list[str] = []
         self.row: tuple[str, str] = ("", "")
+        self.from_afar = False
         self._process = process
         self._reader = threading.Thread(target=self._read)
         self._reader.start()
@@ -57,7 +59,7 @@ class Desk:
     def _read(self) -> None:
         for line in self._process.stdout or ():
             if line.startswith("["):
-                kinds, *row = json.loads(line)
+                kinds, self.from_afar, *row = json.loads(line)
                 self.kinds += kinds
                 self.row = (row[0], row[1])
 
@@ -105,6 +107,7 @@ def test_what_deck_relays_is_seen_and_leaves_the_cable_free(
     try:
         wait_until(lambda: seen.row[1] == CAMERA, "raw pictures do not come whole", within_s=60)
         assert seen.kinds == []
+        assert seen.from_afar
         began(robot, "-m", "graph.picture_relay", json.dumps([ros_domain, "subnet"]))
         wait_until(lambda: len(seen.kinds) >= ENOUGH, "pictures come", within_s=60)
         assert set(seen.kinds) == {"sensor_msgs/msg/CompressedImage"}

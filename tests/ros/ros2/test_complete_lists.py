@@ -47,6 +47,14 @@ rclpy.spin(node)
 """
 
 
+TOLD = """
+import rclpy
+from graph.participants.telling import Telling
+rclpy.init()
+print('reads' if Telling.load(rclpy.create_node('reader')) else 'does not read')
+"""
+
+
 @contextmanager
 def announcing_rarely(domain: int, program: str) -> Iterator[str]:
     """A node of somebody who does not have Deck's settings: it announces itself each 3 s."""
@@ -93,6 +101,14 @@ def test_who_announces_itself_rarely_is_found_each_time(slow: str) -> None:
     assert f"    /{slow}/set_parameters_atomically: " in info.out
     value = typed("param", "get", f"/{slow}", "use_sim_time")
     assert (value.code, value.out) == (0, "Boolean value is: False\n")
+
+
+@pytest.mark.usefixtures("ros_domain")
+def test_what_they_tell_is_read_by_a_program_that_has_loaded_nothing_before() -> None:
+    """Here other tests have loaded the type; where it is not, lists of topics are incomplete."""
+    program = [sys.executable, "-c", TOLD]
+    reading = subprocess.run(program, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert reading.stdout == "reads\n"
 
 
 def test_it_is_so_where_what_they_tell_cannot_be_read(

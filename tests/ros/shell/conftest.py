@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.middleware_words import own_words
+
 WITHIN_S = 150
 """Others may be testing on the same machine."""
 DECK = (sys.executable, "-m", "tui", "shell")
@@ -31,7 +33,7 @@ def run(home: Path, ros_domain: int) -> Run:
     """Run a command line in `deck shell -c`, in the user's home."""
 
     def run(line: str, **more: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
+        done = subprocess.run(
             [*DECK, "-c", line],
             cwd=home,
             env={**os.environ, **more, "ROS_DOMAIN_ID": str(ros_domain)},
@@ -41,5 +43,7 @@ def run(home: Path, ros_domain: int) -> Run:
             timeout=WITHIN_S,
             check=False,
         )
+        done.stdout, done.stderr = own_words(done.stdout), own_words(done.stderr)
+        return done
 
     return run

@@ -32,7 +32,7 @@ CAMERA = "/camera/color/image_raw"
 
 
 class Camera:
-    """Publishes ten pictures a second: red on the left, their number as a grey on the right."""
+    """Publishes ten pictures a second: red on the left, their number, modulo 256, as a grey."""
 
     def __init__(self, publisher: Publisher) -> None:
         self.number = 0
@@ -48,8 +48,8 @@ class Camera:
 
     def _run(self) -> None:
         while not self._ending.wait(PERIOD_S):
-            self.number = (self.number + 1) % 256
-            pixels = np.full((HEIGHT, WIDTH, 3), self.number, np.uint8)
+            self.number += 1
+            pixels = np.full((HEIGHT, WIDTH, 3), self.number % 256, np.uint8)
             pixels[:, : WIDTH // 2] = RED
             message = Image(width=WIDTH, height=HEIGHT, encoding="rgb8", step=3 * WIDTH)
             message.data = pixels.tobytes()

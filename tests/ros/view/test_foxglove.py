@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import psutil
 import pytest
 from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Float32, String
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
@@ -21,6 +22,8 @@ from websockets.typing import Subprotocol
 
 from tests.deck_process import DeckProcess
 from tests.ros.peer import LATCHED, Peer
+from tests.ros.view.conftest import CAMERA
+from tests.waiting import wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -125,6 +128,23 @@ def test_a_client_that_comes_late_hears_what_is_latched(served: DeckProcess, pee
             client.subscribe(1, "/robot_description")
             raw = client.until_heard(1)
         assert deserialize_message(raw, String).data == "<robot/>"
+
+
+def test_a_camera_is_subscribed_to_only_while_a_client_listens(client: Client, peer: Peer) -> None:
+    """Also what Deck's own relay offers of it, which is small, and hidden elsewhere."""
+    small = f"{CAMERA}/_deck/compressed"
+    cameras = [peer.publisher(CAMERA, Image), peer.publisher(small, CompressedImage)]
+    told = peer.publisher("/told", String)
+    for topic in (CAMERA, small, "/told"):
+        client.until_advertised(topic)
+    wait_until(lambda: told.get_subscription_count() == 1, "what is light is heard", 30)
+    assert [one.get_subscription_count() for one in cameras] == [0, 0]
+    client.subscribe(3, small)
+    with peer.saying(small, CompressedImage(format="jpeg")):
+        assert deserialize_message(client.until_heard(3), CompressedImage).format == "jpeg"
+    assert cameras[0].get_subscription_count() == 0
+    client.line.send(json.dumps({"op": "unsubscribe", "subscriptionIds": [3]}))
+    wait_until(lambda: cameras[1].get_subscription_count() == 0, "nobody listens any more", 30)
 
 
 def test_no_client_can_publish(client: Client, peer: Peer) -> None:

@@ -171,3 +171,12 @@ async def test_hostile_names_and_reasons_stay_in_their_line() -> None:
         shows = app.screen.query_one(AgentBanner)
         await until(lambda: shows.size.height == 4, "its place on the screen")
         assert "STOP" in str(app.screen.query_one(KeyBar).render())
+
+
+async def test_it_may_be_shown_before_it_is_mounted() -> None:
+    """On a busy machine a screen is shown before its parts are."""
+    async with opened(RecordedOpener()) as (app, _pilot):
+        early = AgentBanner()
+        early._attach(app.screen)  # the state of one that is not mounted yet
+        early.show(app)
+        assert not early.display

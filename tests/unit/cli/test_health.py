@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from cli.health import over, settled, well
-from launcher.status import IDLE, STUCK, THREAD, NodeFault, NodeState, NodeStatus
+from launcher.status import HALTED, IDLE, STUCK, THREAD, NodeFault, NodeState, NodeStatus
 from launcher.supervisor.readiness import ReadyCondition, Seen
 from launcher.supervisor.words import instead, what
 
@@ -31,6 +31,11 @@ def test_a_node_that_ails_is_not_healthy_whatever_its_state(kind: str, state: No
     assert not well(ailing, on_the_way=True)
     assert well(ailing, optional=("a",))
     assert ailing.why == "a.py:3: x"
+
+
+def test_what_is_wrong_with_a_program_as_a_whole_has_no_place() -> None:
+    fault = NodeFault(HALTED, exception="suspended", meaning="`kill -CONT 7`")
+    assert node("a", READY, fault=fault).why == "suspended. `kill -CONT 7`"
 
 
 def statuses(*nodes: NodeStatus) -> dict[str, NodeStatus]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -18,8 +19,8 @@ from graph.data import (
     Trouble,
 )
 from graph.findings.examining import examine
-from graph.findings.finding import FORGOTTEN_S, FindingLevel, GraphFinding
-from graph.findings.lasting import LastingFindings
+from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, GraphFinding
+from graph.findings.lasting import CHANGING_S, LastingFindings
 from graph.findings.names import meant
 from tests.hostile_text import EVIL
 from text.i18n import localized
@@ -226,6 +227,13 @@ def test_a_subscriber_that_nobody_feeds() -> None:
     assert found(topic("/scan", "", "/nav", RANGE, own_publishers=1)) == []
 
 
+@pytest.mark.parametrize("name", ["/scan", "/sensor/sonar_frnt"])
+def test_who_hears_without_a_name_may_be_a_node_that_starts_or_has_died(name: str) -> None:
+    nameless = f"/{NAMELESS}"
+    assert only(FED, topic(name, "", nameless)).settled_s == FORGOTTEN_S
+    assert only(FED, topic(name, "", f"{nameless} /nav")).settled_s == SETTLED_S
+
+
 def test_a_name_that_nearly_matches_is_worse_than_none() -> None:
     finding = only(FED, topic("/sensor/sonar_frnt", "", "/guard"))
     assert (finding.rule, finding.level) == ("near-name", FindingLevel.ERROR)
@@ -386,6 +394,27 @@ def test_what_holds_for_a_moment_only_is_not_told() -> None:
     assert lasting.told(99.0) == ()
     lasting.take(TYPO, 16.0)
     assert lasting.told(17.0) == ()
+
+
+def changing(lasting: LastingFindings, seconds: int) -> float:
+    """Have another node in each second; return when, if at all, the typo was first told."""
+    for second in range(seconds):
+        lasting.take(replace(TYPO, nodes=(NodeRow(f"/node_{second}"),)), float(second))
+        if lasting.told(float(second)):
+            return float(second)
+    return math.inf
+
+
+def test_while_nodes_come_and_go_it_is_told_later() -> None:
+    """On a slow machine a robot's nodes come one after the other, for longer than 4 s."""
+    lasting = LastingFindings(NORMS)
+    assert changing(lasting, 10) == math.inf
+    assert lasting.told(12.9) == ()
+    assert lasting.settles_in_s(12.0) == pytest.approx(1.0)
+    assert len(lasting.told(13.0)) == 1
+    lasting.take(replace(TYPO, nodes=(NodeRow("/another"),)), 14.0)
+    assert len(lasting.told(14.0)) == 1, "what is told stays"
+    assert changing(LastingFindings(NORMS), 99) == CHANGING_S
 
 
 def test_an_observer_that_fails_changes_nothing_and_another_graph_all() -> None:

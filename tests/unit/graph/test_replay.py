@@ -15,7 +15,7 @@ from rosbags.rosbag2 import StoragePlugin
 from graph.data import GraphUpdate, Sample, TopicRow, Trouble
 from graph.replay.replay import Replay
 from tests.unit.bags import BATTERY, write_bag
-from tests.waiting import wait_until
+from tests.waiting import DEADLINE_S, wait_until
 
 ROOT = Path(__file__).parents[3]
 
@@ -189,7 +189,7 @@ replay.stop()
         cwd=ROOT,
         capture_output=True,
         text=True,
-        timeout=50,
+        timeout=DEADLINE_S,
         check=True,
     )
     assert (done.stdout, done.stderr) == ("10.0 \n", "")

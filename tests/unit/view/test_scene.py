@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from graph.data import Sample
+from graph.data import Sample, TopicRow
 from space.transform import Transform
 from tests.unit.space.trees import cloud_tree, marker, pose_tree
 from view.scene.drawn import Drawn
@@ -53,6 +53,22 @@ def frames_of(drawn: Drawn) -> tuple[str, str]:
     """Return parent and child of a transform."""
     place = drawn.shapes[0]
     return arrow(place.parent_frame)[0], arrow(place.child_frame)[0]
+
+
+def test_pictures_from_another_machine_are_seen_small() -> None:
+    """Of everything else the whole is needed, and pictures from this machine cost no network."""
+    rows = [
+        TopicRow(name, (type_name,), 1, 0, from_afar=from_afar)
+        for name, type_name, from_afar in (
+            ("/far", "sensor_msgs/msg/Image", True),
+            ("/far/compressed", "sensor_msgs/msg/CompressedImage", True),
+            ("/far/points", "sensor_msgs/msg/PointCloud2", True),
+            ("/here", "sensor_msgs/msg/Image", False),
+        )
+    ]
+    scene = ViewScene()
+    assert scene.seen_small(rows) == {"/far", "/far/compressed"}
+    assert scene.wanted(rows) == {row.name for row in rows}
 
 
 def test_frames_stand_in_their_parents_and_a_root_in_the_view() -> None:

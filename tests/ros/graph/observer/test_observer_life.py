@@ -21,7 +21,7 @@ from graph.observer.requests import ObserverError
 from graph.observer.settings import ObserverSettings
 from tests.middleware_words import own_words
 from tests.ros.observing import Peer, Watcher
-from tests.waiting import wait_until
+from tests.waiting import DEADLINE_S, wait_until
 
 ROOT = Path(__file__).parents[4]
 
@@ -34,7 +34,7 @@ def run(program: str, domain: int, **env: str) -> subprocess.CompletedProcess[st
         env={**os.environ, "ROS_DOMAIN_ID": str(domain), **env},
         capture_output=True,
         text=True,
-        timeout=50,
+        timeout=DEADLINE_S,
         check=False,
     )
 

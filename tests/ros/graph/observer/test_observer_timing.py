@@ -71,7 +71,12 @@ def test_what_is_lost_on_the_way_is_counted_and_the_rest_is_not(
 ) -> None:
     """Best effort, and more at once than any buffer on the way holds."""
     peer.advertise("/flood", type_name=IMAGE, reliability="best_effort", depth=5)
-    wait_until(lambda: peer.listeners("/flood") == 1, "Deck listens")
+
+    def listens() -> str:
+        seen = (watcher.updates, watcher.row("/flood"), watcher.update.error)
+        return f"Deck listens once, but {peer.listeners('/flood')} do; it sees {seen}"
+
+    wait_until(lambda: peer.listeners("/flood") == 1, listens)
     sent = 0
 
     def send(times: int, size: int = MEGABYTE) -> TopicRow:
