@@ -1,10 +1,11 @@
 """Lines of the screen without what they never use: nine megabytes of caches, ten of styles.
 
 Textual gives each line seven caches when it is made, and a screen with many tabs keeps ten thousand
-lines. Here a line gets a cache when it is first asked for. Textual also keeps sixteen thousand
-styles for the sequences that they are drawn by, and nearly each piece of text has a style of its
-own, which says where it stands. Here the sequences are kept by what they draw. A test fails when
-Textual changes any of it.
+lines. Here a line gets a cache when it is first asked for, and none has the line itself in it: such
+a line would stay until all garbage is collected, which takes many minutes to come. Textual also
+keeps sixteen thousand styles for the sequences that they are drawn by, and nearly each piece of
+text has a style of its own, which says where it stands. Here the sequences are kept by what they
+draw. A test fails when Textual changes any of it.
 """
 
 from __future__ import annotations
@@ -66,9 +67,24 @@ def _made(strip: Strip, name: str) -> FIFOCache[Any, Any]:
     size = SIZES.get(name)
     if size is None:
         raise AttributeError(name)
-    cache: FIFOCache[Any, Any] = FIFOCache(size)
+    cache = _Cache(size, id(strip))
     setattr(strip, name, cache)
     return cache
+
+
+class _Cache(FIFOCache[Any, Any]):
+    """The cache of a line, for other lines than itself; it is found again in no time anyway."""
+
+    __slots__ = ("_owner",)
+
+    def __init__(self, maxsize: int, owner: int) -> None:
+        super().__init__(maxsize)
+        self._owner = owner
+
+    def __setitem__(self, key: Any, value: Strip | list[Strip]) -> None:  # noqa: ANN401
+        first = value if isinstance(value, Strip) else value[0] if value else None
+        if id(first) != self._owner:
+            self.set(key, value)
 
 
 def _lean_ansi(_strip: type[Strip], style: Style, color_system: ColorSystem) -> str:

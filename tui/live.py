@@ -18,6 +18,7 @@ from graph.memory import (
     keep_room_for_large_messages,
 )
 from launcher.errors import LauncherError
+from launcher.processes.interrupts import run
 from launcher.rundir import log_dir
 from launcher.status import LogLine, Severity
 from text.i18n import _, detect, set_language
@@ -46,6 +47,9 @@ PATIENCE_S = 15.0
 """How long a session may take to stop once its terminal is gone."""
 GARBAGE_AFTER = 10_000
 """New objects before a garbage collection; a screen creates and drops thousands a second."""
+COLLECTED_EVERY_S = 120.0
+"""How often all garbage is collected, which takes 0.1 s. Left alone, Python waits until what has
+come is a quarter of everything: some megabytes, after many minutes."""
 SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 
 
@@ -75,6 +79,7 @@ class RealTerminal:
         for number in SIGNALS:
             loop.add_signal_handler(number, self.desert, 128 + number)
         app.set_interval(LOOK_S, self._look)
+        app.set_interval(COLLECTED_EVERY_S, _collect_garbage)
         app.set_interval(GIVEN_BACK_EVERY_S, give_back_free_memory)
 
     @property
@@ -137,6 +142,11 @@ class RealTerminal:
             gc.freeze()
 
 
+def _collect_garbage() -> None:
+    # Textual calls functions of Python only.
+    gc.collect()
+
+
 def _as_lines(texts: Sequence[str], first: int, severity: Severity) -> list[LogLine]:
     """Return stray output as log lines of the node `deck`."""
     now_s = clock.now()
@@ -196,7 +206,7 @@ def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = Non
             bandwidth=Bandwidth(limit),
             environment=terminal,
         )
-        app.run()
+        run(app.run_async())
     if app.sessions.parting_words:
         return _refused(app.sessions.parting_words, app.return_code or 0)
     if app.crashed:

@@ -61,6 +61,11 @@ class Action(Generic[Target]):
         return True
 
     @classmethod
+    def pressable(cls, target: Target) -> bool | None:
+        """Return the same for its keys; what is not possible may still be run, to say why."""
+        return cls.possible(target)
+
+    @classmethod
     def shown(cls, target: Target) -> bool:
         """Return whether the footer shows it now; a hidden key may still say why it cannot act."""
         del target
@@ -116,5 +121,5 @@ class Acting(DOMNode):
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Ask the action whether it is possible now."""
         if action == "act":
-            return REGISTRY[str(parameters[0])].possible(self)
+            return REGISTRY[str(parameters[0])].pressable(self)
         return super().check_action(action, parameters)

@@ -8,10 +8,19 @@ from typing import TYPE_CHECKING
 from rich.cells import cell_len
 from textual.message import Message
 
-from launcher.status import NodeState
 from text.i18n import N_, _
 from text.plain import plain
-from tui.widgets.node_words import STATES, duration, memory, percent, state_words, why
+from tui.widgets.node_words import (
+    AILING,
+    AT_WORK,
+    STATES,
+    ailing_words,
+    duration,
+    memory,
+    percent,
+    state_words,
+    why,
+)
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
@@ -20,8 +29,6 @@ if TYPE_CHECKING:
 
 OUTSIDE = ("◇", N_("outside"))
 UNKNOWN = "—"
-AT_WORK = (NodeState.READY, NodeState.RUNNING)
-"""In these, the state of a lifecycle is shown in place of the word."""
 OWN, MUTED = "✎", "⊘"
 """Follow the name of a node that runs the learner's own file, or is left out of the log."""
 
@@ -78,6 +85,7 @@ class NodesTable(Rows):
         if not width:
             return
         alive = [word for state, (_sign, word, _meaning) in STATES.items() if state.alive]
+        alive += [word for _sign, word, _meaning in AILING.values()]
         words = [*map(_, alive), *map(plain, self._lifecycles.values())]
         self._word = max(map(cell_len, words)) + 2
         names = [self._named(node.name, own=bool(node.file)) for node in self._statuses]
@@ -114,9 +122,13 @@ class NodesTable(Rows):
             sign, word = OUTSIDE
             word = self._state(self.chosen, _(word))
             return (self.chosen, f"{sign} {word} · {_('not started by Deck')}")
+        return (node.name, f"{self._signed(node)} · {why(node)}")
+
+    def _signed(self, node: NodeStatus) -> str:
+        """Return sign and word of its state; one at work may have a lifecycle."""
         sign, word, _meaning = state_words(node)
-        word = self._state(node.name, _(word)) if node.state in AT_WORK else _(word)
-        return (node.name, f"{sign} {word} · {why(node)}")
+        at_work = node.state in AT_WORK and ailing_words(node) is None
+        return f"{sign} {self._state(node.name, _(word)) if at_work else _(word)}"
 
     def _state(self, name: str, word: str) -> str:
         """Return the state of the node's lifecycle, which says more than that it runs."""
@@ -136,9 +148,7 @@ class NodesTable(Rows):
         return tuple(cells)
 
     def _cells(self, node: NodeStatus) -> tuple[Cell, ...]:
-        sign, word, meaning = state_words(node)
-        at_work = node.state in AT_WORK
-        state = f"{sign} {self._state(node.name, _(word)) if at_work else _(word)}"
+        state, (_sign, _word, meaning) = self._signed(node), state_words(node)
         name = Cell(self._named(node.name, own=bool(node.file)))
         if not node.state.alive or node.fault is not None:
             # One cell up to the edge: a long state would widen the column for all rows.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from textual.widgets import Static
 
 from text.i18n import _
-from tui.deck.watched import watched_words
+from tui.deck.watched import Watched
 from tui.panels.registry import PANELS, make_panel, panels_for
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from textual.screen import Screen
 
     from graph.data import GraphUpdate
+    from launcher.status import SessionInfo
     from tui.panels.panel import Panel
     from tui.panels.panel_grid import PanelGrid
 
@@ -36,6 +37,7 @@ class DeckPanels:
         self._grid: PanelGrid | None = None
         self._put: set[str] = set()
         """Panels that were added for topics that others publish."""
+        self._watched: Watched | None = None
 
     @property
     def all(self) -> Sequence[Panel]:
@@ -94,14 +96,18 @@ class DeckPanels:
     async def put_up(self, names: Iterable[str]) -> None:
         """Replace the panels of the previous session with those of this one."""
         self._put.clear()
+        self._watched = None
         await self._put_up(names)
 
-    async def put_up_for(self, update: GraphUpdate, domain: int) -> bool:
+    async def put_up_for(self, update: GraphUpdate, session: SessionInfo) -> bool:
         """Say which nodes run, and add panels for topics that have appeared; none is removed.
 
         Return whether any was added.
         """
-        words = watched_words(update, domain)
+        if self._watched is None:
+            beyond = session.discovery != "localhost"
+            self._watched = Watched(session.domain, beyond=beyond)
+        words = self._watched.words(update)
         watched = self._screen.query_one("#watched", Static)
         # Updating a Static repeats the layout of the screen, and graph updates are frequent.
         if words != watched.content:

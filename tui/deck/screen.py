@@ -336,7 +336,9 @@ class LessonDeck(DeckScreen):
         """Hide the panels if they do not fit."""
         self._panels.measure_room(*event.size)
         self._beside.measure_room()
-        self._lay_out(event.size.height)
+        # Without its parts it is just being opened or closed.
+        if self.query(NameHead):
+            self._lay_out(event.size.height)
 
     @on(SessionChanged)
     async def _session_changed(self, message: SessionChanged) -> None:
@@ -380,10 +382,9 @@ class LessonDeck(DeckScreen):
         if message.update.error:
             self.notify(localized(message.update.error), severity="error", markup=False)
             return
-        if self.feed.watching:
+        if self.feed.watching and self.feed.session is not None:
             self.set_class(self.driven, "-driven")
-            domain = self.feed.session.domain if self.feed.session else 0
-            if await self._panels.put_up_for(message.update, domain):
+            if await self._panels.put_up_for(message.update, self.feed.session):
                 self._lay_out(self.size.height)
                 self.topics_changed()
         self._panels.take(message.update, seen=self.feed.front is self)

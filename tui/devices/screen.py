@@ -291,7 +291,8 @@ class DevicesScreen(DeckScreen):
 
     def _look(self) -> None:
         """Show the current state."""
-        if not self.is_mounted or self.feed.front is not self:
+        # Without its parts it is just being opened or closed.
+        if not self.query(DevicesTable) or self.feed.front is not self:
             return
         devices, now_s = devices_of(self._diagnostics), clock.now()
         for widget in (self.table, self.query_one("#devices-chosen"), self.pane):

@@ -49,6 +49,8 @@ class Emergency:
     """Unix time at which the last message on the topic was received."""
     said_s: float = 0.0
     """When it was published; for a latched message that may be long before it was received."""
+    asked_s: float = 0.0
+    """When the stop that was asked for was first pressed or heard here, Unix time."""
     fallback: str = ""
     """Why the nodes are stopped instead (a message id), empty if the stop reached somebody."""
     ended: tuple[str, ...] = ()
@@ -75,9 +77,13 @@ class Emergency:
 
     @property
     def unconfirmed(self) -> bool:
-        """Whether it was pressed here, and nobody has said since that it holds."""
-        ours = self.asked and self.ours and not self.by_gate
-        return ours and not self.fallback and self.confirmed_s < self.since_s
+        """Whether it was pressed, here or elsewhere, and nobody has said since that it holds."""
+        if not self.asked or self.by_gate or (self.fallback and self.ended):
+            return False
+        if not self.ours and self.holders:
+            # They may have heard it, and said so, before it was heard here.
+            return False
+        return self.confirmed_s < self.asked_s
 
     @property
     def silent(self) -> tuple[str, ...]:
@@ -129,6 +135,8 @@ class Emergency:
             by_gate=False,
             heard_s=heard_s,
             said_s=said_s,
+            # What the gate has told of already is confirmed.
+            asked_s=min(heard_s, self.confirmed_s) if self.by_gate else heard_s,
             fallback="",
             ended=self.ended if engaged else (),
         )
@@ -192,7 +200,10 @@ class Emergency:
 
     def confirmed(self, at_s: float) -> Emergency:
         """Record that somebody reported at that time that it holds."""
-        return self if at_s <= self.confirmed_s else replace(self, confirmed_s=at_s)
+        if at_s <= self.confirmed_s:
+            return self
+        reached = at_s >= self.asked_s and not self.ended
+        return replace(self, confirmed_s=at_s, fallback="" if reached else self.fallback)
 
     def told_by_gate(self, gate: Gate) -> Emergency:
         """Take in what the gate obeys: it received stops that were published before we listened."""

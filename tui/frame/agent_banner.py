@@ -19,6 +19,8 @@ from tui.frame.actions.agents import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from textual.timer import Timer
+
     from launcher.consent import Question
     from tui.frame.host import Host
 
@@ -50,10 +52,8 @@ class AgentBanner(Widget):
         self._lines: tuple[Content, ...] = ()
         self._question: Question | None = None
         self._host: Host | None = None
-
-    def on_mount(self) -> None:
-        """Note regularly whether the question is in front: a dialog may cover it."""
-        self._timer = self.set_interval(LOOK_S, self._look, pause=True)
+        self._timer: Timer | None = None
+        """Notes regularly whether the question is in front: a dialog may cover it."""
 
     def show(self, host: Host) -> None:
         """Show the oldest question, or who drives without one."""
@@ -62,10 +62,11 @@ class AgentBanner(Widget):
         self._question = question
         lines = tuple(self._asked(host) if question is not None else self._standing(host))
         self.display = bool(lines)
-        if question is not None:
-            self._timer.resume()
-        else:
-            self._timer.pause()
+        if question is not None and self._timer is None:
+            self._timer = self.set_interval(LOOK_S, self._look)
+        elif question is None and self._timer is not None:
+            self._timer.stop()
+            self._timer = None
         if lines != self._lines:
             self._lines = lines
             self.refresh(layout=True)

@@ -152,7 +152,7 @@ def _running(app: Host, session: SessionInfo) -> Sequence[str]:
     if app.feed.watching:
         return _watched(app, session)
     nodes = app.feed.nodes.values()
-    well = sum(node.serves for node in nodes)
+    well = sum(node.serves and not node.ails for node in nodes)
     sign = "◔" if starting(app) else "●" if well == len(nodes) else "○"
     count = f"{sign} {well}/{len(nodes)}"
     name, hardware = plain(session.name), hardware_words(session.hardware)

@@ -239,7 +239,8 @@ class FramesScreen(DeckScreen):
         return frozenset(frame for one in self._findings for frame in one.frames)
 
     def _show(self) -> None:
-        if not self.is_mounted:
+        # Without its parts it is just being opened or closed.
+        if not self.query("#frames-filter"):
             return
         update = self._update
         self._tree = FrameTree(() if update is None else update.frames)

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 ColumnsFor: TypeAlias = "Callable[[int, int], LogColumns]"
 """Returns the columns in front of the text, for the given widths of a row and the longest node."""
 LEAST_TEXT = 8
+PAGES_KEPT = 2
+"""Drawn rows that are kept, in heights of the view: a row takes two kilobytes."""
 
 
 class DrawnRows:
@@ -43,7 +45,7 @@ class DrawnRows:
         self._node_places: dict[str, int] = {}
         self._longest_node = 4
         self._painter: RowPainter | None = None
-        self._strips: LRUCache[tuple[int, int], Strip] = LRUCache(512)
+        self._strips: LRUCache[tuple[int, int], Strip] = LRUCache(1)
 
     def know_nodes(self, names: Iterable[str]) -> bool:
         """Assign colours to these nodes, in this order; return whether one needs a wider column."""
@@ -54,8 +56,9 @@ class DrawnRows:
         self._longest_node = max(longest, self._longest_node)
         return wider
 
-    def lay_out(self, width: int) -> None:
-        """Fit columns and wrapping to rows of this width."""
+    def lay_out(self, width: int, height: int) -> None:
+        """Fit columns and wrapping to rows of this width, of which so many are seen at once."""
+        self._strips.maxsize = max(1, PAGES_KEPT * height)
         self._width = width
         self._columns = self._columns_for(width, self._longest_node)
         self._index.fold(self._text_width if self.fold else None)

@@ -15,14 +15,13 @@ from dataclasses import dataclass
 from launcher.status import LogLine, Severity
 from text.i18n import localized
 from text.plain import plain
+from tui.session.history import KEPT_LINES
 
 LONGEST_TEXT = 16_384
 """Characters kept of one line; the file has the whole line."""
 SLACK = 1.25
 """Dropping goes through all lines, so it is done only occasionally, for many at once."""
 _OBJECT_BYTES = 130
-MAX_LINES = 3000
-"""A screen has several such logs, and is to take no more memory after hours than after minutes."""
 
 SAID_BY_DECK = frozenset({"deck", "agent"})
 """The `source` of lines that can be translated."""
@@ -53,7 +52,7 @@ class LogEntry:
 class LineRing:
     """Lines in order of arrival."""
 
-    def __init__(self, max_lines: int = MAX_LINES, max_bytes: int = 16 * 2**20) -> None:
+    def __init__(self, max_lines: int = KEPT_LINES, max_bytes: int = 16 * 2**20) -> None:
         """Keep at most this many lines and bytes, and temporarily a quarter more."""
         self.max_lines, self.max_bytes = max_lines, max_bytes
         self.entries: list[LogEntry] = []

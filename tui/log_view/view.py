@@ -21,9 +21,10 @@ from tui.log_view.choice import LineChoice, exported
 from tui.log_view.drawing import ColumnsFor, DrawnRows
 from tui.log_view.index import LogIndex
 from tui.log_view.palette import PALETTE_CLASSES, PALETTE_CSS
-from tui.log_view.ring import MAX_LINES, LineRing
+from tui.log_view.ring import LineRing
 from tui.log_view.rows import columns_for, text_of
 from tui.log_view.tail import Tail
+from tui.session.history import KEPT_LINES
 from tui.widgets.one_style import OneStyle
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
     def __init__(
         self,
         *,
-        max_lines: int = MAX_LINES,
+        max_lines: int = KEPT_LINES,
         fold: bool = True,
         period_s: float = 0.1,
         columns_for: ColumnsFor = columns_for,
@@ -356,7 +357,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         width = self.container_size.width - self.scrollbar_size_vertical
         if width >= 1:
             top = self.top_id
-            self._drawn.lay_out(width)
+            self._drawn.lay_out(width, self.container_size.height)
             self._settle(top)
 
     def _on_resize(self, _event: Resize) -> None:

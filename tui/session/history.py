@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from launcher.status import LogLine
 
-KEPT_LINES = 3000
-"""As many as a log view shows."""
+KEPT_LINES = 2000
+"""As many as a log view shows: a screen has several, and is to take no more memory after hours."""
 KEPT_CHARACTERS = 8_000_000
 
 

@@ -16,18 +16,18 @@ LONGEST = 400
 
 
 def fault_lines(node: NodeStatus) -> list[Content]:
-    """Return what is wrong with the node's own file: the line, the exception, what it means."""
+    """Return what is wrong with the node: the line of its file, the exception, what it means."""
     fault = node.fault
     if fault is None:
         return []
-    place = f"{plain(fault.file.rpartition('/')[2], 80)}:{fault.line}"
+    place = f"{plain(fault.file.rpartition('/')[2], 80)}:{fault.line}: " if fault.file else ""
     still = _("the process from before still runs")
     still = f" ({still})" if fault.kind == "syntax" and node.state.alive else ""
     goes_on = fault.kind == "warning" and node.state.alive
     sign, colour = ("!", "$text-warning") if goes_on else ("✗", "$text-error")
     lines = [
         Content.assemble(
-            (f"{sign} {place}: ", f"bold {colour}"),
+            (f"{sign} {place}", f"bold {colour}"),
             (plain(localized(fault.exception), LONGEST), colour),
             (still, "$text-muted"),
         )

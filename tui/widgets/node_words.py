@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from launcher.status import NodeState
+from launcher.status import HALTED, STUCK, THREAD, NodeState
 from text.figures import figure, whole
 from text.i18n import N_, _, localized
 from text.plain import plain
@@ -24,8 +24,17 @@ STATES = {
 }
 """Maps a state to sign, word and meaning: colour is never the only indication."""
 
+AT_WORK = (NodeState.READY, NodeState.RUNNING)
+"""In these, the state of a lifecycle may be shown in place of the word."""
+
 LATE = ("◔", N_("running"), "warn")
 """For a node that runs, but was not ready in time."""
+AILING = {
+    STUCK: ("✗", N_("stuck"), "bad"),
+    HALTED: ("✗", N_("halted"), "bad"),
+    THREAD: ("✗", N_("running"), "bad"),
+}
+"""For a node whose process is there, and which is not at work."""
 MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
 LONGEST_S = 1000.0 * DAY_S
 """A node cannot have run for longer than this, or for a negative time."""
@@ -33,7 +42,15 @@ LONGEST_S = 1000.0 * DAY_S
 
 def state_words(node: NodeStatus) -> tuple[str, str, str]:
     """Return the sign, word and meaning of a node's state."""
+    if (ailing := ailing_words(node)) is not None:
+        return ailing
     return LATE if node.late else STATES[node.state]
+
+
+def ailing_words(node: NodeStatus) -> tuple[str, str, str] | None:
+    """Return the same of a node that is not at work although its process is there, else None."""
+    kind = node.fault.kind if node.fault is not None else ""
+    return AILING.get(kind) if node.state in AT_WORK else None
 
 
 def why(node: NodeStatus) -> str:

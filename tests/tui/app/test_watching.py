@@ -22,6 +22,7 @@ from tests.tui.recorded import (
 )
 from tests.tui.recorded_lesson import topic
 from tests.tui.snapshots import Look, SnapCompare, one_look, settle
+from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.frame import title
@@ -208,14 +209,37 @@ def test_nobody_there(look: Look, dump_compare: SnapCompare) -> None:
 
 
 def test_a_node_s_name_is_harmless() -> None:
-    from tui.deck.watched import watched_words
+    from tui.deck.watched import Watched
 
-    words = watched_words(lesson_update(nodes=(NodeRow("/a\x1b[31m"),)), 42)
+    words = Watched(42).words(lesson_update(nodes=(NodeRow("/a\x1b[31m"),)))
     assert "a␛[31m" in words
 
 
-def test_a_name_that_is_too_long_for_the_line_is_seen_to_be_cut() -> None:
-    from tui.deck.watched import watched_words
+def test_it_does_not_send_to_where_it_looks_already() -> None:
+    from tui.deck.watched import Watched
 
-    words = watched_words(lesson_update(nodes=(NodeRow("/" + "a" * 80), NodeRow("/b"))), 42)
+    near, far = Watched(42), Watched(42, beyond=True)
+    assert "--discovery subnet" in near.words(NOTHING)
+    assert "on another machine" in far.words(NOTHING)
+    assert "--discovery" not in far.words(NOTHING)
+
+
+def test_who_was_there_and_is_not_seen_any_more_is_not_told_as_never_come() -> None:
+    from tui.deck.watched import Watched
+
+    near, far = Watched(42), Watched(42, beyond=True)
+    for one in (near, far):
+        one.words(lesson_update(nodes=(NodeRow("/a"),), time_s=NOW_S))
+    gone = lesson_update(nodes=(), time_s=NOW_S + 1)
+    assert near.words(gone) == f"Nobody is seen any more since {clock.time_of_day(NOW_S + 1)}."
+    assert "the network may be down" in far.words(gone)
+    later = lesson_update(nodes=(), time_s=NOW_S + 90)
+    assert far.words(later) == far.words(gone)
+    assert "1 node runs here" in far.words(lesson_update(nodes=(NodeRow("/a"),)))
+
+
+def test_a_name_that_is_too_long_for_the_line_is_seen_to_be_cut() -> None:
+    from tui.deck.watched import Watched
+
+    words = Watched(42).words(lesson_update(nodes=(NodeRow("/" + "a" * 80), NodeRow("/b"))))
     assert words.endswith(f" {'a' * 59}…, b")

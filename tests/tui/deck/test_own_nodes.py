@@ -14,7 +14,7 @@ from course.folder.folder import new_folder
 from course.lessons.catalog import SHIPPED
 from course.lessons.lesson import LessonFolder
 from launcher.profile.text import SHIPPED as PROFILES
-from launcher.status import NodeFault, NodeState, NodeStatus
+from launcher.status import HALTED, STUCK, NodeFault, NodeState, NodeStatus
 from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession
 from tests.tui.snapshots import Look, SnapCompare, both_languages
@@ -22,6 +22,7 @@ from tests.waiting import until
 from text.sentences import say
 from tui.app import DeckApp
 from tui.dialogs.choice import ChoiceScreen
+from tui.frame import title
 
 LESSON = "02-sonar-safety"
 MISTAKE = "self.publisher.publish(Float32(data=1))"
@@ -125,6 +126,15 @@ def test_a_mistake_in_ones_own_file_looks(look: Look, snap_compare: SnapCompare)
         assert MISTAKE in said
 
     assert snap_compare(look.app("deck", opener), terminal_size=look.size, run_before=settle)
+
+
+@pytest.mark.parametrize(("kind", "word"), [(STUCK, "stuck"), (HALTED, "halted")])
+async def test_a_node_that_is_not_at_work_is_not_counted_as_ready(kind: str, word: str) -> None:
+    opener = lesson_opener(PROFILES / f"{LESSON}.yaml", fault=NodeFault(kind, exception="since"))
+    async with opened(opener) as (app, _pilot):
+        await until(lambda: f"✗ {word}" in shown(app), "its state")
+        assert "○ 1/2" in title.states(app)[0]
+        assert "● ready" in shown(app), "the other one is"
 
 
 async def test_which_editor_is_asked_once_and_kept(

@@ -183,6 +183,18 @@ async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> No
         assert opener.graph.published == [GO]
 
 
+async def test_a_release_without_a_stop_publishes_nothing_and_says_so() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        assert "Release" not in str(app.screen.query_one(KeyBar).render())
+        await pilot.press("ctrl+r")
+        await pilot.pause()
+        assert opener.graph.published == []
+        assert [one.message for one in app._notifications] == [
+            "Nothing is released: this screen knows of no emergency stop."
+        ]
+
+
 async def test_a_stop_whose_publisher_has_gone_can_be_released() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):

@@ -260,6 +260,36 @@ def test_a_stop_pressed_while_the_link_is_down_is_not_told_as_obeyed() -> None:
     assert "confirmed" not in stop_words(state, "^r")[0]
 
 
+def test_a_stop_of_another_screen_is_not_told_as_obeyed_before_a_node_says_so() -> None:
+    """Two screens beyond a cut: the one hears the stop that the other gives."""
+    free = word(GATE, False, NOW_S, since_s=NOW_S - 60)
+    state = after(obeyed(free, at_s=NOW_S), said(True, NOW_S + 5))
+    unsure = "■ EMERGENCY STOP (by another) · pressed, nobody has confirmed it · ^r releases"
+    assert stop_words(state, "^r")[0] == unsure
+    state = after(lesson_update(samples={}, nodes=(), time_s=NOW_S + 40), begin=state)
+    state = after(said(True, NOW_S + 41), begin=state)
+    assert stop_words(state, "^r")[0] == unsure
+    state = after(obeyed(word(GATE, True, NOW_S + 46), at_s=NOW_S + 46), begin=state)
+    assert not state.unconfirmed
+    assert not after(said(True, NOW_S + 47), begin=state).unconfirmed, "the same stop, repeated"
+
+
+def test_what_may_have_reached_nobody_is_unconfirmed_until_a_node_says_so() -> None:
+    """Pressed by `deck watch` after the nodes were forgotten: they hear it when they are back."""
+    state = NOTHING.pressed(NOW_S).fallen_back("it may have reached nobody")
+    words = "■ EMERGENCY STOP · pressed, nobody has confirmed it · it may have reached nobody"
+    assert stop_words(state, "^r")[0] == f"{words} · ^r releases"
+    state = after(obeyed(word(GATE, True, NOW_S + 46), at_s=NOW_S + 46), begin=state)
+    assert "nobody" not in stop_words(state, "^r")[0]
+
+
+def test_a_node_that_confirms_it_does_not_start_again_what_was_stopped_instead() -> None:
+    state = NOTHING.pressed(NOW_S).fallen_back("all nodes are being stopped", ("hello",))
+    assert not state.unconfirmed
+    state = after(obeyed(word(GATE, True, NOW_S + 1), at_s=NOW_S + 1), begin=state)
+    assert "all nodes are being stopped" in stop_words(state, "^r")[0]
+
+
 def test_what_a_node_held_before_the_press_does_not_confirm_it() -> None:
     holding = word(GATE, True, NOW_S, since_s=NOW_S - 60)
     state = after(obeyed(holding, at_s=NOW_S)).pressed(NOW_S + 1)

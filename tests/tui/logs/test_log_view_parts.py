@@ -135,11 +135,18 @@ async def test_a_row_is_drawn_once_until_it_looks_different() -> None:
         )
         assert rows.know_nodes(["node0", "node1", "node2"])
         assert not rows.know_nodes(["node1"])
-        rows.lay_out(30)
+        rows.lay_out(30, 2)
         entry = index.shown[1]
         strip = rows.strip(entry, 0, None, chosen=False)
         assert strip.text.rstrip() == " node1 line 1"
         assert rows.strip(entry, 0, None, chosen=False) is strip
+        for other in (0, 2, 3, 0):
+            rows.strip(index.shown[other], 0, None, chosen=False)
+        assert rows.strip(entry, 0, None, chosen=False) is strip, "two pages are kept"
+        for other in range(4):
+            rows.strip(index.shown[other], 1, None, chosen=False)
+        assert rows.strip(entry, 0, None, chosen=False) is not strip, "and no more"
+        strip = rows.strip(entry, 0, None, chosen=False)
         rows.forget()
         assert rows.strip(entry, 0, None, chosen=False) is not strip
         assert not rows.cuts("node1")
@@ -157,11 +164,11 @@ async def test_only_lines_that_are_not_folded_can_be_shifted_and_no_further_than
             pilot.app.query_one(Page), index, lambda _width, _node: LogColumns(0, 0, 0), fold=False
         )
         rows.know_nodes(["a"])
-        rows.lay_out(20)
+        rows.lay_out(20, 5)
         assert rows.shift(16)
         rows.forget()
         assert rows.strip(index.shown[0], 0, None, chosen=False).text.strip()[:3] == "123"
         assert not rows.shift(16)
         rows.set_fold(True)
-        rows.lay_out(20)
+        rows.lay_out(20, 5)
         assert not rows.shift(16)

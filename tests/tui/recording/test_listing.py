@@ -192,16 +192,17 @@ async def test_names_cannot_control_the_terminal() -> None:
 def test_the_list_looks(
     look: Look, dump_compare: SnapCompare, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Name, end, length, messages and size; the damaged one marked, its reason below the list."""
+    """Name, end, length, messages and size; a damaged and an incomplete one marked, why below."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("DECK_RECORDINGS_DIR", "deck-recordings")
     some()
+    aged(write_lossy_bag(recordings_path() / "lossy"), 180)
 
     async def show(pilot: Pilot[Any]) -> None:
         app = pilot.app
         assert isinstance(app, DeckApp)
         await look.settle(pilot)
-        await listed(app, pilot, 3)
+        await listed(app, pilot, 4)
         await pilot.pause()
 
     assert dump_compare(look.app(), terminal_size=look.size, run_before=show)

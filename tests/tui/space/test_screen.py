@@ -15,9 +15,10 @@ from space.drawing.camera import Angle
 from space.drawing.paints import Tint
 from space.transform import Transform
 from tests.tui.recorded import RecordedGraph, lesson_update
-from tests.tui.recorded_lesson import topic
-from tests.tui.recorded_space import frame_row, frames, marker_sample, space_update
+from tests.tui.recorded_lesson import sample, topic
+from tests.tui.recorded_space import STRING, frame_row, frames, marker_sample, space_update
 from tests.tui.space.stage_runs import at_work, robot_in_a_room
+from text.i18n import set_language
 from tui.dialogs.choice import ChoiceScreen
 from tui.session.messages import SessionChanged
 from tui.space.rows import LayerRows
@@ -160,6 +161,43 @@ async def test_a_layer_that_cannot_be_read_does_not_stop_the_others() -> None:
         assert "the message has no field" in " ".join(rows_of(screen).split())
         assert Tint.WALL not in tints(screen)
         assert "base_link" in text_of(screen)
+
+
+LACKING = {
+    "mimic": (
+        ("continuous", "<mimic joint='elbow'/>", ""),
+        "line 2: joint j: there is no joint elbow;",
+        "строка 2: сочленение j: сочленения elbow нет;",
+    ),
+    "material": (
+        ("fixed", "", "<material name='paint'/>"),
+        "line 3: there is no material paint;",
+        "строка 3: материала paint нет;",
+    ),
+}
+"""What a robot's joint and link have, what Space says of it, and that in Russian."""
+
+
+@pytest.mark.parametrize("lang", ["en", "ru"])
+@pytest.mark.parametrize("case", LACKING)
+async def test_what_a_description_lacks_is_said_and_the_robot_is_drawn(
+    case: str, lang: str
+) -> None:
+    (kind, mimic, material), *said = LACKING[case]
+    text = f"""<robot name='r'><link name='base_link'/><link name='mast'/>
+    <joint name='j' type='{kind}'><parent link='base_link'/><child link='mast'/>{mimic}</joint>
+    <link name='ball'><visual><geometry><sphere radius='0.4'/></geometry>{material}</visual></link>
+    <joint name='k' type='fixed'><parent link='mast'/><child link='ball'/></joint></robot>"""
+    described = (sample("/robot_description", STRING, {"data": text}),)
+    joined = [frame_row("base_link", link, Transform()) for link in ("mast", "ball")]
+    update = space_update(None, (*frames(), *joined), robot_description=described)
+    set_language(lang)
+    async with at_work(robot_in_a_room(update)) as (screen, _pilot):
+        assert said[lang == "ru"] in " ".join(rows_of(screen).split())
+        layer = screen.stage.layers.get("/robot_description")
+        assert layer is not None
+        drawn = {link.frame: link.shapes for link in layer.reader.shown(0.0)}
+        assert drawn["ball"]
 
 
 async def test_two_trees_are_told_apart() -> None:

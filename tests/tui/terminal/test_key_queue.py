@@ -10,7 +10,7 @@ from textual.widgets import Input, Static
 
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.snapshots import Look, settle
-from tests.waiting import until
+from tests.waiting import DEADLINE_S, until
 from tui.terminal import key_queue
 
 if TYPE_CHECKING:
@@ -26,7 +26,9 @@ SIGNS = {"slash": "/", "space": " "}
 
 
 @pytest.fixture
-async def app() -> AsyncIterator[DeckApp]:
+async def app(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[DeckApp]:
+    # On a busy machine a screen may take longer to open than a person is left waiting.
+    monkeypatch.setattr(key_queue, "PATIENCE_S", DEADLINE_S)
     app = HOME.app("deck", RecordedOpener(graph=RecordedGraph()))
     async with app.run_test(size=HOME.size) as pilot:
         await settle(pilot)

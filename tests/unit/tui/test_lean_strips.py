@@ -72,6 +72,23 @@ def test_a_line_has_a_cache_once_it_uses_it() -> None:
         _ = lean._else  # type: ignore[attr-defined]
 
 
+def test_a_line_that_is_shown_whole_goes_as_soon_as_nobody_has_it() -> None:
+    """One that its own caches have is garbage of the kind that is collected after minutes."""
+    gc.disable()
+    try:
+        with lean_strips():
+            style = Watched(bold=True)
+            whole = Strip([Segment("Путь свободен", style)])
+            assert [each is whole for each in whole.divide([13])] == [True]
+            assert whole.adjust_cell_length(13) is whole
+            assert whole.crop_extend(0, 13, None) is whole
+            gone = ref(style)
+            del whole, style
+            assert gone() is None
+    finally:
+        gc.enable()
+
+
 @pytest.mark.parametrize(("style", "colours"), product(STYLES, ColorSystem))
 def test_each_style_is_drawn_as_before(style: Style, colours: ColorSystem) -> None:
     drawn = Strip.render_ansi(style, colours)

@@ -61,13 +61,26 @@ class EmergencyRelease(SessionAction):
     @classmethod
     def possible(cls, target: Host) -> bool | None:
         """Only while it is engaged."""
-        live = target.feed.link is not None and target.feed.replay is None
-        return live and target.emergency.state.engaged
+        return bool(cls.pressable(target)) and target.emergency.state.engaged
+
+    @classmethod
+    def pressable(cls, target: Host) -> bool | None:
+        """Whenever there is a robot: pressed in vain, it says so."""
+        return target.feed.link is not None and target.feed.replay is None
+
+    @classmethod
+    def shown(cls, target: Host) -> bool:
+        """As long as it is possible."""
+        return bool(cls.possible(target))
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Release it."""
-        target.emergency.release()
+        """Release it; a stop that this screen does not know of is not released by chance."""
+        if target.emergency.state.engaged:
+            target.emergency.release()
+        else:
+            words = _("Nothing is released: this screen knows of no emergency stop.")
+            target.notify(words, markup=False)
 
 
 class OpenedAction(AppAction):
