@@ -143,7 +143,7 @@ if __name__ == "__main__":
         pass
 """
 TIMER = "self.create_timer(0.05, self.tick)"
-SUBSCRIPTION = 'self.create_subscription(String, "/said", print, 10)'
+SUBSCRIPTION = 'self.create_subscription(String, "/said", lambda m: print(m), 10)'
 HASTY = 'self.create_publisher(String, "/said", rclpy.qos.qos_profile_sensor_data)'
 
 

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.middleware_words import own_words
 from tests.unit.profile_files import written
+from tests.waiting import DEADLINE_S
 
 PLANTED = (
     *("nodes/__init__.py", "nodes/hello.py", "nodes/parts/runner.py", "launcher/__init__.py"),
@@ -49,9 +51,9 @@ def deck(folder: Path, command: list[str], *words: str, **environ: str) -> str:
         stderr=subprocess.STDOUT,
         text=True,
         check=False,
-        timeout=55,
+        timeout=DEADLINE_S,
     )
-    return done.stdout
+    return own_words(done.stdout)
 
 
 def taken(folder: Path) -> str:

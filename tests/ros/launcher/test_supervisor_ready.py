@@ -268,6 +268,27 @@ async def test_a_node_that_never_gets_ready_leaves_others_waiting_till_started_b
     await running_pid(client, "eager")
 
 
+async def test_a_probe_that_nobody_can_reach_is_replaced(start: Launch, tmp_path: Path) -> None:
+    """Fast DDS sometimes removes the memory that names of nodes are sent to, while it is in use."""
+    client = await start(
+        {
+            "node": {**module(tmp_path, "talker_module", TALKER), "needs": ["mute"]},
+            "mute": {"exec": SLEEPER, "ready": {"topic": "/never", "within": 60}},
+        }
+    )
+
+    def listens() -> tuple[int, str] | None:
+        held = [(pid, name) for pid in probes(client) for name in held_segments(pid)]
+        # Below the first port of the first domain.
+        return next((each for each in held if {*port_numbers(each[1:])} & {*range(7400)}), None)
+
+    pid, port = await until(listens, "the probe listens for names of nodes")
+    (SHARED_MEMORY / port).unlink()
+    await until(lambda: probes(client) not in ([], [pid]), "another probe")
+    await client.start("node")
+    await until_state(client, "node", NodeState.READY)
+
+
 async def test_a_killed_node_is_not_ready_before_it_really_is(
     start: Launch, tmp_path: Path
 ) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from cli.health import well
 from launcher.client.client import attach
 from launcher.errors import SilentSupervisorError
 from launcher.processes.table import (
@@ -250,3 +251,25 @@ async def test_whoever_attaches_to_one_that_hangs_is_told_how_to_end_it(
     pid = stopped.session.supervisor_pid
     with pytest.raises(SilentSupervisorError, match=f"kill -9 {pid} ends it"):
         await soon(attach())
+
+
+async def test_a_node_of_which_any_process_is_suspended_is_not_healthy_till_it_goes_on(
+    start: Launch,
+) -> None:
+    parent = """\
+        import subprocess, sys
+        child = subprocess.Popen([sys.executable, "-I", "-S", "-c", "import time; time.sleep(999)"])
+        print("child", child.pid, flush=True)
+        child.wait()
+        """
+    client = await start({"node": {"exec": script(parent)}, "other": {"exec": SLEEPER}})
+    own = await running_pid(client, "node")
+    child = int(await said(client, "node", "child "))
+    for pid in (own, child):
+        kill(pid, signal.SIGSTOP)
+        await until(lambda: client.nodes["node"].ails, "the suspended node ails")
+        assert f"kill -CONT {pid}" in client.nodes["node"].why
+        assert not well(client.nodes["node"])
+        assert well(client.nodes["other"])
+        kill(pid, signal.SIGCONT)
+        await until(lambda: well(client.nodes["node"]), "the node is healthy again")

@@ -14,7 +14,7 @@ import pytest
 from launcher.client.client import running
 from launcher.rundir import run_dir
 from tests.ros.supervised import SLEEPER, Launch, running_pid, script, start
-from tests.waiting import until
+from tests.waiting import DEADLINE_S, until
 
 __all__ = ["start"]
 
@@ -33,7 +33,7 @@ def deck(*words: str, **environ: str) -> subprocess.CompletedProcess[str]:
         capture_output=True,
         text=True,
         check=False,
-        timeout=50,
+        timeout=DEADLINE_S,
     )
 
 
