@@ -29,7 +29,7 @@ help:
 	@echo 'make run    set up if needed, then open Deck; PROFILE=09-brain ARGS="--lang ru"'
 	@echo 'make view   also install the viewers, Rerun and Foxglove: 700 MB'
 	@echo 'make test   set up if needed, then run the tests; ARGS="-k sonar"'
-	@echo 'make test-all  also the tests that need more of the machine, such as a browser'
+	@echo 'make test-all  also the slow tests and those that need more of the machine, such as a browser'
 	@echo 'make lint   style, types and who may import whom'
 	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python'
 	@echo 'make lock   ask for newer libraries and write down which, with their hashes'
@@ -61,14 +61,12 @@ run: catalogues
 
 view: catalogues .venv/.view
 
-PYTEST := .venv/bin/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder
-
 test: catalogues .venv/.view
-	@exec $(PYTEST) --plain-machine $(ARGS)
+	@exec .venv/bin/python -m tests.run $(ARGS)
 
 test-all: catalogues .venv/.view
 	@.venv/bin/python -m tests.machine
-	@exec $(PYTEST) $(ARGS)
+	@exec .venv/bin/python -m tests.run --all $(ARGS)
 
 lint: .venv/.ready
 	@.venv/bin/ruff check .
