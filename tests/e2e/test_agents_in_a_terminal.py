@@ -7,11 +7,14 @@ import json
 from pathlib import Path
 
 import mcp_types as types
+import pytest
 from mcp.client.client import Client
 
 from tests.e2e.conftest import Deck
 from tests.e2e.terminal import Terminal
 from tests.ros.agents.robots import GATED, Agent, command, drive, written
+
+pytestmark = pytest.mark.nightly
 
 READ_S = 1.5
 """Longer than a question has to be seen before it can be allowed."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import pytest
 from sensor_msgs.msg import JointState
 
 from tests.e2e.conftest import Deck
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
+
+pytestmark = pytest.mark.nightly
 
 RED = "b00020"
 WORDS = "Foreign commands on /wheel_commands: /evil"

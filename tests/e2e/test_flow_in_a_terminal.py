@@ -8,9 +8,13 @@ from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
+import pytest
+
 from tests.e2e.conftest import Deck
 from tests.unit.profile_files import written
 from tui.flow.chains import BURST_S
+
+pytestmark = pytest.mark.nightly
 
 PROFILE = """
     extends: 09-brain

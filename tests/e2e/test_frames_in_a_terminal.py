@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import pytest
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from tests.e2e.conftest import Deck
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
+
+pytestmark = pytest.mark.nightly
 
 
 def test_the_camera_of_lesson_5_and_a_stranger_s_frame(deck: Deck, ros_domain: int) -> None:

@@ -5,9 +5,13 @@ from __future__ import annotations
 import os
 import signal
 
+import pytest
+
 from tests.e2e import marked
 from tests.e2e.conftest import Deck
 from tests.e2e.terminal import Terminal
+
+pytestmark = pytest.mark.nightly
 
 
 def at_the_graph(deck: Deck, profile: str, nodes: int) -> Terminal:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import pytest
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from std_msgs.msg import String
 
@@ -12,6 +13,8 @@ from tests.e2e.conftest import Deck
 from tests.e2e.terminal import Terminal
 from tests.hostile_text import EVIL, WORST, harm_on_screen, quoted
 from tests.ros.peer import Peer
+
+pytestmark = pytest.mark.nightly
 
 PRINTING = f"""\
 import sys, time

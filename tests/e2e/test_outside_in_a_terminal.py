@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.e2e.conftest import Deck
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
+
+pytestmark = pytest.mark.nightly
 
 
 def test_a_node_started_by_hand_is_listed_and_heard(deck: Deck, ros_domain: int) -> None:

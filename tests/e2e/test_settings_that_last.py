@@ -5,8 +5,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from tests.e2e.conftest import Deck
 from tests.waiting import wait_until
+
+pytestmark = pytest.mark.nightly
 
 
 def settings_of(deck: Deck) -> Path:

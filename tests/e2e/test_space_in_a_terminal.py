@@ -5,8 +5,12 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.e2e.conftest import Deck
 from tests.unit.profile_files import written
+
+pytestmark = pytest.mark.nightly
 
 ROOT = Path(__file__).parents[2]
 PROFILE = f"""

@@ -20,6 +20,8 @@ from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 MAX_AGE_S = 0.5
 DEADLINE_S = 3.0
 """For half a second of holding on and the same at the gate, on a machine that is busy."""

@@ -28,6 +28,8 @@ from tests.ros.peer import Peer
 from tests.ros.supervised import until_state
 from tests.waiting import until
 
+pytestmark = pytest.mark.nightly
+
 PARSER: dict[str, Any] = GATED["llm_parser"]
 
 

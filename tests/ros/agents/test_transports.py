@@ -27,6 +27,8 @@ from tests.deck_process import DeckProcess, deck
 from tests.ros.agents.robots import GATED, Agent, running
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 HELLO = {
     "jsonrpc": "2.0",
     "id": 1,

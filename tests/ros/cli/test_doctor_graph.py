@@ -14,6 +14,8 @@ from tests.deck_process import DeckProcess, deck
 from tests.hostile_text import WORST, harm_in
 from tests.ros.peer import Peer
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture(autouse=True)
 def _domain(ros_domain: int) -> int:

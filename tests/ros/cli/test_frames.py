@@ -13,6 +13,8 @@ from tf2_msgs.msg import TFMessage
 from tests.deck_process import deck
 from tests.ros.peer import LATCHED, Peer
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture
 def peer(ros_domain: int) -> Iterator[Peer]:

@@ -23,6 +23,8 @@ from tests.ros.supervised import end_sessions
 from tests.unit.bags import write_bag
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 Said = Callable[..., bytes]
 
 

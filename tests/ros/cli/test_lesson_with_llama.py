@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+pytestmark = pytest.mark.nightly
+
 
 class Lesson:
     """Lesson 9, thinking with a model, and what is heard of it."""

@@ -14,6 +14,8 @@ from tests.ros.node_process import NodeProcess
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture(autouse=True)
 def _nodes(ros_domain: int) -> Iterator[None]:

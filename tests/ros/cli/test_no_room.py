@@ -14,7 +14,7 @@ import pytest
 
 from tests.unit.profile_files import written
 
-pytestmark = pytest.mark.machine("namespaces")
+pytestmark = [pytest.mark.machine("namespaces"), pytest.mark.nightly]
 ROOT = Path(__file__).resolve().parents[3]
 
 

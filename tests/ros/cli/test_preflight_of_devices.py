@@ -13,6 +13,8 @@ from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
 
+pytestmark = pytest.mark.nightly
+
 DEVICES = ("pico", "tof_front", "tof_rear", "lsc16")
 
 

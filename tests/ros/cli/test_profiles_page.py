@@ -9,6 +9,8 @@ import pytest
 
 from tests.deck_process import deck
 
+pytestmark = pytest.mark.nightly
+
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 PAGES = ["profiles.md", "profiles.ru.md"]
 

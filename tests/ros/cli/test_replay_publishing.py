@@ -19,6 +19,8 @@ from tests.unit.bags import BEGIN_NS, SECOND_NS, store, write_bag, write_robot_b
 from tests.unit.odd_bags import NUMBERED_QOS, write_mcap, write_metadata
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture(autouse=True)
 def _domain(ros_domain: int) -> int:

@@ -6,6 +6,7 @@ import asyncio
 import textwrap
 from pathlib import Path
 
+import pytest
 import yaml
 
 from course.judge.judge import judging
@@ -13,6 +14,8 @@ from course.lessons.lesson import LessonFolder
 from course.results import State, StepResult
 from launcher.client.client import launch
 from tests.waiting import until
+
+pytestmark = pytest.mark.nightly
 
 NODE = """\
 import threading

@@ -20,6 +20,8 @@ from launcher.client.client import launch
 if TYPE_CHECKING:
     from launcher.client.client import SupervisorClient
 
+pytestmark = pytest.mark.nightly
+
 TALKER = """
 import rclpy
 from rclpy.executors import ExternalShutdownException

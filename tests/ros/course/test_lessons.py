@@ -20,6 +20,8 @@ from tests.conftest import take
 if TYPE_CHECKING:
     from tests.domains import DomainPool
 
+pytestmark = pytest.mark.nightly
+
 PROVEN_AT_ONCE, GRADED_AT_ONCE = 6, 2
 """Together more than the cores of a small machine: most of the time a run waits."""
 NODES_OF_MANY = 10

@@ -14,6 +14,8 @@ from course.lessons.lesson import LessonFolder
 from course.results import State, StepResult
 from launcher.client.client import launch
 
+pytestmark = pytest.mark.nightly
+
 NODE = """\
 import rclpy
 from rclpy.node import Node

@@ -23,6 +23,8 @@ from tests.ros.peer import Peer
 from tests.waiting import wait_until
 from tui.session.norms import NORMS
 
+pytestmark = pytest.mark.nightly
+
 BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -16,6 +16,8 @@ from tui.session.norms import NORMS
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+pytestmark = pytest.mark.nightly
+
 LASTS_S = 6.0
 """By then, what is missing among nodes that all run is told."""
 

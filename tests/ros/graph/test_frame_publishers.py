@@ -22,6 +22,8 @@ from tests.ros.observing import Peer, Watcher
 from tests.unit.transform_messages import Sent
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 LIBRARY = rclpy_implementation.__file__
 FUNCTIONS = (
     "rcl_take_serialized_message",

@@ -23,6 +23,8 @@ from tests.ros.observing import Peer, Watcher
 from tests.unit.transform_messages import Sent, cdr
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture(scope="module")
 def peers(module_domain: int) -> Iterator[tuple[Peer, Peer]]:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from graph.inner_states import LifecycleRow
 
+pytestmark = pytest.mark.nightly
+
 PATIENT_S = 30
 
 

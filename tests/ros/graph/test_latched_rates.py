@@ -10,6 +10,8 @@ import pytest
 from tests.ros.observing import Peer, Watcher, let_updates_come
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 FLOAT, TRANSFORMS = "std_msgs/msg/Float32", "tf2_msgs/msg/TFMessage"
 LATCHED = "transient_local"
 

@@ -44,6 +44,8 @@ from tests.ros.recorded import (
 from tests.ros.told_actions import Served
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 ROOT = Path(__file__).parents[3]
 DEEP = QoSProfile(depth=1000)
 KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)

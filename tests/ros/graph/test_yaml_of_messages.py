@@ -22,6 +22,8 @@ from tests.ros.any_message import parts_of, same, trees_of
 from text.yaml_faults import YamlError
 from text.yaml_tree import plain
 
+pytestmark = pytest.mark.nightly
+
 TYPES = interfaces()
 PARTS = [part for name in TYPES for part in parts_of(name)]
 

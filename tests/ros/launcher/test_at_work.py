@@ -5,12 +5,16 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
+import pytest
+
 from cli.health import well
 from launcher.client.client import SupervisorClient
 from launcher.status import STUCK, THREAD, NodeFault, NodeState, Severity
 from tests.middleware_words import own_words
 from tests.ros.supervised import Launch
 from tests.waiting import until
+
+pytestmark = pytest.mark.nightly
 
 NODE = """\
 import threading

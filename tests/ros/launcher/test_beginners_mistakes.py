@@ -28,6 +28,8 @@ from tests.ros.launcher.mistakes.messages import FIELDS
 from text.i18n import localized
 from text.sentences import Words
 
+pytestmark = pytest.mark.nightly
+
 ROOT = Path(__file__).parents[3]
 AT_MOST_S = 600
 """On a busy machine."""

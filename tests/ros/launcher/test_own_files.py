@@ -15,6 +15,8 @@ from tests.ros.supervised import Launch, said, until_state
 from tests.waiting import until
 from text.i18n import localized
 
+pytestmark = pytest.mark.nightly
+
 WELL = """\
 import time
 import rclpy

@@ -7,6 +7,8 @@ import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pytest
+
 from launcher.client.client import launch
 from launcher.processes.table import processes
 from tests.ros.supervised import SLEEPER, alive, kill
@@ -14,6 +16,8 @@ from tests.waiting import until
 
 if TYPE_CHECKING:
     from launcher.client.client import SupervisorClient
+
+pytestmark = pytest.mark.nightly
 
 RELAY = b"relay"
 WITHIN_S = 40.0

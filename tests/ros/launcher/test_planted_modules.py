@@ -14,6 +14,8 @@ from tests.middleware_words import own_words
 from tests.unit.profile_files import written
 from tests.waiting import DEADLINE_S
 
+pytestmark = pytest.mark.nightly
+
 PLANTED = (
     *("nodes/__init__.py", "nodes/hello.py", "nodes/parts/runner.py", "launcher/__init__.py"),
     *("launcher/supervisor/__main__.py", "rclpy/__init__.py", "std_msgs/__init__.py", "tui/app.py"),

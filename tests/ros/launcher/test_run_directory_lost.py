@@ -22,6 +22,8 @@ from tests.waiting import until, wait_until
 if TYPE_CHECKING:
     from launcher.client.client import SupervisorClient
 
+pytestmark = pytest.mark.nightly
+
 NODE = {"node": {"exec": SLEEPER}}
 
 

@@ -20,6 +20,8 @@ from tests.waiting import until
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.nightly
+
 NODE = {"node": {"run": "nodes.hello"}}
 
 

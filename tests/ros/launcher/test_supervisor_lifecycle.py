@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from lifecycle_msgs.srv import ChangeState
 
 from launcher.status import NodeState, Severity
@@ -15,6 +16,8 @@ from tests.waiting import until
 if TYPE_CHECKING:
     from launcher.client.client import SupervisorClient
     from tests.ros.supervised import Launch
+
+pytestmark = pytest.mark.nightly
 
 
 def managed(name: str, **keys: Any) -> dict[str, Any]:

@@ -7,6 +7,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import pytest
+
 from launcher.client.client import attach
 from launcher.events import LogEvent
 from launcher.logs.lines import MAX_LINE_BYTES
@@ -24,6 +26,8 @@ from tests.waiting import until
 if TYPE_CHECKING:
     from launcher.client.client import SupervisorClient
     from launcher.status import LogLine
+
+pytestmark = pytest.mark.nightly
 
 FLOOD_LINES = 30_000
 FLOOD = """

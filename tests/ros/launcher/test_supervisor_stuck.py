@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
     from launcher.client.client import SupervisorClient
 
+pytestmark = pytest.mark.nightly
+
 SOON_S = 15.0
 """Much less than what a spawn server is given to answer, much more than a stop takes."""
 

@@ -17,6 +17,8 @@ from tests.waiting import comes, wait_until
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.nightly
+
 
 AHEAD = {
     "nan": "with the voice, no picture and no valid distance straight ahead",

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
     from tests.model_server import Exchange, Script
 
+pytestmark = pytest.mark.nightly
+
 DRIVE = {"action": "drive", "speed": 0.3, "steering": 0.1}
 
 

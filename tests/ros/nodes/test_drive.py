@@ -18,6 +18,8 @@ from tests.waiting import comes, wait_until
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.nightly
+
 RADIUS = 0.0325
 
 

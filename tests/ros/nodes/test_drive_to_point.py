@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
     from rclpy.task import Future
 
+pytestmark = pytest.mark.nightly
+
 MODULE = "nodes.drive_to_point"
 SIMULATED: dict[str, object] = {
     "simulate": "always",

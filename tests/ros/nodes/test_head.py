@@ -18,6 +18,8 @@ from tests.waiting import wait_until
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.nightly
+
 SERVICE = "/set_head_position"
 
 

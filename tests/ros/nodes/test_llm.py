@@ -18,6 +18,8 @@ from tests.waiting import comes, wait_until
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.nightly
+
 DRIVE = {"action": "drive", "speed": 0.2, "steering": -0.3}
 HEAD = {"action": "turn_head", "pan": -45, "tilt": 10}
 

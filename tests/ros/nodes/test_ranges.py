@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
     from ackermann_msgs.msg import AckermannDriveStamped
 
+pytestmark = pytest.mark.nightly
+
 RADIUS_M = 0.0325
 BEYOND = [
     pytest.param(0.8, 0.0, "0.8 m/s, limit 0.5 m/s", id="a little too fast"),

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+pytestmark = pytest.mark.nightly
+
 DRIVE = {"action": "drive", "speed": 0.3, "steering": 0.0}
 GO = json.dumps({"thought": "go", "commands": [DRIVE]})
 TONE = (8000 * np.sin(np.arange(2400) * 2 * np.pi / 60)).astype("<i2").tobytes()

@@ -22,6 +22,8 @@ from tests.waiting import wait_until
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.nightly
+
 MODULE = "nodes.robot_state_publisher"
 WHEEL, STEERING = "rear_left_wheel_joint", "steering_joint"
 ARM = """<robot name='arm'>

@@ -20,6 +20,8 @@ from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 CAMERA = "/camera/color/image_raw"
 
 

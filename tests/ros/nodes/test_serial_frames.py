@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
     from robot.frames.lines import FrameLine
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture(scope="module")
 def folder(module_domain: int, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:

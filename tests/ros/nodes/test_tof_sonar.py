@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+pytestmark = pytest.mark.nightly
+
 TOPIC = "/sensor/sonar_front"
 NEAR = encode(TofFrame(123, 1000, 25.0))
 

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from tests.model_server import Exchange
 
+pytestmark = pytest.mark.nightly
+
 BOX = {"left": 0.1, "top": 0.2, "right": 0.5, "bottom": 0.9}
 SEEN = json.dumps({"description": "A red cup.", "things": [{"label": "cup", "box": BOX}]})
 

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
     from tests.model_server import Exchange
 
+pytestmark = pytest.mark.nightly
+
 FUZZED = 10_000
 THROUGH_THE_NODES = 150
 DRIVE_S = 150.0

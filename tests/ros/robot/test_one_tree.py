@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
     from space.transform import Transform
 
+pytestmark = pytest.mark.nightly
+
 ALL_LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 

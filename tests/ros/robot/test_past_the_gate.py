@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture
 def robot(ros_domain: int, tmp_path: Path) -> Iterator[RobotNodes]:

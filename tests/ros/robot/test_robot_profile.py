@@ -14,6 +14,8 @@ from tests.ros.nodes.test_drive_to_point import ABORTED, Asker
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 GOAL_M = 3.0
 """Straight ahead, behind a box that begins 1.75 m in front of the sonar."""
 

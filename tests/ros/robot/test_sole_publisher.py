@@ -18,6 +18,8 @@ from tests.waiting import wait_until
 if TYPE_CHECKING:
     from typing import Any
 
+pytestmark = pytest.mark.nightly
+
 GATE: dict[str, object] = {"gate": True}
 WORDS = "is also published by"
 

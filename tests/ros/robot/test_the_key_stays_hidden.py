@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from tests.model_server import Exchange
 
+pytestmark = pytest.mark.nightly
+
 GO = json.dumps({"thought": "t", "commands": [], "say": "Here I am."})
 HOLDERS = ("a variable", "a file")
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     from tests.ros.ros2.world import World
 
+pytestmark = pytest.mark.nightly
+
 ENOUGH_BYTES = 6000
 
 

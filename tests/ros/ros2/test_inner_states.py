@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from tests.ros.ros2.world import World
 
+pytestmark = pytest.mark.nightly
+
 NODES = "/good\n/hanging\n/hopeless\n/raising\n/refusing\n"
 
 

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
+import pytest
 import yaml
 from std_msgs.msg import Bool
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from tests.ros.ros2.world import World
+
+pytestmark = pytest.mark.nightly
 
 NUMBER = r"\d+\.\d+"
 

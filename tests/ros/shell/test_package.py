@@ -12,6 +12,8 @@ import nodes
 from launcher.ros_tools import PREFIX
 from tests.ros.shell.conftest import Run
 
+pytestmark = pytest.mark.nightly
+
 HELLO = """\
 import signal
 import sys

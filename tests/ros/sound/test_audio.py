@@ -30,6 +30,8 @@ from tests.waiting import wait_until
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.nightly
+
 MICROPHONE, SPEAKER, LEVEL = "/audio/mic_raw", "/audio/speaker_raw", "/audio/level"
 
 

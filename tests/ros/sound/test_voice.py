@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     from tests.ros.peer import Peer
 
+pytestmark = pytest.mark.nightly
+
 BLOCK = RATE_HZ // 10 * 2
 ROOM = bytes(2 * RATE_HZ)
 """A second without a word."""

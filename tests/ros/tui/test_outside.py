@@ -6,6 +6,8 @@ import sys
 from functools import partial
 from typing import TYPE_CHECKING
 
+import pytest
+
 from launcher.status import Severity
 from tests.ros.managed_nodes import started
 from tests.ros.observing import Peer
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
     from launcher.client.client import SupervisorClient
     from tests.ros.observing import Watcher
     from tests.ros.supervised import Launch
+
+pytestmark = pytest.mark.nightly
 
 OTHER_NAME = [sys.executable, "-m", "nodes.hello", "--ros-args", "-r", "__node:=called_otherwise"]
 

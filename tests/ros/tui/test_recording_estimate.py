@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from rclpy.qos import QoSProfile
 from rclpy.timer import Timer
 from sensor_msgs.msg import CompressedImage, Image, PointCloud2
@@ -17,6 +18,8 @@ from tests.ros.peer import Peer
 from tests.ros.recorded import messages_of, read_by_rosbags, wait_for_topic
 from tests.waiting import wait_until
 from tui.bags.estimate import OTHERS, RecordingShare, shares, total_rate
+
+pytestmark = pytest.mark.nightly
 
 HZ = 20.0
 WIDTH, HEIGHT = 64, 48

@@ -19,6 +19,8 @@ from tests.waiting import until, wait_until
 from tui.viewing.process import NotOpenedError, start_view
 from view.own_folder import PREFIX, OwnFolder
 
+pytestmark = pytest.mark.nightly
+
 OPEN_FOREVER = """
 import asyncio, sys
 from tui.viewing.process import start_view

@@ -28,6 +28,8 @@ from tests.waiting import wait_until
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.nightly
+
 PROTOCOL = Subprotocol("foxglove.sdk.v1")
 ANSWER_S = 20.0
 UNKNOWN = "Unknown channel ID"

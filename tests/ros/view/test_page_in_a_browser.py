@@ -20,7 +20,7 @@ from view.installed import rerun_program
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-pytestmark = pytest.mark.machine("browser")
+pytestmark = [pytest.mark.machine("browser"), pytest.mark.nightly]
 PICTURES = 15
 WITHIN_S = 60.0
 

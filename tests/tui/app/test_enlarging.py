@@ -31,6 +31,8 @@ from tui.panels.sonar.panel import SonarPanel
 from tui.panels.sonar.widget import Sonar
 from tui.panels.wheels.panel import WheelsPanel
 
+pytestmark = pytest.mark.nightly
+
 
 def shown(app: DeckApp) -> str:
     return "\n".join(strip.text for strip in app.screen._compositor.render_strips())

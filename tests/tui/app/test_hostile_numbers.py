@@ -42,6 +42,8 @@ from tui.widgets.figures import count_text, seconds_text
 from tui.widgets.node_words import duration, memory, percent
 from tui.widgets.trouble import no_data_words
 
+pytestmark = pytest.mark.nightly
+
 Said = tuple[GraphUpdate, tuple[NodeStatus, ...], tuple[LogLine, ...]]
 SIZES = ((1, 1), (12, 2), (34, 5), (44, 14), (120, 40))
 ALL_PANELS = tuple(PANELS)

@@ -13,6 +13,8 @@ from tests.tui.replayed import BagOpener
 from tests.unit.bags import BEGIN_NS, SECOND_NS, store
 from tui.session.requests import OpenRequest, ReplayRequest
 
+pytestmark = pytest.mark.nightly
+
 WORDS, LOG = "std_msgs/msg/String", "rcl_interfaces/msg/Log"
 
 

@@ -57,6 +57,8 @@ from tui.session.requests import Lesson, OpenRequest
 from tui.topics import screen as topics_screen
 from tui.yaml_form import form as yaml_form
 
+pytestmark = pytest.mark.nightly
+
 STRING = "std_msgs/msg/String"
 NAME = "evil\x1bc\u202e[/]"
 """Of a profile; it has room in the title."""

@@ -18,6 +18,8 @@ from tui.deck.screen import LessonDeck
 from tui.graph.screen import GraphScreen
 from tui.widgets.name_head import NameHead
 
+pytestmark = pytest.mark.nightly
+
 NAME = "/z_robot/" + "a_rather_long_name_of_a_node_" * 3 + "END"
 
 

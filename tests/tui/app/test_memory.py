@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
     from textual.pilot import Pilot
 
+pytestmark = pytest.mark.nightly
+
 TABS = ("f2", "f3", "f4", "f5", "L", "5", "6", "7", "8", "9")
 KINDS = (DOMNode, Timer, asyncio.Task, StylesBase, RenderStyles, Message, Signal, Strip)
 

@@ -21,6 +21,8 @@ from tui.frame.key_bar import KeyBar
 from tui.logs.screen import LogsScreen
 from tui.session.outside import Outside
 
+pytestmark = pytest.mark.nightly
+
 OWN = tuple(NodeRow(f"/{name}") for name in NODES)
 HELPERS = ("/_deck_observer_7", "/_deck_recorder_7", "/_ros2cli_daemon_42_1", "/a/_hidden")
 STARTED_HERE = 7

@@ -42,7 +42,7 @@ from tui.composer.prompt_dialog import PromptDialog
 if TYPE_CHECKING:
     from tests.model_server import Script
 
-pytestmark = pytest.mark.usefixtures("own_folders")
+pytestmark = [pytest.mark.usefixtures("own_folders"), pytest.mark.nightly]
 
 
 async def test_an_answer_waits_in_the_editor_to_be_sent(server: ModelServer) -> None:

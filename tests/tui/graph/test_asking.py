@@ -18,6 +18,8 @@ from tests.tui.snapshots import Look
 from tui.frame.key_bar import KeyBar
 from tui.graph.places import GraphKind, GraphPlace
 
+pytestmark = pytest.mark.nightly
+
 SERVICE, ADD = "/set_head_position", "example_interfaces/srv/AddTwoInts"
 ACTION, DRIVE = "/drive_to_point", "deck_interfaces/action/DriveToPoint"
 

@@ -17,6 +17,8 @@ from tui.dialogs.choice import ChoiceScreen
 from tui.frame.key_bar import KeyBar
 from tui.graph.places import GraphKind, GraphPlace
 
+pytestmark = pytest.mark.nightly
+
 CAMERA = GraphPlace(GraphKind.NODE, "/camera")
 CONTAINER = GraphPlace(GraphKind.NODE, "/perception")
 

@@ -21,6 +21,8 @@ from tui.app import DeckApp
 from tui.graph.places import GraphKind, GraphPlace
 from tui.graph.screen import GraphScreen
 
+pytestmark = pytest.mark.nightly
+
 Step = Callable[[GraphScreen, RecordedGraph], object]
 NODE = GraphPlace(GraphKind.NODE, "/safety_stop")
 SERVICE = GraphPlace(GraphKind.SERVICE, "/set_head_position")

@@ -14,6 +14,8 @@ from tui.graph.map_drawing import MapDrawing, drawing
 from tui.graph.neighbours import neighbours, node_called
 from tui.graph.places import GraphKind, GraphPlace
 
+pytestmark = pytest.mark.nightly
+
 BRAIN = """
 /audio/mic_raw ──────────────┐                ┌▶ /ai_command
   audio                      │                │    ai_driver

@@ -23,6 +23,8 @@ from tui.bags.begin import BeginRecordingScreen
 from tui.lifecycle.stopping import StoppingScreen
 from tui.widgets.rows import Rows
 
+pytestmark = pytest.mark.nightly
+
 __all__ = ["stand_in"]
 
 FOLDER = Path("/home/robot/deck-recordings/09-brain-2026-01-31-12-00-00")

@@ -21,6 +21,8 @@ from tui.frame.key_bar import KeyBar
 from tui.frame.replay_bar import ReplayBar
 from tui.session.requests import OpenRequest, ReplayRequest
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture
 def drive(tmp_path: Path) -> Path:

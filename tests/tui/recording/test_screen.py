@@ -23,6 +23,8 @@ from tui import clock
 from tui.app import DeckApp
 from tui.frame.title_bar import TitleBar
 
+pytestmark = pytest.mark.nightly
+
 ROW = RecordedTopic("/number", "std_msgs/msg/Float32", 240, 3_400_000)
 GOING = RecordingStatus("", 0.0, 12.0, 240, 3_400_000, (ROW,), bytes_per_s=280_000)
 

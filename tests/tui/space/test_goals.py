@@ -19,6 +19,8 @@ from tests.unit.bags import write_bag
 from tui.space.screen import SpaceScreen
 from tui.space.view import SpaceView
 
+pytestmark = pytest.mark.nightly
+
 GOAL, POSE = "/goal_pose", "geometry_msgs/msg/PoseStamped"
 INITIAL, WITH_COVARIANCE = "/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped"
 START, END = (30, 12), (40, 12)

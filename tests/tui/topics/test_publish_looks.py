@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from typing import Any
 
+import pytest
 from textual.pilot import Pilot
 
 from graph.data import Publication
@@ -15,6 +16,8 @@ from tests.waiting import until
 from tui.app import DeckApp
 from tui.topics.publish.dialog import PublishDialog
 from tui.topics.screen import TopicsScreen
+
+pytestmark = pytest.mark.nightly
 
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
 RUNNING = (

@@ -36,6 +36,8 @@ from tui.wall.reading import WallNumber, WallReader
 from tui.wall.screen import WallScreen
 from tui.widgets.image_view import ImageView
 
+pytestmark = pytest.mark.nightly
+
 TYPES = {
     SONAR_FRONT: "std_msgs/msg/Float32",
     SONAR_REAR: "std_msgs/msg/Float32",

@@ -21,7 +21,7 @@ from tests.domains import DomainPool
 from tests.ros.course.grade.lessons import handed_in, log_lesson
 from text.i18n import localized
 
-pytestmark = pytest.mark.timeout(400)
+pytestmark = [pytest.mark.timeout(400), pytest.mark.nightly]
 
 AT_ONCE = 3
 FEW_PROCESSES = 40

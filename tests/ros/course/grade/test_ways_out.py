@@ -26,7 +26,7 @@ from launcher.rundir import run_dir
 from tests.ros.course.grade.lessons import handed_in, log_lesson
 from tests.ros.supervised import SLEEPER, Launch, running_pid
 
-pytestmark = pytest.mark.timeout(300)
+pytestmark = [pytest.mark.timeout(300), pytest.mark.nightly]
 
 TRIES = """
 import os, resource, signal, socket, sys, time

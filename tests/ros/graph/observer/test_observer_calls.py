@@ -16,6 +16,8 @@ from tests.ros.observing import Peer, Watcher, let_updates_come
 from tests.ros.peer import Peer as InProcess
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 ADD = "example_interfaces/srv/AddTwoInts"
 
 

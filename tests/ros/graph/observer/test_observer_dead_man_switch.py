@@ -16,6 +16,8 @@ from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 HELD_S = 1.0
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
 

@@ -11,6 +11,8 @@ from graph.housekeeping import is_housekeeping
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 FLOAT = "std_msgs/msg/Float32"
 DRIVE = "deck_interfaces/action/DriveToPoint"
 ADD = "example_interfaces/srv/AddTwoInts"

@@ -22,6 +22,8 @@ from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 MANY = 1500
 
 

@@ -14,6 +14,8 @@ from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from tests.ros.observing import ROOT, Peer, Watcher, let_updates_come
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 RAW = "/eye/image_raw"
 BLACK = {
     "header": {"frame_id": "eye_link"},

@@ -20,6 +20,8 @@ from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 FLOAT = "std_msgs/msg/Float32"
 
 

@@ -10,6 +10,8 @@ from graph.data import TopicRow
 from tests.ros.observing import Peer, Watcher, let_updates_come
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 FLOAT = "std_msgs/msg/Float32"
 FLOATS = [f"/load/float_{number}" for number in range(10)]
 IMAGE = "/load/image"

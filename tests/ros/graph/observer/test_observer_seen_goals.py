@@ -11,6 +11,8 @@ from graph.data import GoalStatus, SeenGoal
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.nightly
+
 DRIVE = "deck_interfaces/action/DriveToPoint"
 CANCELED = 5
 """Of action_msgs/GoalStatus."""
