@@ -1,9 +1,9 @@
-"""How the rooms are furnished: no circle of imports, no crowded folder, no name for two classes."""
+"""How the rooms are furnished: no circle of imports, and no class in pieces."""
 
 from __future__ import annotations
 
 import ast
-from collections import Counter, defaultdict
+from collections import defaultdict
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -12,8 +12,6 @@ import grimp
 from tests.rooms import ROOMS
 
 ROOT = Path(__file__).parents[3]
-FLAT = 30
-"""How many modules one sees at a glance."""
 
 
 def classes() -> list[tuple[Path, ast.ClassDef]]:
@@ -38,19 +36,6 @@ def test_no_module_needs_itself_by_way_of_others() -> None:
     else:
         circle = []
     assert circle == []
-
-
-def test_no_folder_is_crowded() -> None:
-    folders = (*ROOMS, "bench", "scripts", "tests")
-    files = Counter(path.parent for room in folders for path in (ROOT / room).rglob("*.py"))
-    assert {str(path): count for path, count in files.items() if count > FLAT} == {}
-
-
-def test_no_two_classes_have_one_name() -> None:
-    homes = defaultdict(list)
-    for path, node in classes():
-        homes[node.name].append(str(path.relative_to(ROOT)))
-    assert {name: places for name, places in homes.items() if len(places) > 1} == {}
 
 
 def test_no_class_is_split_over_files_by_inheritance() -> None:
