@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import re
+import time
 from typing import TYPE_CHECKING
 
 from agents.raw_access import check_call, check_publish
@@ -37,7 +38,7 @@ async def stop(session: RobotSession) -> dict[str, object]:
     heard = _is_heard(view)
     if heard:
         # Beside it the road that needs no ROS; where no node listens it would be kept in vain.
-        session.link.emergency_stop(True)
+        session.link.emergency_stop(True, time.time_ns())
     else:
         await session.settled()
         heard = _is_heard(view)

@@ -50,7 +50,7 @@ def stop_command(options: Namespace) -> int:
 
 def _begun(record: RunRecord) -> StopRoad:
     road = StopRoad(record.folder, record.session.domain)
-    road(True)
+    road(True, time.time_ns())
     return road
 
 

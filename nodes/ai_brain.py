@@ -140,6 +140,7 @@ class AiBrain(LessonNode):
         SensorListener(self, Float32, SONAR_FRONT, self._measure)
         self._voice = self.create_publisher(String, SAY, DEPTH)
         self._mind = self._model_mind() if self.text("backend") == "llm" else None
+        StopNews(self, self._emergency)
         self.create_subscription(ByteMultiArray, MICROPHONE, self._hear, DEPTH)
         self.create_subscription(String, HEARD, self._understand, DEPTH)
         self.say.info(_STARTED)
@@ -162,7 +163,6 @@ class AiBrain(LessonNode):
             return None
         self._senses = Senses(self, self.number("stale_after_s"))
         self._json = self.create_publisher(String, LLM_RAW_JSON, DEPTH)
-        StopNews(self, self._emergency)
         return mind
 
     def _emergency(self) -> None:

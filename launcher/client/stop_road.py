@@ -39,12 +39,16 @@ class StopRoad:
         self._words: deque[_Word] = deque()
         self._is_carrying = False
 
-    def __call__(self, engaged: bool) -> None:
-        """Give the stop, or release it: on any thread, without waiting."""
+    def __call__(self, engaged: bool, said_ns: int) -> None:
+        """Give the stop, or release those from before it: on any thread, without waiting.
+
+        `said_ns` is when it was said, Unix time; a release may be repeated with its time.
+        """
         with self._lock:
-            # Of a key that is held down, one that waits is enough.
-            if not self._words or self._words[-1].engaged != engaged:
-                self._words.append(_Word(engaged, time.time_ns()))
+            # Of a key that is held down, the newest that waits is enough.
+            if self._words and self._words[-1].engaged == engaged:
+                self._words.pop()
+            self._words.append(_Word(engaged, said_ns))
             if self._is_carrying:
                 return
             self._is_carrying = True
@@ -69,9 +73,8 @@ class StopRoad:
 
     def _ask(self, word: _Word) -> None:
         """Ask the supervisor; raises OSError or ValueError if it has not done it."""
-        request = {"id": 1, "op": "emergency_release"}
-        if word.engaged:
-            request = {"id": 1, "op": "emergency_stop", "said_ns": word.said_ns}
+        operation = "emergency_stop" if word.engaged else "emergency_release"
+        request = {"id": 1, "op": operation, "said_ns": word.said_ns}
         until_s = time.monotonic() + ANSWERED_WITHIN_S
         with connect(self._folder, ANSWERED_WITHIN_S) as connection:
             connection.settimeout(ANSWERED_WITHIN_S)
@@ -90,4 +93,4 @@ class StopRoad:
         if word.engaged:
             file.give(Stop(word.said_ns), BY_SCREEN)
         else:
-            file.release()
+            file.release(word.said_ns)

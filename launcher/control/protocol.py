@@ -7,8 +7,8 @@ A client answers `{"deck": VERSION}`, then sends requests such as `{"id": 1, "op
 between events: `{"event": "status" | "log" | "strays" | "agents" | "closed", ...}`.
 
 `{"id": 1, "op": "emergency_stop", "said_ns": ...}` gives the robot an emergency stop, and
-`emergency_release` releases it, by the file that the nodes watch: no middleware is needed.
-`said_ns`, unix time, is what the stop is known by; without it, it is when the request arrives.
+`emergency_release` releases those from before it, by the file that the nodes watch: no middleware
+is needed. `said_ns` is when it was said, unix time; without it, that is when the request arrives.
 """
 
 from __future__ import annotations

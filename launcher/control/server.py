@@ -99,8 +99,8 @@ class Controlled(Protocol):
     async def emergency_stop(self, said_ns: int) -> str:
         """Give an emergency stop, known by that time; return why it could not be."""
 
-    async def emergency_release(self) -> str:
-        """Release the emergency stop; return why it could not be."""
+    async def emergency_release(self, said_ns: int) -> str:
+        """Release the emergency stops from before that time; return why they could not be."""
 
     def shut_down(self, asked_by: int, *, now: bool) -> None:
         """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""
@@ -303,7 +303,7 @@ class ControlServer:
         elif op == "emergency_stop":
             _check(await controlled.emergency_stop(_said_ns(request)))
         elif op == "emergency_release":
-            _check(await controlled.emergency_release())
+            _check(await controlled.emergency_release(_said_ns(request)))
         elif op == "stop_strays":
             await controlled.stop_strays(_strays(request))
         elif op == "shutdown":

@@ -278,9 +278,9 @@ class Supervisor:
         """Give an emergency stop by the file that the nodes watch; return why it could not be."""
         return await asyncio.to_thread(self._stop_file.give, Stop(said_ns), BY_SCREEN)
 
-    async def emergency_release(self) -> str:
-        """Release the emergency stop in the same way; return why it could not be."""
-        return await asyncio.to_thread(self._stop_file.release)
+    async def emergency_release(self, said_ns: int) -> str:
+        """Release what was given before this time in the same way; return why it could not be."""
+        return await asyncio.to_thread(self._stop_file.release, said_ns)
 
     def shut_down(self, asked_by: int, *, now: bool) -> None:
         """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""

@@ -17,10 +17,11 @@ from std_msgs.msg import Bool
 
 from nodes.parts.qos import DEPTH, LATCHED
 from nodes.parts.stop_news import OF_MANY
-from nodes.parts.stop_reports import FREE, HELD, read_reports, report_message
+from nodes.parts.stop_reports import FREE, HELD, named, read_reports, report_message
 from nodes.parts.stop_watch import StopWatch
-from robot.safety.stop_file import KeptStop, StopFile
-from robot.safety.stop_record import Insistence, Stop, StopRecord, is_outdated
+from robot.safety.known_stops import Heard, KnownStops
+from robot.safety.stop_file import TOPIC, KeptStop, StopFile
+from robot.safety.stop_record import Insistence, Stop, StopRecord
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
 from text.i18n import N_
 
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
     from nodes.parts.node import LessonNode
 
-TOPIC, PICO = "topic", "pico"
+PICO = "pico"
 """What engaged it."""
 _TOLD_EVERY_S = 1.0
 _AGAIN_S = 0.1
@@ -56,6 +57,10 @@ _NOT_KEPT = N_(
 )
 _NOT_FORGOTTEN = N_(
     "The emergency stop is released, but stays on disk ({problem}): the next start will be stopped"
+)
+_UNPLACED = N_(
+    "A release of the emergency stop has no effect: it is {seconds:.1f} s old by the clock of this"
+    " computer, so that it came late, or by another clock. Release it again"
 )
 _CONTRADICTED = N_(
     "The emergency stop is not released: somebody releases it while another keeps giving it"
@@ -98,7 +103,10 @@ class EmergencyStopListener:
         self._suspects: set[bytes] = set()
         """Publishers of the topic at the time of the stop whose names are not known yet."""
         self._watch = StopWatch(node, self._file, self._look_around)
-        self._record, self._stop = self._file.read()
+        self._known = KnownStops()
+        saved = self._file.read()
+        self._known.learn(saved.record, saved.written_ns)
+        self._stop = saved.stop
         if self._stop is not None:
             self._tell_remembered(self._stop)
         self._publish()
@@ -119,8 +127,12 @@ class EmergencyStopListener:
     def engage(self, by: str) -> None:
         """Stop until released, whatever the cause; call this on the node's own thread."""
         if self._stop is None:
-            stopped = self._record.stopped(Stop(time.time_ns()))
-            self._take(stopped, KeptStop(time.time(), by))
+            now_ns = time.time_ns()
+            self._take(StopRecord().stopped(Stop(now_ns)), KeptStop(time.time(), by), now_ns)
+
+    @property
+    def _record(self) -> StopRecord:
+        return self._known.record
 
     # ---------------------------------------------------------------- what comes in
 
@@ -134,7 +146,7 @@ class EmergencyStopListener:
         """Whether a release was said since this node obeys the stop, and just now, by our clock."""
         if self._stop is None:
             return False
-        # Not by its arrival, as `_named` has it: an old one, too, may arrive now.
+        # Not by its arrival, as `named` has it: an old one, too, may arrive now.
         said_ns, now_ns = info.get("source_timestamp") or 0, time.time_ns()
         since_ns = max(self._began_ns, int(self._stop.since_s * 1e9))
         return since_ns < said_ns and 0 <= now_ns - said_ns < _JUST_NOW_NS
@@ -146,11 +158,11 @@ class EmergencyStopListener:
             self._hear_release(info)
 
     def _hear_stop(self, info: dict[str, Any]) -> None:
-        stop, now_s = _named(info), time.monotonic()
-        was_free, record = self._stop is None, self._record.stopped(stop)
-        is_news = record != self._record
+        stop, now_s = named(info), time.monotonic()
+        was_free, before = self._stop is None, self._record
         self._insistence.hear([stop], now_s)
-        self._take(record, KeptStop(time.time(), TOPIC))
+        self._take(StopRecord().stopped(stop), KeptStop(time.time(), TOPIC), _heard_ns(info))
+        is_news = self._record != before
         if is_news and self._stop is not None and (was_free or now_s > self._suspected_s + 1.0):
             self._suspected_s = now_s
             self._suspects = {bytes(one.endpoint_gid) for one in self._publishers()}
@@ -158,21 +170,30 @@ class EmergencyStopListener:
             self._watch.call_later(_AGAIN_S)
 
     def _hear_release(self, info: dict[str, Any]) -> None:
-        release, now_s = _named(info), time.monotonic()
-        known = self._record.merged(self._file.read().record)
-        if self._insistence.lasts(now_s, release.number):
+        said, was_frozen = named(info), self._watch.was_frozen
+        if self._insistence.lasts(time.monotonic(), said.number):
             self._tell_contradicted()
-        elif not is_outdated(release.said_ns, known, time.time_ns()):
-            self._take(known.freed(), None)
-            if self._was_released is not None:
-                self._was_released()
+            return
+        release, before, saved = (
+            Heard(said.said_ns, _heard_ns(info)),
+            self._record,
+            self._file.read(),
+        )
+        self._known.learn(saved.record, saved.written_ns)
+        is_placed = self._known.release(release, was_frozen=was_frozen)
+        self._obey(before, saved.stop)
+        if not is_placed and self._stop is not None:
+            self._node.say.warn(_UNPLACED, every_s=1.0, seconds=release.age_ns / 1e9)
+        # A stop that came after the release holds: nothing else may be released then.
+        if is_placed and self._stop is None and self._was_released is not None:
+            self._was_released()
 
     def _hear_of(self, message: DiagnosticArray) -> None:
         """Take in what another node obeys, and tell it if that is not all."""
         for report in read_reports(message):
             if report.node == self._status.name:
                 continue
-            self._take(self._record.merged(report.record), report.stop)
+            self._take(report.record, report.stop, time.time_ns())
             if report.stop is not None and report.record.held & self._record.held:
                 self._name(report.stop.publishers.split())
             if not report.is_of_old and self._record != report.record:
@@ -181,18 +202,24 @@ class EmergencyStopListener:
     def _look_around(self, *, whole: bool = False) -> None:
         """Take in what the disk says, and save and tell what this node knows."""
         saved = self._file.read()
-        self._take(self._record.merged(saved.record), saved.stop)
+        self._take(saved.record, saved.stop, saved.written_ns)
         self._save(whole=whole)
         self._publish()
 
-    def _take(self, record: StopRecord, stop: KeptStop | None) -> None:
-        """Obey what is known now; `stop` says where it is known from."""
-        freed = self._stop is not None and not record.engaged
+    def _take(self, record: StopRecord, stop: KeptStop | None, seen_ns: int) -> None:
+        """Obey what is known now; `stop` says where it is known from, and `seen_ns` since when."""
+        before = self._record
+        self._known.learn(record, seen_ns)
+        self._obey(before, stop)
+
+    def _obey(self, before: StopRecord, stop: KeptStop | None) -> None:
+        freed = self._stop is not None and not self._record.engaged
         if freed and self._insistence.lasts(time.monotonic()):
             # By another node, or on disk, where nobody has heard who goes on saying stop.
-            record = record.stopped(Stop(time.time_ns()))
+            now_ns = time.time_ns()
+            self._known.learn(StopRecord().stopped(Stop(now_ns)), now_ns)
             self._tell_contradicted()
-        before, self._record = self._record, record
+        record = self._record
         if record == before:
             return
         if record.engaged == (self._stop is not None):
@@ -272,10 +299,7 @@ class EmergencyStopListener:
         self._publisher.publish(message)
 
 
-def _named(info: dict[str, Any]) -> Stop:
-    """Return by what all hearers know a message; by its arrival where the middleware says nothing.
-
-    Source: rmw/types.h, `rmw_message_info_t`.
-    """
-    said_ns, number = info.get("source_timestamp"), info.get("publication_sequence_number")
-    return Stop(said_ns or time.time_ns(), number or 0)
+def _heard_ns(info: dict[str, Any]) -> int:
+    """Return when a message arrived, even if this node was busy then; now if nobody says it."""
+    now_ns = time.time_ns()
+    return min(info.get("received_timestamp") or now_ns, now_ns)

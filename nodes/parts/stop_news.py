@@ -1,17 +1,23 @@
-"""Tells a node that moves nothing itself of each emergency stop, whichever node has heard it."""
+"""Tells a node that moves nothing itself of each emergency stop, whichever node has heard it.
+
+What it has heard itself it passes on by the disk: it may be the only one that has.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import time
+from typing import TYPE_CHECKING, Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
 from nodes.parts.qos import DEPTH
-from nodes.parts.stop_reports import read_reports
+from nodes.parts.stop_reports import named, read_reports
+from robot.safety.stop_file import TOPIC, StopFile
 from robot.safety.stop_record import StopRecord
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,6 +26,12 @@ if TYPE_CHECKING:
 
 OF_MANY = QoSProfile(depth=64, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Every node that obeys publishes its state, and all of them at once."""
+_PASSED_EVERY_S = 0.5
+"""A stop may be repeated at any rate, and writing takes milliseconds."""
+_NOT_PASSED = N_(
+    "The emergency stop cannot be written to disk ({problem}): a node that has not heard it may"
+    " move on"
+)
 
 
 class StopNews:
@@ -30,14 +42,23 @@ class StopNews:
 
     def __init__(self, node: LessonNode, stopped: Callable[[], None]) -> None:
         """`stopped` is called for each stop, for some more than once."""
-        self._stopped = stopped
+        self._node, self._stopped = node, stopped
         self._record: StopRecord | None = None
-        node.create_subscription(Bool, EMERGENCY_STOP, self._hear, DEPTH)
+        self._file = StopFile(node.context.get_domain_id(), node.get_fully_qualified_name())
+        self._passed_s = 0.0
+        hear: Any = self._hear  # With what the middleware says, as in nodes.parts.emergency.
+        node.create_subscription(Bool, EMERGENCY_STOP, hear, DEPTH)
         node.create_subscription(DiagnosticArray, EMERGENCY_STATE, self._hear_of, OF_MANY)
 
-    def _hear(self, message: Bool) -> None:
-        if message.data:
-            self._stopped()
+    def _hear(self, message: Bool, info: dict[str, Any]) -> None:
+        if not message.data:
+            return
+        self._stopped()
+        if time.monotonic() - self._passed_s > _PASSED_EVERY_S:
+            problem = self._file.give(named(info), TOPIC)
+            self._passed_s = time.monotonic()
+            if problem:
+                self._node.say.error(_NOT_PASSED, every_s=10.0, problem=problem)
 
     def _hear_of(self, message: DiagnosticArray) -> None:
         for report in read_reports(message):

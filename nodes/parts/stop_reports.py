@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+import time
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
@@ -71,6 +72,15 @@ def read_reports(message: DiagnosticArray) -> Iterator[StopReport]:
             record = record.stopped(Stop(int(since_s * 1e9)))
         stop = KeptStop(since_s, values.get("by", ""), values.get("publishers", ""))
         yield StopReport(status.name, record, stop if record.engaged else None, is_of_old)
+
+
+def named(info: dict[str, Any]) -> Stop:
+    """Return by what all hearers know a message; by its arrival where the middleware says nothing.
+
+    Source: rmw/types.h, `rmw_message_info_t`.
+    """
+    said_ns, number = info.get("source_timestamp"), info.get("publication_sequence_number")
+    return Stop(said_ns or time.time_ns(), number or 0)
 
 
 def _seconds(text: str) -> float:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from robot.safety.stop_file import StopFile
 
 _EVERY_S = 0.05
+_STILL_S, _JUST_S = 0.5, 1.0
+"""What is no delay of a busy machine any more, and how long everything that was late arrives."""
 
 
 class StopWatch:
@@ -32,10 +34,17 @@ class StopWatch:
         self._seen = file.signature()
         self._due_s: float | None = None
         self._thread = PeriodicThread(_EVERY_S, self._look)
+        self._looked_s, self._still_s = time.monotonic(), -_JUST_S
 
     def start(self) -> None:
         """Start the thread."""
         self._thread.start()
+
+    @property
+    def was_frozen(self) -> bool:
+        """Whether this process has stood still a moment ago."""
+        now_s = time.monotonic()
+        return now_s - self._looked_s > _STILL_S or now_s - self._still_s < _JUST_S
 
     def call_later(self, after_s: float) -> None:
         """Call back after this time too, sooner if the files change."""
@@ -43,8 +52,12 @@ class StopWatch:
             self._due_s = time.monotonic() + after_s
 
     def _look(self) -> None:
+        now_s = time.monotonic()
+        if now_s - self._looked_s > _STILL_S:
+            self._still_s = now_s
+        self._looked_s = now_s
         seen, due_s, executor = self._file.signature(), self._due_s, self._node.executor
-        due = due_s is not None and time.monotonic() >= due_s
+        due = due_s is not None and now_s >= due_s
         if executor is None or not (due or seen != self._seen):
             return
         # A node that is ending has given these up.

@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
+from robot.safety.known_stops import KnownStops
 from robot.safety.stop_place import stop_place
 from robot.safety.stop_record import Stop, StopRecord, read_record
 from text.nested import read_json
@@ -34,8 +35,8 @@ _NO_SENSE = (
 )
 
 
-BY_SCREEN = "screen"
-"""What has engaged a stop that came by no topic."""
+TOPIC, BY_SCREEN = "topic", "screen"
+"""What has engaged a stop: a message, or somebody by no topic."""
 
 
 class KeptStop(NamedTuple):
@@ -59,6 +60,8 @@ class SavedStop(NamedTuple):
     record: StopRecord
     stop: KeptStop | None
     """The stop that is in effect, None if there is none."""
+    written_ns: int = 0
+    """When all that holds was known on this computer, Unix time."""
 
 
 class StopFile:
@@ -90,15 +93,16 @@ class StopFile:
             return SavedStop(StopRecord(), None)
         record = _parse_released(_released(place))
         try:
-            stops, stop = _parse(_bytes(place))
+            stops, stop, written_ns = _parse(_bytes(place))
         except FileNotFoundError:
             self._unknown = None
             return SavedStop(record, None)
         except _NO_SENSE as error:
-            stops = frozenset({self._unread(place)})
+            unread = self._unread(place)
+            stops, written_ns = frozenset({unread}), unread.said_ns
             stop = KeptStop(time.time(), "", remembered=True, unreadable=os_reason(error))
         record = record.stopped(*stops)
-        return SavedStop(record, stop if record.engaged else None)
+        return SavedStop(record, stop if record.engaged else None, written_ns)
 
     def keep(self, stop: KeptStop, record: StopRecord, *, whole: bool = True) -> str:
         """Save what `record` holds; return why that failed.
@@ -138,9 +142,14 @@ class StopFile:
         """Add a stop on behalf of somebody who is no node; return why that failed."""
         return self.keep(KeptStop(time.time(), by), self.read().record.stopped(stop))
 
-    def release(self) -> str:
-        """Release all that is saved on behalf of somebody who is no node; say why that failed."""
-        return self.forget(self.read().record.freed())
+    def release(self, said_ns: int) -> str:
+        """Release what was saved before this time on behalf of somebody who is no node.
+
+        Return why that failed. It may have waited since it was said, by the clock of this computer.
+        """
+        known, saved = KnownStops(), self.read()
+        known.learn(saved.record, saved.written_ns)
+        return self.forget(known.record.freed(known.before(said_ns)))
 
     def _place(self) -> Path:
         return stop_place(self._domain)
@@ -149,7 +158,8 @@ class StopFile:
         place = self._place()
         folder = place.parent
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        data = json.dumps({**details, **record.texts()}).encode()
+        written = {"written_ns": time.time_ns()} if details else {}
+        data = json.dumps({**details, **written, **record.texts()}).encode()
         _replace(folder, f"{self._draft}{ending}", f"{place.name}{ending}", data)
 
     def _unread(self, place: Path) -> Stop:
@@ -179,15 +189,19 @@ def _bytes(place: Path) -> bytes:
         return file.read(_LONGEST)
 
 
-def _parse(text: bytes) -> tuple[frozenset[Stop], KeptStop]:
-    """Read the file of a stop; one of an older Deck has no name for it but its time."""
+def _parse(text: bytes) -> tuple[frozenset[Stop], KeptStop, int]:
+    """Read the file of a stop, and when it was written.
+
+    One of an older Deck has no name for the stop but its time, and no other time.
+    """
     document = read_json(text)
     since_s = float(document["since"])
+    written_ns = int(document.get("written_ns", since_s * 1e9))
     stop = KeptStop(
         since_s, str(document["by"]), str(document.get("publishers", "")), remembered=True
     )
     held = read_record(str(document.get("stops", "")), "").held
-    return held or frozenset({Stop(int(since_s * 1e9))}), stop
+    return held or frozenset({Stop(int(since_s * 1e9))}), stop, written_ns
 
 
 def _parse_released(place: Path) -> StopRecord:

@@ -1,13 +1,13 @@
 """Which emergency stops hold and which are released, as every node that obeys them keeps it.
 
 Each stop is known by who said it when: the time at which its message was published, by the clock of
-its publisher, and the message's number there. A release covers the stops that its hearer knows of,
-and no other. So two records can be merged in any order, as often as they arrive: nodes that hear of
-each other end with the same one, a stop that anybody has heard is a stop of all, a late copy of a
-stop that was released changes nothing, and a release never undoes a stop that came after it,
-whatever the clocks of two computers say (an observed-remove set: Shapiro et al., 2011, "A
-comprehensive study of convergent and commutative replicated data types"). When in doubt the stop
-wins.
+its publisher, and the message's number there. A release covers the stops that its hearer knew of
+before it was said (`robot.safety.known_stops`), and no other. So two records can be merged in any
+order, as often as they arrive: nodes that hear of each other end with the same one, a stop that
+anybody has heard is a stop of all, a late copy of a stop that was released changes nothing, and a
+release never undoes a stop that came after it, however late it is heard (an observed-remove set:
+Shapiro et al., 2011, "A comprehensive study of convergent and commutative replicated data types").
+When in doubt the stop wins.
 """
 
 from __future__ import annotations
@@ -57,10 +57,11 @@ class StopRecord:
         """Return it with these stops; those that were released already change nothing."""
         return self.merged(StopRecord(frozenset(stops)))
 
-    def freed(self) -> StopRecord:
-        """Return it with all that is held released."""
+    def freed(self, stops: Iterable[Stop] | None = None) -> StopRecord:
+        """Return it with these stops released, or with all that is held."""
         number = self.releases + 1
-        return self.merged(StopRecord(released=dict.fromkeys(self.held, number)))
+        freed = self.held if stops is None else stops
+        return self.merged(StopRecord(released=dict.fromkeys(freed, number)))
 
     def merged(self, other: StopRecord) -> StopRecord:
         """Return what both know together."""
@@ -111,8 +112,6 @@ _IN_A_ROW = 3
 _INTERVALS, _LEAST_S, _LONGEST_S = 2.0, 0.5, 30.0
 """How many of its intervals a publisher has to be silent, and bounds of that."""
 _CHAINS = 16
-_UNDERWAY_NS = 3_000_000_000
-"""A release that is older on the same clock was not on its way for so long."""
 
 
 class _Chain(NamedTuple):
@@ -167,13 +166,3 @@ class Insistence:
 def _lasts(chain: _Chain, now_s: float) -> bool:
     silence_s = min(_INTERVALS * chain.interval_s + _LEAST_S, _LONGEST_S)
     return not chain.is_ended and now_s - chain.heard_s < silence_s
-
-
-def is_outdated(release_ns: int, record: StopRecord, now_ns: int) -> bool:
-    """Return whether a release was said before the newest stop that is held, or at the same time.
-
-    That can be told of messages by one clock only. The clock of another computer is the same if by
-    ours the release was just said, and the stop no later than now.
-    """
-    newest_ns = max((stop.said_ns for stop in record.held), default=0)
-    return release_ns <= newest_ns <= now_ns and now_ns - release_ns < _UNDERWAY_NS

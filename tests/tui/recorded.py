@@ -79,6 +79,8 @@ class RecordedSession:
         self.asked: list[tuple[str, ...]] = []
         """What was asked: ("stop", "camera"), ("shutdown", "now"), ("aclose",)."""
         self.stops: list[bool] = []
+        self.said_ns: list[int] = []
+        """When each of them was said."""
         """What was said of the emergency stop without ROS."""
         self.hold_shutdown = False
         """Set: the nodes do not stop until they are made to."""
@@ -97,9 +99,10 @@ class RecordedSession:
             self.agents = event.agents
         self._queue.put_nowait(event)
 
-    def emergency_stop(self, engaged: bool) -> None:
+    def emergency_stop(self, engaged: bool, said_ns: int) -> None:
         """Note it."""
         self.stops.append(engaged)
+        self.said_ns.append(said_ns)
 
     def set_state(self, name: str, state: NodeState, **more: Any) -> None:
         """Change one node."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robot.topics import EMERGENCY_STOP
@@ -24,9 +25,12 @@ if TYPE_CHECKING:
 
 SENT_WITHIN_S = 2.0
 AGAIN_S = 1.0
-"""Interval at which a release is repeated for nodes that still hold."""
+"""Interval at which a release is repeated for nodes that still hold, with the time of the first."""
 INSIST_S = 10.0
 """For how long it is repeated: a node that takes longer needs a person to look at it."""
+PASSED_ON_AFTER_S, FRESH_S = 0.3, 2.0
+"""Nodes that have heard a stop of another say so within this, on a machine that is not busy. What
+was said longer ago is a latched message, which nodes hear whenever they come."""
 ENDED = frozenset({"exited", "failed"})
 WHY_S = 20.0
 """How long a notification says what else the stop has ended, and why."""
@@ -50,8 +54,10 @@ class EmergencyControl:
         self._feed = feed
         self._changed = changed
         self.state = Emergency()
-        self._released_s = self._said_s = 0.0
-        """When a release was first and last published from here, Unix time."""
+        self._released_ns, self._said_s = 0, 0.0
+        """When a release was said here, and when it last went out, Unix time."""
+        self._passed_on_s = 0.0
+        """When the last stop was heard that was passed on from here, Unix time."""
 
     def engage(self) -> None:
         """Stop the wheels: publish the stop, or stop the nodes if nobody listens."""
@@ -76,14 +82,14 @@ class EmergencyControl:
         """Let the wheels turn again, but let nothing start them automatically."""
         ended = self.state.ended
         self._end_publications()
-        self._released_s = clock.now()
-        self._set(self.state.released(self._released_s))
-        self._say_released()
+        self._released_ns, self._said_s = time.time_ns(), clock.now()
+        self._set(self.state.released(self._said_s))
+        self._app.run_worker(self._reached(self._publish(engaged=False)), group="emergency")
         if ended:
             self._app.run_worker(self._start_again(ended), group="emergency")
 
     def see(self, update: GraphUpdate) -> None:
-        """Take in what others have done, and repeat a release that a node has not received."""
+        """Take in what others have done, and repeat what a node has not heard."""
         before, state = self.state, self.state.seen(update)
         if state.engaged != before.engaged:
             self._end_publications()
@@ -91,16 +97,25 @@ class EmergencyControl:
         if before.engaged and not state.engaged and not state.ours and self._feed.replay is None:
             words = _("The emergency stop was released elsewhere: the wheels may turn.")
             self._app.notify(words, severity="warning", timeout=WHY_S, markup=False)
-        now_s = clock.now()
-        said_in_vain = any(
-            state.nodes[name].held_s > self._said_s + AGAIN_S for name in state.awaited
-        )
-        if said_in_vain and now_s - self._released_s < INSIST_S:
-            self._say_released()
+        self._repeat_release(state)
+        if state.unconfirmed and not state.ours and self._feed.replay is None:
+            self._pass_on(state)
 
-    def _say_released(self) -> None:
-        self._said_s = clock.now()
-        self._app.run_worker(self._reached(self._publish(engaged=False)), group="emergency")
+    def _repeat_release(self, state: Emergency) -> None:
+        """Say it again, by the road: a new message would release stops that have come since."""
+        link, now_s = self._feed.link, clock.now()
+        in_vain = any(state.nodes[name].held_s > self._said_s + AGAIN_S for name in state.awaited)
+        if link is not None and in_vain and now_s - state.since_s < INSIST_S:
+            self._said_s = now_s
+            link.emergency_stop(False, self._released_ns)
+
+    def _pass_on(self, state: Emergency) -> None:
+        """Give a stop by another that only this screen may have heard."""
+        is_fresh = state.asked_s - state.said_s < FRESH_S
+        is_due = clock.now() - state.asked_s > PASSED_ON_AFTER_S
+        if is_fresh and is_due and state.asked_s != self._passed_on_s:
+            self._passed_on_s = state.asked_s
+            self._app.run_worker(self._reached(self._publish(engaged=True)), group="emergency")
 
     def forget(self) -> None:
         """Reset for another session."""
@@ -152,7 +167,7 @@ class EmergencyControl:
         if link is not None and (
             not engaged or update is None or update.error or listeners(update)
         ):
-            link.emergency_stop(engaged)
+            link.emergency_stop(engaged, time.time_ns() if engaged else self._released_ns)
         if graph is None:
             return None
         message = {"data": engaged}

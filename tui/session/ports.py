@@ -52,8 +52,11 @@ class SessionLink(Protocol):
         """The agents, and what they ask for, kept up to date."""
 
     @property
-    def emergency_stop(self) -> Callable[[bool], None]:
-        """Gives (True) or releases the emergency stop without ROS; on any thread, at once."""
+    def emergency_stop(self) -> Callable[[bool, int], None]:
+        """Gives (True) or releases the emergency stop without ROS; on any thread, at once.
+
+        The number is when that was said, Unix time in nanoseconds.
+        """
 
     def events(self, *, past: int = 0) -> AsyncIterator[Event]:
         """Yield the newest `past` lines so far, then events until the session ends."""

@@ -36,22 +36,24 @@ class StopRoads:
         """One after the other: a release must not overtake its stop."""
         self._roads: dict[Path, StopRoad] = {}
 
-    def __call__(self, engaged: bool) -> None:
-        """Give the stop, or release it: on any thread, without waiting."""
-        self._carrying.submit(self._carry, engaged)
+    def __call__(self, engaged: bool, said_ns: int) -> None:
+        """Give the stop, or release it, as `StopRoad` does."""
+        self._carrying.submit(self._carry, engaged, said_ns)
 
-    def _carry(self, engaged: bool) -> None:
+    def _carry(self, engaged: bool, said_ns: int) -> None:
         for record in running_records():
             if record.session.domain == self._domain:
                 road = self._roads.setdefault(record.folder, StopRoad(record.folder, self._domain))
-                road(engaged)
+                road(engaged, said_ns)
 
 
 class NodelessLink:
     """A `SessionLink` without nodes: there is nothing to start, stop or restart."""
 
     def __init__(
-        self, session: SessionInfo, emergency_stop: Callable[[bool], None] = lambda _engaged: None
+        self,
+        session: SessionInfo,
+        emergency_stop: Callable[[bool, int], None] = lambda _engaged, _said_ns: None,
     ) -> None:
         """`emergency_stop`: the road beside the topic; a recording has none."""
         self.session = session

@@ -10,15 +10,17 @@ import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
+from robot.safety.known_stops import LATE_NS
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import DISCOVERY, LATCHED, ROOT, Peer
 from tests.waiting import DEADLINE_S, comes, wait_until
@@ -48,6 +50,10 @@ rclpy.shutdown()
 """As `ros2 topic pub --once` of ROS itself: it waits for one, and lives 0.1 s after that."""
 
 
+def dict_of(status: DiagnosticStatus) -> dict[str, str]:
+    return {pair.key: pair.value for pair in status.values}
+
+
 class States:
     """What each node says of its stop, and when it said so first."""
 
@@ -60,7 +66,7 @@ class States:
 
     def _hear(self, message: DiagnosticArray) -> None:
         for status in message.status:
-            values = {pair.key: pair.value for pair in status.values}
+            values = dict_of(status)
             if self.of.get(status.name, {}).get("engaged") != values["engaged"]:
                 self.when[status.name, values["engaged"]] = time.monotonic()
             self.of[status.name] = values
@@ -135,6 +141,53 @@ def test_who_comes_between_stop_and_release_obeys_both(
             late.wait_for_words("EMERGENCY STOP")
             peer.say(STOP, Bool(data=False), qos=LATCHED, listeners=2)
             late.wait_for_words("is released")
+
+
+def test_a_release_that_a_frozen_node_hears_late_frees_no_later_stop(
+    ros_domain: int, peer: Peer, states: States
+) -> None:
+    both = ("/awake", "/frozen")
+    with (
+        node(ros_domain, "awake"),
+        node(ros_domain, "frozen", module="drive_to_point") as frozen,
+        Peer(ros_domain, "releasing") as releasing,
+    ):
+        states.wait(False, *both)
+        peer.say(STOP, Bool(data=True), qos=LATCHED, listeners=4)
+        states.wait(True, *both)
+        # Of another publisher, whose word waits for who is frozen: it keeps more than the last.
+        publisher = releasing.publisher(STOP, Bool)
+        wait_until(lambda: publisher.get_subscription_count() >= 2, "who hears it")
+        frozen.send(signal.SIGSTOP)
+        publisher.publish(Bool(data=False))
+        released_s = time.monotonic()
+        states.wait(False, "/awake")
+        peer.say(STOP, Bool(data=True), qos=LATCHED, listeners=4)
+        states.wait(True, "/awake")
+        too_late_s = released_s + LATE_NS / 1e9 + 0.2
+        wait_until(lambda: time.monotonic() > too_late_s, "an age of no message under way")
+        heard = peer.hear(STATE, DiagnosticArray)
+        frozen.send(signal.SIGCONT)
+        spoken = [*both, *both, *both]
+
+        def after_the_thaw() -> list[tuple[str, str]]:
+            statuses = [status for message in list(heard) for status in message.status]
+            return [(one.name, dict_of(one)["engaged"]) for one in statuses]
+
+        wait_until(
+            lambda: not (Counter(spoken) - Counter(name for name, _ in after_the_thaw())),
+            "three words of each",
+        )
+        assert {engaged for _, engaged in after_the_thaw()} == {"true"}
+
+
+def test_a_stop_that_only_who_moves_nothing_has_heard_reaches_the_others_by_the_disk(
+    ros_domain: int, peer: Peer, states: States
+) -> None:
+    with node(ros_domain, "deaf", *DEAF), node(ros_domain, "brain", module="ai_brain"):
+        states.wait(False, "/deaf")
+        peer.say(STOP, Bool(data=True))
+        states.wait(True, "/deaf")
 
 
 def test_who_restarts_while_it_is_released_is_free(

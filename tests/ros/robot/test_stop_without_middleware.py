@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import threading
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,12 +43,12 @@ async def test_the_screens_road_stops_and_releases_nodes_that_hear_nobody(
     with NodeProcess("nodes.electronic_differential", ros_domain, arguments=ALONE) as node:
         node.wait_for_words("listens to")
         # From a thread of its own, as the screen's input has one.
-        threading.Thread(target=session.emergency_stop, args=(True,)).start()
+        threading.Thread(target=session.emergency_stop, args=(True, time.time_ns())).start()
         await until(lambda: "EMERGENCY STOP" in node.output, "the stop")
         saved = StopFile(ros_domain, "/test").read().stop
         assert saved is not None
         assert saved.by == "screen"
-        session.emergency_stop(False)
+        session.emergency_stop(False, time.time_ns())
         await until(lambda: "is released" in node.output, "the release")
         await until(lambda: not place(ros_domain).exists(), "the file gone")
 
@@ -56,10 +57,10 @@ async def test_stop_and_release_are_carried_in_their_order(
     session: SupervisorClient, ros_domain: int
 ) -> None:
     for _ in range(20):
-        session.emergency_stop(True)
-        session.emergency_stop(False)
-    session.emergency_stop(True)
-    session.emergency_stop(True)
+        session.emergency_stop(True, time.time_ns())
+        session.emergency_stop(False, time.time_ns())
+    session.emergency_stop(True, time.time_ns())
+    session.emergency_stop(True, time.time_ns())
     await until(lambda: not session.emergency_stop.is_busy, "the end of it")
     assert StopFile(ros_domain, "/test").read().record.engaged
 
@@ -70,7 +71,7 @@ async def test_where_the_supervisor_hangs_the_screen_writes_the_file(
     pid = session.session.supervisor_pid
     os.kill(pid, signal.SIGSTOP)
     try:
-        session.emergency_stop(True)
+        session.emergency_stop(True, time.time_ns())
         await until(place(ros_domain).exists, "the stop on disk")
     finally:
         os.kill(pid, signal.SIGCONT)
@@ -80,19 +81,19 @@ async def test_a_screen_that_only_watches_takes_the_same_road(
     session: SupervisorClient, ros_domain: int, other_domain: int
 ) -> None:
     del session
-    StopRoads(other_domain)(True)
+    StopRoads(other_domain)(True, time.time_ns())
     roads = StopRoads(ros_domain)
-    roads(True)
+    roads(True, time.time_ns())
     await until(place(ros_domain).exists, "the stop on disk")
     for _ in range(5):
-        roads(True)
-        roads(False)
+        roads(True, time.time_ns())
+        roads(False, time.time_ns())
     await until(lambda: not place(ros_domain).exists(), "the release")
     assert not place(other_domain).exists()
 
 
 def test_a_session_that_is_gone_is_stopped_on_disk_too(tmp_path: Path, ros_domain: int) -> None:
-    StopRoad(tmp_path, ros_domain)(True)
+    StopRoad(tmp_path, ros_domain)(True, time.time_ns())
     wait_until(place(ros_domain).exists, "the stop on disk")
 
 

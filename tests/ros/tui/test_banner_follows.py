@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 from collections.abc import AsyncIterator, Callable
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -12,11 +13,12 @@ import pytest
 from std_msgs.msg import Bool
 
 from graph.observer.observer import Observer
+from launcher.client.stop_road import StopRoad
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import until
 from tui.emergency.control import EmergencyControl
-from tui.emergency.state import FOLLOWED
+from tui.emergency.state import FOLLOWED, listeners
 from tui.emergency.words import stop_words
 from tui.session.inbox import GraphInbox
 
@@ -27,11 +29,13 @@ NODE = "/electronic_differential"
 class Screen:
     """As much of the app as the emergency stop needs, on a graph that is really observed."""
 
-    def __init__(self, domain: int) -> None:
+    def __init__(self, domain: int, folder: Path) -> None:
+        """`folder` has no supervisor's socket: the road writes itself."""
         self._inbox = GraphInbox(lambda: None)
+        link = SimpleNamespace(emergency_stop=StopRoad(folder, domain))
         self.observer = Observer(domain, "localhost")
         self.feed = SimpleNamespace(
-            graph=self.observer, update=None, link=None, nodes={}, watching=True, replay=None
+            graph=self.observer, update=None, link=link, nodes={}, watching=True, replay=None
         )
         self.notes: list[str] = []
         self.emergency = EmergencyControl(cast("Any", self), cast("Any", self.feed), lambda: None)
@@ -77,9 +81,9 @@ class Screen:
 
 
 @pytest.fixture
-async def screen(ros_domain: int) -> AsyncIterator[Screen]:
+async def screen(ros_domain: int, tmp_path: Path) -> AsyncIterator[Screen]:
     """A screen that only watches."""
-    screen = Screen(ros_domain)
+    screen = Screen(ros_domain, tmp_path)
     yield screen
     await screen.close()
 
@@ -110,7 +114,7 @@ async def test_a_volatile_word_of_one_who_leaves_stops_and_releases(
 
 
 async def test_who_looks_later_sees_the_stop_and_releases_a_node_that_was_started_anew(
-    screen: Screen, ros_domain: int
+    screen: Screen, ros_domain: int, tmp_path: Path
 ) -> None:
     with NodeProcess("nodes.electronic_differential", ros_domain) as node:
         with Peer(ros_domain, "passer_by") as other:
@@ -122,7 +126,7 @@ async def test_who_looks_later_sees_the_stop_and_releases_a_node_that_was_starte
         node.wait()
     with NodeProcess("nodes.electronic_differential", ros_domain) as node:
         await asyncio.to_thread(node.wait_for_words, "given before this node was started")
-        late = Screen(ros_domain)
+        late = Screen(ros_domain, tmp_path)
         try:
             await late.until(lambda: "(from earlier) since" in late.words, "the stop")
             late.emergency.release()
@@ -132,6 +136,25 @@ async def test_who_looks_later_sees_the_stop_and_releases_a_node_that_was_starte
             await late.close()
         await screen.until(lambda: not screen.words, "the release on the other screen")
         assert any("released elsewhere" in note for note in screen.notes)
+
+
+async def test_a_stop_that_only_the_screen_has_heard_is_passed_on_and_shown(
+    screen: Screen, ros_domain: int
+) -> None:
+    """By a publisher that was gone before the node found it."""
+    deaf = ("--ros-args", "-r", "/emergency_stop:=/nobody_says")
+    with NodeProcess("nodes.electronic_differential", ros_domain, arguments=deaf):
+        await screen.until(lambda: screen.says(False), "the node's word")
+        # Of somebody who listens to the stop, as the road is for a robot that obeys one.
+        with NodeProcess("nodes.ai_brain", ros_domain) as another, Peer(ros_domain, "joy") as joy:
+            await screen.until(lambda: listeners(screen.feed.update), "who listens")
+            another.send(signal.SIGSTOP)
+            await asyncio.to_thread(joy.say, "/emergency_stop", Bool(data=True), listeners=2)
+            await screen.until(lambda: screen.says(True), "the stop")
+            assert "EMERGENCY STOP" in screen.words
+            another.send(signal.SIGCONT)
+        screen.emergency.release()
+        await screen.until(lambda: not screen.words and screen.says(False), "the release")
 
 
 async def test_a_node_that_hangs_is_named_until_it_has_heard_of_the_release(

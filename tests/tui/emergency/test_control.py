@@ -133,7 +133,7 @@ async def test_the_release_starts_again_what_the_stop_has_ended_and_nothing_else
         assert [asked[0] for asked in link.asked].count("start") == 1
 
 
-async def test_the_release_is_said_again_to_a_node_that_has_not_heard(
+async def test_a_release_is_repeated_with_its_time_to_a_node_that_has_not_heard(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     opener, now = RecordedOpener(), [NOW_S]
@@ -147,7 +147,11 @@ async def test_the_release_is_said_again_to_a_node_that_has_not_heard(
             now[0] = NOW_S + seconds
             opener.graph.show(obeyed(word(GATE, True, now[0], since_s=NOW_S), at_s=now[0]))
             await settle(pilot)
-        assert opener.graph.published == 4 * [GO]
+        assert opener.graph.published == [GO]
+        link = opener.link
+        assert isinstance(link, RecordedSession)
+        assert link.stops == 4 * [False]
+        assert len(set(link.said_ns)) == 1
 
 
 async def test_the_release_of_another_is_told() -> None:
@@ -180,7 +184,7 @@ async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> No
         await pilot.pause()
         assert "by another" in app.screen.query_one(TitleBar).text
         await pilot.press("ctrl+r")
-        assert opener.graph.published == [GO]
+        assert opener.graph.published[-1] == GO
 
 
 async def test_a_release_without_a_stop_publishes_nothing_and_says_so() -> None:

@@ -16,7 +16,6 @@ from robot.safety.stop_record import (
     Insistence,
     Stop,
     StopRecord,
-    is_outdated,
     read_record,
 )
 
@@ -200,21 +199,3 @@ def test_two_who_contradict_each_other_at_one_rate_end_in_a_stop(
             else:
                 obeyed.append(not insistence.lasts(now_s, number + ahead))
     assert not any(obeyed[5:])
-
-
-@pytest.mark.parametrize(
-    ("release_s", "stop_s", "outdated"),
-    [
-        (9.0, 8.0, False),
-        (8.0, 9.0, True),
-        (9.0, 9.0, True),  # The stop wins a tie.
-        (9.0, 3609.0, False),  # Stopped by a clock that is an hour ahead,
-        (-3591.0, 9.0, False),  # and released by one that is an hour behind.
-    ],
-)
-def test_a_release_from_before_the_stop_is_outdated(
-    release_s: float, stop_s: float, outdated: bool
-) -> None:
-    base = 7200 * S
-    record = StopRecord().stopped(Stop(base + int(stop_s * S), 1))
-    assert is_outdated(base + int(release_s * S), record, base + 10 * S) == outdated
