@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Sequence
 from contextvars import copy_context
@@ -235,6 +236,21 @@ class DeckApp(App[int], Acting):
             graph.stop_commanding()
         if self._environment is not None:
             self._soon(self._environment.desert)
+
+    def tell_unread(self, sequence: str) -> None:
+        """Say that the terminal has sent something that is no key; on any thread."""
+        words = _("The terminal has sent {sequence}, which is no key Deck knows: it is left out.")
+        told = words.format(sequence=repr(sequence))
+        self._soon(lambda: self.notify(told, severity="warning", markup=False))
+
+    def keyboard_lost(self, error: Exception) -> None:
+        """Stop the wheels, and give the terminal back with a word; on any thread."""
+        # Nothing more than the message itself: it ends now.
+        with contextlib.suppress(Exception):
+            self.emergency.publish_now()
+        words = _("deck: the keyboard cannot be read any more ({error}): the wheels were stopped")
+        told = words.format(error=plain(repr(error), 200))
+        self._soon(lambda: self.exit(return_code=1, message=told))
 
     def _soon(self, act: Callable[[], object]) -> None:
         """Act on the event loop, before any message that waits; on any thread."""

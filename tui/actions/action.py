@@ -11,6 +11,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 from textual.binding import Binding, BindingType
 from textual.dom import DOMNode
 
+from tui.actions.layouts import on_all_layouts
+
 Target = TypeVar("Target")
 
 REGISTRY: dict[str, type[Action[Any]]] = {}
@@ -87,7 +89,7 @@ def bindings(*actions: type[Action[Any]]) -> list[BindingType]:
     """Return the key bindings of these actions, for a `BINDINGS`."""
     return [
         Binding(
-            action.key,
+            on_all_layouts(action.key),
             f"act({action.id!r})",
             action.title,
             show=action.footer,

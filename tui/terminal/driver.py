@@ -16,8 +16,9 @@ import signal
 from codecs import getincrementaldecoder
 from typing import TYPE_CHECKING
 
+from textual import constants
 from textual._time import get_time
-from textual.drivers.linux_driver import LinuxDriver
+from textual.drivers.linux_driver import KITTY_REPORT_ALTERNATE_KEYS, LinuxDriver
 from textual.events import Key, Resize
 from textual.geometry import Size
 
@@ -49,6 +50,12 @@ if TYPE_CHECKING:
         def terminal_lost(self) -> None:
             """Stop what is commanded from here, and begin to end."""
 
+        def tell_unread(self, sequence: str) -> None:
+            """Say that the terminal has sent something that is no key."""
+
+        def keyboard_lost(self, error: Exception) -> None:
+            """Stop the wheels, and end with a word: no key is read any more."""
+
 
 READ_BYTES = 1024
 """Bytes that are read at once: a stop key behind them waits until they are parsed."""
@@ -72,6 +79,8 @@ class DeckDriver(LinuxDriver):
         self._file = self._terminal  # type: ignore[assignment]
         self._signals: set[int] = set()
         """Those that wait for the event loop."""
+        self._has_told = False
+        """Whether it was said that something is no key."""
         self._read: list[Message] = []
         """What was typed, on its way to the app."""
         for number in (signal.SIGTSTP, signal.SIGCONT):
@@ -91,6 +100,12 @@ class DeckDriver(LinuxDriver):
 
     def run_input_thread(self) -> None:
         """Read until the app ends or the terminal is gone."""
+        try:
+            self._read_keys()
+        except Exception as error:  # noqa: BLE001 - whatever it is, the stop key is gone with it
+            self._deck.keyboard_lost(error)
+
+    def _read_keys(self) -> None:
         self._scan = StopScan(self._deck.is_stop)
         self._parser = AltKeyParser()
         self._decode = getincrementaldecoder("utf-8")("replace").decode
@@ -113,6 +128,9 @@ class DeckDriver(LinuxDriver):
             self._deck.stop_wheels()
         for piece, stops in pieces:
             self._parse(self._decode(piece), stopped=stops)
+        if self._parser.dropped and not self._has_told:
+            self._has_told = True
+            self._deck.tell_unread(self._parser.dropped)
         return True
 
     def _parse(self, text: str, *, stopped: bool = False) -> None:
@@ -187,6 +205,9 @@ class DeckDriver(LinuxDriver):
         """
         self._terminal.leaving = False
         super().start_application_mode()  # type: ignore[no-untyped-call]
+        if not constants.DISABLE_KITTY_KEY:
+            # Also where on a US keyboard the key is; it goes with what Textual has asked for.
+            self.write(f"\x1b[={KITTY_REPORT_ALTERNATE_KEYS};2u")
         asyncio.get_running_loop().add_signal_handler(signal.SIGWINCH, self._tell_size)
 
     def _tell_size(self) -> None:

@@ -22,8 +22,9 @@ UNFINISHED_S = 0.3
 if nothing has come for this long."""
 PASTE_BEGIN, PASTE_END = "\x1b[200~", "\x1b[201~"
 ESC, CANCEL, SUBSTITUTE, BELL = 0x1B, 0x18, 0x1A, 0x07
-MOUSE_BYTES = 3
-"""After `CSI M`, where the terminal knows no newer protocol: the button and two coordinates."""
+MOUSE_BYTES, LEAST_MOUSE = 3, 0x20
+"""After `CSI M`, where the terminal knows no newer protocol: the button and two coordinates, each
+with 32 added. Source: xterm, ctlseqs, "Normal tracking mode"."""
 MOST_BYTES = 64
 """No longer sequence is a key."""
 
@@ -98,8 +99,6 @@ class StopScan:
     def _take(self, byte: int) -> bool:
         """Go on by a byte; return whether it completes a stop key."""
         at = self._at
-        if at is _At.GROUND:
-            return self._ground(byte)
         if at is _At.ESCAPE:
             return self._escape(byte)
         if at is _At.CONTROL:
@@ -107,10 +106,13 @@ class StopScan:
         if at is _At.SHIFT:
             self._at = _At.GROUND
             return self._complete(byte) or self._ground(byte, shifted=True)
-        if at is _At.MOUSE:
+        if at is _At.MOUSE and byte >= LEAST_MOUSE:
             self._mouse_left -= 1
             self._at = _At.MOUSE if self._mouse_left else _At.GROUND
             return False
+        if at in (_At.GROUND, _At.MOUSE):
+            self._at = _At.GROUND
+            return self._ground(byte)
         return self._string(byte)
 
     def _ground(self, byte: int, *, shifted: bool = False) -> bool:

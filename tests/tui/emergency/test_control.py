@@ -338,6 +338,15 @@ async def test_without_its_terminal_it_commands_nothing_any_more() -> None:
         assert opener.graph.commands_nothing
 
 
+async def test_without_its_keys_it_stops_the_wheels_and_ends() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        await asyncio.to_thread(app.keyboard_lost, RuntimeError("no key"))
+        await settle(pilot)
+        assert opener.graph.published == [STOP]
+        assert app.return_code == 1
+
+
 async def test_a_publisher_that_fails_ends_neither_the_stop_nor_the_keys() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):

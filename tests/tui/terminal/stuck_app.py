@@ -53,6 +53,8 @@ class StuckApp(App[int]):
         self._write("paste")
 
     def is_stop(self, key: str) -> bool:
+        if key == "b" and self._how == "blind":
+            raise RuntimeError(key)
         return key in {"space", "ctrl+x"}
 
     def stop_wheels(self) -> None:
@@ -60,6 +62,12 @@ class StuckApp(App[int]):
 
     def terminal_lost(self) -> None:
         self._write("lost")
+
+    def tell_unread(self, sequence: str) -> None:
+        self._write(f"unread {sequence!r}")
+
+    def keyboard_lost(self, error: Exception) -> None:
+        self._write(f"keyboard lost: {error!r}")
 
     def _draw(self) -> None:
         words, rows = f"{time.monotonic():.6f} " * 12, range(self.size.height)

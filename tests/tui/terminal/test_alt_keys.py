@@ -1,12 +1,16 @@
-"""Alt with a letter, held, or followed by another key or the mouse."""
+"""What the terminal sends as keys: Alt, other layouts, other protocols, and nothing of the kind."""
 
 from __future__ import annotations
+
+import random
+import string
 
 import pytest
 from textual.events import Key, MouseEvent
 from textual.message import Message
 
-from tui.terminal.alt_keys import AltKeyParser
+from tui.terminal.alt_keys import ESC, AltKeyParser
+from tui.terminal.stop_scan import StopScan
 
 
 def names(found: list[Message]) -> list[str]:
@@ -46,3 +50,99 @@ def test_the_mouse_is_told_where_it_is() -> None:
     (moved,) = AltKeyParser().feed("\x1b[<35;10;4M")
     assert isinstance(moved, MouseEvent)
     assert (moved.x, moved.y) == (9, 3)
+
+
+@pytest.mark.parametrize(
+    ("typed", "key"),
+    [
+        # Ctrl+X on a Russian, Ukrainian, Greek and Hebrew keyboard, with and without its place.
+        ("\x1b[1095;5u", "ctrl+x"),
+        ("\x1b[1095::120;5u", "ctrl+x"),
+        ("\x1b[1110;5u", "ctrl+s"),
+        ("\x1b[967;5u", "ctrl+x"),
+        ("\x1b[1505;5u", "ctrl+x"),
+        ("\x1b[1505::120;5u", "ctrl+x"),
+        ("\x1b[1084;3u", "alt+v"),
+        # On a Dvorak keyboard the letter that it types is the key.
+        ("\x1b[120::98;5u", "ctrl+x"),
+        ("\x1b[1095::120;;1095u", "ч"),
+        ("\x1b[1063;2;1063u", "Ч"),
+        ("\x1b[0;;1095u", "ч"),
+        ("\x1b[97:65;2;65u", "A"),
+        ("\x1b[97;5:1u", "ctrl+a"),
+        ("\x1b[97;5:2u", "ctrl+a"),
+        ("\x1b[1;1:1A", "up"),
+        ("\x1b[57417;1u", "left"),
+        ("\x1b[13u", "enter"),
+        ("\x1b[3;5~", "ctrl+delete"),
+    ],
+)
+def test_a_key_is_read_in_every_form_of_the_kitty_protocol(typed: str, key: str) -> None:
+    assert names(list(AltKeyParser().feed(typed + "\x18"))) == [key, "ctrl+x"]
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "\x1b[97;5:3u",
+        "\x1b[1114112u",
+        "\x1b[99999999999u",
+        "\x1b[97;;1114112u",
+        "\x1b[55296u",
+        "\x1b[97;999999u",
+        "\x1b[1095::1114112;5u",
+        "\x1b[-1u",
+        "\x1b[?1u",
+        "\x1b[?25u",
+        "\x1b[=5;2z",
+        "\x1b[48;0;0;0;0t\x1b[<0;1;1M",
+    ],
+)
+def test_what_is_no_key_is_left_out_and_the_next_key_is_one(typed: str) -> None:
+    keys = [one.key for one in AltKeyParser().feed(typed + "\x18x") if isinstance(one, Key)]
+    assert keys == ["ctrl+x", "x"]
+
+
+def scraps(dice: random.Random) -> str:
+    """Something that looks like what terminals send."""
+    parts = (ESC, f"{ESC}[", f"{ESC}O", *"u~AM;:?<Rt", "200~", "$y")
+    numbers = (0, 1, 3, 5, 97, 1095, 55296, 1114111, 1114112, 10**12)
+    return "".join(
+        dice.choice(
+            [
+                dice.choice(parts),
+                str(dice.choice(numbers)),
+                dice.choice(string.printable),
+                chr(dice.randrange(0x3000)),
+            ]
+        )
+        for _ in range(dice.randrange(1, 12))
+    )
+
+
+MANY = pytest.param(1_000_000, marks=[pytest.mark.nightly, pytest.mark.timeout(900)])
+
+
+@pytest.mark.parametrize("count", [20_000, MANY])
+def test_behind_whatever_comes_the_stop_key_stops(count: int) -> None:
+    """It is found among the bytes, and no key after a pause is swallowed by the parser."""
+    dice = random.Random(count)
+    time_s = 0.0
+    scan = StopScan(lambda key: key == "ctrl+x", lambda: time_s)
+    parser = AltKeyParser()
+    for number in range(count):
+        scrap = scraps(dice)
+        for _piece in scan.cut(scrap.encode()):
+            pass
+        list(parser.feed(scrap))
+        # At once, or soon after it if what it is inside of does not end; after a pause at once.
+        time_s += number % 2
+        at_once = any(stops for _piece, stops in scan.cut(b"\x18"))
+        time_s += 1.0
+        assert at_once or (scan.overdue() and not number % 2), (number, scrap)
+        scan.end_paste()
+        if number % 50 == 0:
+            list(parser.feed("\x1b[201~"))
+            parser._timeout_time = 0.0
+            list(parser.tick())
+            assert "ctrl+x" in names(list(parser.feed("\x18"))), (number, scrap)

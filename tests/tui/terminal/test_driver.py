@@ -221,3 +221,22 @@ def test_a_whole_paste_is_no_stop_and_a_key_that_has_stopped_is_not_told_twice(
         "key b",
     ]
     assert "key space" not in app.told()
+
+
+def test_the_stop_of_another_layout_stops_and_what_is_no_key_is_told_once(
+    stuck: Callable[[str], Stuck],
+) -> None:
+    app = stuck("rest")
+    app.type(b"\x1b[1095::120;5u")
+    app.wait_for("stop")
+    app.type(b"\x1b[1114112u\x1b[55296u\x1b[1095;5:1u")
+    app.wait_for("stop", 2)
+    app.type(b"k")
+    app.wait_for("key k")
+    assert [line for line in app.told() if line.startswith("unread")] == ["unread '\\x1b[55296u'"]
+
+
+def test_if_the_keys_cannot_be_read_any_more_it_is_told(stuck: Callable[[str], Stuck]) -> None:
+    app = stuck("blind")
+    app.type(b"b")
+    app.wait_for("keyboard lost: RuntimeError('b')")
