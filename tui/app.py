@@ -239,7 +239,7 @@ class DeckApp(App[int], Acting):
 
     def tell_unread(self, sequence: str) -> None:
         """Say that the terminal has sent something that is no key; on any thread."""
-        words = _("The terminal has sent {sequence}, which is no key Deck knows: it is left out.")
+        words = _("The terminal has sent {sequence}: Deck knows no such key and ignores it.")
         told = words.format(sequence=repr(sequence))
         self._soon(lambda: self.notify(told, severity="warning", markup=False))
 

@@ -223,6 +223,9 @@ class EmergencyStopListener:
         if record == before:
             return
         if record.engaged == (self._stop is not None):
+            if self._stop is not None and self._stop.unreadable and stop and not stop.unreadable:
+                # Of this one more is known, so that it can be saved.
+                self._stop = stop
             self._watch.call_later(_AGAIN_S)
             return
         if record.engaged:

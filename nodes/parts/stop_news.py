@@ -15,7 +15,7 @@ from std_msgs.msg import Bool
 from nodes.parts.qos import DEPTH
 from nodes.parts.stop_reports import named, read_reports
 from robot.safety.stop_file import TOPIC, StopFile
-from robot.safety.stop_record import StopRecord
+from robot.safety.stop_record import Stop, StopRecord
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
 from text.i18n import N_
 
@@ -46,6 +46,9 @@ class StopNews:
         self._record: StopRecord | None = None
         self._file = StopFile(node.context.get_domain_id(), node.get_fully_qualified_name())
         self._passed_s = 0.0
+        self._waiting: Stop | None = None
+        """The newest that was heard and not yet passed on."""
+        node.every(_PASSED_EVERY_S, self._pass_on)
         hear: Any = self._hear  # With what the middleware says, as in nodes.parts.emergency.
         node.create_subscription(Bool, EMERGENCY_STOP, hear, DEPTH)
         node.create_subscription(DiagnosticArray, EMERGENCY_STATE, self._hear_of, OF_MANY)
@@ -54,11 +57,18 @@ class StopNews:
         if not message.data:
             return
         self._stopped()
+        self._waiting = named(info)
         if time.monotonic() - self._passed_s > _PASSED_EVERY_S:
-            problem = self._file.give(named(info), TOPIC)
-            self._passed_s = time.monotonic()
-            if problem:
-                self._node.say.error(_NOT_PASSED, every_s=10.0, problem=problem)
+            self._pass_on()
+
+    def _pass_on(self) -> None:
+        stop, self._waiting = self._waiting, None
+        if stop is None:
+            return
+        self._passed_s = time.monotonic()
+        problem = self._file.give(stop, TOPIC)
+        if problem:
+            self._node.say.error(_NOT_PASSED, every_s=10.0, problem=problem)
 
     def _hear_of(self, message: DiagnosticArray) -> None:
         for report in read_reports(message):

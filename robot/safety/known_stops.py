@@ -80,10 +80,18 @@ class KnownStops:
         `was_frozen`: this process has just stood still, so that nothing it hears tells of a clock.
         """
         said_ns = self._placed(heard, was_frozen=was_frozen)
+        if self._was_set_back(heard.heard_ns):
+            return False
         if said_ns is not None:
             self.record = self.record.freed(self.before(said_ns))
             self.since_ns = {stop: self.since_ns[stop] for stop in self.record.held}
         return said_ns is not None
+
+    def _was_set_back(self, now_ns: int) -> bool:
+        """Whether our clock was set back since a stop became known: then that is known from now."""
+        was_set_back = any(since_ns > now_ns for since_ns in self.since_ns.values())
+        self.since_ns = {stop: min(since_ns, now_ns) for stop, since_ns in self.since_ns.items()}
+        return was_set_back
 
     def _placed(self, heard: Heard, *, was_frozen: bool) -> int | None:
         """Return when it was said, by our clock; None if that cannot be known."""

@@ -11,11 +11,12 @@ when in doubt nothing moves.
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import json
 import os
 import time
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from robot.safety.known_stops import KnownStops
 from robot.safety.stop_place import stop_place
@@ -23,7 +24,12 @@ from robot.safety.stop_record import Stop, StopRecord, read_record
 from text.nested import read_json
 from text.os_words import os_reason
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 _LONGEST = 8192
+_ALONE_WITHIN_S, _AGAIN_S = 0.05, 0.001
+"""How long to wait for another process that changes the files, and how often to try."""
 _NO_SENSE = (
     OSError,
     ValueError,
@@ -109,34 +115,66 @@ class StopFile:
 
         Not if it is saved already, or, unless it is to be saved as a `whole`, some of it.
         """
-        saved = self.read()
-        missing = record.held - saved.record.held
-        if not missing or (not whole and missing != record.held):
+        if not self._missing(record, whole=whole):
             return ""
-        known = record.merged(saved.record)
-        first = stop if saved.stop is None or saved.stop.unreadable else saved.stop
-        details = {"since": first.since_s, "by": first.by, "publishers": first.publishers}
         try:
-            self._write(known, details, "")
+            with self._alone():
+                saved = self.read()
+                if self._missing(record, whole=whole):
+                    first = stop if saved.stop is None or saved.stop.unreadable else saved.stop
+                    details = {
+                        "since": first.since_s,
+                        "by": first.by,
+                        "publishers": first.publishers,
+                    }
+                    self._write(record.merged(saved.record), details, "")
         except (OSError, RuntimeError) as error:
             return os_reason(error)
         return ""
 
+    def _missing(self, record: StopRecord, *, whole: bool) -> bool:
+        """Whether something is to be saved."""
+        missing = record.held - self.read().record.held
+        return bool(missing) and (whole or missing == record.held)
+
     def forget(self, record: StopRecord) -> str:
         """Save what is released, and remove the stop unless it is a newer one; say why not."""
-        known = record.merged(self.read().record)
         try:
             place = self._place()
-            if known.released != _parse_released(_released(place)).released:
-                self._write(known, {}, ".released")
-            if not known.engaged:
-                place.unlink()
-                _flush(place.parent)
-        except FileNotFoundError:
-            pass
+            saved = _parse_released(_released(place))
+            if not record.released or (
+                saved.merged(record) == saved and not os.path.lexists(place)
+            ):
+                return ""
+            with self._alone():
+                known = record.merged(self.read().record)
+                if known.released != _parse_released(_released(place)).released:
+                    self._write(known, {}, ".released")
+                # What others have given without waiting for this.
+                if not self.read().record.engaged:
+                    place.unlink(missing_ok=True)
+                    _flush(place.parent)
         except (OSError, RuntimeError) as error:
             return os_reason(error)
         return ""
+
+    @contextlib.contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Change the files while no other process does.
+
+        Whoever stands still while it does must not hold up a stop: nobody waits long.
+        """
+        folder = self._place().parent
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC
+        descriptor = os.open(folder, flags)
+        try:
+            until_s = time.monotonic() + _ALONE_WITHIN_S
+            while not _locked(descriptor) and time.monotonic() < until_s:
+                time.sleep(_AGAIN_S)
+            yield
+        finally:
+            os.close(descriptor)
 
     def give(self, stop: Stop, by: str) -> str:
         """Add a stop on behalf of somebody who is no node; return why that failed."""
@@ -149,7 +187,21 @@ class StopFile:
         """
         known, saved = KnownStops(), self.read()
         known.learn(saved.record, saved.written_ns)
+        if saved.stop is not None and saved.written_ns > time.time_ns():
+            return self._date_anew(saved)
         return self.forget(known.record.freed(known.before(said_ns)))
+
+    def _date_anew(self, saved: SavedStop) -> str:
+        """Write a stop from the future with the time of now: the clock was set back."""
+        stop = saved.stop
+        assert stop is not None
+        details = {"since": stop.since_s, "by": stop.by, "publishers": stop.publishers}
+        try:
+            with self._alone():
+                self._write(self.read().record, details, "")
+        except (OSError, RuntimeError) as error:
+            return os_reason(error)
+        return ""
 
     def _place(self) -> Path:
         return stop_place(self._domain)
@@ -168,6 +220,14 @@ class StopFile:
             return Stop(place.lstat().st_mtime_ns)
         self._unknown = self._unknown or Stop(time.time_ns())
         return self._unknown
+
+
+def _locked(descriptor: int) -> bool:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:  # Another has it, or the file system knows no locks.
+        return False
+    return True
 
 
 def _released(place: Path) -> Path:

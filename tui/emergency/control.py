@@ -84,7 +84,7 @@ class EmergencyControl:
         self._end_publications()
         self._released_ns, self._said_s = time.time_ns(), clock.now()
         self._set(self.state.released(self._said_s))
-        self._app.run_worker(self._reached(self._publish(engaged=False)), group="emergency")
+        self._app.run_worker(self._release(self._publish(engaged=False)), group="emergency")
         if ended:
             self._app.run_worker(self._start_again(ended), group="emergency")
 
@@ -146,6 +146,13 @@ class EmergencyControl:
             await feed.link.stop()
         await sending
 
+    async def _release(self, sent: Future[int] | None) -> None:
+        """Release it by the road as well, behind the message, which says whose stops it ends."""
+        said_ns, link = self._released_ns, self._feed.link
+        await self._reached(sent)
+        if link is not None:
+            link.emergency_stop(False, said_ns)
+
     async def _start_again(self, ended: tuple[str, ...]) -> None:
         """Restart the nodes that were stopped instead of the wheels."""
         feed = self._feed
@@ -160,14 +167,13 @@ class EmergencyControl:
     def _publish(self, *, engaged: bool) -> Future[int] | None:
         """Publish the latched message; None without a graph.
 
-        Beside it goes the road that needs no ROS, in case that hangs. Where no node listens, it
+        Beside a stop goes the road that needs no ROS, in case that hangs. Where no node listens, it
         would keep a stop that nobody can obey.
         """
         graph, update, link = self._feed.graph, self._feed.update, self._feed.link
-        if link is not None and (
-            not engaged or update is None or update.error or listeners(update)
-        ):
-            link.emergency_stop(engaged, time.time_ns() if engaged else self._released_ns)
+        heard = update is None or update.error or listeners(update)
+        if engaged and link is not None and heard:
+            link.emergency_stop(True, time.time_ns())
         if graph is None:
             return None
         message = {"data": engaged}

@@ -7,6 +7,7 @@ From the process: `(word, ...)`, as `Word` lists them.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 Order = tuple[int, str, tuple[Any, ...], float]
@@ -54,6 +55,8 @@ DOING = (
 """Orders that are not carried out long after they were given."""
 LATE_S = 5.0
 """How long that is. What hung is not to drive the robot by what was meant for another moment."""
+WITHDRAWN_LATE_S = 0.5
+"""The same for a latched `false`: it would take back what somebody has said since."""
 
 UPDATE, DONE, FAILED, LATER = "update", "done", "failed", "later"
 ALIVE, THERE, OVER = "alive", "there", "over"
@@ -63,9 +66,16 @@ of life; who is there; why it leaves by itself."""
 
 def is_state(name: str, arguments: tuple[Any, ...]) -> bool:
     """Whether an order holds however often it is said: a latched message, such as a stop."""
-    return name == "publish" and bool(arguments[-1])
+    return name == "publish" and bool(arguments[-1]) and not _withdraws(arguments)
 
 
-def may_be_late(name: str, arguments: tuple[Any, ...]) -> bool:
-    """Whether an order is carried out however long ago it was given."""
-    return name not in DOING or is_state(name, arguments)
+def late_s(name: str, arguments: tuple[Any, ...]) -> float:
+    """Return for how long after it was given an order is carried out, in seconds."""
+    if name not in DOING or is_state(name, arguments):
+        return math.inf
+    return WITHDRAWN_LATE_S if name == "publish" and arguments[-1] else LATE_S
+
+
+def _withdraws(arguments: tuple[Any, ...]) -> bool:
+    _topic, _type_name, value, _latched = arguments
+    return bool(value == {"data": False})

@@ -163,8 +163,7 @@ class Server:
         return time.monotonic() - max(asked_s, self._since_s)
 
     def _is_too_late(self, name: str, arguments: tuple[Any, ...], asked_s: float) -> bool:
-        late = self._age(asked_s) > language.LATE_S
-        return late and not language.may_be_late(name, arguments)
+        return self._age(asked_s) > language.late_s(name, arguments)
 
     def _drop(self, number: int) -> None:
         future = self._futures.get(number)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -164,7 +165,10 @@ def is_connected(pid: int) -> bool:
         for line in Path("/proc/net/unix").read_text().splitlines()
         if (words := line.split())[5] == "03"
     }
-    links = [os.readlink(held) for held in Path(f"/proc/{pid}/fd").iterdir() if held.is_symlink()]  # noqa: PTH115 - no paths
+    links = []
+    for held in Path(f"/proc/{pid}/fd").iterdir():
+        with contextlib.suppress(FileNotFoundError):  # It has closed this one just now.
+            links.append(os.readlink(held))  # noqa: PTH115 - no paths
     return len([link for link in links if link[len("socket:[") : -1] in connected]) > 2
 
 

@@ -177,3 +177,11 @@ def test_what_has_waited_for_a_frozen_process_tells_of_no_clock(frozen: tuple[bo
     for said_ns, was_frozen in zip((BASE_NS, BASE_NS + S), frozen, strict=True):
         known.release(Heard(said_ns, said_ns + 6 * S), was_frozen=was_frozen)
     assert known.record.engaged
+
+
+def test_after_the_clock_was_set_back_the_second_release_frees() -> None:
+    known = after(BASE_NS + 3 * HOUR_NS, seen_ns=BASE_NS + 3 * HOUR_NS)
+    for seconds, frees in ((1, False), (2, True)):
+        at_ns = BASE_NS + seconds * S
+        assert known.release(Heard(at_ns, at_ns + 1)) is frees
+        assert known.record.engaged is not frees

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import json
 import stat
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
 
-from robot.safety.stop_file import KeptStop, StopFile
+from robot.safety.stop_file import BY_SCREEN, KeptStop, StopFile
 from robot.safety.stop_record import Stop, StopRecord
+from tests.waiting import wait_until
 
 FIRST, SECOND = Stop(5, 1), Stop(6, 1)
 STOP = KeptStop(1000.0, "topic", "/somebody")
@@ -138,3 +142,51 @@ def test_a_link_in_the_place_of_the_draft_is_not_followed(place: Path, tmp_path:
     (place.parent / ".7.a").symlink_to(tmp_path / "elsewhere")
     assert StopFile(7, "/a").keep(STOP, record(FIRST))
     assert not (tmp_path / "elsewhere").exists()
+
+
+def test_after_the_clock_was_set_back_the_second_release_frees(place: Path) -> None:
+    file = StopFile(7, "/a")
+    file.give(Stop(time.time_ns()), BY_SCREEN)
+    document = json.loads(place.read_text())
+    later_ns = time.time_ns() + 3600 * 10**9
+    place.write_text(json.dumps({**document, "written_ns": later_ns, "stops": f"{later_ns}.0"}))
+    assert file.release(time.time_ns()) == ""
+    assert file.read().record.engaged
+    assert file.release(time.time_ns()) == ""
+    assert not place.exists()
+
+
+def test_a_release_that_is_carried_out_late_leaves_what_came_since(place: Path) -> None:
+    file, said_ns = StopFile(7, "/a"), time.time_ns()
+    file.give(Stop(said_ns + 1), BY_SCREEN)
+    assert file.release(said_ns) == ""
+    assert place.exists()
+    assert file.release(said_ns + 2) == ""
+    assert not place.exists()
+
+
+GIVEN = 150
+
+
+def test_no_stop_is_lost_beside_one_that_forgets_what_was_released(place: Path) -> None:
+    """As a free node does each second; here without a pause, from another process."""
+    released = record(FIRST).freed()
+    forget = (
+        "from robot.safety.stop_file import StopFile;"
+        "from robot.safety.stop_record import read_record;"
+        "file = StopFile(7, '/b');"
+        f"record = read_record('', {released.texts()['released']!r})\n"
+        "while True: file.forget(record)"
+    )
+    another = subprocess.Popen([sys.executable, "-c", forget])
+    try:
+        file = StopFile(7, "/a")
+        wait_until(place.with_name("7.released").exists, "the first one forgotten")
+        for number in range(GIVEN):
+            stop = Stop(time.time_ns(), number + 1)
+            assert file.give(stop, BY_SCREEN) == ""
+            assert file.read().record.held == {stop}
+            file.forget(record(stop).freed())
+    finally:
+        another.kill()
+        another.wait()

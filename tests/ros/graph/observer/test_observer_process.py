@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from graph.data import GoalStatus
-from graph.observer.process.language import LATE_S
+from graph.observer.process.language import LATE_S, WITHDRAWN_LATE_S
 from graph.observer.process.started import ObserverProcess
 from graph.observer.requests import ObserverError
 from graph.publishing.dead_man_switch import HeldCommand
@@ -188,6 +188,28 @@ def test_orders_from_before_a_hang_do_not_drive_the_robot_after_it(
     with pytest.raises(ObserverError):
         late.result(40)
     assert "2.0" not in str(teller.heard.get("/drive"))
+
+
+def test_a_release_from_before_a_hang_is_given_up_and_a_stop_is_not(
+    watcher: Watcher, teller: Peer
+) -> None:
+    """It would be younger than a stop that somebody else has given meanwhile."""
+    teller.listen("/held", type_name=BOOL)
+    watched(watcher)
+    watcher.wait_for("/held", lambda row: row.subscribers, "a listener")
+    watcher.observer.prepare_publisher("/held", BOOL, latched=True).result(20)
+    pid = pid_of(watcher)
+    os.kill(pid, signal.SIGSTOP)
+    stop = watcher.observer.publish("/held", BOOL, {"data": True}, latched=True)
+    release = watcher.observer.publish("/held", BOOL, {"data": False}, latched=True)
+    too_late_s = time.monotonic() + WITHDRAWN_LATE_S
+    wait_until(lambda: time.monotonic() > too_late_s, "it is too late")
+    os.kill(pid, signal.SIGCONT)
+    with pytest.raises(ObserverError):
+        release.result(40)
+    stop.result(40)
+    wait_until(lambda: "True" in str(teller.heard.get("/held")), "the stop")
+    assert "False" not in str(teller.heard.get("/held"))
 
 
 DEAF = """<?xml version="1.0"?>
