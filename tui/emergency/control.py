@@ -6,6 +6,7 @@ import asyncio
 import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robot.safety.stop_file import StopFile
 from robot.topics import EMERGENCY_STOP
 from text.i18n import _
 from text.plain import plain
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from tui.session.feed import Feed
 
 SENT_WITHIN_S = 2.0
+KEPT_WITHIN_S, CONFIRMED_WITHIN_S, LOOK_S = 1.0, 15.0, 0.1
+"""Within what a stop is on disk, and another observer has taken the place of one that hangs."""
 AGAIN_S = 1.0
 """Interval at which a release is repeated for nodes that still hold, with the time of the first."""
 INSIST_S = 10.0
@@ -134,7 +137,7 @@ class EmergencyControl:
         feed = self._feed
         reached = listeners(feed.update) > 0
         sending = asyncio.ensure_future(self._reached(sent))
-        if reached and await sending:
+        if reached and (await sending or await self._is_obeyed()):
             return
         unheard = emergency.NO_GRAPH if reached else _unheard(feed.update)
         reason = emergency.NOT_OURS if feed.watching else unheard
@@ -145,6 +148,25 @@ class EmergencyControl:
         if feed.link is not None:
             await feed.link.stop()
         await sending
+
+    async def _is_obeyed(self) -> bool:
+        """Whether nodes that obey stops have this one by the disk, though ROS does not answer here.
+
+        What hangs may be this screen's observer alone. Until another has taken its place, nobody
+        hears them confirm it: that is no reason to end them.
+        """
+        session = None if self._feed.link is None else self._feed.link.session
+        if session is None or not self.state.nodes:
+            return False
+        file, began_s = StopFile(session.domain, "/screen"), time.monotonic()
+        while (passed_s := time.monotonic() - began_s) < CONFIRMED_WITHIN_S:
+            if not self.state.unconfirmed:
+                return True
+            kept = await asyncio.to_thread(file.read)
+            if not kept.record.engaged and passed_s > KEPT_WITHIN_S:
+                return False
+            await asyncio.sleep(LOOK_S)
+        return False
 
     async def _release(self, sent: Future[int] | None) -> None:
         """Release it by the road as well, behind the message, which says whose stops it ends."""

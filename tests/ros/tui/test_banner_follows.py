@@ -148,8 +148,10 @@ async def test_a_stop_that_only_the_screen_has_heard_is_passed_on_and_shown(
         # Of somebody who listens to the stop, as the road is for a robot that obeys one.
         with NodeProcess("nodes.ai_brain", ros_domain) as another, Peer(ros_domain, "joy") as joy:
             await screen.until(lambda: listeners(screen.feed.update), "who listens")
+            publisher = joy.publisher("/emergency_stop", Bool)
+            await screen.until(lambda: publisher.get_subscription_count() >= 2, "who hears it")
             another.send(signal.SIGSTOP)
-            await asyncio.to_thread(joy.say, "/emergency_stop", Bool(data=True), listeners=2)
+            publisher.publish(Bool(data=True))
             await screen.until(lambda: screen.says(True), "the stop")
             assert "EMERGENCY STOP" in screen.words
             another.send(signal.SIGCONT)

@@ -6,6 +6,7 @@ import asyncio
 import threading
 import time
 from concurrent.futures import Future
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,7 +14,10 @@ from textual.color import Color
 from textual.events import Key
 from textual.widgets import Input
 
+from graph.observer.requests import ObserverError
 from launcher.status import NodeState
+from robot.safety.stop_file import BY_SCREEN, StopFile
+from robot.safety.stop_record import Stop
 from robot.topics import EMERGENCY_STOP, SAFETY_STATE
 from tests.tui.app_runs import opened
 from tests.tui.recorded import (
@@ -28,6 +32,7 @@ from tests.tui.recorded import (
 from tests.tui.recorded_emergency import GATE, gate_says, held, obeyed, said, word
 from tests.tui.snapshots import settle
 from tui.deck.command_line import CommandLine
+from tui.emergency import control
 from tui.emergency.state import TOPIC_TYPE
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
@@ -174,6 +179,28 @@ async def test_where_ros_cannot_be_reached_the_nodes_are_stopped_instead() -> No
         await pilot.pause()
         assert ("stop",) in opener.link.asked
         assert "ROS cannot be reached" in app.screen.query_one(TitleBar).text
+
+
+@pytest.mark.parametrize("is_confirmed", [True, False])
+async def test_where_only_the_observer_hangs_the_nodes_that_hold_are_not_ended(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, is_confirmed: bool
+) -> None:
+    """By the disk they have it, and another observer tells so; if none does, they are ended."""
+    monkeypatch.setenv("DECK_STATE_DIR", str(tmp_path))
+    monkeypatch.setattr(control, "CONFIRMED_WITHIN_S", 1.0)
+    opener = RecordedOpener()
+    opener.graph.publish_error = ObserverError("it hangs")
+    async with opened(opener) as (app, pilot):
+        opener.graph.show(obeyed(word(GATE, False, NOW_S), at_s=NOW_S))
+        await settle(pilot)
+        StopFile(opener.link.session.domain, "/screen").give(Stop(time.time_ns()), BY_SCREEN)
+        await pilot.press("space")
+        if is_confirmed:
+            at_s = app.emergency.state.asked_s + 1.0
+            opener.graph.show(obeyed(word(GATE, True, at_s, since_s=at_s), at_s=at_s))
+        stopping = [worker for worker in app.workers if worker.group == "emergency"]
+        await app.workers.wait_for_complete(stopping)
+        assert (("stop",) in opener.link.asked) is not is_confirmed
 
 
 async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> None:
