@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from graph.participants.roll import Roll
 from graph.ros import FAST_DDS_VARIABLES, RANGE, announcing
 from launcher.domain.participants import LocalParticipants
+from ros2.options import ANSWERED_WITHIN_S
 from ros2.presence import NETWORK_S, Missing, is_off, is_wide, missing, stopped, words
 from text.i18n import localized
 
@@ -42,16 +43,25 @@ READY_S = 10.0
 LOOK_S = 0.05
 KERNEL_S = 0.1
 """The kernel is asked so often who is there."""
+GONE_S = 1.0
+"""A server that is not seen for so long has gone."""
 SPIN_S = 0.1
 """How late Ctrl-C may be noticed: the middleware does not wake up for signals."""
+
+
+class NoAnswerError(RuntimeError):
+    """A node is there and does not answer, or has gone before it did."""
 
 
 class Guest:
     """A node in the graph, with what drives it."""
 
-    def __init__(self, node: Node, executor: SingleThreadedExecutor) -> None:
+    def __init__(
+        self, node: Node, executor: SingleThreadedExecutor, answered_within_s: float
+    ) -> None:
         """Take both, open."""
         self.node = node
+        self.answered_within_s = answered_within_s
         self._executor = executor
         self._roll = Roll(node)
         self._kernel = LocalParticipants(node.context.get_domain_id())
@@ -67,10 +77,33 @@ class Guest:
         """Take in what has come, or wait a moment for it."""
         self._executor.spin_once(timeout_sec=timeout_s)
 
-    def finish(self, future: Future) -> None:
-        """Wait for an answer."""
+    def finish(
+        self,
+        future: Future,
+        owner: str,
+        *,
+        within_s: float | None = None,
+        is_there: Callable[[], bool] = lambda: True,
+    ) -> None:
+        """Wait for the answer of `owner`, as long as the option says unless told otherwise.
+
+        Raises:
+            NoAnswerError: if it has not come by then, or `is_there` has said no for a while.
+        """
+        within_s = self.answered_within_s if within_s is None else within_s
+        begun = there_at = time.monotonic()
         while not future.done():
             self.spin_once()
+            now = time.monotonic()
+            if is_there():
+                there_at = now
+            if now - there_at > GONE_S:
+                raise NoAnswerError(f"{owner} has gone before it answered")
+            if now - begun > within_s:
+                raise NoAnswerError(
+                    f"{owner} has not answered within {within_s:g} s: it may be stuck in a"
+                    " callback, or before it spins; --timeout waits longer"
+                )
 
     def call(self, service: str, kind: Any, owner: str, **fields: object) -> Any:  # noqa: ANN401
         """Call a service of the node `owner` and return the answer; RuntimeError without one."""
@@ -80,7 +113,7 @@ class Guest:
             if not found and not self.await_until(client.service_is_ready):
                 raise RuntimeError("Wait for service timed out")
             future = client.call_async(kind.Request(**fields))
-            self.finish(future)
+            self.finish(future, owner)
             response = future.result()
             if response is None:
                 why = future.exception()
@@ -175,7 +208,7 @@ def joined(args: argparse.Namespace, name: str = "", *, settled: bool = False) -
         raise RuntimeError(str(error)) from error
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
-    me = Guest(node, executor)
+    me = Guest(node, executor, getattr(args, "timeout", ANSWERED_WITHIN_S))
     try:
         spin_s = getattr(args, "spin_time", None)
         if spin_s is not None:

@@ -15,6 +15,7 @@ PROFILES = (
 HISTORIES = ("system_default", "keep_last", "keep_all", "unknown")
 RELIABILITIES = ("system_default", "reliable", "best_effort", "unknown", "best_available")
 DURABILITIES = ("system_default", "transient_local", "volatile", "unknown", "best_available")
+ANSWERED_WITHIN_S = 5.0
 LIVELINESSES = ("system_default", "automatic", "manual_by_topic", "unknown", "best_available")
 
 
@@ -39,6 +40,17 @@ def of_graph(parser: argparse.ArgumentParser) -> None:
         "--no-daemon",
         action="store_true",
         help="Do not spawn nor use an already running daemon",
+    )
+
+
+def answers(parser: argparse.ArgumentParser) -> None:
+    """Declare for how long a verb waits for the answer of a node; the real tool waits for ever."""
+    parser.add_argument(
+        "--timeout",
+        type=positive_float,
+        default=ANSWERED_WITHIN_S,
+        metavar="SECONDS",
+        help="Seconds to wait for the answer of a node (default: %(default)g)",
     )
 
 

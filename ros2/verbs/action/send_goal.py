@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,7 @@ RUNNING = (1, 2)
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     options.of_node(parser)
+    options.answers(parser)
     add = parser.add_argument
     add("action_name", help="Name of the ROS action (e.g. '/fibonacci')")
     add(
@@ -67,7 +69,8 @@ def _drive(me: Guest, args: argparse.Namespace, kind: type[Any], goal: Any) -> s
         print(f"Sending goal:\n     {to_yaml(goal)}", flush=True)
         feedback = _print_feedback if args.feedback else None
         sent = client.send_goal_async(goal, feedback)
-        me.finish(sent)
+        server = f"The action server of {args.action_name}"
+        me.finish(sent, server, is_there=client.server_is_ready)
         handle = sent.result()
         if handle is None:
             raise RuntimeError(f"Exception while sending goal: {sent.exception()!r}")
@@ -77,9 +80,9 @@ def _drive(me: Guest, args: argparse.Namespace, kind: type[Any], goal: Any) -> s
         print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
         try:
             ended = handle.get_result_async()
-            me.finish(ended)
+            me.finish(ended, server, within_s=math.inf, is_there=client.server_is_ready)
         except KeyboardInterrupt:
-            _cancel(me, handle)
+            _cancel(me, handle, server)
             raise
         result = ended.result()
         if result is None:
@@ -96,12 +99,12 @@ def _print_feedback(message: Any) -> None:  # noqa: ANN401 - generated
     print(f"Feedback:\n    {to_yaml(message.feedback)}", flush=True)
 
 
-def _cancel(me: Guest, handle: Any) -> None:  # noqa: ANN401 - rclpy has no types
+def _cancel(me: Guest, handle: Any, server: str) -> None:  # noqa: ANN401 - rclpy has no types
     if handle.status not in RUNNING:
         return
     print("Canceling goal...", flush=True)
     future = handle.cancel_goal_async()
-    me.finish(future)
+    me.finish(future, server)
     response = future.result()
     if response is None:
         raise RuntimeError(f"Exception while canceling goal: {future.exception()!r}")

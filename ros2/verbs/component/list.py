@@ -22,6 +22,7 @@ LIST_NODES_TYPE = "composition_interfaces/srv/ListNodes"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     options.of_graph(parser)
+    options.answers(parser)
     add = parser.add_argument
     add(
         "container_node_name",

@@ -16,6 +16,7 @@ SUMMARY = "Trigger lifecycle state transition"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     options.of_graph(parser)
+    options.answers(parser)
     add = parser.add_argument
     add("node_name", help="Name of the ROS node")
     add("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")

@@ -6,11 +6,13 @@ import re
 from typing import TYPE_CHECKING
 
 from ros2 import naming, options, parameters
-from ros2.joining import joined
+from ros2.joining import NoAnswerError, joined
 from text.plain import plain
 
 if TYPE_CHECKING:
     import argparse
+
+    from ros2.joining import Guest
 
 SUMMARY = "Output a list of available parameters"
 
@@ -18,6 +20,7 @@ SUMMARY = "Output a list of available parameters"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     options.of_graph(parser)
+    options.answers(parser)
     add = parser.add_argument
     add("node_name", nargs="?", help="Name of the ROS node")
     add("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
@@ -51,16 +54,29 @@ def main(args: argparse.Namespace) -> int | str | None:
                 for node in set(naming.nodes(me.node, hidden=hidden))
                 if f"{node}/list_parameters" in serving
             )
-        for node in found:
-            response = parameters.call(me, node, "ListParameters", prefixes=args.param_prefixes)
-            names = [name for name in sorted(response.result.names) if pattern.search(name)]
-            lines = [plain(name) for name in names]
-            if not args.node_name:
-                print(f"{node}:")
-            if not args.param_type:
-                print("".join(f"  {line}\n" for line in lines), end="")
-                continue
+        silent = [
+            str(told) for node in found if (told := _tell(me, node, args, pattern)) is not None
+        ]
+    return "\n".join(silent) or None
+
+
+def _tell(
+    me: Guest, node: str, args: argparse.Namespace, pattern: re.Pattern[str]
+) -> NoAnswerError | None:
+    """Print what a node has; return why it did not say."""
+    try:
+        response = parameters.call(me, node, "ListParameters", prefixes=args.param_prefixes)
+        names = [name for name in sorted(response.result.names) if pattern.search(name)]
+        lines = [plain(name) for name in names]
+        if args.param_type:
             described = parameters.call(me, node, "DescribeParameters", names=names)
-            for each in described.descriptors:
-                print(f"  {plain(each.name)} (type: {parameters.TYPES[each.type]})")
+            lines = [
+                f"{plain(each.name)} (type: {parameters.TYPES[each.type]})"
+                for each in described.descriptors
+            ]
+    except NoAnswerError as error:
+        return error
+    if not args.node_name:
+        print(f"{node}:")
+    print("".join(f"  {line}\n" for line in lines), end="", flush=True)
     return None

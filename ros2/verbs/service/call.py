@@ -21,6 +21,7 @@ WORTH_SAYING_S = 1.0
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     options.of_node(parser)
+    options.answers(parser)
     add = parser.add_argument
     add("service_name", help="Name of the ROS service to call to (e.g. '/add_two_ints')")
     add("service_type", help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')")
@@ -62,7 +63,7 @@ def main(args: argparse.Namespace) -> int | str | None:
             print(f"requester: making request: {request!r}\n", flush=True)
             asked = time.monotonic()
             future = client.call_async(request)
-            me.finish(future)
+            me.finish(future, args.service_name)
             if future.result() is None:
                 raise RuntimeError(f"Exception while calling service: {future.exception()!r}")
             print(f"response:\n{future.result()!r}\n", flush=True)
