@@ -23,8 +23,10 @@ from typing import TYPE_CHECKING
 
 import course
 from course.grade.limits import IN_MEMORY_BYTES
+from launcher.errors import LauncherError
 from launcher.node_program import INSTALLATION
 from launcher.profile.defaults import FOLDERS_OWN
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,7 +39,8 @@ _LISTS_OF_FOLDERS = (
     "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH",
 )  # fmt: skip
 _PROFILES_OF_DDS = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
-_TRIED_WITHIN_S = 30.0
+_TRIED_WITHIN_S = 300.0
+"""A trial takes a second, and a minute on a machine with thirty processes at work."""
 _TRIAL = "import sys; from launcher.profile.load import load_profile; load_profile(sys.argv[1])"
 
 
@@ -106,7 +109,11 @@ def _differing(
 
 
 def walls_for(lesson: LessonFolder) -> Walls:
-    """Return the best that can be had here; tried, in full, with this lesson."""
+    """Return the best that can be had here; tried, in full, with this lesson.
+
+    Raises:
+        LauncherError: if a trial does not end: without its answer nothing is to be graded.
+    """
     kinds = (Walls.BUBBLEWRAP, Walls.NAMESPACES)
     return next((kind for kind in kinds if _hold(kind, lesson)), Walls.NONE)
 
@@ -120,6 +127,11 @@ def _hold(kind: Walls, lesson: LessonFolder) -> bool:
 
 
 def _runs(command: Sequence[str]) -> bool:
+    """Whether a trial succeeds; one that was not finished is no answer.
+
+    Raises:
+        LauncherError: if it is not finished after a long time.
+    """
     try:
         done = subprocess.run(
             command,
@@ -129,8 +141,16 @@ def _runs(command: Sequence[str]) -> bool:
             timeout=_TRIED_WITHIN_S,
             check=False,
         )
-    except (OSError, subprocess.TimeoutExpired):
+    except OSError:
         return False
+    except subprocess.TimeoutExpired as error:
+        raise LauncherError(
+            say(
+                "whether what is graded can be confined is not known after {seconds:g} s: this "
+                "machine is too busy; nothing was graded",
+                seconds=_TRIED_WITHIN_S,
+            )
+        ) from error
     return done.returncode == 0
 
 

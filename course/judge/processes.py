@@ -57,7 +57,10 @@ def log(check: LogCheck, evidence: Evidence, since_s: float) -> Observation:
 
 
 async def ends(check: EndsCheck, evidence: Evidence) -> Observation:
-    """A node ends when it is asked to, in time and with a code; afterwards it runs again."""
+    """A node ends by itself when it is asked to, with a code; afterwards it runs again.
+
+    How long that takes says more of the machine than of the node: what hears no signal is killed.
+    """
     node = evidence.nodes.get(check.ends)
     if node is None or not node.state.alive:
         return Observation(
@@ -66,15 +69,13 @@ async def ends(check: EndsCheck, evidence: Evidence) -> Observation:
     await evidence.until(lambda: MET if _is_at_work(check.ends, evidence) else None, BACK_WITHIN_S)
     affected = [check.ends, *_dependants(check.ends, evidence)]
     evidence.touched.update(affected)
-    began_s = time.monotonic()
     try:
         if check.signal == "SIGTERM":
             await _terminated(node, evidence)
         else:
             await _stopped(check.ends, evidence)
-        took_s = time.monotonic() - began_s
         after = evidence.nodes[check.ends]
-        observation = _how(check, took_s, after.exit_code, after.signal)
+        observation = _how(check, after.exit_code, after.signal)
     finally:
         # Also if the learner turns to another step meanwhile.
         await evidence.client.start(*affected)
@@ -121,7 +122,7 @@ async def _terminated(node: NodeStatus, evidence: Evidence) -> None:
         await _stopped(node.name, evidence)
 
 
-def _how(check: EndsCheck, took_s: float, code: int | None, ended_by: str | None) -> Observation:
+def _how(check: EndsCheck, code: int | None, ended_by: str | None) -> Observation:
     if ended_by is not None:
         return Observation(
             met=False,
@@ -138,12 +139,6 @@ def _how(check: EndsCheck, took_s: float, code: int | None, ended_by: str | None
                 "Catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call "
                 "rclpy.try_shutdown() instead of rclpy.shutdown()."
             ),
-        )
-    if took_s > check.within:
-        return Observation(
-            met=False,
-            seen=say("{node} took more than {n:g} s to end", node=check.ends, n=check.within),
-            look=say("Is there a loop or a sleep that does not hear Ctrl-C?"),
         )
     return MET
 

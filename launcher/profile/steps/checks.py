@@ -220,7 +220,6 @@ class EndsCheck(CheckDocument):
     ends: str = Field(description="This node of the profile ends when it is asked to.")
     signal: Literal["SIGINT", "SIGTERM"] = "SIGINT"
     code: int = Field(0, description="With this exit code.")
-    within: Seconds = Field(1.0, description="In so many seconds.")
 
 
 class ImageCheck(CheckDocument):
