@@ -10,16 +10,19 @@ from typing import TYPE_CHECKING
 from cli.doctor.login import before_logout, collect
 from cli.health import settled, well
 from cli.report import TextReport
-from cli.sessions import as_json, show
+from cli.sessions import as_json, show, silent_as_json, silent_words
 from cli.shared_domain import in_own_domain
 from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.client import client
+from launcher.client.hung_supervisor import kill_supervisor, left_of, nodes_of
 from launcher.client.log_history import newer
+from launcher.client.running import find_running
 from launcher.errors import (
     AlreadyRunningError,
     ConnectionLostError,
     NotRunningError,
     SessionError,
+    SilentSupervisorError,
     UnknownNodeError,
 )
 from launcher.events import ClosedEvent, LogEvent
@@ -135,19 +138,32 @@ async def _states_later(link: client.SupervisorClient) -> list[NodeState]:
     return _states(link)
 
 
-async def _ps(options: Namespace) -> int:
+async def _asked_all() -> tuple[
+    list[tuple[SessionInfo, tuple[NodeStatus, ...]]], list[tuple[SessionInfo, dict[str, int]]]
+]:
+    """Ask all supervisors; return the sessions with their nodes, and those that do not answer."""
     found: list[tuple[SessionInfo, tuple[NodeStatus, ...]]] = []
+    silent: list[SessionInfo] = []
     for session in client.running():
         try:
             link = await client.attach(session.run_id)
+        except SilentSupervisorError:
+            silent.append(session)
+            continue
         except SessionError:
             continue  # It has just ended.
         found.append((link.session, tuple(link.nodes.values())))
         await link.aclose()
+    return found, [(session, nodes_of(session.run_id)) for session in silent]
+
+
+async def _ps(options: Namespace) -> int:
+    found, silent = await _asked_all()
     if options.json:
-        write(json_text([as_json(*each) for each in found], indent=2))
-        return 0
-    if not found:
+        answering = [as_json(*each) for each in found]
+        write(json_text([*answering, *(silent_as_json(*each) for each in silent)], indent=2))
+        return 1 if silent else 0
+    if not found and not silent:
         say_error(str(localized(NotRunningError().args[0])))
     names = [session.name for session, _nodes in found]
     for index, (session, nodes) in enumerate(found):
@@ -158,7 +174,9 @@ async def _ps(options: Namespace) -> int:
             write(Paint(sys.stdout)(stop_words(session.domain), RED))
         if names.count(session.name) > 1:
             write(_("name of this run: {run_id}").format(run_id=session.run_id))
-    return 0
+    for session, pids in silent:
+        say_error(silent_words(session, pids))
+    return 1 if silent else 0
 
 
 async def _logs(options: Namespace) -> int:
@@ -196,7 +214,13 @@ async def _follow(
 
 
 async def _down(options: Namespace) -> int:
-    link = await client.attach(options.name)
+    try:
+        link = await client.attach(options.name)
+    except SilentSupervisorError:
+        # What it has started ends with it.
+        run_id = find_running(options.name).session.run_id
+        say_error(localized(await kill_supervisor(run_id)))
+        return 1 if left_of(run_id) else 0
     session, count = link.session, len(link.nodes)
     await link.shutdown()
     words = ngettext("{name} stopped, {count} node", "{name} stopped, {count} nodes", count)

@@ -10,10 +10,11 @@ from cli.report import status_fields
 from cli.stop_in_force import stop_is_kept
 from text.i18n import _, decimal, localized, pick
 from text.output import BOLD, DIM, RED, Paint, table, write
+from text.plain import plain
 from tui.session.hardware_words import hardware_words
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from launcher.status import NodeStatus, SessionInfo
 
@@ -65,6 +66,26 @@ def _duration(seconds: float) -> str:
     return f"{hours}:{minutes}" if hours else minutes
 
 
+def silent_words(session: SessionInfo, pids: Mapping[str, int]) -> str:
+    """Return who runs, and may drive, in a session whose supervisor does not answer."""
+    nodes = ", ".join(f"{plain(name)} ({pid})" for name, pid in pids.items())
+    return _(
+        "deck: {name} (domain {domain}): the supervisor (pid {pid}) does not answer; its nodes run"
+        " on: {nodes}; `deck stop` stops the robot, `deck down {name}` ends all of it"
+    ).format(
+        name=plain(session.name),
+        domain=session.domain,
+        pid=session.supervisor_pid,
+        nodes=nodes or _("none"),
+    )
+
+
+def silent_as_json(session: SessionInfo, pids: Mapping[str, int]) -> dict[str, object]:
+    """Return the same in the form of `deck ps --json`: of the nodes only name and number."""
+    nodes = [{"node": name, "pid": pid} for name, pid in pids.items()]
+    return {**as_json(session, ()), "supervisor_answers": False, "nodes": nodes}
+
+
 def as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, object]:
     """Return a session in the form of `deck ps --json`."""
     return {
@@ -75,6 +96,7 @@ def as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, obje
         "hardware": session.hardware,
         "foreground": session.foreground,
         "supervisor_pid": session.supervisor_pid,
+        "supervisor_answers": True,
         "log_dir": session.log_dir,
         "emergency_stop": stop_is_kept(session.domain),
         "nodes": [

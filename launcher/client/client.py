@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +37,7 @@ from launcher.errors import (
 )
 from launcher.events import LogEvent
 from launcher.logs.packing import unpack_line
+from launcher.processes.table import read_process
 from launcher.run_id import supervisor_of
 from launcher.rundir import log_dir, run_dir
 from launcher.serial_ports import serial_ports
@@ -57,6 +59,8 @@ if TYPE_CHECKING:
     from text.sentences import Words
 
 HELLO_WITHIN_S = 10.0
+SUSPENDED, SUSPENDED_S, LOOK_S = "T", 1.0, 0.1
+"""The state of a process that a signal has stopped, proc(5): it need not be waited for."""
 HEARD_WITHIN_S = 30.0
 """A supervisor that has not acknowledged a shutdown request after this time has hung."""
 HEARD_IN_A_HURRY_S = 5.0
@@ -195,13 +199,34 @@ async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
     return SupervisorClient(hello, reader, writer, lifeline, folder)
 
 
+async def _first_line(reader: asyncio.StreamReader, supervisor: int) -> bytes:
+    """Return what the supervisor says first.
+
+    Raises:
+        asyncio.TimeoutError: if it says nothing in time, or has been suspended for a while.
+    """
+    reading = asyncio.ensure_future(reader.readline())
+    began_s = runs_s = time.monotonic()
+    try:
+        while not (await asyncio.wait({reading}, timeout=LOOK_S))[0]:
+            now_s = time.monotonic()
+            process = read_process(supervisor)
+            if process is None or process.state != SUSPENDED:
+                runs_s = now_s
+            if now_s - runs_s > SUSPENDED_S or now_s - began_s > HELLO_WITHIN_S:
+                raise asyncio.TimeoutError
+        return reading.result()
+    finally:
+        reading.cancel()
+
+
 async def _greeted(
     reader: asyncio.StreamReader, writer: asyncio.StreamWriter, folder: Path
 ) -> dict[str, Any]:
     """Announce our protocol version; return the greeting of a supervisor with the same version."""
     try:
         writer.write(encode({"deck": VERSION}))
-        hello: dict[str, Any] = read_json(await asyncio.wait_for(reader.readline(), HELLO_WITHIN_S))
+        hello: dict[str, Any] = read_json(await _first_line(reader, supervisor_of(folder.name)))
     except asyncio.TimeoutError as problem:
         raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
     except (OSError, ValueError) as problem:

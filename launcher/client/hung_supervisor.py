@@ -9,7 +9,7 @@ import time
 
 from launcher.processes.members import is_marked
 from launcher.processes.signal import send
-from launcher.processes.table import Process, processes
+from launcher.processes.table import NODE_MARK, RUN_MARK, Process, processes, read_marks
 from launcher.run_id import living_supervisor, supervisor_of
 from launcher.supervisor.words import who
 from text.sentences import Words, say
@@ -43,6 +43,19 @@ async def left_behind(run_id: str) -> list[Process]:
     while (left := left_of(run_id)) and time.monotonic() < deadline:  # noqa: ASYNC110 - not ours
         await asyncio.sleep(_LOOK_EVERY_S)
     return left
+
+
+def nodes_of(run_id: str) -> dict[str, int]:
+    """Return the living nodes of a run with their process numbers, as the kernel knows them."""
+    nodes: dict[str, int] = {}
+    for each in sorted(processes(), key=lambda process: process.started_ticks):
+        marks = None if each.zombie else read_marks(each.pid)
+        if marks is not None and marks.get(RUN_MARK) == run_id:
+            name = marks.get(NODE_MARK, "")
+            # Others that it has started have its mark, and are younger.
+            if name and not name.startswith("-"):
+                nodes.setdefault(name, each.pid)
+    return nodes
 
 
 def left_of(run_id: str) -> list[Process]:

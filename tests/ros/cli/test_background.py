@@ -71,6 +71,30 @@ def test_from_up_to_down(tmp_path: Path, ros_domain: int) -> None:
     assert deck("ps").errors[0].startswith("nothing runs in the background")
 
 
+def test_where_only_the_supervisor_hangs_ps_names_the_nodes_and_down_ends_them(
+    tmp_path: Path, ros_domain: int
+) -> None:
+    deck("up", str(written(tmp_path, ONE, "one.yaml")))
+    (session,) = json.loads("\n".join(deck("ps", "--json").lines))
+    pids = {node["node"]: node["pid"] for node in session["nodes"]}
+    os.kill(session["supervisor_pid"], signal.SIGSTOP)
+    told = deck("ps")
+    assert told.process.returncode == 1
+    (words,) = told.errors
+    assert (
+        f"(domain {ros_domain}): the supervisor (pid {session['supervisor_pid']}) does not" in words
+    )
+    assert all(f"{name} ({pid})" in words for name, pid in pids.items())
+    told = deck("ps", "--json")
+    (silent,) = json.loads("\n".join(told.lines))
+    assert (told.process.returncode, silent["supervisor_answers"]) == (1, False)
+    assert {node["node"]: node["pid"] for node in silent["nodes"]} == pids
+    down = deck("down")
+    assert down.process.returncode == 0
+    assert "did not answer; it was killed with all its nodes" in down.errors[0]
+    assert not any(map(alive, pids.values()))
+
+
 def test_down_does_not_say_stopped_of_what_still_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
