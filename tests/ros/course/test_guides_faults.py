@@ -102,6 +102,6 @@ def test_in_the_shell_they_run_as_well_and_their_ends_are_explained(
     assert own_words(done.stdout).splitlines() == [f"{file} 1" for file in FILES], done.stderr
     for file in FILES:
         *_, last = own_words((folder / f"{file}.log").read_text()).splitlines()
-        wanted = CTRL_C if file == "hello.py" else END
         assert last.startswith(f"{file}:"), last
-        assert wanted in last
+        # One that a busy machine has not brought as far as rclpy.spin ends by Ctrl-C itself.
+        assert CTRL_C in last or (END in last and file != "hello.py"), last
