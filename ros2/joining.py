@@ -16,8 +16,16 @@ from typing import TYPE_CHECKING, Any
 from graph.participants.roll import Roll
 from graph.ros import FAST_DDS_VARIABLES, RANGE, announcing
 from launcher.domain.participants import LocalParticipants
-from ros2.options import ANSWERED_WITHIN_S
-from ros2.presence import NETWORK_S, Missing, is_off, is_wide, missing, stopped, words
+from ros2.presence import (
+    ANSWERED_WITHIN_S,
+    NETWORK_S,
+    Missing,
+    is_off,
+    is_wide,
+    missing,
+    stopped,
+    words,
+)
 from text.i18n import localized
 
 if TYPE_CHECKING:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from ros2.presence import ANSWERED_WITHIN_S
+
 if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
@@ -15,7 +17,6 @@ PROFILES = (
 HISTORIES = ("system_default", "keep_last", "keep_all", "unknown")
 RELIABILITIES = ("system_default", "reliable", "best_effort", "unknown", "best_available")
 DURABILITIES = ("system_default", "transient_local", "volatile", "unknown", "best_available")
-ANSWERED_WITHIN_S = 5.0
 LIVELINESSES = ("system_default", "automatic", "manual_by_topic", "unknown", "best_available")
 
 

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from launcher.domain.participants import LocalParticipant
     from text.sentences import Words
 
+ANSWERED_WITHIN_S = 5.0
+"""So long may a node that is there take to answer, unless told otherwise."""
 NETWORK_S = 3.3
 """Fast DDS announces a participant each 3 s, where Deck has not set it otherwise."""
 HOST = 4
