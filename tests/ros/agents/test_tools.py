@@ -84,13 +84,13 @@ async def test_it_looks_and_drives_only_as_far_as_the_person_lets_it(
     told = speeds(peer)
     results = peer.hear(LLM_RESULT, String)
     async with running(tmp_path, ros_domain, GATED) as link, agent() as claude:
+        await lets(claude)
         state = await claude.call("look")
         assert state["session"] == "robot"
         assert state["sonar_m"]["front"] == pytest.approx(3.0, abs=0.1)
         assert state["gate"]["verdict"] == "free"
         assert state["approval"] == "ask"
 
-        await lets(claude)
         # Without a screen nobody can be asked.
         proposal = await claude.proposed(drive(0.2), reason="why not")
         assert "no screen" in await claude.refused("execute", proposal=proposal)
