@@ -23,7 +23,7 @@ STATUS = (
     "UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED",
 )  # fmt: skip
 """By the numbers of action_msgs/msg/GoalStatus."""
-RUNNING = (1, 2)
+ENDED = (4, 5, 6)
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,8 +77,8 @@ def _drive(me: Guest, args: argparse.Namespace, kind: type[Any], goal: Any) -> s
         if not handle.accepted:
             print("Goal was rejected.")
             return None
-        print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
         try:
+            print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
             ended = handle.get_result_async()
             me.finish(ended, server, within_s=math.inf, is_there=client.server_is_ready)
         except KeyboardInterrupt:
@@ -100,7 +100,8 @@ def _print_feedback(message: Any) -> None:  # noqa: ANN401 - generated
 
 
 def _cancel(me: Guest, handle: Any, server: str) -> None:  # noqa: ANN401 - rclpy has no types
-    if handle.status not in RUNNING:
+    # Of one that has just been accepted the status may not have come yet.
+    if handle.status in ENDED:
         return
     print("Canceling goal...", flush=True)
     future = handle.cancel_goal_async()
