@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import subprocess
 from typing import TYPE_CHECKING
 from unittest import mock
 
@@ -11,7 +12,7 @@ from launcher.processes.title import room_for_marks
 
 if TYPE_CHECKING:
     import signal
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from multiprocessing.context import ForkServerProcess
 
 _FORKS = multiprocessing.get_context("forkserver")
@@ -21,6 +22,43 @@ _FORKS.set_forkserver_preload(
         *("launcher.supervisor.run", "tests.ros.warm_imports", "tests.ros.told_actions"),
     ]
 )
+
+
+class Forked:
+    """A forked process, with what of `subprocess.Popen` tests use."""
+
+    def __init__(
+        self, argv: Sequence[str], target: Callable[..., None], *arguments: object
+    ) -> None:
+        """Start one that does this, as the program `argv`."""
+        self.args = tuple(argv)
+        self._process = fork(target, *arguments)
+
+    @property
+    def pid(self) -> int:
+        assert self._process.pid is not None
+        return self._process.pid
+
+    @property
+    def returncode(self) -> int | None:
+        return self._process.exitcode
+
+    def poll(self) -> int | None:
+        return self._process.exitcode
+
+    def wait(self, timeout: float | None = None) -> int:
+        self._process.join(timeout)
+        if self._process.exitcode is None:
+            raise subprocess.TimeoutExpired(self.args, timeout or 0.0)
+        return self._process.exitcode
+
+    def send_signal(self, number: signal.Signals) -> None:
+        """Send a signal, unless it has ended."""
+        if self._process.exitcode is None:
+            os.kill(self.pid, number)
+
+    def kill(self) -> None:
+        self._process.kill()
 
 
 def fork(target: Callable[..., None], *arguments: object) -> ForkServerProcess:
@@ -37,10 +75,3 @@ def enter(cwd: str, env: Mapping[str, str]) -> None:
     os.environ.clear()
     os.environ.update(env)
     os.chdir(cwd)
-
-
-def send(process: ForkServerProcess, number: signal.Signals) -> None:
-    """Send a signal, unless it has ended."""
-    if process.exitcode is None:
-        assert process.pid is not None
-        os.kill(process.pid, number)

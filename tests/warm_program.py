@@ -16,7 +16,7 @@ import threading
 from multiprocessing import reduction
 from typing import IO, TYPE_CHECKING, Any, NoReturn
 
-from tests.forks import enter, fork, send
+from tests.forks import Forked, enter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 PIPE, DEVNULL = subprocess.PIPE, subprocess.DEVNULL
 
 
-class WarmProgram:
-    """`python -m MODULE ARGUMENTS`, with what of `subprocess.Popen` tests use."""
+class WarmProgram(Forked):
+    """`python -m MODULE ARGUMENTS`."""
 
     def __init__(
         self,
@@ -38,7 +38,6 @@ class WarmProgram:
         stderr: int = PIPE,
     ) -> None:
         """`argv`: the module and its arguments; streams are PIPE, DEVNULL or a descriptor."""
-        self.args = tuple(argv)
         self.stdin: IO[str] | None = None
         self.stdout: IO[str] | None = None
         self.stderr: IO[str] | None = None
@@ -56,7 +55,7 @@ class WarmProgram:
             else:
                 theirs.append(wanted)
         streams = tuple(Passed(fd) for fd in theirs)
-        self._process = fork(_become, self.args, cwd, dict(env), streams)
+        super().__init__(argv, _become, tuple(argv), cwd, dict(env), streams)
         for fd in made:
             os.close(fd)
 
@@ -67,31 +66,6 @@ class WarmProgram:
         if writes:
             return os.fdopen(writing, "w", encoding="utf-8"), reading
         return os.fdopen(reading, "r", encoding="utf-8"), writing
-
-    @property
-    def pid(self) -> int:
-        assert self._process.pid is not None
-        return self._process.pid
-
-    @property
-    def returncode(self) -> int | None:
-        return self._process.exitcode
-
-    def poll(self) -> int | None:
-        return self._process.exitcode
-
-    def wait(self, timeout: float | None = None) -> int:
-        self._process.join(timeout)
-        code = self._process.exitcode
-        if code is None:
-            raise subprocess.TimeoutExpired(self.args, timeout or 0.0)
-        return code
-
-    def send_signal(self, number: signal.Signals) -> None:
-        send(self._process, number)
-
-    def kill(self) -> None:
-        self._process.kill()
 
 
 class Passed:

@@ -7,47 +7,23 @@ reads when it starts (PYTHON..., permissions) has no effect here: see `NodeProce
 from __future__ import annotations
 
 import os
-import signal
-import subprocess
 from typing import TYPE_CHECKING
 
 from launcher import node_program
 from launcher.spawn_server.node import check_fields, renew_streams
-from tests.forks import enter, fork, send
+from tests.forks import Forked, enter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 
-class WarmNode:
-    """Such a process, with what of `subprocess.Popen` tests use."""
+class WarmNode(Forked):
+    """Such a process."""
 
     def __init__(self, argv: Sequence[str], *, cwd: str, env: Mapping[str, str], log: int) -> None:
         """Run a module with its arguments; what it prints goes to the descriptor `log`."""
         output = f"/proc/{os.getpid()}/fd/{log}"
-        self._process = fork(_become, tuple(argv), cwd, dict(env), output)
-        self.args = tuple(argv)
-
-    @property
-    def pid(self) -> int:
-        assert self._process.pid is not None
-        return self._process.pid
-
-    @property
-    def returncode(self) -> int | None:
-        return self._process.exitcode
-
-    def poll(self) -> int | None:
-        return self._process.exitcode
-
-    def wait(self, within_s: float) -> int:
-        self._process.join(within_s)
-        if self._process.exitcode is None:
-            raise subprocess.TimeoutExpired(self.args, within_s)
-        return self._process.exitcode
-
-    def send_signal(self, number: signal.Signals) -> None:
-        send(self._process, number)
+        super().__init__(argv, _become, tuple(argv), cwd, dict(env), output)
 
 
 def _become(argv: tuple[str, ...], cwd: str, env: dict[str, str], output: str) -> None:

@@ -8,12 +8,11 @@ one, differs here: tests of that are marked `cold`, and start it as Deck does.
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 from typing import TYPE_CHECKING
 
-from tests.forks import enter, fork, send
+from tests.forks import Forked, enter
 from tests.warm_program import Passed, end
 
 if TYPE_CHECKING:
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
 PIPE = subprocess.PIPE
 
 
-class Popen:
-    """Such a process, with what of `subprocess.Popen` the client uses."""
+class Popen(Forked):
+    """Such a process."""
 
     def __init__(
         self,
@@ -39,28 +38,11 @@ class Popen:
         theirs_in, ours_in = os.pipe()
         ours_out, theirs_out = os.pipe()
         streams = tuple(Passed(fd) for fd in (theirs_in, theirs_out, stderr))
-        self._process = fork(_become, tuple(argv[2:]), str(cwd), dict(env), streams, os.getpid())
+        program = tuple(argv[2:])
+        super().__init__(program, _become, program, str(cwd), dict(env), streams, os.getpid())
         os.close(theirs_in)
         os.close(theirs_out)
         self.stdin, self.stdout = os.fdopen(ours_in, "wb", 0), os.fdopen(ours_out, "rb", 0)
-
-    @property
-    def pid(self) -> int:
-        assert self._process.pid is not None
-        return self._process.pid
-
-    def poll(self) -> int | None:
-        return self._process.exitcode
-
-    def wait(self) -> int | None:
-        self._process.join()
-        return self._process.exitcode
-
-    def send_signal(self, number: signal.Signals) -> None:
-        send(self._process, number)
-
-    def kill(self) -> None:
-        self._process.kill()
 
 
 def _become(
