@@ -64,11 +64,14 @@ class KnownStops:
 
     def learn(self, record: StopRecord, seen_ns: int) -> None:
         """Take in what somebody knows, which arrived or was written to disk at this time."""
-        self.record = self.record.merged(record)
         for stop in record.held:
             since_ns = known_since(stop, seen_ns)
             self.since_ns[stop] = min(self.since_ns.get(stop, since_ns), since_ns)
-        self.since_ns = {stop: self.since_ns[stop] for stop in self.record.held}
+        self._hold(self.record.merged(record))
+
+    def _hold(self, record: StopRecord) -> None:
+        self.record = record
+        self.since_ns = {stop: self.since_ns[stop] for stop in record.held}
 
     def before(self, said_ns: int) -> frozenset[Stop]:
         """Return the stops that were known before this time."""
@@ -83,8 +86,7 @@ class KnownStops:
         if self._was_set_back(heard.heard_ns):
             return False
         if said_ns is not None:
-            self.record = self.record.freed(self.before(said_ns))
-            self.since_ns = {stop: self.since_ns[stop] for stop in self.record.held}
+            self._hold(self.record.freed(self.before(said_ns)))
         return said_ns is not None
 
     def _was_set_back(self, now_ns: int) -> bool:

@@ -115,41 +115,31 @@ class StopFile:
 
         Not if it is saved already, or, unless it is to be saved as a `whole`, some of it.
         """
-        if not self._missing(record, whole=whole):
+        if not _is_missing(record, self.read(), whole=whole):
             return ""
         try:
             with self._alone():
                 saved = self.read()
-                if self._missing(record, whole=whole):
+                if _is_missing(record, saved, whole=whole):
                     first = stop if saved.stop is None or saved.stop.unreadable else saved.stop
-                    details = {
-                        "since": first.since_s,
-                        "by": first.by,
-                        "publishers": first.publishers,
-                    }
-                    self._write(record.merged(saved.record), details, "")
+                    self._write(record.merged(saved.record), first)
         except (OSError, RuntimeError) as error:
             return os_reason(error)
         return ""
-
-    def _missing(self, record: StopRecord, *, whole: bool) -> bool:
-        """Whether something is to be saved."""
-        missing = record.held - self.read().record.held
-        return bool(missing) and (whole or missing == record.held)
 
     def forget(self, record: StopRecord) -> str:
         """Save what is released, and remove the stop unless it is a newer one; say why not."""
         try:
             place = self._place()
-            saved = _parse_released(_released(place))
-            if not record.released or (
-                saved.merged(record) == saved and not os.path.lexists(place)
-            ):
+            gone = _parse_released(_released(place))
+            is_saved = gone.merged(record) == gone and not os.path.lexists(place)
+            if is_saved or not record.released:
                 return ""
             with self._alone():
-                known = record.merged(self.read().record)
-                if known.released != _parse_released(_released(place)).released:
-                    self._write(known, {}, ".released")
+                saved = self.read().record
+                known = record.merged(saved)
+                if known.released != saved.released:
+                    self._write(known, None)
                 # What others have given without waiting for this.
                 if not self.read().record.engaged:
                     place.unlink(missing_ok=True)
@@ -178,7 +168,7 @@ class StopFile:
 
     def give(self, stop: Stop, by: str) -> str:
         """Add a stop on behalf of somebody who is no node; return why that failed."""
-        return self.keep(KeptStop(time.time(), by), self.read().record.stopped(stop))
+        return self.keep(KeptStop(time.time(), by), StopRecord().stopped(stop))
 
     def release(self, said_ns: int) -> str:
         """Release what was saved before this time on behalf of somebody who is no node.
@@ -188,17 +178,14 @@ class StopFile:
         known, saved = KnownStops(), self.read()
         known.learn(saved.record, saved.written_ns)
         if saved.stop is not None and saved.written_ns > time.time_ns():
-            return self._date_anew(saved)
+            return self._date_anew(saved.stop)
         return self.forget(known.record.freed(known.before(said_ns)))
 
-    def _date_anew(self, saved: SavedStop) -> str:
+    def _date_anew(self, stop: KeptStop) -> str:
         """Write a stop from the future with the time of now: the clock was set back."""
-        stop = saved.stop
-        assert stop is not None
-        details = {"since": stop.since_s, "by": stop.by, "publishers": stop.publishers}
         try:
             with self._alone():
-                self._write(self.read().record, details, "")
+                self._write(self.read().record, stop)
         except (OSError, RuntimeError) as error:
             return os_reason(error)
         return ""
@@ -206,13 +193,15 @@ class StopFile:
     def _place(self) -> Path:
         return stop_place(self._domain)
 
-    def _write(self, record: StopRecord, details: dict[str, object], ending: str) -> None:
-        place = self._place()
-        folder = place.parent
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        written = {"written_ns": time.time_ns()} if details else {}
-        data = json.dumps({**details, **written, **record.texts()}).encode()
-        _replace(folder, f"{self._draft}{ending}", f"{place.name}{ending}", data)
+    def _write(self, record: StopRecord, stop: KeptStop | None) -> None:
+        """Write the file of a stop, or that of what was released."""
+        place, ending, document = self._place(), ".released", dict[str, object]()
+        if stop is not None:
+            ending = ""
+            document = {"since": stop.since_s, "by": stop.by, "publishers": stop.publishers}
+            document["written_ns"] = time.time_ns()
+        data = json.dumps({**document, **record.texts()}).encode()
+        _replace(place.parent, f"{self._draft}{ending}", f"{place.name}{ending}", data)
 
     def _unread(self, place: Path) -> Stop:
         """Return the name of a stop of which nothing can be read, the same for all who see it."""
@@ -220,6 +209,12 @@ class StopFile:
             return Stop(place.lstat().st_mtime_ns)
         self._unknown = self._unknown or Stop(time.time_ns())
         return self._unknown
+
+
+def _is_missing(record: StopRecord, saved: SavedStop, *, whole: bool) -> bool:
+    """Whether something of it is to be saved that nobody has released since."""
+    missing = record.merged(saved.record).held - saved.record.held
+    return bool(missing) and (whole or not record.held & saved.record.held)
 
 
 def _locked(descriptor: int) -> bool:
