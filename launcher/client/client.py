@@ -59,8 +59,8 @@ if TYPE_CHECKING:
     from text.sentences import Words
 
 HELLO_WITHIN_S = 10.0
-SUSPENDED, SUSPENDED_S, LOOK_S = "T", 1.0, 0.1
-"""The state of a process that a signal has stopped, proc(5): it need not be waited for."""
+SUSPENDED_S, LOOK_S = 1.0, 0.1
+"""One that has been suspended for so long need not be waited for; how often that is looked at."""
 HEARD_WITHIN_S = 30.0
 """A supervisor that has not acknowledged a shutdown request after this time has hung."""
 HEARD_IN_A_HURRY_S = 5.0
@@ -211,7 +211,7 @@ async def _first_line(reader: asyncio.StreamReader, supervisor: int) -> bytes:
         while not (await asyncio.wait({reading}, timeout=LOOK_S))[0]:
             now_s = time.monotonic()
             process = read_process(supervisor)
-            if process is None or process.state != SUSPENDED:
+            if process is None or not process.suspended:
                 runs_s = now_s
             if now_s - runs_s > SUSPENDED_S or now_s - began_s > HELLO_WITHIN_S:
                 raise asyncio.TimeoutError

@@ -55,6 +55,11 @@ class Process:
         """
         return self.state in "ZX" and self.threads <= 1
 
+    @property
+    def suspended(self) -> bool:
+        """Whether a signal has stopped it, until another lets it go on."""
+        return self.state == "T"
+
 
 def read_process(pid: int) -> Process | None:
     """Return the process with this number, None if there is none."""

@@ -285,7 +285,7 @@ class Session:
 
 def _halted_of(processes: Iterable[Process]) -> int:
     """Return one of these that a signal has suspended, 0 if there is none."""
-    return next((process.pid for process in processes if process.state == "T"), 0)
+    return next((process.pid for process in processes if process.suspended), 0)
 
 
 def _with_state(node: SupervisedNode) -> str:
