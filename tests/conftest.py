@@ -19,6 +19,7 @@ from unittest import mock
 
 import psutil
 import pytest
+import pytest_timeout
 from hypothesis import HealthCheck, settings
 
 from graph.ros import FAST_DDS_VARIABLES, LOCALHOST_ONLY, ONLY_THESE, PEERS
@@ -26,6 +27,7 @@ from launcher.processes.shared_memory_held import release_held, release_locks
 from tests.distribution import ALONE, EachTestOnce
 from tests.domains import DomainPool
 from tests.machine import PLAIN, left_out, needs_of
+from tests.slowness import keep_measured, patient
 from tests.unit.scripts_of_setup import load
 
 # A loaded machine is no failure of the code. Each run takes other examples: half as many as usual
@@ -88,8 +90,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Keep where a dying process of the run can write: nothing is caught yet."""
     config.stash[REAL_STDERR] = os.dup(2)
-    if config.getoption("numprocesses", None) and not hasattr(config, "workerinput"):
-        threading.Thread(target=_clear_the_way, daemon=True).start()
+    if not hasattr(config, "workerinput"):
+        keep_measured(Path(os.environ[STATE_DIR], "slowness"))
+        if config.getoption("numprocesses", None):
+            threading.Thread(target=_clear_the_way, daemon=True).start()
 
 
 def _clear_the_way() -> None:
@@ -130,7 +134,14 @@ def _end_if_it_hangs(item: pytest.Item) -> None:
     mark = item.get_closest_marker("timeout")
     timeout_s = float(mark.args[0] if mark else item.config.getini("timeout"))
     error = item.config.stash[REAL_STDERR]
-    faulthandler.dump_traceback_later(timeout_s + AFTER_TIMEOUT_S, file=error, exit=True)
+    faulthandler.dump_traceback_later(patient(timeout_s) + AFTER_TIMEOUT_S, file=error, exit=True)
+
+
+@pytest.hookimpl(tryfirst=True, optionalhook=True)
+def pytest_timeout_set_timer(item: pytest.Item, settings: Any) -> Any:
+    """Give a test more time on a slow machine."""
+    settings = settings._replace(timeout=patient(settings.timeout))
+    return pytest_timeout.pytest_timeout_set_timer(item, settings)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

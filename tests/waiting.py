@@ -10,9 +10,14 @@ from typing import Any, Literal, NoReturn, TypeVar, overload
 
 import pytest
 
+from tests.slowness import patient
+
 T = TypeVar("T")
 DEADLINE_S = 60.0
-"""What takes longer is broken: on a machine with 30 processes at work, a command takes 20 s."""
+"""What takes longer is broken: on a machine with 30 processes at work, a command takes 20 s.
+
+As every `within_s` here, it is for a quiet machine, and longer on a slow one.
+"""
 
 
 def wait_until(
@@ -25,6 +30,7 @@ def wait_until(
 
     `what` can be asked for when it comes to that, to tell how things stand then.
     """
+    within_s = patient(within_s)
     deadline = time.monotonic() + within_s
     while True:
         result = condition()
@@ -37,6 +43,7 @@ def wait_until(
 
 def comes(condition: Callable[[], object], within_s: float, every_s: float = 0.01) -> bool:
     """Whether the condition holds within that time: what is asked again, or ends a test."""
+    within_s = patient(within_s)
     deadline = time.monotonic() + within_s
     while not condition():
         if time.monotonic() > deadline:
@@ -70,6 +77,7 @@ async def until(
     every_s: float = 0.02,
 ) -> Any:
     """As `wait_until`, while other tasks go on; the condition may be one of them."""
+    within_s = patient(within_s)
     deadline = time.monotonic() + within_s
     while True:
         answer = condition()
@@ -82,4 +90,4 @@ async def until(
 
 
 def _overdue(what: str | Callable[[], str], within_s: float) -> NoReturn:
-    pytest.fail(f"not within {within_s:g} s: {what if isinstance(what, str) else what()}")
+    pytest.fail(f"not within {within_s:.3g} s: {what if isinstance(what, str) else what()}")
