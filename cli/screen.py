@@ -7,7 +7,6 @@ import sys
 from typing import TYPE_CHECKING
 
 from cli.arguments.commands import COMMANDS, HELP
-from graph.observer.process.started import start_ahead
 from launcher.errors import ProfileNotFoundError, UsageError
 from launcher.profile.catalog import find_profile
 from text.i18n import _
@@ -30,9 +29,6 @@ def open_command(options: Namespace) -> int:
     profile = None if options.profile is None else profile_or_command(options.profile)
     if not has_terminal():
         return _without_screen(options)
-    if profile is not None:
-        # It has as much to import as the screen, and does that meanwhile.
-        start_ahead()
     from tui.live import run_screen
 
     return run_screen(
@@ -76,7 +72,6 @@ def attach_command(options: Namespace) -> int:
 
     # A wrong name is reported before the screen is opened.
     session = find_running(options.name).session
-    start_ahead()
     from tui.live import run_screen
 
     return run_screen(

@@ -6,7 +6,6 @@ import os
 from typing import TYPE_CHECKING
 
 from cli.screen import has_terminal
-from graph.observer.process.started import start_ahead
 from text.i18n import _
 from text.output import say_error
 from tui.session.requests import OpenRequest, WatchRequest
@@ -24,8 +23,6 @@ def watch_command(options: Namespace) -> int:
         say_error(_("watch needs a terminal; `deck record` works without one"))
         return 2
     from launcher.processes.shared_memory_unfinished import discard_unfinished
-
-    start_ahead()
     from tui.live import run_live
 
     # There may be no supervisor here that does it.

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 OF_SCREEN = ("tui.deck.screen", "tui.widgets.half_blocks")
 """Modules that show a lesson, besides its panels."""
+OF_STOP = ("launcher.client.running", "launcher.client.stop_road")
+"""Modules of the stop's road to supervisors: whoever presses it does not wait for them."""
 
 
 class LiveOpener:
@@ -72,11 +74,7 @@ class LiveOpener:
     async def prepare(self) -> None:
         """Import what every profile needs, here, in a supervisor, and in an observer's process."""
         await self._start_ahead()
-        await _imported("graph.observer.process.started")
-        from graph.observer.process.started import start_ahead
-
-        # If ROS is missing, the nodes and the observer report that later.
-        start_ahead()
+        await _start_observer_ahead()
         await _imported(
             "launcher.client.client", "launcher.runs.shared_domain", "graph.observer.observer"
         )
@@ -96,8 +94,9 @@ class LiveOpener:
         if request.replay is not None:
             self.replay = await asyncio.to_thread(_opened_bag, request.replay)
             return replayed(self.replay)
+        await _start_observer_ahead()
         if request.watch is not None:
-            await _imported("graph.observer.observer")
+            await _imported("graph.observer.observer", *OF_STOP)
             return watched(*request.watch)
         if request.profile is not None:
             await self._start_ahead()
@@ -191,6 +190,17 @@ def _opened_bag(request: ReplayRequest) -> Replay:
         return Replay(request.bag, rate=request.rate, loop=request.loop, start_s=request.start_s)
     except BagError as error:
         raise UsageError(error.words) from error
+
+
+async def _start_observer_ahead() -> None:
+    """Let it import ROS while this process goes on: not before the first frame is drawn.
+
+    If ROS is missing, the nodes and the observer report that later.
+    """
+    await _imported("graph.observer.process.started")
+    from graph.observer.process.started import start_ahead
+
+    start_ahead()
 
 
 async def _imported(*modules: str) -> None:

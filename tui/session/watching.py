@@ -8,14 +8,13 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from graph.housekeeping import is_housekeeping
-from launcher.client.running import running_records
-from launcher.client.stop_road import StopRoad
 from launcher.consent import Agents
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from graph.data import GraphUpdate
+    from launcher.client.stop_road import StopRoad
     from launcher.consent import ConsentAnswer
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
@@ -41,6 +40,10 @@ class StopRoads:
         self._carrying.submit(self._carry, engaged, said_ns)
 
     def _carry(self, engaged: bool, said_ns: int) -> None:
+        # Loaded once the first frame is drawn, see `tui.lifecycle.opener.OF_STOP`.
+        from launcher.client.running import running_records
+        from launcher.client.stop_road import StopRoad
+
         for record in running_records():
             if record.session.domain == self._domain:
                 road = self._roads.setdefault(record.folder, StopRoad(record.folder, self._domain))
