@@ -23,7 +23,7 @@ from platformdirs import user_cache_path
 
 from brain.client import Answer, Message, ModelRequest
 from brain.faults import FaultKind, ModelError
-from robot.commands.wrapping import unwrapped
+from robot.commands.wrapping import read_answer
 from text.nested import read_json
 from text.sentences import say
 
@@ -150,7 +150,7 @@ class Ladder:
         ]
         answer = await self._client.ask(request_for(rung, schema, messages, self._model))
         try:
-            found = read_json(bare(answer.text))
+            found = read_answer(answer.text).value
         except ValueError:
             return False
         return bool(found == {"word": word, "number": number})
@@ -194,8 +194,3 @@ _OF_THIS_WAY = (
     FaultKind.SERVER,
 )
 """After these the next way may still work; after a wrong key, none does."""
-
-
-def bare(text: str) -> str:
-    """Return the JSON of an answer without what models like to put around it."""
-    return unwrapped(text).strip()

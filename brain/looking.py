@@ -74,8 +74,6 @@ def parse_seen(text: str) -> PictureSeen:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         raise CommandError([Problem.of("invalid", first["loc"])]) from None
-    except ValueError:
-        raise CommandError([Problem.of("value_expected")]) from None
     for index, thing in enumerate(seen.things):
         box = thing.box
         if box is not None and not (box.left < box.right and box.top < box.bottom):

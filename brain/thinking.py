@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from brain.faults import FaultKind, ModelError
-from brain.ladder import bare
 from robot.commands.problems import CommandError
+from robot.commands.wrapping import unwrapped
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ async def think(
         ModelError: if there is no valid answer.
     """
     first = await ladder.ask(schema, messages, on_text)
-    text = bare(first.text)
+    text = unwrapped(first.text).strip()
     try:
         return Thought(check(text), text, (first.usage,))
     except CommandError as error:
@@ -69,7 +69,7 @@ async def think(
         {"role": "user", "content": _REPAIR.format(problems=problems)},
     ]
     second = await ladder.ask(schema, again, on_text)
-    text = bare(second.text)
+    text = unwrapped(second.text).strip()
     try:
         return Thought(check(text), text, (first.usage, second.usage))
     except CommandError as error:

@@ -8,8 +8,13 @@ commands are slowed down to those. To make a robot faster, change this file.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 _ROUNDING = 1e-6
 """Tolerance as a share of the limit: 0.3 is a little more in the 32 bits of a /drive."""
@@ -72,6 +77,10 @@ def first_excess(*asked: tuple[float, Limits]) -> Excess | None:
 
 HEAD_ANGLE = Limits(-90, 90, "deg")
 """Pan and tilt, in whole degrees."""
+OF_COMMANDS: Mapping[str, Limits] = MappingProxyType(
+    {"speed": SPEED, "steering": STEERING, "pan": HEAD_ANGLE, "tilt": HEAD_ANGLE}
+)
+"""By the field of an LLM's command."""
 MAX_COMMANDS = 32
 """Maximum commands in one response of an LLM."""
 MAX_BYTES = 64 * 1024

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 
 from robot.commands.json_places import Path, PlacedJson, line_column
 from robot.commands.problems import Problem
-from robot.limits import HEAD_ANGLE, MAX_COMMANDS, SPEED, STEERING
+from robot.limits import MAX_COMMANDS, OF_COMMANDS
 from text.suggestions import nearest
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 MAX_PROBLEMS = 20
 
-_RANGES = {"speed": SPEED, "steering": STEERING, "pan": HEAD_ANGLE, "tilt": HEAD_ANGLE}
 _CODES = {
     "missing": "missing",
     "extra_forbidden": "unknown",
@@ -100,8 +99,8 @@ class Explainer:
             return Problem.of(code, path, self._place(path[:-1]), name=name)
         if code == "unknown":
             return self._unknown(path, name, model)
-        if code == "range" and name in _RANGES:
-            limits = _RANGES[name]
+        if code == "range" and name in OF_COMMANDS:
+            limits = OF_COMMANDS[name]
             args = {"low": limits.low, "high": limits.high, "value": _finite(value)}
             return Problem.of(code, path, self._place(path), unit=limits.unit, **args)
         if code == "too_many":

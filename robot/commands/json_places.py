@@ -2,6 +2,9 @@
 
 The standard parser reports where a syntax error is, but not where a value was; it also accepts nan,
 infinities and duplicate keys, and deeply nested text overflows its stack. RFC 8259.
+
+What models write in its place and what can be read in one way only is read: strings and constants
+of Python, a comma after the last member, and a number with the very unit of its field.
 """
 
 from __future__ import annotations
@@ -10,9 +13,11 @@ import math
 import re
 from dataclasses import dataclass, field
 from json import JSONDecodeError, JSONDecoder
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robot.commands.not_json import odd, outside
+from text.i18n import translated
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,19 +28,32 @@ Path: TypeAlias = "tuple[str | int, ...]"
 MAX_DEPTH = 32
 
 _STRINGS = JSONDecoder()
+_PYTHON_STRING = re.compile(r"'((?:[^'\\]|\\.)*)'(?=[ \t\n\r]*(?:[,:}\]]|\Z))", re.DOTALL)
+"""With what may follow: an apostrophe within would end it earlier."""
+_ESCAPE_OR_QUOTE = re.compile(r"\\.|\"", re.DOTALL)
+_AS_JSON: Mapping[str, str] = {"\\'": "'", '"': '\\"'}
+"""Of these, what is written otherwise in JSON."""
 _BLANK = re.compile(r"[ \t\n\r]*")
 _NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
+_UNIT = re.compile(r"[ \t]*((?:[^\W\d_]|[°%])[^\s,\]}\"']*)")
 _DIGIT = re.compile(r"[.0-9xX]")
 _LONGEST_SHOWN = 24
 _HALF_CHARACTER = re.compile("[\ud800-\udfff]")
-_CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
+_CONSTANTS: Mapping[str, bool | None] = {
+    "true": True,
+    "false": False,
+    "null": None,
+    "True": True,
+    "False": False,
+    "None": None,
+}
 _LONGEST_INT = 18
 """Maximum digits of a number that is kept as an integer."""
 
 
 class JsonError(ValueError):
-    """The text is not the JSON of RFC 8259 that this module accepts."""
+    """The text is not JSON as this module accepts it."""
 
     def __init__(self, code: str, offset: int, path: Path = (), **details: str | int) -> None:
         super().__init__(code)
@@ -57,11 +75,16 @@ class PlacedJson:
     """Path to the offset where the key of the value begins, for members of objects."""
 
 
-def read(text: str) -> PlacedJson:
-    """Parse a whole JSON text; raises `JsonError`."""
-    reader = _JsonScanner(text)
+def read(text: str, units: Mapping[str, str] = MappingProxyType({})) -> PlacedJson:
+    """Parse a whole JSON text; raises `JsonError`.
+
+    `units` of fields, by name, may stand behind their numbers.
+    """
+    reader = _JsonScanner(text, units)
     value, end = reader.value(reader.blank(0), ())
     end = reader.blank(end)
+    if "{" in text[end:]:
+        raise JsonError("several", text.index("{", end))
     if end != len(text):
         raise reader.fault("text_after", end, ())
     return PlacedJson(value, reader.values, reader.keys)
@@ -76,8 +99,8 @@ def line_column(text: str, offset: int) -> tuple[int, int]:
 class _JsonScanner:
     """Recursive descent: each method takes an offset and returns what it read and where it ends."""
 
-    def __init__(self, text: str) -> None:
-        self.text = text
+    def __init__(self, text: str, units: Mapping[str, str]) -> None:
+        self.text, self.units = text, units
         self.values: dict[Path, int] = {}
         self.keys: dict[Path, int] = {}
 
@@ -94,7 +117,7 @@ class _JsonScanner:
             return self.object(at, path)
         if first == "[":
             return self.array(at, path)
-        if first == '"':
+        if first in ('"', "'"):
             return self.string(at, path)
         for word, constant in _CONSTANTS.items():
             if self.text.startswith(word, at):
@@ -107,7 +130,7 @@ class _JsonScanner:
         if self.text.startswith("}", at):
             return members, at + 1
         while True:
-            if not self.text.startswith('"', at):
+            if not self.text.startswith(('"', "'"), at):
                 raise self.fault("key_expected", at, path)
             key, end = self.string(at, path)
             if key in members:
@@ -134,34 +157,44 @@ class _JsonScanner:
                 return items, at
 
     def separator(self, at: int, path: Path, closing: str) -> tuple[int, bool]:
-        """Step over a comma, or over the closing bracket (then return True)."""
+        """Step over a comma, over the closing bracket (then return True), or over both."""
         at = self.blank(at)
         if self.text.startswith(closing, at):
             return at + 1, True
         if not self.text.startswith(",", at):
             raise self.fault("comma_expected", at, path, closing=closing)
         after = self.blank(at + 1)
-        if self.text.startswith(closing, after):
-            raise JsonError("trailing_comma", at, path, closing=closing)
-        return after, False
+        return (after + 1, True) if self.text.startswith(closing, after) else (after, False)
 
     def fault(self, code: str, at: int, path: Path, **details: str) -> JsonError:
         """Return the error for something else than what is due here, by its name if it has one."""
-        found = odd(self.text, at)
-        if found is None and code == "value_expected" and not path:
-            found = outside(self.text, at)
-        if found is None:
-            return JsonError(code, at, path, **details)
-        return JsonError(found.code, at, path, **found.details)
+        if found := odd(self.text, at):
+            return JsonError(found.code, at, path, **found.details)
+        if code == "value_expected" and not path:
+            code = outside(self.text, at)
+        return JsonError(code, at, path, **details)
 
     def string(self, at: int, path: Path) -> tuple[str, int]:
-        try:
-            text, end = _STRINGS.raw_decode(self.text, at)
-        except JSONDecodeError as error:
-            raise JsonError("string_bad", min(error.pos, len(self.text)), path) from None
+        if self.text[at] == "'":
+            text, end = self.python_string(at, path)
+        else:
+            try:
+                text, end = _STRINGS.raw_decode(self.text, at)
+            except JSONDecodeError as error:
+                raise JsonError("string_bad", min(error.pos, len(self.text)), path) from None
         if _HALF_CHARACTER.search(text):
             raise JsonError("half_character", at, path)
         return text, end
+
+    def python_string(self, at: int, path: Path) -> tuple[str, int]:
+        found = _PYTHON_STRING.match(self.text, at)
+        if found is None:
+            raise JsonError("quotes", at, path, quote="'")
+        inner = _ESCAPE_OR_QUOTE.sub(lambda one: _AS_JSON.get(one[0], one[0]), found[1])
+        try:
+            return _STRINGS.decode(f'"{inner}"'), found.end()
+        except JSONDecodeError:
+            raise JsonError("string_bad", at, path) from None
 
     def number(self, at: int, path: Path) -> tuple[int | float, int]:
         match = _NUMBER.match(self.text, at)
@@ -173,9 +206,21 @@ class _JsonScanner:
         if comma and not (path and isinstance(path[-1], int)):
             # In a list a comma may separate two numbers; elsewhere no number can follow a comma.
             raise JsonError("decimal_comma", at, path, mended=".".join(comma.groups()))
-        digits = match.group()
+        digits, end = match.group(), self.unit(match, path)
         if match.group(1) or match.group(2) or len(digits) > _LONGEST_INT:
             if math.isinf(float(digits)):
                 raise JsonError("too_large", at, path, number=digits[:_LONGEST_SHOWN])
-            return float(digits), match.end()
-        return int(digits), match.end()
+            return float(digits), end
+        return int(digits), end
+
+    def unit(self, number: re.Match[str], path: Path) -> int:
+        """Step over the unit of a number, in either language; any other is not converted."""
+        found = _UNIT.match(self.text, number.end())
+        own = self.units.get(str(path[-1])) if path else None
+        if found is None or own is None:
+            return number.end()
+        word = found[1]
+        if word not in (own, translated(own, "ru")):
+            shown = number.group()[:_LONGEST_SHOWN]
+            raise JsonError("unit", found.start(1), path, word=word, number=shown, unit=own)
+        return found.end()

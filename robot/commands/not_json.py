@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _NAMED = (
+    ("tag", re.compile(r"(?P<tag></?think>)")),
     ("fence", re.compile(r"```|~~~")),
     ("comment", re.compile(r"//|/\*|#")),
     ("backslash", re.compile(r"\\")),
@@ -59,9 +60,8 @@ def odd(text: str, at: int) -> Odd | None:
     return None
 
 
-def outside(text: str, at: int) -> Odd | None:
-    """Return what stands there where the JSON as a whole should begin, None if that has no name."""
+def outside(text: str, at: int) -> str:
+    """Return the code of what stands there where the JSON as a whole should begin."""
     if at == len(text):
-        return Odd("nothing", {})
-    begins_with_words = text[at].isalpha() and text.find("{", at) != -1
-    return Odd("words_before", {}) if begins_with_words else None
+        return "nothing"
+    return "words_before" if "{" in text[at:] else "words"

@@ -11,8 +11,8 @@ from typing import Annotated, Literal, TypeVar, Union, overload
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from robot.commands import json_places
 from robot.commands.explain import Explainer
+from robot.commands.json_places import line_column
 from robot.commands.problems import TEMPLATES, CommandError, Problem
 from robot.commands.wrapping import read_answer
 from robot.limits import HEAD_ANGLE, MAX_BYTES, MAX_COMMANDS, SPEED, STEERING
@@ -118,11 +118,7 @@ def parse_llm(text: str | bytes, kind: type[Response]) -> Response: ...
 def parse_llm(text: str | bytes, kind: type[LlmResponse] = LlmResponse) -> LlmResponse:
     """Parse and check a response; raises `CommandError` with every problem found and its place."""
     decoded = _decode(text)
-    try:
-        found = read_answer(decoded)
-    except json_places.JsonError as error:
-        place = json_places.line_column(decoded, error.offset)
-        raise CommandError([Problem.of(error.code, error.path, place, **error.details)]) from None
+    found = read_answer(decoded)
     try:
         return kind.model_validate(found.value)
     except ValidationError:
@@ -141,5 +137,5 @@ def _decode(text: str | bytes) -> str:
         return text.decode("utf-8")
     except UnicodeDecodeError as error:
         before = text[: error.start].decode("utf-8")
-        place = json_places.line_column(before, len(before))
+        place = line_column(before, len(before))
         raise CommandError([Problem.of("encoding", place=place)]) from None

@@ -23,10 +23,11 @@ def so_far(text: str) -> tuple[int, tuple[Problem, ...]]:
     """Return how many whole commands have come, and the problems that no continuation can mend."""
     text = straightened(unwrapped(text, whole=False))
     begun = text.lstrip()
-    if not begun:
+    if not begun.startswith("{"):
+        # Thoughts or words: a fence or </think> may still mend them.
         return 0, ()
     try:
-        response = parse_llm(_closed(text) if begun.startswith("{") else text)
+        response = parse_llm(_closed(text))
     except CommandError as error:
         wrong = tuple(problem for problem in error.problems if not _may_still_come(problem))
         return 0, wrong
@@ -41,13 +42,13 @@ def _closed(text: str) -> str:
     """Return the beginning up to the last place between commands, with all brackets closed."""
     stack: list[str] = []
     cut, closing = 0, ""
-    quoted = escaped = False
+    quote, escaped = "", False
     for at, character in enumerate(text):
-        if quoted:
-            quoted = escaped or character != '"'
+        if quote:
+            quote = quote if escaped or character != quote else ""
             escaped = not escaped and character == "\\"
-        elif character == '"':
-            quoted = True
+        elif character in "\"'":
+            quote = character
         elif character in _CLOSING:
             stack.append(_CLOSING[character])
             cut, closing = _cut(stack, at + 1) or (cut, closing)

@@ -1,7 +1,8 @@
 """What models put around their JSON, taken away where it is sure what was meant.
 
-That is a byte order mark, their thoughts in <think>, a fence of Markdown, and curly quotes. Each
-character is replaced by another one, so that every place in the text stays what it was.
+That is a byte order mark, their thoughts up to </think>, one fence of Markdown and the words before
+and after it, and curly quotes. Each character is replaced by another one, so that every place in
+the text stays what it was.
 """
 
 from __future__ import annotations
@@ -9,30 +10,51 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from robot.commands.json_places import JsonError, read
+from robot.commands.json_places import JsonError, line_column, read
+from robot.commands.problems import CommandError, Problem
+from robot.limits import OF_COMMANDS
 
 if TYPE_CHECKING:
     from robot.commands.json_places import PlacedJson
 
-_THOUGHTS = re.compile(r"\s*<think>.*?</think>", re.DOTALL)
-_FENCE = re.compile(r"\s*(```|~~~)[A-Za-z0-9]*(?=[\s{\[])")
-_FENCE_BEGUN = re.compile(r"\s*(?:(?:```|~~~)[A-Za-z0-9]*(?=[\s{\[]|\Z)|(?:`{1,2}|~{1,2})\Z)")
-_FENCE_END = re.compile(r"(```|~~~)\s*\Z")
-_VISIBLE = re.compile(r"\S")
+THINK, THOUGHT = "<think>", "</think>"
+_FENCE = re.compile(r"(```|~~~)[A-Za-z0-9]*(?=[\s{\[])")
+_PROSE = re.compile(r"(?!\s*[\[\"'])(?!.*</?think>)[^{}]*", re.DOTALL)
+"""Words that neither are JSON nor hold an object of it."""
+_VISIBLE = re.compile(r"[^\n]")
 _STRAIGHT = str.maketrans(dict.fromkeys("“”„‟", '"'))
+_UNITS = {name: limits.unit for name, limits in OF_COMMANDS.items()}
 
 
 def read_answer(text: str) -> PlacedJson:
-    """Parse the JSON of an answer, whatever is around it; raises `JsonError`."""
+    """Parse the JSON of an answer, whatever is around it; raises `CommandError`."""
     inner = unwrapped(text)
     try:
-        return read(inner)
+        _refuse_thoughts_alone(text, inner)
+        return _read(inner)
+    except JsonError as error:
+        place = line_column(text, error.offset)
+        raise CommandError([Problem.of(error.code, error.path, place, **error.details)]) from None
+
+
+def _refuse_thoughts_alone(text: str, inner: str) -> None:
+    left = inner.lstrip()
+    at = len(inner) - len(left)
+    if left.startswith(THINK) and THOUGHT not in left:
+        raise JsonError("thoughts", at)
+    if not left and (visible := text.strip("\ufeff \t\r\n")):
+        raise JsonError("thoughts" if THOUGHT in visible else "words", text.index(visible))
+
+
+def _read(inner: str) -> PlacedJson:
+    try:
+        return read(inner, _UNITS)
     except JsonError:
         straight = straightened(inner)
         if straight == inner:
             raise
         try:
-            return read(straight)
+            return read(straight, _UNITS)
         except JsonError:
             # Not sure, then: what is told is the quote.
             pass
@@ -45,13 +67,26 @@ def unwrapped(text: str, *, whole: bool = True) -> str:
     A fence that is not closed belongs to an answer that was cut off, and stays.
     """
     text = f" {text[1:]}" if text.startswith("\ufeff") else text
-    if thoughts := _THOUGHTS.match(text):
-        text = _blanked(text, thoughts)
-    opening, end = _FENCE.match(text), _FENCE_END.search(text)
-    if opening and end and opening[1] == end[1] and end.start() >= opening.end():
-        return _blanked(_blanked(text, end), opening)
-    begun = None if whole else _FENCE_BEGUN.match(text)
-    return _blanked(text, begun) if begun else text
+    text = _without_thoughts(text)
+    opening = _FENCE.search(text)
+    if opening is None or not _PROSE.fullmatch(text, 0, opening.start()):
+        return text
+    # The last one: strings of the JSON may have fences of their own.
+    end = text.rfind(opening[1], opening.end())
+    if end != -1 and _PROSE.fullmatch(text, end + len(opening[1])):
+        return _blanked(text[: opening.end()]) + text[opening.end() : end] + _blanked(text[end:])
+    return text if whole else _blanked(text[: opening.end()]) + text[opening.end() :]
+
+
+def _without_thoughts(text: str) -> str:
+    """Blank thoughts, whose beginning some servers leave out since it stands in their prompt.
+
+    An answer that begins with its JSON has no thoughts before it.
+    """
+    thoughts, end, rest = text.partition(THOUGHT)
+    begun = thoughts.lstrip()
+    is_sure = begun[:1] not in tuple("{[\"'`~") and THINK not in begun.removeprefix(THINK)
+    return _blanked(thoughts + end) + rest if end and is_sure else text
 
 
 def straightened(text: str) -> str:
@@ -59,5 +94,5 @@ def straightened(text: str) -> str:
     return text if '"' in text else text.translate(_STRAIGHT)
 
 
-def _blanked(text: str, found: re.Match[str]) -> str:
-    return text[: found.start()] + _VISIBLE.sub(" ", found.group()) + text[found.end() :]
+def _blanked(text: str) -> str:
+    return _VISIBLE.sub(" ", text)

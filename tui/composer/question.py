@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 from robot.commands.schema import CommandError, parse_llm
 from robot.commands.so_far import so_far
+from robot.commands.wrapping import THINK, unwrapped
 
 if TYPE_CHECKING:
     from brain.budget import TokenUsage
     from robot.commands.schema import Problem
-
-_THOUGHTS = "<think>"
 
 
 @dataclass
@@ -53,15 +52,8 @@ class ModelQuestion:
     @property
     def text(self) -> str:
         """The JSON so far, without what models like to put around it."""
-        # It imports anyio; nothing of it is needed before somebody asks.
-        from brain.ladder import bare
-
-        text = bare("".join(self._pieces))
-        if text.startswith(_THOUGHTS):
-            return ""
-        if text.startswith("```"):
-            text = text.partition("\n")[2]
-        return text
+        text = unwrapped("".join(self._pieces), whole=False).strip()
+        return "" if text.startswith(THINK) else text
 
     def so_far(self) -> tuple[int, tuple[Problem, ...]]:
         """Return how many whole commands have come, and what is wrong already."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from brain.faults import FaultKind, ModelError
-from brain.ladder import FILE, Ladder, Rung, bare
+from brain.ladder import FILE, Ladder, Rung
 from robot.commands.schema import LlmResponse
 from tests.model_server import ModelServer, obeys, rung_of
 from tests.unit.brain.asking import HELLO, client_of
@@ -105,10 +105,3 @@ async def test_a_wrong_key_ends_the_search(tmp_path: Path) -> None:
                 await Ladder(client, "m-1", tmp_path).rung()
         assert raised.value.kind is FaultKind.KEY
         assert len(server.exchanges) == 1
-
-
-def test_what_models_put_around_json_is_taken_off() -> None:
-    for text in (ANSWER, f"```json\n{ANSWER}\n```", f"<think>\nhm {{}}\n</think>\n\n{ANSWER}\n"):
-        assert bare(text) == ANSWER
-    assert bare("```") == "```"
-    assert bare("<think> for ever") == "<think> for ever"

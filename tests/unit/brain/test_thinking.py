@@ -174,3 +174,8 @@ def _with_a_box(left: float = 0, right: float = 1) -> str:
 def test_what_describes_no_picture_is_refused(text: str) -> None:
     with pytest.raises(CommandError):
         parse_seen(text)
+
+
+def test_what_stands_in_place_of_a_description_is_named() -> None:
+    with pytest.raises(CommandError, match=r"^2:1: only words stand here"):
+        parse_seen("\nA cup.")
