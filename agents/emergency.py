@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from launcher.errors import LauncherError
+from launcher.status import Severity
 from robot.safety.gate_report import STOPPED, gate_in
+from robot.safety.stop_file import NOT_PASSED, PASSED_EVERY_S, TOPIC, StopFile
+from robot.safety.stop_record import Stop
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from text.plain import plain
+from text.sentences import say
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
+    from launcher.client.client import SupervisorClient
 
 MOST_NODES = 64
 
@@ -63,3 +72,38 @@ class EmergencyWatch:
             known = name in self._nodes or len(self._nodes) < MOST_NODES
             if known and said.get("engaged") in ("true", "false"):
                 self._nodes[name] = said["engaged"] == "true"
+
+
+class StopPassing:
+    """Passes on by the disk each stop that is heard here: nobody else may have heard it.
+
+    Whoever has, knows it by the same name: where it is released already, that changes nothing.
+    """
+
+    def __init__(self, link: SupervisorClient) -> None:
+        """Pass on to the nodes of this session."""
+        self._link = link
+        self._file = StopFile(link.session.domain, "/agents")
+        self._waiting: Stop | None = None
+        """The newest that was heard and not yet passed on."""
+        self._passing: asyncio.Future[None] | None = None
+
+    def see(self, update: GraphUpdate) -> None:
+        """Take in an update, on the loop."""
+        # Where no node listens it would be kept in vain.
+        if any(row.name == EMERGENCY_STOP and not row.subscribers for row in update.topics):
+            return
+        for sample in update.samples.get(EMERGENCY_STOP, ()):
+            if sample.value.get("data"):
+                said_ns, number = sample.name
+                self._waiting = Stop(said_ns or time.time_ns(), number)
+        if self._waiting and (self._passing is None or self._passing.done()):
+            self._passing = asyncio.ensure_future(self._pass_on(self._waiting))
+            self._waiting = None
+
+    async def _pass_on(self, stop: Stop) -> None:
+        problem = await asyncio.to_thread(self._file.give, stop, TOPIC)
+        if problem:
+            with contextlib.suppress(LauncherError):
+                await self._link.tell(Severity.ERROR, say(NOT_PASSED, problem=problem))
+        await asyncio.sleep(PASSED_EVERY_S)

@@ -7,7 +7,7 @@ import contextlib
 from typing import TYPE_CHECKING
 
 from agents.audit import Audit
-from agents.emergency import EmergencyWatch
+from agents.emergency import EmergencyWatch, StopPassing
 from agents.refusal import refused
 from agents.view import GraphView
 from graph.observer.observer import Observer
@@ -44,7 +44,7 @@ class RobotSession:
         """
         self.link = link
         self.audit = Audit(link.session.log_dir)
-        self.emergency = EmergencyWatch()
+        self.emergency, self._passing = EmergencyWatch(), StopPassing(link)
         self.observer = Observer(
             link.session.domain, discovery or link.session.discovery, PERIOD_S, role="agents"
         )
@@ -92,6 +92,7 @@ class RobotSession:
 
     def _take(self, update: GraphUpdate) -> None:
         stopped = self.emergency.see(update)
+        self._passing.see(update)
         if stopped:
             self._stopped()
         if stopped and not self._was_stopped:

@@ -166,6 +166,9 @@ class Sample:
     """When its publisher handed it to the middleware, unix time by the publisher's clock; None
     if not reported. On one machine it orders messages of different topics better than their
     arrival does: the receiver is not always awake."""
+    name: tuple[int, int] = (0, 0)
+    """By which all who hear it know it: the time stamp of its publisher in nanoseconds, and the
+    number of the message there. 0 for what the middleware does not tell."""
 
 
 @dataclass(frozen=True)

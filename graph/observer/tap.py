@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from graph.data import Sample
 from graph.messages.decoding import decoder
@@ -54,6 +54,9 @@ NANOSECONDS = 1e-9
 FIRST = 1
 """Number of the first message of a publisher."""
 
+_Kept: TypeAlias = "tuple[bytes, float, tuple[int, int]]"
+"""A message, when it was received, unix time, and its name."""
+
 
 class Tap:
     """One of Deck's subscriptions with its rates; create it, drain it, close it."""
@@ -92,7 +95,7 @@ class Tap:
         self._delay = delay_reader(self._cls) if self.unknown is None else None
         self.every = every
         self._node = node
-        self._last: tuple[bytes, float, float] | None = None
+        self._last: _Kept | None = None
         self._numbered = True
         self._hears = False
         """Whether a message has come since this subscription was created."""
@@ -159,9 +162,9 @@ class Tap:
         entities = self._node.default_callback_group.entities
         entities.difference_update([each for each in entities if each() is None])
 
-    def _take_all(self, decode: int) -> tuple[list[Arrival], deque[tuple[bytes, float, float]]]:
+    def _take_all(self, decode: int) -> tuple[list[Arrival], deque[_Kept]]:
         batch: list[Arrival] = []
-        kept: deque[tuple[bytes, float, float]] = deque(maxlen=decode)
+        kept: deque[_Kept] = deque(maxlen=decode)
         take = self._taking()
         with self._subscription.handle:
             # A publisher faster than this loop must not keep it busy for ever.
@@ -184,7 +187,7 @@ class Tap:
                 if not (is_latched and self.meter.is_again(sent_ns, number)):
                     of_past = is_latched and self._is_of_past(sent_ns, number)
                     batch.append(Arrival(stamp_s, len(raw), number, delay_s, of_past))
-                self._last = (raw, stamp_s, sent_ns * NANOSECONDS)
+                self._last = (raw, stamp_s, (sent_ns, number or 0))
                 kept.append(self._last)
         return batch, kept
 
@@ -226,7 +229,9 @@ class Tap:
         self.meter.lost = (self.meter.lost or 0) + lost
         return lost
 
-    def _sample(self, raw: bytes, stamp_s: float, sent_s: float, now_s: float) -> Sample | None:
+    def _sample(
+        self, raw: bytes, stamp_s: float, name: tuple[int, int], now_s: float
+    ) -> Sample | None:
         if self._decode is None:
             return None
         try:
@@ -237,7 +242,8 @@ class Tap:
             return None
         self.broken = ""
         age_s = max(0.0, now_s - stamp_s)
-        return Sample(self.topic, self.type_name, now_s, age_s, len(raw), value, sent_s or None)
+        sent_s = name[0] * NANOSECONDS or None
+        return Sample(self.topic, self.type_name, now_s, age_s, len(raw), value, sent_s, name)
 
 
 def first_depth(type_name: str, *, every: bool) -> int:

@@ -14,10 +14,9 @@ from std_msgs.msg import Bool
 
 from nodes.parts.qos import DEPTH
 from nodes.parts.stop_reports import named, read_reports
-from robot.safety.stop_file import TOPIC, StopFile
+from robot.safety.stop_file import NOT_PASSED, PASSED_EVERY_S, TOPIC, StopFile
 from robot.safety.stop_record import Stop, StopRecord
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
-from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,12 +25,6 @@ if TYPE_CHECKING:
 
 OF_MANY = QoSProfile(depth=64, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Every node that obeys publishes its state, and all of them at once."""
-_PASSED_EVERY_S = 0.5
-"""A stop may be repeated at any rate, and writing takes milliseconds."""
-_NOT_PASSED = N_(
-    "The emergency stop cannot be written to disk ({problem}): a node that has not heard it may"
-    " move on"
-)
 
 
 class StopNews:
@@ -48,7 +41,7 @@ class StopNews:
         self._passed_s = 0.0
         self._waiting: Stop | None = None
         """The newest that was heard and not yet passed on."""
-        node.every(_PASSED_EVERY_S, self._pass_on)
+        node.every(PASSED_EVERY_S, self._pass_on)
         hear: Any = self._hear  # With what the middleware says, as in nodes.parts.emergency.
         node.create_subscription(Bool, EMERGENCY_STOP, hear, DEPTH)
         node.create_subscription(DiagnosticArray, EMERGENCY_STATE, self._hear_of, OF_MANY)
@@ -58,7 +51,7 @@ class StopNews:
             return
         self._stopped()
         self._waiting = named(info)
-        if time.monotonic() - self._passed_s > _PASSED_EVERY_S:
+        if time.monotonic() - self._passed_s > PASSED_EVERY_S:
             self._pass_on()
 
     def _pass_on(self) -> None:
@@ -68,7 +61,7 @@ class StopNews:
         self._passed_s = time.monotonic()
         problem = self._file.give(stop, TOPIC)
         if problem:
-            self._node.say.error(_NOT_PASSED, every_s=10.0, problem=problem)
+            self._node.say.error(NOT_PASSED, every_s=10.0, problem=problem)
 
     def _hear_of(self, message: DiagnosticArray) -> None:
         for report in read_reports(message):

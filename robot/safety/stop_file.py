@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from robot.safety.known_stops import KnownStops
 from robot.safety.stop_place import stop_place
 from robot.safety.stop_record import Stop, StopRecord, read_record
+from text.i18n import N_
 from text.nested import read_json
 from text.os_words import os_reason
 
@@ -41,6 +42,13 @@ _NO_SENSE = (
 )
 
 
+PASSED_EVERY_S = 0.5
+"""How often to pass on what is heard: a stop may be repeated at any rate, and writing takes
+milliseconds."""
+NOT_PASSED = N_(
+    "The emergency stop cannot be written to disk ({problem}): a node that has not heard it may"
+    " move on"
+)
 TOPIC, BY_SCREEN = "topic", "screen"
 """What has engaged a stop: a message, or somebody by no topic."""
 

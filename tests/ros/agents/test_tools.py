@@ -22,6 +22,9 @@ from launcher.client.client import SupervisorClient
 from launcher.consent import AUDIT_FILE, ConsentAnswer
 from launcher.control.consent import REFUSED_FOR_S
 from launcher.status import NodeState, Severity
+from nodes.parts.stop_reports import named
+from robot.safety.stop_file import TOPIC, StopFile
+from robot.safety.stop_record import Stop
 from robot.topics import DRIVE_SAFE, LLM_RESULT
 from tests.ros.agents.robots import GATED, Agent, agent, drive, running, screen
 from tests.ros.peer import Peer
@@ -388,3 +391,26 @@ async def test_a_question_goes_with_the_agent_that_asks(tmp_path: Path, ros_doma
             await executing
         await until(lambda: not person.agents.questions, "the end of the question")
         assert not await person.answer(number, ConsentAnswer.ONCE)
+
+
+async def test_a_stop_that_only_the_server_of_agents_hears_is_passed_on(
+    tmp_path: Path, ros_domain: int, peer: Peer
+) -> None:
+    """Nobody here obeys, a screen is not there: what is on disk is from `deck mcp`."""
+    file = StopFile(ros_domain, "/test")
+    heard: list[Stop] = []
+    hear: Any = lambda _, info: heard.append(named(info))  # noqa: E731 - rclpy's types lack this form
+    peer.node.create_subscription(Bool, "/emergency_stop", hear, 10)
+    async with running(tmp_path, ros_domain, {"sonar": GATED["sonar"]}), agent() as claude:
+        await claude.call("look")
+        stop = peer.node.create_publisher(Bool, "/emergency_stop", 10)
+
+        async def kept() -> bool:
+            stop.publish(Bool(data=True))
+            return file.read().record.engaged
+
+        await until(kept, "the stop on disk", every_s=0.2)
+        saved = file.read()
+        await until(lambda: saved.record.held <= set(heard), "the name that all know")
+        assert saved.stop is not None
+        assert saved.stop.by == TOPIC
