@@ -50,7 +50,7 @@ def _check(bag: Path, *, whole: bool) -> None:
     try:
         if whole:
             with open_bag(bag) as opened:
-                for words in opened.notes:
+                for words in filter(None, (*opened.notes, opened.damage)):
                     say_error(localized(words))
         else:
             files_of(bag)

@@ -184,7 +184,7 @@ def _cut(path: Path, parts: Sequence[BagPart]) -> list[Words]:
 def _by_own_count(parts: Sequence[BagPart]) -> Iterator[Note]:
     for part in parts:
         held = sum(channel.messages for channel in part.channels)
-        lost = sum(lost.messages for lost in part.lost)
+        lost = sum(lost.messages or 0 for lost in part.lost)
         if part.said is not None and held + lost < part.said:
             words = say(
                 "{file} counts {said} messages of its own, and holds {held}",

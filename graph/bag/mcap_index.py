@@ -8,7 +8,7 @@ from __future__ import annotations
 from binascii import crc32
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, BinaryIO
+from typing import BinaryIO
 
 from graph.bag.kinds import MCAP_MAGIC
 from graph.bag.mcap_records import (
@@ -38,9 +38,6 @@ from graph.bag.mcap_records import (
 )
 from graph.bag.part import Lost
 
-if TYPE_CHECKING:
-    pass
-
 FOOTER_LENGTH = RECORD_HEAD.size + FOOTER_BODY.size
 CHECKSUM_LENGTH = 4
 LONGEST_LOOSE = 4_000_000
@@ -65,47 +62,69 @@ def index_of(file: BinaryIO, size: int) -> Index:
     file.seek(0)
     if file.read(len(MCAP_MAGIC)) != MCAP_MAGIC:
         raise ValueError("it does not begin as an MCAP file does")
-    by_summary, counted = _by_summary(file, size)
-    if by_summary is not None:
-        return by_summary
-    scanned = _Scan(file, size).index()
-    scanned.said = counted.messages if counted is not None else None
-    return scanned
+    summary = _summary_of(file, size)
+    return _by_summary(summary) or _Scan(file, size, summary).index()
 
 
 def counted_in_summary(file: BinaryIO, size: int) -> int | None:
     """Return how many messages an open file holds by its statistics, None if it has none."""
-    _index, counted = _by_summary(file, size)
+    counted = _summary_of(file, size).counted
     return None if counted is None else counted.messages
 
 
-def _by_summary(file: BinaryIO, size: int) -> tuple[Index | None, Statistics | None]:
-    """Return the index if the summary is complete, and the statistics if there are any."""
-    index, counted, chunks = Index(), None, []
-    try:
-        summary = _summary(file, size)
-        for code, begin, end in records(summary):
-            body = summary[begin:end]
-            if code == STATISTICS:
-                counted = statistics(body)
-            elif code == CHUNK_INDEX:
-                chunks.append(chunk_index(body))
-            else:
-                index.described.take(code, body)
-    except Exception:  # noqa: BLE001 - whatever is wrong with it, the file itself is asked
-        return None, None
+@dataclass
+class _Summary:
+    """What a file says of itself at its end."""
+
+    ended: bool = False
+    """Whether the file has an end, so that it was not cut short."""
+    described: Described = field(default_factory=Described)
+    counted: Statistics | None = None
+    chunks: list[Stretch] = field(default_factory=list)
+
+    @property
+    def in_chunks(self) -> int:
+        """How many messages the indexes of its chunks count."""
+        return sum(sum(chunk.counts.values()) for chunk in self.chunks)
+
+    @property
+    def said(self) -> int | None:
+        """How many messages the file holds at least, None if it does not say."""
+        return self.in_chunks or None if self.counted is None else self.counted.messages
+
+
+def _by_summary(summary: _Summary) -> Index | None:
+    """Return the index if the summary is complete."""
+    counted, chunks = summary.counted, summary.chunks
     if counted is None or counted.chunks != len(chunks):
-        return None, counted
-    in_chunks = sum(sum(chunk.counts.values()) for chunk in chunks)
+        return None
     numbers = {number for chunk in chunks for number in chunk.counts}
-    if in_chunks != counted.messages or numbers - index.described.channels.keys():
-        return None, counted
-    index.stretches = [chunk for chunk in chunks if chunk.counts]
-    index.said = counted.messages
-    return index, counted
+    if summary.in_chunks != counted.messages or numbers - summary.described.channels.keys():
+        return None
+    stretches = [chunk for chunk in chunks if chunk.counts]
+    return Index(summary.described, stretches, said=counted.messages)
 
 
-def _summary(file: BinaryIO, size: int) -> bytes:
+def _summary_of(file: BinaryIO, size: int) -> _Summary:
+    """Return what the summary says; nothing of one that is damaged: the file itself is asked."""
+    summary = _Summary()
+    try:
+        raw = _records_of_summary(file, size)
+        summary.ended = True
+        for code, begin, end in records(raw):
+            body = raw[begin:end]
+            if code == STATISTICS:
+                summary.counted = statistics(body)
+            elif code == CHUNK_INDEX:
+                summary.chunks.append(chunk_index(body))
+            else:
+                summary.described.take(code, body)
+    except Exception:  # noqa: BLE001 - whatever is wrong with it
+        return _Summary(summary.ended)
+    return summary
+
+
+def _records_of_summary(file: BinaryIO, size: int) -> bytes:
     """Return the records of the summary, empty if there is none. Raises ValueError."""
     begin = size - FOOTER_LENGTH - len(MCAP_MAGIC)
     file.seek(max(0, begin))
@@ -126,12 +145,15 @@ def _summary(file: BinaryIO, size: int) -> bytes:
 
 
 class _Scan:
-    """Reads a file record by record."""
+    """Reads a file record by record; of its summary it takes what stands in damaged places, too."""
 
-    def __init__(self, file: BinaryIO, size: int) -> None:
+    def __init__(self, file: BinaryIO, size: int, summary: _Summary) -> None:
         self._file = file
         self._size = size
-        self._index = Index()
+        self._ended = summary.ended
+        self._chunks = sorted(chunk.offset for chunk in summary.chunks)
+        self._at_chunk = 0
+        self._index = Index(summary.described, said=summary.said)
         self._loose = _Loose()
         self._last_ns = 0
         self._follows_damage = False
@@ -141,8 +163,11 @@ class _Scan:
         at, is_whole = self._walk()
         self._end_loose()
         index = self._index
-        if not is_whole:
+        if not is_whole and not self._ended:
             index.cut_bytes = self._size - at
+        elif not is_whole:
+            self._broken()
+        self._count_lost()
         nameless = sum(
             count
             for stretch in index.stretches
@@ -155,6 +180,18 @@ class _Scan:
             index.lost.append(Lost(first_ns, nameless))
         return index
 
+    def _count_lost(self) -> None:
+        """Take what the file counts and nobody has found for what the damaged places held."""
+        index = self._index
+        unknown = [place for place, lost in enumerate(index.lost) if lost.messages is None]
+        if index.said is None or not unknown:
+            return
+        found = sum(sum(stretch.counts.values()) for stretch in index.stretches)
+        missing = index.said - found - sum(lost.messages or 0 for lost in index.lost)
+        for place in unknown:
+            index.lost[place] = index.lost[place]._replace(messages=max(0, missing))
+            missing = 0
+
     def _walk(self) -> tuple[int, bool]:
         """Take all records; return the place behind the last, and whether the data ends there."""
         file = self._file
@@ -165,16 +202,27 @@ class _Scan:
             if code in {FOOTER, DATA_END} and behind <= self._size:
                 return at, True
             if behind > self._size or not is_known(code):
-                break
-            try:
-                self._take(code, at, length)
-            except Exception:  # noqa: BLE001 - the disk, a decompressor, or the content
-                self._damaged()
+                behind = self._chunk_behind(at)
+                if not behind:
+                    break
+                self._broken()
+            else:
+                try:
+                    self._take(code, at, length)
+                except Exception:  # noqa: BLE001 - the disk, a decompressor, or the content
+                    self._damaged()
             at = file.seek(behind)
         return at, False
 
+    def _chunk_behind(self, at: int) -> int:
+        """Return where, by the summary, the reading can go on behind a broken record, else 0."""
+        behind = (place for place in self._chunks if place > self._at_chunk and place != at)
+        self._at_chunk = next(behind, 0)
+        return self._at_chunk
+
     def _take(self, code: int, at: int, length: int) -> None:
         if code == CHUNK:
+            self._at_chunk = at
             self._take_chunk(at, length)
         elif code == MESSAGE:
             self._take_message(at, length)
@@ -183,7 +231,7 @@ class _Scan:
         elif code == MESSAGE_INDEX and self._follows_damage:
             count = max(0, length - INDEX_HEAD) // INDEX_ENTRY
             lost = self._index.lost
-            lost[-1] = lost[-1]._replace(messages=lost[-1].messages + count)
+            lost[-1] = lost[-1]._replace(messages=(lost[-1].messages or 0) + count)
 
     def _take_chunk(self, at: int, length: int) -> None:
         self._end_loose()
@@ -214,9 +262,14 @@ class _Scan:
     def _end_loose(self) -> None:
         self._index.stretches += self._loose.ended()
 
+    def _broken(self) -> None:
+        """Note that it is not known where the next record is, if that is no part of a damage."""
+        if not self._follows_damage or self._index.lost[-1].messages is not None:
+            self._damaged()
+
     def _damaged(self) -> None:
         self._follows_damage = True
-        self._index.lost.append(Lost(self._last_ns, 0))
+        self._index.lost.append(Lost(self._last_ns, None))
 
 
 class _Loose:

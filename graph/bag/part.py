@@ -34,8 +34,8 @@ class Lost(NamedTuple):
 
     at_ns: int
     """Unix time of its first message, if known."""
-    messages: int
-    """How many messages it held, 0 if that is not known."""
+    messages: int | None
+    """How many messages it held, None if that is not known."""
 
 
 class BagPart(Protocol):

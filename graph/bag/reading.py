@@ -100,7 +100,7 @@ class Bag:
             "{path} is damaged: messages lost: {messages}, damaged places: {places}, the first "
             "{seconds:.1f} s after the beginning. All others are played",
             path=self.path,
-            messages=sum(each.messages for each in lost),
+            messages=_lost_words(lost),
             places=len(lost),
             seconds=max(0, first_ns - self.start_ns) / 1e9,
         )
@@ -129,7 +129,7 @@ class Bag:
 
     def _count(self, read: int, said: int) -> None:
         """Compare what has been read of some topics with what the files say they hold."""
-        lost = sum(lost.messages for part in self._parts for lost in part.lost)
+        lost = sum(lost.messages or 0 for part in self._parts for lost in part.lost)
         if read + lost + len(self._not_unpacked) < said:
             self._fewer = say(
                 "{path} is damaged: of {said} messages only {read} could be read",
@@ -184,6 +184,14 @@ def open_bag(path: Path) -> Bag:
             raise BagError(say("{path} cannot be read: {reason}", path=path, reason=reason))
         stack.pop_all()
     return bag
+
+
+def _lost_words(lost: Sequence[Lost]) -> int | Words:
+    """Return how many messages have been lost, as far as that can be known."""
+    known = sum(each.messages or 0 for each in lost)
+    if all(each.messages is not None for each in lost):
+        return known
+    return say("at least {count}", count=known) if known else say("how many cannot be known")
 
 
 def _close(parts: Sequence[BagPart]) -> None:

@@ -159,8 +159,9 @@ class SqlitePart:
         first, last = self._until_damage("ASC"), self._until_damage("DESC")
         found = {row.number: row for row in (*first, *last)}
         self._salvaged = sorted(found.values())
-        gap = last[-1].number - first[-1].number - 1 if first and last else 0
-        self._lost[-1] = Lost(max((row.stamp_ns for row in first), default=0), max(0, gap))
+        # What was behind the last of a file that is cut, nobody knows.
+        gap = max(0, last[-1].number - first[-1].number - 1) if first and last else None
+        self._lost[-1] = Lost(max((row.stamp_ns for row in first), default=0), gap)
         self.start_ns = self._salvaged[0].stamp_ns if found else 0
         self.end_ns = self._salvaged[-1].stamp_ns if found else 0
         counts: dict[int, int] = {}

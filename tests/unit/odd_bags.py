@@ -10,6 +10,8 @@ from pathlib import Path
 import yaml
 from mcap.writer import CompressionType, IndexType, Writer
 
+from graph.bag.kinds import MCAP_MAGIC
+from graph.bag.mcap_records import CHUNK, RECORD_HEAD, records
 from tests.unit.bags import BEGIN_NS
 
 TENTH_NS = 100_000_000
@@ -44,6 +46,9 @@ def write_mcap(
     chunked: bool = True,
     statistics: bool = True,
     indexes: IndexType = IndexType.ALL,
+    compression: CompressionType = CompressionType.ZSTD,
+    chunk_bytes: int = 2**20,
+    topic: str = TOPIC,
 ) -> Path:
     """A file with `count` texts on /chatter, and as many of a foreign channel if there is one.
 
@@ -53,15 +58,16 @@ def write_mcap(
     with file.open("wb") as stream:
         writer = Writer(
             stream,
+            chunk_size=chunk_bytes,
             use_chunking=chunked,
             use_statistics=statistics,
             index_types=indexes,
-            compression=CompressionType.ZSTD,
+            compression=compression,
         )
         writer.start(profile, "a test")
         schema = writer.register_schema(TEXT, "ros2msg", DEFINITION)
         facts = {"offered_qos_profiles": qos} if qos else {}
-        texts = writer.register_channel(TOPIC, "cdr", schema, facts)
+        texts = writer.register_channel(topic, "cdr", schema, facts)
         other = None
         if foreign is not None:
             encoding, name, of_schema = foreign
@@ -74,6 +80,17 @@ def write_mcap(
                 writer.add_message(other, at_ns, b'{"a": 1}', at_ns)
         writer.finish()  # type: ignore[no-untyped-call]
     return file
+
+
+def damage_chunk(file: Path, which: int, begin: int = 40) -> int:
+    """Write wrong bytes into one of the chunks, from `begin` on; return how many there are."""
+    raw = bytearray(file.read_bytes())
+    inner = records(bytes(raw[len(MCAP_MAGIC) : -len(MCAP_MAGIC)]))
+    chunks = [(at - RECORD_HEAD.size, end) for code, at, end in inner if code == CHUNK]
+    at, end = (place + len(MCAP_MAGIC) for place in chunks[which])
+    raw[at + begin : end] = b"\xff" * (end - at - begin)
+    file.write_bytes(raw)
+    return len(chunks)
 
 
 def write_sqlite(

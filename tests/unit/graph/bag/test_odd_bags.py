@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mcap.writer import IndexType
+from mcap.writer import CompressionType, IndexType
 from rosbags.rosbag2.storage_mcap import zstd  # type: ignore[attr-defined]
 
 from graph.bag.errors import BagError
@@ -19,6 +19,7 @@ from tests.unit.odd_bags import (
     NUMBERED_QOS,
     TENTH_NS,
     TOPIC,
+    damage_chunk,
     put,
     text_in_cdr,
     times,
@@ -378,6 +379,80 @@ def test_a_file_with_any_index_or_none_is_read(
         tmp_path / "walk.mcap", indexes=indexes, statistics=statistics, chunked=chunked
     )
     assert all_of(file, 20) == ()
+
+
+DAMAGED_CHUNK = [
+    # What the file counts: all its messages, those of a chunk at its end, those behind the chunk.
+    pytest.param(statistics, indexes, id=f"{statistics}-{indexes.name}")
+    for statistics, indexes in (
+        (True, IndexType.ALL),
+        (True, IndexType.NONE),
+        (True, IndexType.CHUNK),
+        (False, IndexType.ALL),
+        (False, IndexType.MESSAGE),
+    )
+]
+
+
+@pytest.mark.parametrize(("statistics", "indexes"), DAMAGED_CHUNK)
+@pytest.mark.parametrize("compression", list(CompressionType))
+@pytest.mark.parametrize("which", [0, 1, -1])
+def test_what_a_damaged_chunk_held_is_counted_by_whatever_the_file_counts(
+    tmp_path: Path,
+    which: int,
+    compression: CompressionType,
+    indexes: IndexType,
+    *,
+    statistics: bool,
+) -> None:
+    file = write_mcap(
+        tmp_path / "walk.mcap",
+        30,
+        statistics=statistics,
+        indexes=indexes,
+        compression=compression,
+        chunk_bytes=400,
+    )
+    assert damage_chunk(file, which) > 2
+    with open_bag(file) as bag:
+        found = read(bag)
+        assert 10 < len(found) < 30
+        assert f"messages lost: {30 - len(found)}, damaged places: 1," in str(bag.damage)
+        assert bag.notes == ()
+
+
+@pytest.mark.parametrize("indexes", [IndexType.NONE, IndexType.CHUNK])
+def test_how_many_messages_are_lost_is_said_not_to_be_known_where_nothing_counts_them(
+    tmp_path: Path, indexes: IndexType
+) -> None:
+    file = tmp_path / "walk.mcap"
+    write_mcap(file, 30, statistics=False, indexes=indexes, chunk_bytes=400)
+    damage_chunk(file, 1)
+    with open_bag(file) as bag:
+        assert 10 < len(read(bag)) < 30
+        assert "messages lost: how many cannot be known, damaged places: 1," in str(bag.damage)
+
+
+@pytest.mark.parametrize("indexes", [IndexType.ALL, IndexType.CHUNK, IndexType.NONE])
+def test_a_file_that_is_broken_in_its_middle_and_has_an_end_was_not_cut_short(
+    tmp_path: Path, indexes: IndexType
+) -> None:
+    file = write_mcap(tmp_path / "walk.mcap", 30, indexes=indexes, chunk_bytes=400)
+    damage_chunk(file, 1, begin=0)
+    with open_bag(file) as bag:
+        found = read(bag)
+        assert f"messages lost: {30 - len(found)}, damaged places: 1," in str(bag.damage)
+        assert not bag.is_cut
+        # By the indexes of the other chunks what follows is found.
+        assert ("m29" in found) == (indexes is not IndexType.NONE)
+
+
+def test_a_database_that_was_cut_does_not_say_how_much_has_gone(tmp_path: Path) -> None:
+    file = write_sqlite(tmp_path / "walk.db3", 5000)
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 3])
+    with open_bag(file) as bag:
+        assert 500 < len(read(bag)) < 5000
+        assert "messages lost: how many cannot be known, " in str(bag.damage)
 
 
 def test_messages_out_of_order_come_in_their_order(tmp_path: Path) -> None:
