@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from cli.running_domain import running_domain
-from graph.bag.errors import BagError
+from graph.bag.errors import BagError, nothing_to_publish
 from launcher.errors import UsageError
 from launcher.processes.ending import stop_by_signals
 from launcher.processes.shared_memory_unfinished import discard_unfinished
@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 def publish_bag(path: Path, options: Namespace) -> int:
     """Publish until the end or until stopped.
 
-    Return 1 if nothing could be published, or if messages are missing in the bag.
+    Return 1 if others publish all of it already, or if messages are missing in the bag. Raises
+    UsageError for a bag of which nothing can be published.
     """
     from graph.bag.reading import open_bag
 
@@ -68,6 +69,9 @@ def _publish(
         publisher = BagPublisher(
             bag, ros, lambda topic: _refusal(topic, motion=options.motion), STOPPED_BY_ZEROS
         )
+        if not publisher.topics:
+            _tell_left_out(publisher.progress, set())
+            raise nothing_to_publish(bag.path, bag.messages_count)
         publisher.find_others(stop)
         _begin(bag, publisher, domain)
         told = _tell_left_out(publisher.progress, set())

@@ -53,6 +53,13 @@ def no_bag(path: Path, reason: Words) -> BagError:
     )
 
 
+def nothing_to_publish(path: Path, messages: int) -> BagError:
+    """Return the error for a bag of which no topic can be published, each for its own reason."""
+    if not messages:
+        return BagError(say("{path}: there are no messages in it", path=path))
+    return BagError(say("{path}: none of its topics can be published", path=path))
+
+
 def unreadable(path: Path, error: Exception) -> BagError:
     """Return the error for a bag that exists but cannot be read."""
     if isinstance(error, BagError):

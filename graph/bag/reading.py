@@ -36,6 +36,7 @@ class TopicInBag:
     """One topic of a bag, of one type."""
 
     name: str
+    """Its full name, to which ROS resolves one that is recorded without its slash."""
     kind: TypeText
     messages: int
     reliability: str = ""
@@ -43,6 +44,8 @@ class TopicInBag:
     """QoS offered by its first publisher: `reliable`, `volatile`; empty if the bag does not say."""
     encoding: str = CDR
     """Serialization format."""
+    recorded: str = ""
+    """Its name as the file has it."""
 
 
 class _Place(NamedTuple):
@@ -71,7 +74,9 @@ class Bag:
         """ROS distribution that wrote it, empty if that is not known."""
         self._parts = parts
         self._topics = _topics(files, parts)
-        self.all_topics = tuple(sorted(set(self._topics.values()), key=lambda topic: topic.name))
+        self.all_topics = tuple(
+            sorted(set(self._topics.values()), key=lambda topic: (topic.name, topic.recorded))
+        )
         """Every topic, sorted by name, those in other serialization formats too."""
         self.topics = tuple(topic for topic in self.all_topics if topic.encoding == CDR)
         """Every topic of ROS 2, sorted by name."""
@@ -270,10 +275,11 @@ def _with(topic: TopicInBag | None, channel: Channel, kind: TypeText, stated: Of
     if topic is not None:
         return replace(topic, messages=topic.messages + channel.messages)
     return TopicInBag(
-        channel.topic,
+        channel.topic if channel.topic.startswith("/") else f"/{channel.topic}",
         kind,
         channel.messages,
         channel.reliability or stated.reliability,
         channel.durability or stated.durability,
         channel.encoding,
+        channel.topic,
     )

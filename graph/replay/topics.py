@@ -156,7 +156,7 @@ class ReplayTopic:
         return Sample(self.name, self._shown.kind.name, wall_s, age_s, size, value)
 
     def _still_row(self) -> TopicRow:
-        types = tuple(each.kind.name for each in self._kinds)
+        types = tuple(dict.fromkeys(each.kind.name for each in self._kinds))
         ends = tuple(
             EndpointInfo(
                 NODE, each.kind.name, each.reliability or "unknown", each.durability or "unknown"

@@ -43,7 +43,7 @@ def main(args: argparse.Namespace) -> int | str | None:
             topics = [topic for topic in bag.all_topics if not _is_event(topic)]
             if args.topic_name:
                 for topic in topics:
-                    print(topic.name)
+                    print(topic.recorded)
             else:
                 print(_all_of(bag, topics))
             return bags.verdict(bag, _warn)
@@ -66,13 +66,13 @@ def _all_of(bag: Bag, topics: list[TopicInBag]) -> str:
     end_ns = bag.end_ns if bag.messages_count else 0
     events = [topic for topic in bag.all_topics if _is_event(topic)]
     services = (
-        f"Service: {topic.name.removesuffix(EVENTS)} | "
+        f"Service: {topic.recorded.removesuffix(EVENTS)} | "
         f"Type: {topic.kind.name.removesuffix(EVENT_TYPE)} | "
         f"Event Count: {topic.messages} | Serialization Format: {topic.encoding}\n"
         for topic in events
     )
     lines = (
-        f"Topic: {topic.name} | Type: {topic.kind.name} | Count: {topic.messages} | "
+        f"Topic: {topic.recorded} | Type: {topic.kind.name} | Count: {topic.messages} | "
         f"Serialization Format: {topic.encoding}"
         for topic in topics
     )

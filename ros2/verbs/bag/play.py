@@ -70,7 +70,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int | str | None:
     """Publish to the end, or until Ctrl-C."""
-    from graph.bag.errors import BagError
+    from graph.bag.errors import BagError, nothing_to_publish
     from graph.bag.reading import open_bag
     from text.i18n import localized
 
@@ -80,7 +80,10 @@ def main(args: argparse.Namespace) -> int | str | None:
     try:
         with open_bag(args.bag_path) as bag:
             bags.tell(bag, _warn)
-            _play(bag, args)
+            if not _play(bag, args):
+                error = nothing_to_publish(bag.path, bag.messages_count)
+                log(NODE, localized(error.words), "ERROR")
+                return 2
             return bags.verdict(bag, _warn)
     except BagError as error:
         return localized(error.words)
@@ -90,7 +93,8 @@ def _warn(words: str) -> None:
     log(NODE, words, "WARN")
 
 
-def _play(bag: Bag, args: argparse.Namespace) -> None:
+def _play(bag: Bag, args: argparse.Namespace) -> bool:
+    """Publish what is asked for; return whether the bag has anything that can be published."""
     from graph.bag.publishing import FOUND_WITHIN_S, BagPublisher
     from graph.ros import open_ros
     from text.i18n import localized
@@ -103,9 +107,12 @@ def _play(bag: Bag, args: argparse.Namespace) -> None:
         publisher = BagPublisher(
             bag, ros, lambda topic: _refusal(topic, args), names=names, gives_way=False
         )
-        for name, reason in publisher.progress.left_out.items():
+        left_out = publisher.progress.left_out
+        for name, reason in left_out.items():
             if reason:
                 log(NODE, f"Ignoring topic '{name}': {localized(reason)}", "WARN")
+        if not publisher.topics and (any(left_out.values()) or not left_out):
+            return False
         log(NODE, f"Set rate to {args.rate:g}")
         length_s = args.playback_duration
         until_s = args.start_offset + length_s if length_s >= 0 else math.inf
@@ -123,6 +130,7 @@ def _play(bag: Bag, args: argparse.Namespace) -> None:
                 )
                 if not args.loop:
                     break
+        return True
     finally:
         ros.close()
 

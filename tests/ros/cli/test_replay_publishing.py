@@ -169,14 +169,14 @@ def test_logs_are_published_beside_those_of_others(ros_domain: int, tmp_path: Pa
 def test_a_name_that_is_none_of_a_topic_is_left_out_and_told(tmp_path: Path) -> None:
     types, kind = store(), "std_msgs/msg/Float32"
     with Writer(tmp_path / "odd", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-        for topic in ("/number", "camera", "/two words"):
+        for topic in ("/number", "camera-2", "/two words"):
             raw = types.serialize_cdr(types.types[kind](data=1.0), kind)
             writer.write(writer.add_connection(topic, kind, typestore=types), BEGIN_NS, bytes(raw))
     run = DeckProcess("replay", str(tmp_path / "odd"), "--publish")
     assert run.finish() == 0
     assert [line for line in run.lines if line.startswith("not published")] == [
+        "not published: /camera-2: not a valid name of a ROS topic",
         "not published: /two words: not a valid name of a ROS topic",
-        "not published: camera: not a valid name of a ROS topic",
     ]
     assert run.lines[-1] == "published: 0 s of 0 s · 1 message"
 
@@ -226,6 +226,34 @@ def test_with_nothing_left_to_publish_it_fails(tmp_path: Path, ros_domain: int) 
         run = DeckProcess("replay", str(bag), "--publish")
         assert run.finish() == 1
     assert "nothing is left to publish" in run.errors[-1]
+
+
+def test_a_topic_recorded_without_its_slash_is_published_as_ros_resolves_it(
+    ros_domain: int, tmp_path: Path
+) -> None:
+    write_mcap(tmp_path / "walk_0.mcap", topic="chatter")
+    with Peer(ros_domain) as peer:
+        heard = peer.hear("/chatter", String)
+        run = DeckProcess("replay", str(tmp_path), "--publish", "--rate", "10")
+        assert run.finish() == 0, run.errors
+        wait_until(lambda: len(heard) == 20, "all messages")
+
+
+@pytest.mark.parametrize(
+    ("topic", "count", "words"),
+    [
+        ("camera image", 20, "none of its topics can be published"),
+        ("emergency_stop", 20, "none of its topics can be published"),
+        ("/chatter", 0, "there are no messages in it"),
+    ],
+)
+def test_a_recording_of_which_nothing_can_be_published_is_refused(
+    tmp_path: Path, topic: str, count: int, words: str
+) -> None:
+    write_mcap(tmp_path / "walk_0.mcap", count, topic=topic)
+    run = DeckProcess("replay", str(tmp_path), "--publish")
+    assert run.finish() == 2
+    assert run.errors[-1] == f"{tmp_path}: {words}"
 
 
 def test_from_the_middle_and_again(ros_domain: int, tmp_path: Path) -> None:

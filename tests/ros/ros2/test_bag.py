@@ -129,6 +129,14 @@ def test_all_files_of_a_bag_are_counted(tmp_path: Path, ending: str) -> None:
     assert "Topic: /chatter | Type: std_msgs/msg/String | Count: 42 |" in done.out
 
 
+def test_a_recording_of_which_nothing_can_be_played_is_shown_and_refused(tmp_path: Path) -> None:
+    write_mcap(tmp_path / "walk_0.mcap", topic="a name")
+    assert typed("bag", "info", "-t", str(tmp_path)).out == "a name\n"
+    done = typed("bag", "play", str(tmp_path))
+    assert done.code == 2, done
+    assert done.err.endswith(f"{tmp_path}: none of its topics can be published\n")
+
+
 def test_what_is_missing_is_told_and_the_rest_is_shown_and_played(
     tmp_path: Path, world: World
 ) -> None:

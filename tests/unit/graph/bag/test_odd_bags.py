@@ -14,6 +14,8 @@ from rosbags.rosbag2.storage_mcap import zstd  # type: ignore[attr-defined]
 
 from graph.bag.errors import BagError
 from graph.bag.reading import Bag, open_bag
+from graph.observer.interest import Interest
+from graph.replay.topics import ReplayTopics
 from tests.unit.odd_bags import (
     DEFINITION,
     NUMBERED_QOS,
@@ -453,6 +455,22 @@ def test_a_database_that_was_cut_does_not_say_how_much_has_gone(tmp_path: Path) 
     with open_bag(file) as bag:
         assert 500 < len(read(bag)) < 5000
         assert "messages lost: how many cannot be known, " in str(bag.damage)
+
+
+def test_a_name_without_its_slash_is_resolved_as_ros_does_and_kept_as_it_is_recorded(
+    tmp_path: Path,
+) -> None:
+    write_mcap(tmp_path / "walk_0.mcap", 10, topic=TOPIC.removeprefix("/"))
+    write_mcap(tmp_path / "walk_1.mcap", 10, first=10)
+    with open_bag(tmp_path) as bag:
+        assert [(topic.name, topic.recorded) for topic in bag.topics] == [
+            (TOPIC, TOPIC),
+            (TOPIC, "chatter"),
+        ]
+        assert {topic.name for topic, _stamp, _raw in bag.messages(names=[TOPIC])} == {TOPIC}
+        rows = ReplayTopics(bag.topics).rows(Interest(), 0.0, 0.0)
+        assert [(row.name, row.type_names) for row in rows] == [(TOPIC, ("std_msgs/msg/String",))]
+        assert read(bag) == words_up_to(20)
 
 
 def test_messages_out_of_order_come_in_their_order(tmp_path: Path) -> None:
