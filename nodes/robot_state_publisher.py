@@ -25,7 +25,7 @@ from nodes.parts.qos import LATCHED
 from nodes.parts.runner import run
 from robot.topics import HEAD_STATE, JOINT_STATES, ROBOT_DESCRIPTION, TF, TF_STATIC
 from space.robot_model import JointType, ModelJoint
-from space.urdf import UrdfError, read_urdf
+from space.urdf import UrdfError, read_urdf, urdf_of
 from space.xml_elements import LONGEST
 from text.i18n import N_
 from text.os_words import os_reason
@@ -128,8 +128,9 @@ class RobotStatePublisher(LessonNode):
         file = self._file
         try:
             with file.open("rb") as opened:
-                # A byte that is not UTF-8 becomes half a character, which the reader refuses.
-                return opened.read(LONGEST + 1).decode(errors="surrogateescape")
+                return urdf_of(opened.read(LONGEST + 1))
+        except UrdfError as error:
+            raise NodeUsageError(_NO_ROBOT, file=file, reason=reason_of(error)) from None
         except (OSError, ValueError) as error:
             raise NodeUsageError(_UNREADABLE, file=file, reason=os_reason(error)) from None
 

@@ -15,6 +15,7 @@ from space.robot_model import ModelJoint, ModelLink, RobotModel
 from space.urdf_parts import Materials, read_joint, read_link
 from space.urdf_values import name_of, written
 from space.xml_elements import Element, XmlError, read_elements
+from space.xml_encoding import decoded
 from text.sentences import reason_of, say
 from text.suggestions import did_you_mean
 
@@ -40,25 +41,31 @@ def read_urdf(text: str) -> RobotModel:
         raise UrdfError(reason_of(error)) from None
 
 
+def urdf_of(raw: bytes) -> str:
+    """Return the text of a URDF file, in whichever encoding it declares. Raises UrdfError."""
+    try:
+        return decoded(raw)
+    except XmlError as error:
+        raise UrdfError(reason_of(error)) from None
+
+
 def _robot(robot: Element) -> RobotModel:
     _refuse_xacro(robot)
     if robot.tag != "robot":
         raise robot.wrong(
             say("the outermost element is <{tag}>", tag=robot.tag), say("URDF begins with <robot>")
         )
-    materials = Materials(robot)
-    links = _by_name(robot.all("link"), lambda element: read_link(element, materials))
-    swapped: list[str] = []
-    joints = _by_name(robot.all("joint"), lambda element: read_joint(element, swapped))
+    warnings: list[str] = []
+    materials = Materials(robot, warnings)
+    links = _by_name(robot.all("link"), lambda element: read_link(element, materials, warnings))
+    joints = _by_name(robot.all("joint"), lambda element: read_joint(element, warnings))
     if not links:
         raise robot.wrong(say("<robot> has no <link>"), say("a robot has at least one"))
     elements = {name_of(element).strip(): element for element in robot.all("joint")}
     _check_ends(joints, elements, links)
     joints, unfollowed = _without_vain_mimics(joints, elements)
     root = _root(robot, joints, elements, links)
-    return RobotModel(
-        name_of(robot), root, links, joints, (*materials.warnings, *swapped, *unfollowed)
-    )
+    return RobotModel(name_of(robot), root, links, joints, (*warnings, *unfollowed))
 
 
 def _refuse_xacro(robot: Element) -> None:

@@ -32,7 +32,7 @@ from space.urdf_values import (
     vector,
     written,
 )
-from space.xml_elements import Element
+from space.xml_elements import Element, XmlError
 from text.i18n import N_
 from text.sentences import reason_of, say
 from text.suggestions import did_you_mean
@@ -57,21 +57,20 @@ class Materials:
     refuses, which is said here, and the first counts.
     """
 
-    def __init__(self, robot: Element) -> None:
-        """Read the definitions. Raises XmlError."""
-        self.warnings: list[str] = []
-        """What is left out or mended, sentences with the line."""
+    def __init__(self, robot: Element, warnings: list[str]) -> None:
+        """Read the definitions; append what is left out or mended to `warnings`."""
+        self._warnings = warnings
         self._colours: dict[str, Colour | None] = {}
         places = [robot, *(visual for link in robot.all("link") for visual in link.all("visual"))]
         for place in places:
             for element in place.all("material"):
                 name = name_of(element)
-                if place is robot and written(element, "name") in self._colours:
+                if place is robot and name in self._colours:
                     again = element.wrong(
                         say("there is a material {name} already", name=name),
                         say("rename one: RViz refuses two, here the first counts"),
                     )
-                    self.warnings.append(reason_of(again))
+                    self._warnings.append(reason_of(again))
                 elif element.children and name:
                     self._colours.setdefault(name, self._colour(element))
 
@@ -92,33 +91,50 @@ class Materials:
                 did_you_mean(name, self._colours)
                 or say('define it below <robot>: <material name="..."><color rgba="1 0 0 1"/>'),
             )
-            self.warnings.append(reason_of(unknown))
+            self._warnings.append(reason_of(unknown))
         return self._colours.get(name), name
 
     def _colour(self, material: Element) -> Colour | None:
         element = material.first("color")
         if element is None:
             return None
-        red, green, blue, opacity = numbers(element, "rgba", 4)
+        try:
+            red, green, blue, opacity = numbers(element, "rgba", 4)
+        except XmlError as error:
+            self._warn_once(error)
+            return None
         if all(0.0 <= part <= 1.0 for part in (red, green, blue, opacity)):
             return red, green, blue, opacity
-        wrong = element.wrong(
-            say("a part of rgba is not between 0 and 1"), say("divide each by 255")
+        self._warn_once(
+            element.wrong(say("a part of rgba is not between 0 and 1"), say("divide each by 255"))
         )
-        words = reason_of(wrong)
-        if words not in self.warnings:
-            self.warnings.append(words)
         if not all(0.0 <= part <= _BYTE for part in (red, green, blue, opacity)):
             return None
         # An opacity of 1 is whole in either way of writing.
         whole = opacity if opacity <= 1.0 else opacity / _BYTE
         return red / _BYTE, green / _BYTE, blue / _BYTE, whole
 
+    def _warn_once(self, error: XmlError) -> None:
+        """A material of a visual is read twice: with all definitions, and with its visual."""
+        if (words := reason_of(error)) not in self._warnings:
+            self._warnings.append(words)
 
-def read_link(element: Element, materials: Materials) -> ModelLink:
-    """Return a link with its visuals. Raises XmlError."""
-    visuals = tuple(_visual(visual, materials) for visual in element.all("visual"))
-    return ModelLink(written(element, "name"), visuals)
+
+def read_link(element: Element, materials: Materials, warnings: list[str]) -> ModelLink:
+    """Return a link with its visuals. Raises XmlError.
+
+    A visual that is wrong is left out with a word, as urdfdom (`urdf_parser/src/model.cpp`) does:
+    the link and its frame are there without it.
+    """
+    name = written(element, "name")
+    visuals = []
+    for visual in element.all("visual"):
+        try:
+            visuals.append(_visual(visual, materials))
+        except XmlError as error:  # noqa: PERF203 - a wrong one does not cost the others
+            reason = reason_of(error)
+            warnings.append(say("{reason} (this <visual> is left out)", reason=reason))
+    return ModelLink(name, tuple(visuals))
 
 
 def read_joint(element: Element, warnings: list[str]) -> ModelJoint:
@@ -132,7 +148,7 @@ def read_joint(element: Element, warnings: list[str]) -> ModelJoint:
         written(inner(element, "parent"), "link"),
         written(inner(element, "child"), "link"),
         origin(element),
-        _axis(element, kind),
+        _axis(element, kind, warnings),
         lower,
         upper,
         velocity,
@@ -161,19 +177,20 @@ def _solid(shape: Element) -> Solid:
     return Mesh(written(shape, "filename"), vector(shape, "scale", _ONES))
 
 
-def _axis(element: Element, kind: JointType) -> Vector:
+def _axis(element: Element, kind: JointType, warnings: list[str]) -> Vector:
+    """Return the axis, x for one without a length, which urdfdom takes as it is."""
     found = element.first("axis")
-    if found is None:
+    if found is None or kind in (JointType.FIXED, JointType.FLOATING):
         return AHEAD
     x, y, z = vector(found, "xyz", AHEAD)
     size = math.hypot(x, y, z)
-    if kind in (JointType.FIXED, JointType.FLOATING):
-        return AHEAD
     if not 0.0 < size < math.inf or not math.isclose(math.hypot(x / size, y / size, z / size), 1.0):
-        raise found.wrong(
+        wrong = found.wrong(
             say("the axis of joint {name} has no length", name=name_of(element)),
             say('write one such as <axis xyz="0 0 1"/>'),
         )
+        warnings.append(reason_of(wrong))
+        return AHEAD
     return x / size, y / size, z / size
 
 
@@ -192,9 +209,9 @@ def _limits(element: Element, kind: JointType, warnings: list[str]) -> tuple[flo
         )
     # RViz and ROS's own publisher refuse a limit without both.
     velocity, _effort = number(found, "velocity"), number(found, "effort")
+    lower, upper = number(found, "lower", 0.0), number(found, "upper", 0.0)
     if kind not in LIMITED:
         return -math.inf, math.inf, velocity
-    lower, upper = number(found, "lower", 0.0), number(found, "upper", 0.0)
     if lower > upper:
         wrong = found.wrong(
             say("the lower limit of joint {name} is above the upper one", name=name_of(element)),

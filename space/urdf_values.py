@@ -138,7 +138,8 @@ def one_of(element: Element, attribute: str, known: Iterable[str]) -> str:
 
 def _finite(element: Element, attribute: str, word: str) -> float:
     try:
-        value = float(word)
+        # Python would read 1_0 as ten.
+        value = float(word.replace("_", "?"))
     except ValueError:
         reason = no_number(word, word[:LONGEST_SHOWN])
     else:

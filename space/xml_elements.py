@@ -71,6 +71,11 @@ class Element:
         return XmlError(self.line, reason, mend)
 
 
+def too_long() -> XmlError:
+    """Return the error for a text that is longer than `LONGEST`."""
+    return XmlError(1, say("the text is longer than {limit} MiB", limit=LONGEST // 1024**2))
+
+
 def read_elements(text: str) -> Element:
     """Return the outermost element of a text. Raises XmlError."""
     try:
@@ -82,7 +87,7 @@ def read_elements(text: str) -> Element:
             line, say("the character U+{code} is not allowed: remove it", code=code)
         ) from None
     if size > LONGEST:
-        raise XmlError(1, say("the text is longer than {limit} MiB", limit=LONGEST // 1024**2))
+        raise too_long()
     reading = _Reading()
     try:
         return reading.root(text)

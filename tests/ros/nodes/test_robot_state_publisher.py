@@ -144,6 +144,21 @@ def test_another_robot_from_a_file(peer: Peer, ros_domain: int, tmp_path: Path) 
     assert "cloud" not in children(moved[-1])
 
 
+def test_a_file_is_published_as_utf_8_whatever_it_is_written_in(
+    peer: Peer, ros_domain: int, tmp_path: Path
+) -> None:
+    file = tmp_path / "arm.urdf"
+    first = '<?xml version="1.0" encoding="{}"?>\n'
+    text = ARM.replace("hand", "рука")
+    file.write_bytes((first.format("windows-1251") + text).encode("windows-1251"))
+    with NodeProcess(MODULE, ros_domain, params={"urdf_file": file}):
+        described = peer.hear("/robot_description", String, LATCHED)
+        fixed = peer.hear("/tf_static", TFMessage, LATCHED)
+        wait_until(lambda: described and fixed, "what is latched")
+    assert described[0].data == first.format("UTF-8") + text
+    assert children(fixed[0]) == {"рука"}
+
+
 REFUSED = {
     "no file": ({"urdf_file": "/nowhere.urdf"}, "cannot read /nowhere.urdf: No such file"),
     "no robot": ({"robot_description": "'<robot/>'"}, "robot_description, line 1: <robot> has no"),

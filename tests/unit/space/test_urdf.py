@@ -228,17 +228,7 @@ HOSTILE = {
         robot(joint(kind="hinge")),
         "type of <joint> j is hinge; it can be: fixed,",
     ),
-    "a size that is no number": (
-        visual("<box size='1 nan 1'/>"),
-        "size of <box>: nan is not a fin",
-    ),
-    "a size with a comma": (visual("<sphere radius='0,5'/>"), "write a fraction with a point: 0.5"),
-    "a negative size": (visual("<sphere radius='-1'/>"), "radius of <sphere> is -1 m"),
-    "a box of two sizes": (visual("<box size='1 2'/>"), "size of <box> has 2 numbers, and not 3"),
-    "an endless cylinder": (visual("<cylinder radius='1' length='1e300'/>"), r"is 1e\+300 m"),
-    "no shape": (visual("<cone/>"), "<geometry> has no shape; it can be: box,"),
     "a place far away": (robot(joint("<origin xyz='1e9 0 0'/>")), "more than"),
-    "an axis of no length": (robot(joint("<axis xyz='0 0 0'/>", "continuous")), "has no length"),
     "a hinge without limits": (robot(joint(kind="revolute")), "without a <limit>; write <limit lo"),
     "a slide without limits": (
         robot(joint(kind="prismatic")),
@@ -247,6 +237,14 @@ HOSTILE = {
     "a limit without a speed": (
         robot(joint("<limit lower='0' upper='1' effort='1'/>", "revolute")),
         "<limit> has no velocity",
+    ),
+    "a limit that is no number, of a joint without limits": (
+        robot(joint("<limit lower='-inf' effort='1' velocity='1'/>", "continuous")),
+        "lower of <limit>: -inf is not a finite number",
+    ),
+    "a number as Python writes it": (
+        robot(joint("<limit upper='1_0' effort='1' velocity='1'/>", "revolute")),
+        "upper of <limit>: expected a number, got 1_0",
     ),
 }
 
@@ -279,6 +277,14 @@ WARNED = {
         robot(joint("<limit lower='1' upper='0' effort='1' velocity='1'/>", "revolute")),
         "the lower limit of joint j is above the upper one; swap them",
     ),
+    "an axis of no length": (
+        robot(joint("<axis xyz='0 0 0'/>", "continuous")),
+        "the axis of joint j has no length; write one such as",
+    ),
+    "a colour of three parts": (
+        coloured("<material name='x'><color rgba='1 0 0'/></material>"),
+        "rgba of <color> has 3 numbers, and not 4",
+    ),
     "an unknown material": (
         coloured("<material name='x'/>"),
         "there is no material x; define it below <robot>: ",
@@ -292,6 +298,42 @@ WARNED = {
         "joint j: there is no joint elbow; correct <mimic>",
     ),
 }
+
+
+LEFT_OUT = {
+    "a size that is no number": (
+        visual("<box size='1 nan 1'/>"),
+        "size of <box>: nan is not a fin",
+    ),
+    "a size with a comma": (visual("<sphere radius='0,5'/>"), "write a fraction with a point: 0.5"),
+    "a negative size": (visual("<sphere radius='-1'/>"), "radius of <sphere> is -1 m"),
+    "a box of two sizes": (visual("<box size='1 2'/>"), "size of <box> has 2 numbers, and not 3"),
+    "an endless cylinder": (visual("<cylinder radius='1' length='1e300'/>"), r"is 1e\+300 m"),
+    "no shape": (visual("<cone/>"), "<geometry> has no shape; it can be: box,"),
+    "a mesh of no file": (visual("<mesh/>"), "<mesh> has no filename"),
+    "a visual of nothing": (
+        robot("<link name='c'><visual/></link>", joint()),
+        "<visual> .*has no <geometry>",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", LEFT_OUT)
+def test_a_visual_that_is_wrong_is_left_out_with_a_word_and_its_link_is_there(case: str) -> None:
+    text, said = LEFT_OUT[case]
+    ball = "<visual><geometry><sphere radius='1'/></geometry></visual>"
+    second = "<joint name='k' type='fixed'><parent link='b'/><child link='c'/></joint>"
+    model = read_urdf(
+        text.replace("</link>", f"{ball}</link>").replace("</robot>", f"{second}</robot>")
+    )
+    assert [visual.shape for visual in model.links["c"].visuals] == [Sphere(1.0)]
+    (warning,) = model.warnings
+    assert re.search(rf"line 2: .*{said}.* \(this <visual> is left out\)$", warning), warning
+
+
+@pytest.mark.parametrize("kind", ["fixed", "floating"])
+def test_the_axis_of_a_joint_that_has_none_is_not_looked_at(kind: str) -> None:
+    assert read_urdf(robot(joint("<axis xyz='0 x'/>", kind))).warnings == ()
 
 
 @pytest.mark.parametrize("case", WARNED)
