@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from graph.messages.dated import draft
 from graph.messages.making import FieldError
-from graph.messages.yaml_reading import value_of
+from graph.messages.yaml_reading import read_fields
 from text.i18n import localized
 from text.yaml_faults import YamlError
+from text.yaml_tree import Branch, plain
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from graph.messages.dated import Draft
 
 
 def read(text: str) -> Mapping[str, Any] | None:
     """Return the fields that a text in YAML has; None if it is something else."""
     try:
-        values = value_of(text)
+        tree = read_fields(text)
     except YamlError as error:
         place = f"{error.line}:{error.column}"
         raise RuntimeError(
             f"The passed value is not YAML: {place}: {localized(error.message)}"
         ) from error
-    return values if isinstance(values, Mapping) else None
+    return plain(tree) if isinstance(tree, Branch) else None
 
 
 def filled(cls: type[Any], values: Mapping[str, Any], what: str = "field") -> Draft:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import yaml
@@ -78,6 +79,7 @@ _WORDS = {
     "did not find expected node content": _NO_VALUE,
     "expected the node content": _NO_VALUE,
     "did not find expected '-' indicator": N_("the indentation does not fit the list above"),
+    "found unexpected ':'": N_("a space is missing after this ':'"),
     "block sequence entries are not allowed": N_(
         "a list cannot begin here: put it on a line of its own, or the '-' in quotes"
     ),
@@ -87,6 +89,35 @@ _SECOND_COLON = N_("a second ':' in one line: put the text that holds it in quot
 _NO_COLON = N_(
     "this line does not fit the one above: a ':' is missing there, or the indentation differs"
 )
+
+
+_LIKE_SPACE = "\u00a0\u2000-\u200b\u202f\u205f\u2060\u3000\ufeff"
+_SPACE_MEANT = re.compile(
+    rf"^(?:-|[a-z][a-z0-9_]*:)?(?P<odd>[{_LIKE_SPACE}])|(?P<late>[{_LIKE_SPACE}])(?:$|#)"
+)
+"""Where only a space can be meant: at the ends, after a name's colon or a dash, before a `#`."""
+_INDENTED = re.compile(rf"^ *[{_LIKE_SPACE}]")
+
+
+def space_meant(word: str, *, is_name: bool) -> int | None:
+    """Return where a text without quotes has what only looks like a space, None if it has none.
+
+    Between two words of a value it may be meant; in a name it never is.
+    """
+    if is_name:
+        found = re.search(rf"[{_LIKE_SPACE}]", word)
+        return found.start() if found else None
+    found = _SPACE_MEANT.search(word)
+    return found.start(found.lastgroup or 0) if found else None
+
+
+def not_a_space(line: int, column: int, character: str) -> YamlError:
+    """Return that a character only looks like a space."""
+    words = say(
+        "the character U+{code} only looks like a space: write an ordinary one",
+        code=f"{ord(character):04X}",
+    )
+    return YamlError(line, column, words)
 
 
 def character_error(text: str, offset: int) -> YamlError:
@@ -113,6 +144,8 @@ def _syntax_error(error: yaml.YAMLError, text: str) -> YamlError:
     if "\t" in indent:
         tab = say("this line is indented with a tab: use spaces, not tabs")
         return YamlError(mark.line + 1, indent.index("\t") + 1, tab)
+    if odd := _INDENTED.match(content):
+        return not_a_space(mark.line + 1, odd.end(), content[odd.end() - 1])
     found = error.problem or str(error)
     meant = _meant(found, _BEGUN_BEFORE)
     if meant and error.context_mark:

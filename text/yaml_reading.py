@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import yaml
 
 from text.sentences import say
-from text.yaml_faults import YamlError, events, fault
+from text.yaml_faults import YamlError, events, fault, not_a_space, space_meant
 from text.yaml_scalars import meaning
 from text.yaml_tree import Branch, FilePlace, Listing, MappingEntry, Scalar, empty
 
@@ -136,6 +136,10 @@ class _Builder:
         top = self._stack[-1] if self._stack else None
         # Keys are words, `on` and `y` too.
         is_key = top is not None and top.is_mapping and top.key is None and not event.anchor
+        if not event.style:
+            odd = space_meant(event.value, is_name=is_key)
+            if odd is not None:
+                raise not_a_space(place.line, place.column + odd, event.value[odd])
         is_text = is_key or (event.style and event.tag is None) or event.tag == "!"
         value = event.value if is_text else self._value(event, place)
         scalar = Scalar(value, event.value, place)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from graph.messages.fields import BYTES, FLOATS, INTEGERS, STRINGS, FieldType, parse
 from graph.messages.types import load_message
 from graph.messages.values import fields_of
+from graph.messages.yaml_reading import WITHOUT_SPACE, space_missing
 from text.sentences import say
 from text.suggestions import nearest, no_number
 
@@ -47,7 +48,7 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
     floats, a string for an array of bytes (its UTF-8 bytes). Raises FieldError.
     """
     if not isinstance(tree, Mapping):
-        raise FieldError(field, say("expected fields by name, got {value}", value=_shown(tree)))
+        raise FieldError(field, _no_fields(tree))
     fields = dict(fields_of(cls))
     message = cls()
     before: tuple[str, object] = ("", None)
@@ -59,6 +60,13 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
         setattr(message, name, _made(parse(fields[name]), value, path))
         before = path, value
     return message
+
+
+def _no_fields(value: object) -> str:
+    """Say that a value is not the fields of a message; of `x:0`, that a space is missing."""
+    if isinstance(value, str) and (found := WITHOUT_SPACE.match(value)):
+        return space_missing(found)
+    return say("expected fields by name, got {value}", value=_shown(value))
 
 
 def _check_comma(before: tuple[str, object], name: object, value: object) -> None:

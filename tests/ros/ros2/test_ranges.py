@@ -46,6 +46,11 @@ BOUNDED_LIST = "shape_msgs/msg/SolidPrimitive"
             "covariance: expected 36 elements, got 2",
         ),
         ("geometry_msgs/msg/Twist", "linear: {x: fast}", "linear.x: expected a number"),
+        (
+            "geometry_msgs/msg/Twist",
+            "linear:\n  x:0",
+            "linear: a space is missing after the ':': x: 0",
+        ),
         ("geometry_msgs/msg/Twist", "linear: 3", "linear: expected fields by name, got 3"),
         ("geometry_msgs/msg/Polygon", "points: [{x: 1}, {q: 1}]", "points[1].q: no such field"),
         (

@@ -27,8 +27,11 @@ WORDS: list[tuple[str, object]] = [
     ("2026-11-24", "2026-11-24"),
     ("on", True),
     ("'on'", "on"),
+    ("two\u00a0words", "two\u00a0words"),
+    ("'\u00a0in quotes\u00a0'", "\u00a0in quotes\u00a0"),
     ("~", None),
 ]
+NBSP = "the character U+00A0 only looks like a space: write an ordinary one"
 KINDS: dict[type, str] = {bool: "bool", int: "integer", float: "double"}
 WRONG = [
     ("[1, 2", "this list is not closed: a ',' or a ']' is missing"),
@@ -40,6 +43,10 @@ WRONG = [
     ("[!env x]", "the tag !env is refused: only plain values are read"),
     ("[{[b]: 1}]", "expected a name before the ':', found a list or a mapping"),
     ("[x]\n---", "a second document begins here, and only one is read"),
+    ("[{b:[1]}]", "a space is missing after this ':'"),
+    ("[\u00a0b]", NBSP),
+    ("[{b\u00a0: 1}]", NBSP),
+    ("[1\u202f# b\n]", "the character U+202F only looks like a space: write an ordinary one"),
     ('["\\q"]', "YAML does not know this \\ in double quotes: use single quotes"),
 ]
 
@@ -86,3 +93,30 @@ def test_what_is_wrong_is_told_in_the_same_words_at_the_same_place(text: str, wo
     with pytest.raises(WrongValueError) as refused:
         carried("string_array", text)
     assert str(refused.value) == words
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "words"),
+    [
+        ("{x:0}", (1, 2), "a space is missing after the ':': x: 0"),
+        ("linear: {x: 1, y:0.5}", (1, 16), "a space is missing after the ':': y: 0.5"),
+        ("data:hello world", (1, 1), "a space is missing after the ':': data: hello world"),
+        ("x:0\ny:1", (1, 1), "a space is missing after the ':': x: 0 y:1"),
+        ('- {data:"x"}', (1, 4), "a space is missing after the ':': data: \"x\""),
+        ("data:\u00a0hello", (1, 6), NBSP),
+        ("linear:\n\u00a0 x: 1.0", (2, 1), NBSP),
+        ("linear:\n  x: 1.0\n \u00a0y: 2.0", (3, 2), NBSP),
+        ("x:\n  -\u00a0y", (2, 4), NBSP),
+    ],
+)
+def test_a_space_that_is_none_is_told_in_a_message(
+    text: str, place: tuple[int, int], words: str
+) -> None:
+    with pytest.raises(YamlError) as caught:
+        read_message(text)
+    assert ((caught.value.line, caught.value.column), caught.value.message) == (place, words)
+
+
+@pytest.mark.parametrize("text", ["data: a:b", "data: http://x", "data: 'x:0'", "{'x:0': 1}"])
+def test_a_colon_may_stand_in_a_value(text: str) -> None:
+    assert len(read_message(text).entries) == 1
