@@ -6,6 +6,7 @@ distribution. The trees are those of `graph.data.Value`.
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -25,7 +26,16 @@ AS_BYTES = BYTES | {"byte"}
 CDR = frozenset({b"\x00\x00", b"\x00\x01"})
 """The first bytes of big-endian and little-endian plain CDR (OMG DDS-XTypes 1.3, 7.6.3.1.2)."""
 HEADER = "std_msgs/msg/Header"
-LISTED = frozenset({"bool", "string", "wstring"})
+LISTED = frozenset({"bool", "string"})
+WIDE = "deck/msg/Wide"
+"""Stands for `wstring`, which the library cannot decode: the middleware writes its UTF-16 as
+integers of 32 bits."""
+_WIDE_FIELD = re.compile(
+    r"(?m)^[^\S\n]*wstring(?:<=\d+)?(?P<many>\[[^\]\n]*\])?(?P<name>\s+\w+\b)(?!\s*=)[^#\n]*"
+)
+"""One in a `.msg`, with what it is when nobody has set it."""
+_WIDE_CONSTANT = re.compile(r"(?m)^[^\S\n]*wstring(?=\s+\w+\s*=)")
+_WIDE_IN_IDL = re.compile(r"\bwstring(?:\s*<\s*\d+\s*>)?(?=\s*[\w,>])(?!\s+\w+\s*=)")
 
 
 class TypeText(NamedTuple):
@@ -95,11 +105,15 @@ def _store(kind: TypeText) -> Typestore:
         known = {store.name: store for store in Stores}
         return get_typestore(known.get(f"ROS2_{kind.distro.upper()}", Stores.ROS2_JAZZY))
     store = get_typestore(Stores.EMPTY)
+    store.register(get_types_from_msg("uint32[] units", WIDE))
     try:
         if kind.is_idl:
-            store.register(get_types_from_idl(kind.text))
+            text = _WIDE_IN_IDL.sub(WIDE.replace("/", "::"), kind.text)
+            store.register(get_types_from_idl(text))
         else:
-            found = get_types_from_msg(kind.text, kind.name)
+            text = _WIDE_FIELD.sub(rf"{WIDE}\g<many>\g<name>", kind.text)
+            text = _WIDE_CONSTANT.sub("string", text)
+            found = get_types_from_msg(text, kind.name)
             # The library mistakes the name of a service's message for that of a package.
             for name in found.keys() - {kind.name}:
                 if name.replace("/srv/msg/", "/srv/") == kind.name:
@@ -138,14 +152,23 @@ def _field(store: Typestore, kind: Any) -> Callable[[Any], Value]:  # noqa: ANN4
     if node is Nodetype.BASE:
         return _as_it_is
     if node is Nodetype.NAME:
-        return _reader(store, rest)
+        return _one(store, rest)
     element, name = rest[0]
     if element is Nodetype.NAME:
-        read = _reader(store, name)
+        read = _one(store, name)
         return lambda values: [read(value) for value in values]
     if name[0] in AS_BYTES:
         return lambda values: bytes(values.tobytes())
     return list if name[0] in LISTED else _as_it_is
+
+
+def _one(store: Typestore, name: str) -> Callable[[Any], Value]:
+    return _wide_text if name == WIDE else _reader(store, name)
+
+
+def _wide_text(message: Any) -> Value:  # noqa: ANN401 - generated, without a base class
+    units = message.units.astype("<u2", casting="unsafe").tobytes()
+    return str(units, "utf-16-le", "replace")
 
 
 def _as_it_is(value: Value) -> Value:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from ackermann_msgs.msg import AckermannDriveStamped
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from example_interfaces.msg import WString
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import serialize_message
@@ -35,7 +36,13 @@ MESSAGES = [
     Char(data=65),
     Empty(),
     Text(data="привет"),
+    WString(data="wide: привет 😀"),
 ]
+
+IDL = (
+    "module my_msgs { module msg { struct Names {"
+    " sequence<wstring<3>> names; int8 n; wstring last; }; }; };"
+)
 
 
 def type_of(message: Any) -> str:
@@ -64,3 +71,20 @@ def test_the_tree_is_that_of_the_live_message(message: Any) -> None:
 @pytest.mark.parametrize("name", sorted(jazzy().fielddefs))
 def test_every_type_of_jazzys_is_told_to_a_bag_so_that_it_is_understood(name: str) -> None:
     bag_decoder(TypeText(name, definition(name)))
+
+
+@pytest.mark.parametrize(
+    ("text", "is_idl"),
+    [
+        ('wstring X="a"\nwstring<=3[] names\nint8 n\nwstring last "d"  # wstring\n', False),
+        (
+            IDL,
+            True,
+        ),
+    ],
+)
+def test_wide_texts_are_read_with_what_is_around_them(text: str, is_idl: bool) -> None:
+    """By the text of the bag: no type that is installed has them so."""
+    raw = b"\0\1\0\0\2\0\0\0\1\0\0\0A\0\0\0\0\0\0\0\7\0\0\0\2\0\0\0\x3d\xd8\0\0\0\xde\0\0"
+    decode = bag_decoder(TypeText("my_msgs/msg/Names", text, is_idl))
+    assert decode(raw) == {"names": ["A", ""], "n": 7, "last": "😀"}
