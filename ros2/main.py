@@ -10,6 +10,7 @@ import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Protocol, cast
 
+from ros2.options import UsageError
 from ros2.table import COMMANDS, ELSEWHERE, VERBS, VERBS_ELSEWHERE
 from text.output import harmless_output
 
@@ -52,6 +53,8 @@ def _ended(argv: Sequence[str]) -> int:
         return 128 + signal.SIGPIPE
     except KeyboardInterrupt:
         return signal.SIGINT
+    except UsageError as error:
+        return _failed(str(error), USAGE_ERROR)
     except RuntimeError as error:
         return _failed(str(error))
     if isinstance(code, str):
@@ -59,10 +62,10 @@ def _ended(argv: Sequence[str]) -> int:
     return code or 0
 
 
-def _failed(why: str) -> int:
+def _failed(why: str, code: int = 1) -> int:
     sys.stdout.flush()
     print(why, file=sys.stderr)
-    return 1
+    return code
 
 
 def _run(argv: list[str]) -> int | str | None:

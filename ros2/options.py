@@ -20,6 +20,10 @@ DURABILITIES = ("system_default", "transient_local", "volatile", "unknown", "bes
 LIVELINESSES = ("system_default", "automatic", "manual_by_topic", "unknown", "best_available")
 
 
+class UsageError(RuntimeError):
+    """What is wrong with the command line has shown only later: the exit code is 2."""
+
+
 def of_node(parser: argparse.ArgumentParser) -> None:
     """Declare what a verb with a node of its own takes."""
     parser.add_argument(

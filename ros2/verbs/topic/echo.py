@@ -6,7 +6,7 @@ import re
 import time
 from typing import TYPE_CHECKING, Any
 
-from ros2 import listening, naming, options
+from ros2 import filtering, listening, naming, options
 from ros2.joining import SPIN_S, joined
 from ros2.printing import Shape, to_csv, to_yaml
 
@@ -118,7 +118,7 @@ def _steps(field: str) -> list[str]:
 def _shower(args: argparse.Namespace, steps: list[str]) -> Callable[[Any, Any], bool]:
     longest = None if args.full_length else args.truncate_length
     shape = Shape(longest, not args.no_arr, not args.no_str, args.flow_style)
-    wanted = _wanted(args.filter_expr)
+    wanted = filtering.wanted(args.filter_expr)
 
     def show(message: Any, info: Any) -> bool:  # noqa: ANN401 - generated
         part = _part(message, steps)
@@ -138,17 +138,6 @@ def _shower(args: argparse.Namespace, steps: list[str]) -> Callable[[Any, Any], 
         return True
 
     return show
-
-
-def _wanted(expression: str | None) -> Callable[[Any], bool]:
-    if expression is None:
-        return lambda _message: True
-    try:
-        code = compile(expression, "<filter>", "eval")
-    except SyntaxError as error:
-        raise RuntimeError(f"Invalid filter expression '{expression}': {error}") from error
-    # Whoever types the command may run any Python here anyway.
-    return lambda message: bool(eval(code, {}, {"m": message}))
 
 
 def _part(message: Any, steps: list[str]) -> Any:  # noqa: ANN401 - generated
