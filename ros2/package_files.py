@@ -31,7 +31,7 @@ def files(package: Package) -> Mapping[str, str]:
     found = {
         "package.xml": _manifest(package),
         "setup.py": _setup(package),
-        "setup.cfg": _CONFIG.format(name=name),
+        "setup.cfg": CONFIG.format(name=name),
         f"resource/{name}": "",
         f"{name}/__init__.py": "",
         "test/test_copyright.py": _test("copyright", "errors", "argv=['.', 'test']"),
@@ -84,12 +84,13 @@ def _test(tool: str, found: str, call: str) -> str:
     return _TEST.format(tool=tool, found=found, call=call)
 
 
-_CONFIG = """\
+CONFIG = """\
 [develop]
 script_dir=$base/lib/{name}
 [install]
 install_scripts=$base/lib/{name}
 """
+"""setup.cfg: without it, setuptools puts programs into bin/."""
 
 _SETUP = """\
 from setuptools import find_packages, setup

@@ -6,10 +6,14 @@ Each prefix has an ament index, with a file for each package.
 from __future__ import annotations
 
 import os
+import re
+from glob import escape
 from pathlib import Path
 
 from launcher.ros_tools import prefixes
 
+MOST = 4000
+"""Characters of a program that are looked at."""
 INDEX = Path("share/ament_index/resource_index/packages")
 
 
@@ -49,3 +53,17 @@ def executables(package: str) -> list[Path]:
         places = (Path(folder) / name for name in sorted(files))
         found += [place for place in places if os.access(place, os.X_OK)]
     return found
+
+
+def misplaced(package: str, program: str) -> Path | None:
+    """Return where a program of a package is that its set-up has put elsewhere; None: nowhere."""
+    prefix = prefix_of(package)
+    for place in (prefix / "bin" / program, *sorted(prefix.glob(f"lib/*/{escape(program)}"))):
+        try:
+            text = place.read_text(encoding="utf-8")[:MOST]
+        except (OSError, ValueError):
+            continue
+        # As setuptools writes it: others may have a program of that name in the same folder.
+        if re.search(rf"(?<![\w.-]){re.escape(package)}(?:==|\.|['\"])", text):
+            return place
+    return None

@@ -8,8 +8,11 @@ import shlex
 import sys
 from typing import TYPE_CHECKING
 
-from ros2.packages import NoPackageError, executables
+from ros2.package_files import CONFIG
+from ros2.packages import NoPackageError, executables, misplaced
 from ros2.table import PACKAGES_ELSEWHERE
+from text.i18n import localized
+from text.sentences import say
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,10 +44,24 @@ def main(args: argparse.Namespace) -> int | str | None:
         return f"Package '{args.package_name}' not found{instead and '. '}{instead}"
     fitting = [path for path in paths if path.name == args.executable_name]
     if not fitting:
-        return "No executable found"
+        beside = misplaced(args.package_name, args.executable_name)
+        return "No executable found" + (f". {_configured(beside, args)}" if beside else "")
     if len(fitting) > 1:
         return "\n- ".join(["Multiple executables found:", *map(str, fitting)])
     return _become([*shlex.split(args.prefix or ""), *_program(fitting[0]), *args.argv])
+
+
+def _configured(beside: Path, args: argparse.Namespace) -> str:
+    """Say which file has put a program elsewhere, and what has to stand in it."""
+    words = say(
+        "{program} was installed into {folder}, and is looked for in {wanted}: beside setup.py, the"
+        " file {file} is missing, or has not these lines. Then colcon build again.",
+        program=args.executable_name,
+        folder=f"{beside.parent}/",
+        wanted=f"lib/{args.package_name}/",
+        file="setup.cfg",
+    )
+    return f"{localized(words)}\n{CONFIG.format(name=args.package_name)}".rstrip()
 
 
 def _program(path: Path) -> list[str]:
