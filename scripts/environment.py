@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 # Run by its path, before there is an environment: modules beside it have bare names.
+from interface_names import wrong_names
 from wheel_cache import WheelCache
 
 if TYPE_CHECKING:
@@ -70,6 +71,10 @@ def only_one() -> Iterator[None]:
         yield
     finally:
         os.close(folder)
+
+
+class WrongNameError(Exception):
+    """Something in interfaces/ has a name that ROS does not allow."""
 
 
 class Step:
@@ -179,6 +184,8 @@ class Environment:
         """Update the environment to match pyproject.toml and interfaces/."""
         sound = self.is_sound()
         changed = not sound or read(self.interfaces) != wanted_interfaces().encode()
+        if changed and (wrong := wrong_names(ROOT / "interfaces")):
+            raise WrongNameError("\n".join(wrong))
         Step.ended, Step.total = 0, (not sound) + 2 + 2 * changed
         if not sound:
             self.begin()
@@ -320,6 +327,10 @@ def main(folder: str) -> int:
     except StepError as failed:
         say("\n".join(read(failed.log).decode(errors="replace").splitlines()[-TAIL:]))
         say(f"deck: failed at: {failed}; the whole log is in {failed.log}")
+    except WrongNameError as wrong:
+        say(str(wrong))
+        say("deck: nothing is built before these names are mended")
+        return 2
     except OSError as error:
         say(f"deck: cannot set up here: {error}")
     except KeyboardInterrupt:
