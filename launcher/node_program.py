@@ -59,8 +59,11 @@ def run(name: str) -> None:
     if "/" in name:
         # Not imported: the learner may have a `launcher` of his own.
         runpy.run_path(f"{OURS}/byte_fields.py")["allow"]()
+        tells = sys.excepthook is _report_and_tell
+        if tells:
+            runpy.run_path(f"{OURS}/node_names.py")["keep"](name)
         watch = runpy.run_path(f"{OURS}/callback_watch.py")["watch"]
-        watch(name.rpartition("/")[0], tells=sys.excepthook is _report_and_tell)
+        watch(name.rpartition("/")[0], tells=tells)
         runpy.run_path(name, run_name="__main__")
     else:
         runpy.run_module(name, run_name="__main__", alter_sys=True)
@@ -119,7 +122,7 @@ def tell(error: BaseException, file: str, kind: str) -> None:
         from launcher.faults.explain import explained
         from launcher.faults.telling import line_of
 
-        line = line_of(explained(error, file.rpartition("/")[0], kind))
+        line = line_of(explained(error, file, kind))
         sys.stderr.flush()
         os.write(2, line)
 
