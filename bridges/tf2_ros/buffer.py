@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 import time as wall
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from rclpy.logging import get_logger
 from rclpy.task import Future
 from tf2_py import BufferCore
 
-from tf2_ros.conversions import BufferInterface
+from tf2_ros.buffer_interface import BufferInterface
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from rclpy.time import Time
 
 LOOK_S = 0.02
+UNHEARD_S = 2.0
+"""So long nothing may fill a buffer that is asked before it is told."""
+OURS = __file__.rpartition("/")[0]
 NOW = Duration()
 
 
@@ -30,6 +34,10 @@ class Buffer(BufferCore, BufferInterface):
     def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
         BufferCore.__init__(self, cache_time)
         BufferInterface.__init__(self)
+        self.is_filled = False
+        """Whether a listener has the buffer, or somebody has put a transform into it; or it is told
+        that neither is so."""
+        self._made_s = wall.monotonic()
         self._waiting: list[Callable[[], None]] = []
         self._waiting_lock = threading.RLock()
         self.clock = node.get_clock() if node is not None else Clock()
@@ -42,11 +50,13 @@ class Buffer(BufferCore, BufferInterface):
 
     def set_transform(self, transform: Any, authority: str) -> None:
         """Keep a transform of its time."""
+        self.is_filled = True
         super().set_transform(transform, authority)
         self._tell()
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
         """Keep a transform that holds at any time."""
+        self.is_filled = True
         super().set_transform_static(transform, authority)
         self._tell()
 
@@ -98,7 +108,9 @@ class Buffer(BufferCore, BufferInterface):
         return_debug_tuple: bool = False,
     ) -> Any:
         """Return whether there is a transform, within a time; with the reason if asked."""
-        found = _wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
+        found = self._wait(
+            lambda: self.can_transform_core(target_frame, source_frame, time), timeout
+        )
         return found if return_debug_tuple else found[0]
 
     def can_transform_full(
@@ -113,7 +125,7 @@ class Buffer(BufferCore, BufferInterface):
     ) -> Any:
         """Return the same for a transform between two times."""
         way = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        found = _wait(lambda: self.can_transform_full_core(*way), timeout)
+        found = self._wait(lambda: self.can_transform_full_core(*way), timeout)
         return found if return_debug_tuple else found[0]
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time) -> Future:
@@ -184,10 +196,22 @@ class Buffer(BufferCore, BufferInterface):
 
         self.srv = node.create_service(FrameGraph, "tf2_frames", answer)
 
+    def _wait(self, look: Callable[[], tuple[bool, str]], timeout: Duration) -> tuple[bool, str]:
+        """Look until there is a transform or time is over; another thread has to receive it."""
+        end = wall.monotonic() + timeout.nanoseconds / 1e9
+        while not (found := look())[0] and wall.monotonic() < end:
+            wall.sleep(LOOK_S)
+        if not found[0] and not self.is_filled and wall.monotonic() - self._made_s >= UNHEARD_S:
+            self._tell_unheard()
+        return found
 
-def _wait(look: Callable[[], tuple[bool, str]], timeout: Duration) -> tuple[bool, str]:
-    """Look until there is a transform or the time is over; another thread has to receive it."""
-    end = wall.monotonic() + timeout.nanoseconds / 1e9
-    while not (found := look())[0] and wall.monotonic() < end:
-        wall.sleep(LOOK_S)
-    return found
+    def _tell_unheard(self) -> None:
+        """Log, once, which line asks a buffer that nothing fills."""
+        frame = sys._getframe()  # noqa: SLF001 - as the module warnings does
+        while frame.f_code.co_filename.startswith(OURS) and frame.f_back is not None:
+            frame = frame.f_back
+        self.is_filled = True
+        get_logger("tf2_buffer").warning(
+            "nothing fills this buffer, a TransformListener would: asked in"
+            f" {frame.f_code.co_filename}, line {frame.f_lineno}"
+        )

@@ -37,6 +37,7 @@ class TransformListener:
         static_only: bool = False,
     ) -> None:
         self.buffer = buffer
+        buffer.is_filled = True
         self.node = node if node is not None else self._own_node()
         # A callback that waits for a transform must not hold up the one that brings it.
         self.group = ReentrantCallbackGroup()

@@ -8,6 +8,7 @@ import re
 from typing import TYPE_CHECKING
 
 from launcher.faults.meanings import warning_of
+from launcher.faults.rules.ros import UNHEARD
 from launcher.faults.stuck import MENDS, STILL_RUNS
 from launcher.status import NodeFault
 from text.plain import plain
@@ -21,6 +22,10 @@ _BLOCKED = re.compile(
     r"(?P<file>.+), line (?P<line>\d+)"
 )
 """What `launcher.callback_watch` writes."""
+_UNHEARD = re.compile(
+    r"(?P<words>nothing fills this buffer), .*: asked in (?P<file>.+), line (?P<line>\d+)"
+)
+"""What the Buffer of `bridges/tf2_ros` writes."""
 BEGIN = "Traceback (most recent call last):"
 _FRAME = re.compile(r'^\s*File "(.+)", line (\d+)(?:, in .*)?$')
 _EXCEPTION = re.compile(r"^[A-Za-z_][\w.]*(?:Error|Exception|Interrupt|Exit|Warning)(: .*)?$")
@@ -69,6 +74,12 @@ def warning_in(line: str, file: str) -> NodeFault | None:
         linecache.clearcache()
         mend = MENDS.get(blocked["waits_in"] or "", MENDS[""])
         return NodeFault("warning", where, number, 0, plain(source), words, say(mend))
+    unheard = _UNHEARD.fullmatch(line)
+    if unheard:
+        where, number = unheard["file"], int(unheard["line"])
+        source = linecache.getline(where, number).strip()
+        linecache.clearcache()
+        return NodeFault("warning", where, number, 0, plain(source), unheard["words"], say(UNHEARD))
     meaning = warning_of(line)
     return NodeFault("warning", file, exception=line, meaning=meaning) if meaning else None
 

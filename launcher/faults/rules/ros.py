@@ -10,6 +10,10 @@ from text.i18n import N_
 from text.sentences import Words, say
 from text.suggestions import nearest
 
+UNHEARD = N_(
+    "A Buffer hears nothing by itself: self.listener = TransformListener(self.buffer, self)"
+    " in __init__ fills it."
+)
 SENTENCES = {
     "NotInitializedException": N_("rclpy.init() has to be called before a node is made."),
     "ExternalShutdownException": N_(
@@ -132,7 +136,7 @@ def bad_name(failure: Failure) -> Words | None:
 
 
 def started_twice(failure: Failure) -> Words | None:
-    """`rclpy.init` or `rclpy.shutdown` was called twice, or a node was spun within a callback."""
+    """`rclpy.init` or `rclpy.shutdown` was called twice."""
     called = {level.function for level in failure.levels if level.is_in("rclpy")}
     kind = type(failure.error).__name__
     if isinstance(failure.error, RuntimeError) and "init" in called and kind == "RuntimeError":
@@ -141,13 +145,34 @@ def started_twice(failure: Failure) -> Words | None:
         return say(
             "rclpy has been shut down already: write rclpy.try_shutdown(), not rclpy.shutdown()."
         )
-    spins = called & {"spin", "spin_once", "spin_until_future_complete"}
-    if spins and isinstance(failure.error, ValueError) and "generator" in str(failure.error):
+    return None
+
+
+def spun_twice(failure: Failure) -> Words | None:
+    """An executor was spun while it was spun already: within a callback, or by another thread."""
+    if not is_spun_twice(failure):
+        return None
+    if any(level.function == "handler" and level.is_in("rclpy") for level in failure.levels):
         return say(
             "The node is spun within its own callback: spin once, in main, and have answers"
             " called back, future.add_done_callback(self.on_answer)."
         )
-    return None
+    return say(
+        "Several threads spin one executor, which only one can, and rclpy.spin(node) takes the same"
+        " for all nodes: give them all to one, executor = MultiThreadedExecutor(),"
+        " executor.add_node(node), and executor.spin() once, in main."
+    )
+
+
+def is_spun_twice(failure: Failure) -> bool:
+    """Whether an executor says that somebody else is at work in it."""
+    inner = failure.inner
+    if inner is None or inner.function != "wait_for_ready_callbacks" or not inner.is_in("rclpy"):
+        return False
+    said = str(failure.error)
+    return (isinstance(failure.error, ValueError) and "generator already executing" in said) or (
+        isinstance(failure.error, TypeError) and "not an iterator" in said
+    )
 
 
 def spun(failure: Failure) -> Words | None:
@@ -255,10 +280,7 @@ def _unheard(failure: Failure) -> Words | None:
         return None
     if any(type(each).__name__ == "TransformListener" for each in values):
         return None
-    return say(
-        "A Buffer hears nothing by itself: self.listener = TransformListener(self.buffer, self)"
-        " in __init__ fills it."
-    )
+    return say(UNHEARD)
 
 
 def asynchronous(failure: Failure) -> Words | None:
@@ -281,6 +303,7 @@ def other_names(failure: Failure) -> Words | None:
 
 
 RULES = (
-    spun, named, undeclared, bad_name, started_twice, two_types, severity, looked_up, asynchronous,
+    spun, named, undeclared, bad_name, started_twice, spun_twice, two_types, severity, looked_up,
+    asynchronous,
 )  # fmt: skip
 LAST = (other_names,)

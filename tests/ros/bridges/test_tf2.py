@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 import threading
 from collections.abc import Iterator
@@ -21,6 +22,17 @@ from rclpy.qos import DurabilityPolicy
 from rclpy.time import Time
 from tf2_msgs.msg import TFMessage
 
+from launcher.faults.crash import warning_in
+
+MODULES = {
+    "buffer": "Buffer",
+    "buffer_client": "BufferClient",
+    "buffer_interface": "BufferInterface",
+    "static_transform_broadcaster": "StaticTransformBroadcaster",
+    "transform_broadcaster": "TransformBroadcaster",
+    "transform_listener": "TransformListener",
+}
+"""Of the package of that name in ROS."""
 S = 1_000_000_000
 NEWEST = Time()
 
@@ -235,3 +247,33 @@ def test_a_listener_can_have_a_thread_of_its_own(nodes: tuple[Node, Node]) -> No
     listener.context.try_shutdown()
     heard.dedicated_listener_thread.join(20)
     assert not heard.dedicated_listener_thread.is_alive()
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_each_class_is_in_the_module_that_has_it_in_ros(module: str) -> None:
+    found = getattr(importlib.import_module(f"tf2_ros.{module}"), MODULES[module])
+    assert found is getattr(tf2_ros, MODULES[module])
+
+
+def test_a_buffer_client_says_what_to_take_instead() -> None:
+    with pytest.raises(NotImplementedError, match="take a Buffer and a TransformListener"):
+        tf2_ros.BufferClient(None, "server")  # type: ignore[arg-type]
+
+
+def test_a_buffer_that_nothing_fills_says_which_line_asks_it(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("tf2_ros.buffer.UNHEARD_S", 0.0)
+    alone, filled = tf2_ros.Buffer(), tf2_ros.Buffer()
+    filled.set_transform(transform("map", "odom"), "test")
+    for each in (alone, alone, filled):
+        assert not each.can_transform("base_link", "tool", NEWEST)
+    told = [line for line in capfd.readouterr().err.splitlines() if "[tf2_buffer]" in line]
+    assert len(told) == 1
+    fault = warning_in(told[0].partition("]: ")[2], "/nowhere")
+    assert fault is not None
+    assert (fault.file, fault.source_line) == (
+        __file__,
+        'assert not each.can_transform("base_link", "tool", NEWEST)',
+    )
+    assert "TransformListener(self.buffer, self)" in fault.meaning

@@ -1,4 +1,4 @@
-"""Publishers of transforms."""
+"""A publisher of where frames are for good."""
 
 from __future__ import annotations
 
@@ -7,23 +7,10 @@ from typing import TYPE_CHECKING, Any
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from tf2_msgs.msg import TFMessage
 
+from tf2_ros.transform_broadcaster import as_list
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from rclpy.node import Node
-
-
-class TransformBroadcaster:
-    """Publishes on /tf where a frame is now."""
-
-    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
-        if qos is None:
-            qos = QoSProfile(depth=100)
-        self.pub_tf = node.create_publisher(TFMessage, "/tf", qos)
-
-    def sendTransform(self, transform: Any) -> None:  # noqa: N802 - tf2's own name
-        """Publish a TransformStamped, or a list of them."""
-        self.pub_tf.publish(TFMessage(transforms=_as_list(transform)))
 
 
 class StaticTransformBroadcaster:
@@ -43,10 +30,6 @@ class StaticTransformBroadcaster:
         """Publish a TransformStamped, or a list of them, together with all earlier ones."""
         # Only the last message is kept for those who come later, so it has to hold all frames.
         frames = {each.child_frame_id: each for each in self.net_message.transforms}
-        frames |= {each.child_frame_id: each for each in _as_list(transform)}
+        frames |= {each.child_frame_id: each for each in as_list(transform)}
         self.net_message = TFMessage(transforms=list(frames.values()))
         self.pub_tf.publish(self.net_message)
-
-
-def _as_list(transform: Any | Iterable[Any]) -> list[Any]:
-    return [transform] if hasattr(transform, "child_frame_id") else list(transform)
