@@ -44,7 +44,7 @@ def _explain(file: str, error: BaseException) -> None:
     from text.output import say_error
 
     set_language(detect())
-    fault = explained(error, file.rpartition("/")[0])
+    fault = explained(error, file)
     if fault.meaning:
         place = f"{fault.file.rpartition('/')[2]}:{fault.line}"
         sys.stdout.flush()

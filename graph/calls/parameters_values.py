@@ -151,6 +151,9 @@ def _meant(value: Value) -> Value | None:
 
 
 def _string(value: Value) -> str:
+    if isinstance(value, (bool, int, float)):
+        words = say("expected a string, got {value}: put it in quotes", value=_shown(value))
+        raise WrongValueError(words)
     if not isinstance(value, str):
         raise WrongValueError(say("expected a string, got {value}", value=_shown(value)))
     if "\0" in value:

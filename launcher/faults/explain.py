@@ -10,6 +10,7 @@ import linecache
 from typing import TYPE_CHECKING
 
 from launcher.faults.failure import Failure
+from launcher.faults.first_cause import first_cause
 from launcher.faults.ros_arguments import meaning_of_arguments
 from launcher.faults.rules import (
     actions,
@@ -30,6 +31,7 @@ from launcher.faults.rules import (
     outside,
     parameters,
     ros,
+    threads,
     values,
 )
 from launcher.faults.rules.syntax import encoding_of, syntax
@@ -72,15 +74,17 @@ LONGEST = 240
 """Characters of an exception that are kept: rclpy writes the limits of a float64 out."""
 
 
-def explained(error: BaseException, folder: str, kind: str = "crash") -> NodeFault:
-    """Return where a program has failed and what it means; `folder`: of the learner's files."""
+def explained(error: BaseException, program: str, kind: str = "crash") -> NodeFault:
+    """Return where a learner's program, a file, has failed and what it means."""
+    folder = program.rpartition("/")[0]
+    error = first_cause(error, folder)
     exception = _shortened(error)
     if isinstance(error, SyntaxError):
         return _unreadable(error, exception)
     failure = Failure(error, folder)
     level = failure.own or failure.inner
     file, line = (level.file, level.line) if level is not None else ("", 0)
-    file, line = callbacks.place_of(failure) or (file, line)
+    file, line = callbacks.place_of(failure) or threads.place_of(failure, program) or (file, line)
     return NodeFault(
         kind,
         file,

@@ -70,13 +70,13 @@ class TraceLevel(NamedTuple):
 class Failure:
     """An exception, where it happened, and what is known there."""
 
-    def __init__(self, error: BaseException, folder: str) -> None:
-        """`folder`: that of the learner's own files."""
+    def __init__(self, error: BaseException, folder: str, at: TraceLevel | None = None) -> None:
+        """`folder`: that of the learner's own files; `at`: a level of his to look at instead."""
         self.error = error
         self.folder = folder
         self.levels = list(_levels(error.__traceback__))
         own = [each for each in self.levels if each.file.rpartition("/")[0] == folder]
-        self.own: TraceLevel | None = own[-1] if own else None
+        self.own: TraceLevel | None = at or (own[-1] if own else None)
         """The last level that is in the learner's own file."""
 
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import sys
+from collections.abc import Iterable
 
 from launcher.faults.failure import Failure
 from launcher.faults.homes import KINDS, PACKAGES, ROS1, home_of, ros1
@@ -26,8 +27,13 @@ OF_ROS = (
     "tf_transformations", "launch", "launch_ros", "gazebo_msgs", "ros_gz_interfaces", "rosbag2_py",
     "image_transport", "message_filters", "vision_msgs", "controller_manager_msgs", "map_msgs",
     "ament_index_python", "rqt", "tf2_sensor_msgs", "laser_geometry", "geographic_msgs", "pcl_msgs",
+    "sensor_msgs_py", "actionlib_msgs", "apriltag_msgs", "can_msgs", "gps_msgs", "grid_map_msgs",
+    "image_geometry", "launch_testing", "mavros_msgs", "nmea_msgs", "octomap_msgs", "ros2cli",
+    "rosidl_runtime_py", "test_msgs", "tf2_kdl", "turtlebot3_msgs",
 )  # fmt: skip
 """Packages of ROS that Deck does not bring."""
+OF_TUTORIALS = ("tutorial_interfaces", "more_interfaces", "custom_action_interfaces")
+"""Packages of messages that the tutorials of ROS have one make."""
 OF_PYPI = {
     "serial": "pyserial", "yaml": "pyyaml", "PIL": "pillow", "sklearn": "scikit-learn",
     "usb": "pyusb", "smbus": "smbus2", "Image": "pillow",
@@ -80,7 +86,9 @@ def missing_import(name: str, statement: ast.stmt | None, folder: str) -> Words:
 
 def missing_messages(package: str, kind: str, names: list[str]) -> Words:
     """Say what is meant by a package of messages that is not there, or how it is to be had."""
-    meant = "" if package in PACKAGES else next(iter(near(package, PACKAGES, cutoff=0.8)), "")
+    if package in OF_TUTORIALS:
+        return _of_tutorial(package)
+    meant = "" if package in PACKAGES else _like(package, PACKAGES, 0.8)
     if meant:
         return say("There is no module {name}; did you mean {meant}?", name=package, meant=meant)
     if package in (*OF_ROS1, *OF_ROS):
@@ -96,6 +104,25 @@ def missing_messages(package: str, kind: str, names: list[str]) -> Words:
     )
 
 
+def _of_tutorial(package: str) -> Words:
+    return say(
+        "{name} is a package that the tutorial has you make yourself: copy its folder into"
+        " interfaces/, and make setup builds it.",
+        name=package,
+    )
+
+
+def _like(name: str, known: Iterable[str], cutoff: float) -> str:
+    """Return the name that may be meant, empty if none is.
+
+    Of two that end alike, what is before counts: else every …_interfaces would be like every other.
+    """
+    meant = next(iter(near(name, known, cutoff=cutoff)), "")
+    stem, _, end = name.rpartition("_")
+    other, _, same = meant.rpartition("_")
+    return meant if end != same or near(stem, [other], cutoff=cutoff) else ""
+
+
 def missing_module(name: str, folder: str) -> Words:
     """Say what is meant by a module that is not there, or how it is to be had."""
     first, _, rest = name.partition(".")
@@ -107,7 +134,9 @@ def missing_module(name: str, folder: str) -> Words:
         )
     if rest:
         return _within(name, first, rest, folder)
-    meant = "" if first in KNOWN else next(iter(near(first, KNOWN, cutoff=0.75)), "")
+    if first in OF_TUTORIALS:
+        return _of_tutorial(first)
+    meant = "" if first in KNOWN else _like(first, KNOWN, 0.75)
     if first in OF_ROS:
         return say(
             "{name} is a package of ROS that Deck does not bring: with a ROS of its own,"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from typing import TYPE_CHECKING
 
 from launcher.faults.failure import Failure, is_from, name_of
@@ -12,6 +13,17 @@ from text.sentences import say
 if TYPE_CHECKING:
     from text.sentences import Words
 
+_OF_TYPE = re.compile(
+    r"set parameter '(.+?)' to '(.*)' of type '(\w+)', expecting type '(\w+)'", re.DOTALL
+)
+"""What rclpy says of a parameter of the wrong type."""
+_MIXED = re.compile(
+    r"params file: '(?:--params-file )?(?P<file>[^']+)'.*Sequence should be of same type. "
+    r"Value type '(?P<type>\w+)' do not belong at line_num (?P<line>\d+)",
+    re.DOTALL,
+)
+"""What rcl_yaml_param_parser says of a list."""
+_NUMBERS = ("INTEGER", "DOUBLE")
 _SETTERS = ("set_parameters", "set_parameters_atomically", "_check_undeclared_parameters")
 _LISTS = ("declare_parameters", "get_parameters")
 
@@ -112,4 +124,65 @@ def told(failure: Failure) -> Words | None:
     return None
 
 
-RULES = (listing, parameters, parameter_value, told)
+def declared(failure: Failure) -> Words | None:
+    """A parameter was given from outside as another type than it is declared with."""
+    if type(failure.error).__name__ != "InvalidParameterTypeException":
+        return None
+    found = _OF_TYPE.search(str(failure.error))
+    declares = any(each.function.startswith("declare_param") for each in failure.below("rclpy"))
+    if found is None or not declares:
+        return None
+    name, value, given, wanted = found.groups()
+    if given.endswith("_ARRAY") != wanted.endswith("_ARRAY"):
+        if wanted.endswith("_ARRAY"):
+            return say("{name} is declared as a list, and is given a single value.", name=name)
+        return say("{name} is declared as a single value, and is given a list.", name=name)
+    given, wanted = given.replace("_ARRAY", ""), wanted.replace("_ARRAY", "")
+    if given == "BOOL" and wanted == "STRING":
+        return say(
+            "{name} is declared as a text, and ROS takes yes, no, on, off, y, n, true and false"
+            " without quotes for booleans: put the word in quotes.",
+            name=name,
+        )
+    if wanted == "STRING" and given in _NUMBERS:
+        return say(
+            "{name} is declared as a text, and {value} without quotes is a number: put it in"
+            " quotes.",
+            name=name,
+            value=value,
+        )
+    if wanted == "BOOL":
+        return say("{name} is declared as a boolean: true or false, without quotes.", name=name)
+    if wanted in _NUMBERS and given == "BOOL":
+        return say(
+            "{name} is declared as a number, and ROS takes yes, no, on, off, y, n, true and false"
+            " for booleans.",
+            name=name,
+        )
+    if wanted in _NUMBERS and given == "STRING":
+        return say("{name} is declared as a number: write one, without quotes.", name=name)
+    return None
+
+
+def mixed_list(failure: Failure) -> Words | None:
+    """A list in a file of parameters has values of several types."""
+    found = _MIXED.search(str(failure.error))
+    if found is None:
+        return None
+    file = found["file"].rpartition("/")[2]
+    if found["type"] == "bool":
+        return say(
+            "Line {line} of {file}: a list has values of one type, and ROS takes yes, no, on, off,"
+            " y, n, true and false without quotes for booleans: put all of them in quotes.",
+            line=found["line"],
+            file=file,
+        )
+    return say(
+        "Line {line} of {file}: a list has values of one type: put all of them in quotes, or none;"
+        " 1.0 is a double, 1 an integer.",
+        line=found["line"],
+        file=file,
+    )
+
+
+RULES = (listing, parameters, parameter_value, told, declared, mixed_list)

@@ -66,7 +66,7 @@ def test_what_fits_a_type_is_taken(kind: str, value: Any, made: Any) -> None:
         ("bool", 1, "expected true or false, got 1"),
         ("bool", "maybe", "expected true or false"),
         ("bool", "1", "expected true or false, got '1'"),
-        ("string", 5, "expected a string, got 5"),
+        ("string", 5, "expected a string, got 5: put it in quotes"),
         ("string", None, "expected a string, got nothing"),
         ("string", "a\0b", "NUL"),
         ("string", "\ud800", "not valid Unicode"),

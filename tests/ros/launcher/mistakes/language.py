@@ -26,6 +26,10 @@ IMPORTS = {
     "import with Cyrillic": "from std_msgs.msg import Stringо\n",
     "init_node": script('rclpy.init_node("x")'),
     "messages of the tutorials": "from action_tutorials_interfaces.action import Fibonacci\n",
+    "package of ROS with a like name": "from sensor_msgs_py import point_cloud2\n",
+    "package that a tutorial makes": "import tutorial_interfaces.msg\n",
+    "messages that a tutorial makes": "from tutorial_interfaces.srv import AddThreeInts\n",
+    "messages with a like end": "import tutor_interfaces.msg\n",
     "services that are not built": "from my_package.srv import Move\n",
 }
 NAMES = {

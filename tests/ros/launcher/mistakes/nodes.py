@@ -18,6 +18,23 @@ LISTENER = """\
 from tf2_ros import Buffer, TransformListener, TransformBroadcaster
 self.buffer = Buffer()
 """
+HIDDEN = {
+    "hidden by a finally": script(
+        'rclpy.init()\n\ndef main():\n    try:\n        timer = Node("m").create_timer(-0.5, print)\n'
+        "    finally:\n        timer.cancel()\n\nmain()"
+    ),
+    "hidden by a handler": script(
+        'rclpy.init()\n\ndef main():\n    try:\n        timer = Node("m").create_timer(None, print)\n'
+        "    except Exception:\n        timer.cancel()\n\nmain()"
+    ),
+    "hidden by two that clean up": script(
+        "class N(Node):\n    def __init__(self):\n        super().__init__('n')\n        try:\n"
+        "            self.p = self.create_publisher(Float32, '/my topic', 10)\n        finally:\n"
+        "            self.close()\n    def close(self):\n        self.p.destroy()\n"
+        "rclpy.init()\ntry:\n    n = N()\nfinally:\n    n.destroy_node()"
+    ),
+}
+"""Where Python tells last of what comes of another mistake."""
 MADE = {
     "no super": node(PUBLISHER, above="pass"),
     "super too late": node("pass", above=f'{PUBLISHER}\nsuper().__init__("mistaken")'),
@@ -56,6 +73,25 @@ MADE = {
     "name given to init": script('rclpy.init("talker")'),
     "node spins itself": node("pass").replace("rclpy.spin(node)", "node.spin()"),
     "rate of rclpy": ticking("r = rclpy.create_rate(10)"),
+    **HIDDEN,
+    "mistake within a handler": script(
+        "try:\n    {}['speed']\nexcept KeyError:\n    x = nothing_at_all"
+    ),
+    "own mistake in a finally": script(
+        'rclpy.init()\nnode = Node("mistaken")\ntry:\n    pass\nfinally:\n    node.stop_it()'
+    ),
+    "nodes spun by threads": script(
+        "import threading\nrclpy.init()\n"
+        'nodes = [Node(f"n{i}") for i in range(3)]\n'
+        "threads = [threading.Thread(target=rclpy.spin, args=(n,), daemon=True) for n in nodes]\n"
+        "for each in threads:\n    each.start()\n"
+        "for each in threads:\n    each.join(2)"
+    ),
+    "spun by threads and by main": script(
+        'import threading\nrclpy.init()\nfirst, second = Node("first"), Node("second")\n'
+        "threading.Thread(target=rclpy.spin, args=(first,), daemon=True).start()\n"
+        "while True:\n    rclpy.spin_once(second)"
+    ),
     "maker called on the class": ticking('Node.create_publisher(Float32, "/x", 10)'),
 }
 CREATED = {
@@ -142,7 +178,31 @@ CREATED = {
     "rate in quotes": ticking('self.create_rate("10")'),
     "arguments too many": node("pass").replace("node = Mistaken()", 'node = Mistaken("x")'),
 }
+
+
+def given(value: str, default: str) -> str:
+    """Return a program that declares a parameter, and is given it on its command line."""
+    return script(
+        f'rclpy.init(args=["--ros-args", "-p", "p:={value}"])\n'
+        f'Node("n").declare_parameter("p", {default})'
+    )
+
+
 PARAMETERS = {
+    "off for a text": given("off", "'slow'"),
+    "y in a list of texts": given("[y, n]", "['x', 'y']"),
+    "number for a text": given("5", "'slow'"),
+    "on for a number": given("on", "1.5"),
+    "text for a boolean": given("'off'", "True"),
+    "text for a number of a parameter": given("'5'", "1.5"),
+    "whole number for a fraction": given("5", "1.5"),
+    "list for a single value": given("[1.5]", "1.5"),
+    "single value for a list": given("1.5", "[1.5]"),
+    "off among texts": script(
+        "from pathlib import Path\nfile = Path(__file__).with_name('mixed.yaml')\n"
+        "file.write_text('/**:\\n  ros__parameters:\\n    p: [slow, off]')\n"
+        'rclpy.init(args=["--ros-args", "--params-file", str(file)])'
+    ),
     "parameter not declared": node('self.get_parameter("speed")'),
     "parameter declared twice": node(
         'self.declare_parameter("v", 1.0)\nself.declare_parameter("v", 2.0)'
