@@ -16,6 +16,7 @@ from text.sentences import say
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from text.sentences import Words
     from text.yaml_tree import FilePlace, Where
 
 
@@ -118,6 +119,22 @@ def not_a_space(line: int, column: int, character: str) -> YamlError:
         code=f"{ord(character):04X}",
     )
     return YamlError(line, column, words)
+
+
+LONGEST_VALUE = 30
+"""Characters of a value that an error repeats."""
+_WITHOUT_SPACE = re.compile(r"(?P<name>[A-Za-z]\w*):(?P<value>[^/\s][^\n]*)")
+"""A name and its value in one word; not `http://`."""
+
+
+def space_missing(text: str) -> Words | None:
+    """Say where a space is missing in `x:0`, which is one word; None if it is something else."""
+    found = _WITHOUT_SPACE.match(text)
+    if found is None:
+        return None
+    name, value = found["name"], found["value"]
+    value = value if len(value) <= LONGEST_VALUE else f"{value[:LONGEST_VALUE]}…"
+    return say("a space is missing after the ':': {mended}", mended=f"{name}: {value}")
 
 
 def character_error(text: str, offset: int) -> YamlError:

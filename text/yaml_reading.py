@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import yaml
 
 from text.sentences import say
-from text.yaml_faults import YamlError, events, fault, not_a_space, space_meant
+from text.yaml_faults import YamlError, events, fault, not_a_space, space_meant, space_missing
 from text.yaml_scalars import meaning
 from text.yaml_tree import Branch, FilePlace, Listing, MappingEntry, Scalar, empty
 
@@ -68,10 +68,33 @@ def mapping(tree: Tree) -> Branch:
     """Return a tree that has to be a mapping. Raises YamlError."""
     if isinstance(tree, Branch):
         return tree
+    check_colons(tree)
     kind = say("a list") if isinstance(tree, Listing) else say("a single value")
     if empty(tree):
         kind = say("nothing")
     raise fault(tree.place, say("expected `name: value`, found {kind}", kind=kind))
+
+
+def check_colons(tree: Tree) -> None:
+    """Raise YamlError for `x:0`, alone or as a name without a value, where no name has a colon."""
+    if isinstance(tree, Scalar):
+        _check_colon(tree.text, tree.place)
+    elif isinstance(tree, Branch):
+        for name, entry in tree.entries.items():
+            if empty(entry.value):
+                _check_colon(name, entry.key_place)
+            elif not isinstance(entry.value, Scalar):
+                check_colons(entry.value)
+    else:
+        for item in tree.items:
+            if not isinstance(item, Scalar):
+                check_colons(item)
+
+
+def _check_colon(text: str, place: FilePlace) -> None:
+    words = space_missing(text)
+    if words is not None:
+        raise fault(place, words)
 
 
 def _raised(error: YamlError) -> None:

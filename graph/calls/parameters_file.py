@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from graph.messages.yaml_reading import RULES, read
 from text.sentences import say
 from text.yaml_faults import YamlError, character_error, fault
-from text.yaml_reading import mapping
+from text.yaml_reading import check_colons, mapping
 from text.yaml_scalars import quoted, written
 from text.yaml_tree import Branch, Listing, Scalar
 
@@ -56,6 +56,7 @@ def load(text: str, node: str, *, wildcards: bool = True) -> dict[str, Value]:
     root = read(text, AGAIN)
     if root is None:
         raise YamlError(1, 1, say("the file is empty"))
+    check_colons(root)
     found = [each for each in _nodes(root, "") if wildcards or "*" not in each[0]]
     values = {
         name: value

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from graph.messages.fields import BYTES, FLOATS, INTEGERS, STRINGS, FieldType, parse
 from graph.messages.types import load_message
 from graph.messages.values import fields_of
-from graph.messages.yaml_reading import WITHOUT_SPACE, space_missing
 from text.sentences import say
 from text.suggestions import nearest, no_number
+from text.yaml_faults import space_missing
 
 if TYPE_CHECKING:
     from graph.data import Value
@@ -64,9 +64,8 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
 
 def _no_fields(value: object) -> str:
     """Say that a value is not the fields of a message; of `x:0`, that a space is missing."""
-    if isinstance(value, str) and (found := WITHOUT_SPACE.match(value)):
-        return space_missing(found)
-    return say("expected fields by name, got {value}", value=_shown(value))
+    words = space_missing(value) if isinstance(value, str) else None
+    return words or say("expected fields by name, got {value}", value=_shown(value))
 
 
 def _check_comma(before: tuple[str, object], name: object, value: object) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from launcher.profile.text import MAX_BYTES
 from text.sentences import say
 from text.yaml_faults import YamlError
-from text.yaml_reading import Rules, mapping, read
+from text.yaml_reading import Rules, check_colons, mapping, read
 from text.yaml_tree import FilePlace, Scalar, empty
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ def read_yaml(text: str, file: str, problems: Problems) -> Branch | None:
     try:
         root = read(text, RULES, file, partial(problems.take, file))
         if root is not None and not empty(root):
+            check_colons(root)
             return mapping(root)
     except YamlError as error:
         problems.take(file, error)

@@ -4,25 +4,31 @@ from __future__ import annotations
 
 import inspect
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from launcher.faults.failure import Failure, is_from, name_of
 from launcher.faults.remedy import listed
 from text.sentences import say
+from text.yaml_faults import YamlError
+from text.yaml_reading import Rules, check_colons, mapping, read
+from text.yaml_tree import Branch, empty
 
 if TYPE_CHECKING:
     from text.sentences import Words
+    from text.yaml_tree import Tree
 
 _OF_TYPE = re.compile(
     r"set parameter '(.+?)' to '(.*)' of type '(\w+)', expecting type '(\w+)'", re.DOTALL
 )
 """What rclpy says of a parameter of the wrong type."""
+_FILE = re.compile(r"parse params file: '(?:--params-file )?(?P<file>[^']+)'")
 _MIXED = re.compile(
-    r"params file: '(?:--params-file )?(?P<file>[^']+)'.*Sequence should be of same type. "
-    r"Value type '(?P<type>\w+)' do not belong at line_num (?P<line>\d+)",
-    re.DOTALL,
+    r"same type. Value type '(?P<type>\w+)' do not belong at line_num (?P<line>\d+)"
 )
-"""What rcl_yaml_param_parser says of a list."""
+"""What rcl_yaml_param_parser says of a file, and of a list in it."""
+_BOOLEAN = re.compile(r"(?<![\w'\"])(?:y|n|yes|no|on|off|true|false)(?![\w'\"])", re.IGNORECASE)
+_RULES = Rules(shares=True, longest=1 << 20, deepest=64, most=100_000, joins=True)
 _NUMBERS = ("INTEGER", "DOUBLE")
 _SETTERS = ("set_parameters", "set_parameters_atomically", "_check_undeclared_parameters")
 _LISTS = ("declare_parameters", "get_parameters")
@@ -164,25 +170,58 @@ def declared(failure: Failure) -> Words | None:
     return None
 
 
-def mixed_list(failure: Failure) -> Words | None:
-    """A list in a file of parameters has values of several types."""
-    found = _MIXED.search(str(failure.error))
+def in_file(failure: Failure) -> Words | None:
+    """A file of parameters cannot be read by rcl."""
+    found = _FILE.search(str(failure.error))
     if found is None:
         return None
-    file = found["file"].rpartition("/")[2]
-    if found["type"] == "bool":
+    path, name = Path(found["file"]), found["file"].rpartition("/")[2]
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+        _check(read(text, _RULES))
+    except YamlError as error:
+        return say(
+            "{file}, line {line}, column {column}: {reason}.",
+            file=name,
+            line=error.line,
+            column=error.column,
+            reason=error.message,
+        )
+    except (OSError, ValueError):
+        return None
+    return _mixed(str(failure.error), name, text.splitlines())
+
+
+def _check(tree: Tree | None) -> None:
+    """Raise YamlError where a space is missing after a colon."""
+    if isinstance(tree, Branch):
+        check_colons(tree)
+        for name, entry in tree.entries.items():
+            if name == "ros__parameters" and not empty(entry.value):
+                mapping(entry.value)
+            _check(entry.value)
+
+
+def _mixed(said: str, file: str, lines: list[str]) -> Words | None:
+    """Say that a list has values of several types; None if nothing is said of one."""
+    found = _MIXED.search(said)
+    if found is None:
+        return None
+    number = int(found["line"])
+    line = lines[number - 1] if number <= len(lines) else ""
+    if found["type"] == "bool" or _BOOLEAN.search(line):
         return say(
             "Line {line} of {file}: a list has values of one type, and ROS takes yes, no, on, off,"
             " y, n, true and false without quotes for booleans: put all of them in quotes.",
-            line=found["line"],
+            line=number,
             file=file,
         )
     return say(
         "Line {line} of {file}: a list has values of one type: put all of them in quotes, or none;"
         " 1.0 is a double, 1 an integer.",
-        line=found["line"],
+        line=number,
         file=file,
     )
 
 
-RULES = (listing, parameters, parameter_value, told, declared, mixed_list)
+RULES = (listing, parameters, parameter_value, told, declared, in_file)

@@ -188,6 +188,15 @@ def given(value: str, default: str) -> str:
     )
 
 
+def given_in_file(lines: str) -> str:
+    """Return a program that is given these lines of a file of parameters."""
+    return script(
+        "from pathlib import Path\nfile = Path(__file__).with_name('given.yaml')\n"
+        f"file.write_text('/**:\\n  ros__parameters:\\n    {lines}')\n"
+        'rclpy.init(args=["--ros-args", "--params-file", str(file)])'
+    )
+
+
 PARAMETERS = {
     "off for a text": given("off", "'slow'"),
     "y in a list of texts": given("[y, n]", "['x', 'y']"),
@@ -198,11 +207,12 @@ PARAMETERS = {
     "whole number for a fraction": given("5", "1.5"),
     "list for a single value": given("[1.5]", "1.5"),
     "single value for a list": given("1.5", "[1.5]"),
-    "off among texts": script(
-        "from pathlib import Path\nfile = Path(__file__).with_name('mixed.yaml')\n"
-        "file.write_text('/**:\\n  ros__parameters:\\n    p: [slow, off]')\n"
-        'rclpy.init(args=["--ros-args", "--params-file", str(file)])'
-    ),
+    "off among texts": given_in_file("p: [slow, off]"),
+    "off before a text": given_in_file("p: [off, slow]"),
+    "number among texts": given_in_file("p: [slow, 5]"),
+    "colon without a space in a file": given_in_file("p:slow"),
+    "two colons without a space in a file": given_in_file("p:slow\\n    q: 5"),
+    "no-break space in a file": given_in_file("p:\\u00a0slow"),
     "parameter not declared": node('self.get_parameter("speed")'),
     "parameter declared twice": node(
         'self.declare_parameter("v", 1.0)\nself.declare_parameter("v", 2.0)'
