@@ -40,8 +40,14 @@ class NodeState(str, Enum):
         """Whether a process of this node exists."""
         return self in _ALIVE
 
+    @property
+    def coming(self) -> bool:
+        """Whether the node is not at work yet: it waits, is starting, or will be restarted."""
+        return self in _COMING
+
 
 _ALIVE = frozenset({NodeState.STARTING, NodeState.READY, NodeState.RUNNING, NodeState.STOPPING})
+_COMING = frozenset({NodeState.WAITING, NodeState.STARTING, NodeState.BACKOFF})
 
 
 class Severity(str, Enum):

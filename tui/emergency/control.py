@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robot.safety.stop_file import StopFile
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
 SENT_WITHIN_S = 2.0
 KEPT_WITHIN_S, CONFIRMED_WITHIN_S, LOOK_S = 1.0, 15.0, 0.1
 """Within what a stop is on disk, and another observer has taken the place of one that hangs."""
+OPENED_WITHIN_S, SEEN_WITHIN_S = 20.0, 2.0
+"""How long a stop waits for nodes that are starting, and for the graph to show one that has."""
 AGAIN_S = 1.0
 """Interval at which a release is repeated for nodes that still hold, with the time of the first."""
 INSIST_S = 10.0
@@ -78,8 +82,10 @@ class EmergencyControl:
     def pressed(self, press: Pressed) -> None:
         """Show a stop that has been published, and stop the nodes if nobody listens."""
         self._tell_of_publications()
-        self._set(self.state.pressed(press.at_s))
-        self._app.run_worker(self._stop(press.sent), group="emergency")
+        is_open = self._feed.link is not None
+        self._set(self.state.pressed(press.at_s, waits=not is_open))
+        if is_open:
+            self._app.run_worker(self._stop(press.sent), group="emergency")
 
     def release(self) -> None:
         """Let the wheels turn again, but let nothing start them automatically."""
@@ -120,8 +126,15 @@ class EmergencyControl:
             self._passed_on_s = state.asked_s
             self._app.run_worker(self._reached(self._publish(engaged=True)), group="emergency")
 
+    def begin(self) -> None:
+        """Begin with the session that is open now: it gets the stop that was pressed meanwhile."""
+        waits = self.state.waits and self._feed.replay is None
+        self.forget()
+        if waits:
+            self.engage()
+
     def forget(self) -> None:
-        """Reset for another session."""
+        """Forget the session, and the stop that nobody can obey any more."""
         self._set(Emergency())
 
     def prepare(self) -> None:
@@ -135,6 +148,11 @@ class EmergencyControl:
     async def _stop(self, sent: Future[int] | None) -> None:
         """Stop all nodes as well if the message cannot have reached anybody."""
         feed = self._feed
+        if await self._waits_for_listener():
+            if not self.state.waits:
+                return
+            self._set(replace(self.state, waits=False))
+            sent = self._publish(engaged=True)
         reached = listeners(feed.update) > 0
         sending = asyncio.ensure_future(self._reached(sent))
         if reached and (await sending or await self._is_obeyed()):
@@ -148,6 +166,42 @@ class EmergencyControl:
         if feed.link is not None:
             await feed.link.stop()
         await sending
+
+    async def _waits_for_listener(self) -> bool:
+        """Wait as long as a node that listens may still come; return whether that took a while.
+
+        It has then ended early if the stop does not wait any more: it was released, or pressed
+        again, or the session has ended.
+        """
+        feed, began_s = self._feed, time.monotonic()
+        link, since_s, coming_s = feed.link, self.state.since_s, -math.inf
+        waited = False
+        while not listeners(feed.update):
+            now_s = time.monotonic()
+            if self._may_come():
+                coming_s = now_s
+            if now_s - coming_s > SEEN_WITHIN_S or now_s - began_s > OPENED_WITHIN_S:
+                break
+            if not waited:
+                waited = True
+                self._set(replace(self.state, waits=True))
+            await asyncio.sleep(LOOK_S)
+            if not self.state.waits or self.state.since_s != since_s:
+                break
+            if feed.link is not link:
+                self._set(replace(self.state, waits=False))
+                break
+        return waited
+
+    def _may_come(self) -> bool:
+        """Whether there may soon be a listener: ROS is about to be seen, or nodes are starting."""
+        update, nodes = self._feed.update, self._feed.nodes.values()
+        if update is None:
+            return True
+        return not update.error and any(
+            node.state.coming or (node.state.alive and (node.uptime_s or 0.0) < SEEN_WITHIN_S)
+            for node in nodes
+        )
 
     async def _is_obeyed(self) -> bool:
         """Whether nodes that obey stops have this one by the disk, though ROS does not answer here.

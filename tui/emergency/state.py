@@ -41,6 +41,9 @@ class Emergency:
     """Whether a stop was published that nobody is known to have released."""
     ours: bool = True
     """False if somebody else was seen to engage or to release it."""
+    waits: bool = False
+    """Whether it was pressed here while nobody could obey it yet, and is given to the first who
+    can."""
     by_gate: bool = False
     """Whether it is known only from the gate, or from nodes that are gone."""
     since_s: float = 0.0
@@ -117,9 +120,10 @@ class Emergency:
         settled = self.time_s > self.since_s + SETTLED_S
         return tuple(sorted(self.awaited)) if settled else ()
 
-    def pressed(self, now_s: float) -> Emergency:
+    def pressed(self, now_s: float, *, waits: bool = False) -> Emergency:
         """Engage it from here."""
-        return replace(self.said(True, now_s, now_s), ours=True, since_s=now_s, awaited={})
+        state = self.said(True, now_s, now_s)
+        return replace(state, ours=True, since_s=now_s, awaited={}, waits=waits)
 
     def released(self, now_s: float) -> Emergency:
         """Release it from here; every node that holds has yet to confirm that."""
@@ -132,6 +136,7 @@ class Emergency:
         return replace(
             self,
             asked=engaged,
+            waits=False,
             by_gate=False,
             heard_s=heard_s,
             said_s=said_s,

@@ -29,7 +29,9 @@ def stop_words(state: Emergency, release_key: str) -> tuple[str, ...]:
         (head, release),
         (_("■ EMERGENCY STOP"), release),
     )
-    if state.unconfirmed:
+    if state.waits:
+        lines = (*lines[:3], (_("■ EMERGENCY STOP"), _("waits for a node")))
+    elif state.unconfirmed:
         # Whether it holds matters more than the key that ends it.
         lines = (*lines[:3], (_("■ EMERGENCY STOP"), _("unconfirmed")))
     return tuple(dict.fromkeys(" · ".join(filter(None, parts)) for parts in lines))
@@ -60,6 +62,8 @@ def differing_words(state: Emergency) -> str:
 
 
 def _unconfirmed_words(state: Emergency) -> str:
+    if state.waits:
+        return _("waits for the first node that can obey")
     if state.unconfirmed:
         return _("pressed, nobody has confirmed it")
     if state.silent:

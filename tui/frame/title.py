@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from tui.frame.host import Host
     from tui.frame.title_bar import TitleBar
 
-COMING = frozenset({"waiting", "starting", "backoff"})
-
 
 def show(bar: TitleBar, app: Host, front: str) -> None:
     """Show everything on a bar; `front` is the screen in front."""
@@ -43,7 +41,7 @@ def look(app: Host) -> str:
     holds, or what is shown of the graph is old.
     """
     if app.feed.link is None:
-        return "state"
+        return "stop" if app.emergency.state.waits else "state"
     if app.emergency.state.engaged:
         return "stop"
     if _old_since_s(app) is not None:
@@ -54,14 +52,16 @@ def look(app: Host) -> str:
 
 
 def starting(app: Host) -> bool:
-    """Return whether a node is not running yet: it waits, is starting, or will be restarted."""
-    return any(node.state.value in COMING for node in app.feed.nodes.values())
+    """Return whether a node is not at work yet."""
+    return any(node.state.coming for node in app.feed.nodes.values())
 
 
 def states(app: Host) -> Sequence[str]:
     """Return the texts of the state, from long to short; the first that fits is shown."""
     session = app.feed.session
     if session is None:
+        if app.emergency.state.waits:
+            return _stopped(app)
         if app.feed.ended:
             return (localized(app.feed.ended), _("ended"))
         opening = app.sessions.opening
@@ -75,7 +75,7 @@ def states(app: Host) -> Sequence[str]:
 def _alarm(app: Host) -> Sequence[str]:
     """Return the texts of what `look` is about; none if nothing is amiss."""
     if app.emergency.state.engaged:
-        return stop_words(app.emergency.state, app.keys_of(EmergencyRelease)[0])
+        return _stopped(app)
     old_since_s = _old_since_s(app)
     if old_since_s is not None:
         # Whatever else there is to say was true then.
@@ -83,6 +83,10 @@ def _alarm(app: Host) -> Sequence[str]:
     if app.bypass.now:
         return app.bypass.words()
     return _held(app.emergency.state) if app.emergency.state.blocked else ()
+
+
+def _stopped(app: Host) -> Sequence[str]:
+    return stop_words(app.emergency.state, app.keys_of(EmergencyRelease)[0])
 
 
 def aside(app: Host) -> str:

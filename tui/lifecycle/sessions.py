@@ -150,9 +150,9 @@ class Sessions:
         if request.profile is not None:
             self.last_lesson = link.session.name
             app.post_message(LessonOpened(link.session.name))
-        self._emergency.forget()
         self._bypass.forget()
         self._feed.connect(link, self.opener.observe(link.session), self.opener.replay)
+        self._emergency.begin()
         if self._feed.replay is not None:
             await self._show_recording(link.session)
         with contextlib.suppress(LauncherError):  # It may just have ended.
@@ -248,6 +248,7 @@ class Sessions:
     async def _back_to_picker(self) -> None:
         """Go back to the list, and remove the screens of the session."""
         self.picking = True
+        self._emergency.forget()
         self._feed.close()
         await self._screens.show("picker")
         await self._screens.forget()

@@ -35,6 +35,11 @@ class EmergencyStop(SessionAction):
     priority = True
 
     @classmethod
+    def possible(cls, target: Host) -> bool | None:
+        """Also while a session is being opened."""
+        return target.feed.link is not None or bool(target.sessions.opening)
+
+    @classmethod
     def shown(cls, target: Host) -> bool:
         """Not in a replay."""
         return target.feed.replay is None
@@ -66,7 +71,8 @@ class EmergencyRelease(SessionAction):
     @classmethod
     def pressable(cls, target: Host) -> bool | None:
         """Whenever there is a robot: pressed in vain, it says so."""
-        return target.feed.link is not None and target.feed.replay is None
+        is_there = target.feed.link is not None or target.emergency.state.waits
+        return is_there and target.feed.replay is None
 
     @classmethod
     def shown(cls, target: Host) -> bool:
