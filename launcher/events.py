@@ -41,10 +41,15 @@ class AgentsEvent:
 
 
 @dataclass(frozen=True)
+class UnguardedEvent:
+    """The supervisor has lost its guardian, which cannot be started again."""
+
+
+@dataclass(frozen=True)
 class ClosedEvent:
     """The session has ended, or the supervisor is gone; no event follows."""
 
     reason: str
 
 
-Event: TypeAlias = StatusEvent | LogEvent | StraysEvent | AgentsEvent | ClosedEvent
+Event: TypeAlias = StatusEvent | LogEvent | StraysEvent | AgentsEvent | UnguardedEvent | ClosedEvent

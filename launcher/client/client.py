@@ -267,6 +267,9 @@ class SupervisorClient:
         """Processes that an earlier run left behind, kept up to date."""
         self.agents = Agents()
         """The agents, and what they ask for, kept up to date."""
+        # An older Deck does not say.
+        self.unguarded = bool(hello.get("unguarded", False))
+        """Whether the supervisor has lost its guardian, kept up to date."""
         self.emergency_stop = StopRoad(folder, self.session.domain)
         """Gives (True) or releases (False) the emergency stop without the middleware, on any thread
         and without waiting."""
@@ -490,6 +493,9 @@ class SupervisorClient:
         elif event == "agents":
             self.agents = unpack_agents(message["agents"])
             self._inbox.put_agents(self.agents)
+        elif event == "unguarded":
+            self.unguarded = True
+            self._inbox.put_unguarded()
         elif event == "closed":
             self._inbox.close(unpack_text(message["reason"]))
         elif "reply" in message:

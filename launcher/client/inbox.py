@@ -6,7 +6,14 @@ import asyncio
 from collections import deque
 from typing import TYPE_CHECKING
 
-from launcher.events import AgentsEvent, ClosedEvent, LogEvent, StatusEvent, StraysEvent
+from launcher.events import (
+    AgentsEvent,
+    ClosedEvent,
+    LogEvent,
+    StatusEvent,
+    StraysEvent,
+    UnguardedEvent,
+)
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterable, Mapping
@@ -28,6 +35,7 @@ class Inbox:
         self._skipped: dict[str, int] = {}
         self._strays: tuple[Stray, ...] | None = None
         self._agents: Agents | None = None
+        self._unguarded = False
         self._closed: ClosedEvent | None = None
         self._filled = asyncio.Event()
 
@@ -53,6 +61,11 @@ class Inbox:
     def put_agents(self, agents: Agents) -> None:
         """Replace the agents."""
         self._agents = agents
+        self._filled.set()
+
+    def put_unguarded(self) -> None:
+        """Add that the guardian is lost."""
+        self._unguarded = True
         self._filled.set()
 
     def close(self, reason: str) -> None:
@@ -83,8 +96,11 @@ class Inbox:
             events.append(StraysEvent(self._strays))
         if self._agents is not None:
             events.append(AgentsEvent(self._agents))
+        if self._unguarded:
+            events.append(UnguardedEvent())
         self._nodes, self._lines, self._skipped = {}, deque(), {}
         self._strays = self._agents = None
+        self._unguarded = False
         return events
 
     def _skip(self, name: str, count: int) -> None:

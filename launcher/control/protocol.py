@@ -1,10 +1,11 @@
 """The protocol of the control socket: one JSON object per line, both ways, versioned.
 
 The supervisor speaks first: `{"deck": VERSION, "session": ..., "nodes": [...], "strays": [...],
-"agents": ...}`.
+"agents": ..., "unguarded": false}`.
 A client answers `{"deck": VERSION}`, then sends requests such as `{"id": 1, "op": "start", "nodes":
 ["sonar"]}`. It receives `{"reply": 1, "result": ...}` or `{"reply": 1, "error": {...}}`, and in
-between events: `{"event": "status" | "log" | "strays" | "agents" | "closed", ...}`.
+between events: `{"event": "status" | "log" | "strays" | "agents" | "unguarded" | "closed", ...}`.
+`unguarded` tells that the supervisor has lost its guardian.
 
 `{"id": 1, "op": "emergency_stop", "said_ns": ...}` gives the robot an emergency stop, and
 `emergency_release` releases those from before it, by the file that the nodes watch: no middleware

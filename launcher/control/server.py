@@ -65,6 +65,7 @@ class Controlled(Protocol):
 
     info: SessionInfo
     strays: tuple[Stray, ...]
+    unguarded: bool
 
     def statuses(self) -> Mapping[str, NodeStatus]:
         """Return the current status of every node."""
@@ -147,6 +148,11 @@ class ControlServer:
         for client in self._clients:
             client.tell(news)
 
+    def guardian_lost(self) -> None:
+        """Note that the guardian is gone."""
+        for client in self._clients:
+            client.tell({"event": "unguarded"})
+
     def _agents_changed(self) -> None:
         news = {"event": "agents", "agents": pack_agents(self.consent.state)}
         for client in self._clients:
@@ -203,6 +209,7 @@ class ControlServer:
                 "nodes": [pack_status(one) for one in self._controlled.statuses().values()],
                 "strays": [pack_stray(one) for one in self._controlled.strays],
                 "agents": pack_agents(self.consent.state),
+                "unguarded": self._controlled.unguarded,
             }
         )
         self._clients[client] = None

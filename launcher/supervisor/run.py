@@ -162,6 +162,8 @@ class Supervisor:
     def __init__(self, plan: Plan, run_folder: RunFolder, spawn_server: SpawnServerHandle) -> None:
         self.info = run_folder.record.session
         self.strays: tuple[Stray, ...] = ()
+        self.unguarded = False
+        """Whether the guardian is gone; it was the parent, so it cannot be started again."""
         self._plan = plan
         self._run_folder = run_folder
         self._loop = asyncio.get_running_loop()
@@ -337,6 +339,8 @@ class Supervisor:
     def _guardian_gone(self, guardian: int, held: int) -> None:
         self._loop.remove_reader(held)
         os.close(held)
+        self.unguarded = True
+        self.control.guardian_lost()
         words = say(
             "the guardian (pid {pid}) ended: if the supervisor is killed now, background "
             "processes of nodes may keep running",

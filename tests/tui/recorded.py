@@ -13,7 +13,15 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from launcher.consent import Agents, ConsentAnswer
-from launcher.events import AgentsEvent, ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
+from launcher.events import (
+    AgentsEvent,
+    ClosedEvent,
+    Event,
+    LogEvent,
+    StatusEvent,
+    StraysEvent,
+    UnguardedEvent,
+)
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Stray
 from tests.tui.recorded_graph import PARAMETERS, RecordedGraph
 from tests.tui.recorded_lesson import (
@@ -76,6 +84,7 @@ class RecordedSession:
         self.nodes: dict[str, NodeStatus] = dict(nodes)
         self.strays: tuple[Stray, ...] = ()
         self.agents = Agents()
+        self.unguarded = False
         self.asked: list[tuple[str, ...]] = []
         """What was asked: ("stop", "camera"), ("shutdown", "now"), ("aclose",)."""
         self.stops: list[bool] = []
@@ -97,6 +106,8 @@ class RecordedSession:
             self.strays = event.strays
         if isinstance(event, AgentsEvent):
             self.agents = event.agents
+        if isinstance(event, UnguardedEvent):
+            self.unguarded = True
         self._queue.put_nowait(event)
 
     def emergency_stop(self, engaged: bool, said_ns: int) -> None:

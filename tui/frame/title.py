@@ -38,7 +38,7 @@ def look(app: Host) -> str:
     """Return the style of the title.
 
     `stop` while stopped, `danger` while somebody drives past the gate, `alarm` while the gate
-    holds, or what is shown of the graph is old.
+    holds, what is shown of the graph is old, or the session has lost its guardian.
     """
     if app.feed.link is None:
         return "stop" if app.emergency.state.waits else "state"
@@ -48,7 +48,7 @@ def look(app: Host) -> str:
         return "alarm"
     if app.bypass.now:
         return "danger"
-    return "alarm" if app.emergency.state.blocked else "state"
+    return "alarm" if app.emergency.state.blocked or _is_unguarded(app) else "state"
 
 
 def starting(app: Host) -> bool:
@@ -82,7 +82,9 @@ def _alarm(app: Host) -> Sequence[str]:
         return _old(old_since_s)
     if app.bypass.now:
         return app.bypass.words()
-    return _held(app.emergency.state) if app.emergency.state.blocked else ()
+    if app.emergency.state.blocked:
+        return _held(app.emergency.state)
+    return _unguarded() if _is_unguarded(app) else ()
 
 
 def _stopped(app: Host) -> Sequence[str]:
@@ -116,6 +118,18 @@ def _old(since_s: float) -> Sequence[str]:
     return (
         _("⚠ No word of the ROS graph since {time}: what is shown is from then").format(time=time),
         _("⚠ graph of {time}").format(time=time),
+    )
+
+
+def _is_unguarded(app: Host) -> bool:
+    return app.feed.link is not None and app.feed.link.unguarded
+
+
+def _unguarded() -> Sequence[str]:
+    """Return that the guardian is gone, and what brings it back."""
+    return (
+        _("⚠ The guardian process is dead: start the session anew"),
+        _("⚠ guardian dead"),
     )
 
 

@@ -217,4 +217,6 @@ def _initials(text: str, letters: int, mark: str = "") -> str:
 
 
 def _cut(text: str, room: int) -> str:
+    if cell_len(text) <= room:
+        return text
     return set_cell_size(text, room - 1).rstrip() + "…" if room > 1 else ""

@@ -231,7 +231,14 @@ class Feed:
 
     async def _on_event(self, event: Event, owner: SessionOwner) -> None:
         # Not needed for the first frame.
-        from launcher.events import AgentsEvent, ClosedEvent, LogEvent, StatusEvent, StraysEvent
+        from launcher.events import (
+            AgentsEvent,
+            ClosedEvent,
+            LogEvent,
+            StatusEvent,
+            StraysEvent,
+            UnguardedEvent,
+        )
 
         if isinstance(event, StatusEvent):
             self._tell_status(frozenset(node.name for node in event.nodes))
@@ -243,6 +250,10 @@ class Feed:
         elif isinstance(event, AgentsEvent):
             self._app.post_message(AgentsChanged())
             self.tell(AgentsChanged)
+        elif isinstance(event, UnguardedEvent):
+            if self.front is not None:
+                # The title shows it.
+                self.front.show_frame()
         elif isinstance(event, ClosedEvent):
             if self.graph is not None:
                 # Before anything that takes time: nobody is in charge any more.

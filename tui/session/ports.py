@@ -52,6 +52,10 @@ class SessionLink(Protocol):
         """The agents, and what they ask for, kept up to date."""
 
     @property
+    def unguarded(self) -> bool:
+        """Whether nobody would end what is left if the supervisor were killed now."""
+
+    @property
     def emergency_stop(self) -> Callable[[bool, int], None]:
         """Gives (True) or releases the emergency stop without ROS; on any thread, at once.
 

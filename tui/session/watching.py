@@ -65,6 +65,7 @@ class NodelessLink:
         self.nodes: Mapping[str, NodeStatus] = {}
         self.strays: tuple[Stray, ...] = ()
         self.agents = Agents()
+        self.unguarded = False
         self._closed = asyncio.Event()
 
     async def events(self, *, past: int = 0) -> AsyncIterator[Event]:

@@ -243,12 +243,17 @@ async def test_a_daemon_without_a_mark_does_not_outlive_a_killed_supervisor(star
 
 async def test_a_guardian_that_is_killed_is_told_of_and_ends_nothing(start: Launch) -> None:
     client = await start({"node": {"exec": SLEEPER}})
+    assert not client.unguarded
     pid = await running_pid(client, "node")
     guardian = guardian_of(client.session.supervisor_pid)
     assert command_line(guardian) == "deck: guardian"
     kill(guardian, signal.SIGTERM)
     kill(guardian, signal.SIGKILL)
     await said(client, "deck", f"the guardian (pid {guardian}) ended")
+    await until(lambda: client.unguarded, "the word for the screen")
+    another = await attach(client.session.run_id)
+    assert another.unguarded, "who comes later is told, too"
+    await another.aclose()
     assert await running_pid(client, "node") == pid
 
 
