@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
     from nodes.safety.distance_sensors import DistanceSensor, SensorResult
 
-_STATE_EVERY_S = 1.0
+_STATE_EVERY_S = _PUBLISHERS_EVERY_S = 1.0
 
 
 class SafetyStop(LessonNode):
@@ -109,9 +109,9 @@ class SafetyStop(LessonNode):
         self._state = self.create_publisher(DiagnosticArray, SAFETY_STATE, DEPTH)
         # In this order, which is that of their callbacks: a waiting stop comes first.
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
-        self._listen(self.text("front_topic"), self._see_front)
+        self._listen(self.text("front_topic"), self._see_front, self._sensors.front)
         if self._sensors.rear is not None:
-            self._listen(self.text("rear_topic"), self._see_rear)
+            self._listen(self.text("rear_topic"), self._see_rear, self._sensors.rear)
         self._gate = CommandGate(self, self._judge, self._reason) if self.switch("gate") else None
         self._timer = self.every(1.0 / self.number("rate"), self._tick)
         self.say.info(STARTED, metres=self.number("critical_distance"))
@@ -129,10 +129,22 @@ class SafetyStop(LessonNode):
 
     # ---------------------------------------------------------------- what comes in
 
-    def _listen(self, topic: str, see: Callable[[Float32, dict[str, Any]], None]) -> None:
+    def _listen(
+        self,
+        topic: str,
+        see: Callable[[Float32, dict[str, Any]], None],
+        sensor: DistanceSensor,
+    ) -> None:
         hear: Any = see
+        self.every(_PUBLISHERS_EVERY_S, lambda: sensor.are(self._senders_of(topic)))
         SensorListener(self, Float32, topic, hear)
         SolePublisher(self, self.resolve_topic_name(topic), others=LOWEST)
+
+    def _senders_of(self, topic: str) -> dict[bytes, str]:
+        return {
+            bytes(one.endpoint_gid): f"{one.node_namespace.rstrip('/')}/{one.node_name}"
+            for one in self.get_publishers_info_by_topic(topic)
+        }
 
     def _see_front(self, message: Float32, info: dict[str, Any]) -> None:
         if self._held_up():

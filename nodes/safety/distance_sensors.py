@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import time
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from robot.safety.distance import RangeState, Reading, SafetyZone, Shares, range_state, share
 from robot.safety.several import LowestReading
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 
 class SensorResult(NamedTuple):
@@ -18,6 +21,8 @@ class SensorResult(NamedTuple):
     reading: Reading
     share: float
     """The share of the requested speed that is allowed that way, 0 to 1."""
+    too_rare: tuple[str, ...] = ()
+    """Which of several publishers has fallen silent; one of them if there are more."""
 
 
 class DistanceSensor:
@@ -31,15 +36,21 @@ class DistanceSensor:
         """Add a new reading, its number at its publisher, and how many publishers there are."""
         self._readings.see(distance_m, time.monotonic(), number=number, publishers=publishers)
 
+    def are(self, publishers: Mapping[bytes, str]) -> None:
+        """Say which publishers there are, by identifier, and the names of their nodes."""
+        self._readings.are(publishers, time.monotonic())
+
     def result(self, zone: SafetyZone) -> SensorResult:
         """Return its current result."""
-        reading: Reading = self._readings.reading(time.monotonic(), zone.stale_after_s)
+        now_s = time.monotonic()
+        reading: Reading = self._readings.reading(now_s, zone.stale_after_s)
         state = range_state(reading, zone.critical_m, zone.stale_after_s)
         part = share(reading, zone)
         if state == RangeState.FREE and not part:
             # At the critical distance itself, if it slows before that: nothing is let through.
             state = RangeState.CLOSE
-        return SensorResult(self._place, state, reading, part)
+        too_rare = self._readings.too_rare(now_s, zone.stale_after_s)
+        return SensorResult(self._place, state, reading, part, too_rare)
 
 
 class DistanceSensors:

@@ -41,6 +41,10 @@ _FRONT_OUT_OF_RANGE = {
     RangeState.CLOSE: N_("EMERGENCY BRAKE! Obstacle too close to measure."),
 }
 """Used instead for an infinite distance by REP-117."""
+_FRONT_TOO_RARE = N_(
+    "{nodes} speaks too rarely on the front sonar's topic, silent for {seconds:.1f} s:"
+    " treated as danger."
+)
 _FRONT_SLOWED = N_("Free to move, slowed to {percent} % ({metres:.2f} m).")
 _FRONT_HELD = N_("{metres:.2f} m ahead; the emergency stop holds the wheels.")
 _LOG_EVERY_S = 0.9
@@ -63,6 +67,8 @@ _REASONS = {
     RangeState.INVALID: N_("{place} no valid distance"),
     RangeState.SILENT: N_("{place} sonar is silent"),
 }
+_REASON_TOO_RARE = N_("{place} sonar: {nodes} speaks too rarely")
+_ONE_OF = N_("one of {nodes}")
 _REASONS_OUT_OF_RANGE = {
     RangeState.FREE: N_("{place} nothing in range"),
     RangeState.CLOSE: N_("{place} too close to measure"),
@@ -77,13 +83,20 @@ def tell_front(say: TranslatedLogger, result: SensorResult, *, stopped: bool = F
     log = say.info if result.state == RangeState.FREE else say.warn
     slowed = result.state == RangeState.FREE and result.share < 1
     slowly = _FRONT_HELD if stopped else _FRONT_SLOWED
+    phrase = slowly if slowed else _phrase(result, _FRONT, _FRONT_OUT_OF_RANGE)
     log(
-        slowly if slowed else _phrase(result, _FRONT, _FRONT_OUT_OF_RANGE),
+        _FRONT_TOO_RARE if result.too_rare else phrase,
         every_s=_LOG_EVERY_S,
         metres=result.reading.distance_m,
         seconds=result.reading.age_s,
         percent=_percent(result.share),
+        nodes=_one_of(say, result.too_rare),
     )
+
+
+def _one_of(say: TranslatedLogger, nodes: Sequence[str]) -> str:
+    names = ", ".join(nodes)
+    return say.text(_ONE_OF, nodes=names) if len(nodes) > 1 else names
 
 
 def _percent(share: float) -> int:
@@ -136,6 +149,8 @@ def _sentence(
 
 def _reason(say: TranslatedLogger, result: SensorResult) -> str:
     place, metres = say.text(_PLACES[result.place]), result.reading.distance_m
+    if result.too_rare:
+        return say.text(_REASON_TOO_RARE, place=place, nodes=_one_of(say, result.too_rare))
     return say.text(_phrase(result, _REASONS, _REASONS_OUT_OF_RANGE), place=place, metres=metres)
 
 
@@ -155,6 +170,7 @@ def _values(
     for result in results:
         metres = result.reading.distance_m
         yield result.place, result.state.value
+        yield f"{result.place}_too_rare", " ".join(result.too_rare)
         yield f"{result.place}_m", "" if metres is None else f"{metres:.3f}"
     yield "source", snapshot.source
     yield "ignored", snapshot.ignored

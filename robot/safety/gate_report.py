@@ -23,6 +23,8 @@ class Gate:
     """`front` and `rear` to `free`, `close`, `invalid` or `silent`; only for existing sensors."""
     metres: Mapping[str, float] = field(default_factory=dict)
     """`front` and `rear` to the newest distance, if there is one."""
+    too_rare: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """`front` and `rear` to who speaks too rarely there; one of them if there are more."""
     source: str = ""
     """The topic that it obeys now, empty if there is none."""
     ignored: str = ""
@@ -68,6 +70,7 @@ def _read(status: Mapping[str, Any]) -> Gate:
         values.get("verdict", ""),
         {place: values[place] for place in PLACES if place in values},
         {place: number for place, number in metres.items() if number is not None},
+        {place: tuple(values.get(f"{place}_too_rare", "").split()) for place in PLACES},
         values.get("source", ""),
         values.get("ignored", ""),
         1.0 if share is None else share,

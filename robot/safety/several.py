@@ -2,7 +2,8 @@
 
 A forgotten mock, or a recording that is played, must not make the robot bolder than the one sensor
 or gate that is right. Which message is from whom rclpy does not tell; but each publisher numbers
-its messages one by one, so the messages fall into streams.
+its messages one by one, so the messages fall into streams. Whose a stream is follows from the
+graph: that of the only publisher while there is one, and that of the last whose stream is unknown.
 """
 
 from __future__ import annotations
@@ -10,14 +11,19 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from robot.safety.distance import Reading
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
 
 _MOST = 4096
 _LOST = 100
 """So many messages of a stream may be missing; after more it counts as another one."""
 _STREAMS = 16
+_ALONE_S = 1.0
+"""A message may arrive a moment before its publisher is in the graph."""
 
 Said = TypeVar("Said")
 
@@ -28,6 +34,8 @@ class _Stream(Generic[Said]):
     said: Said
     first_s: float
     last_s: float
+    publisher: bytes | None = None
+    """Whose it is, None while that is not known."""
 
 
 class Streams(Generic[Said]):
@@ -35,6 +43,7 @@ class Streams(Generic[Said]):
 
     def __init__(self) -> None:
         self._streams: list[_Stream[Said]] = []
+        self._publishers: dict[bytes, str] = {}
 
     def hear(self, said: Said, number: int, now_s: float) -> None:
         """Add a message; its number is 0 if the middleware tells none."""
@@ -61,17 +70,33 @@ class Streams(Generic[Said]):
         None if there is no such one. A node that was started again in the place of one that died is
         no second one.
         """
+        silent = self._silent(now_s, stale_after_s)
+        return max((now_s - one.last_s for one in silent), default=None)
+
+    def are(self, publishers: Mapping[bytes, str], now_s: float) -> None:
+        """Say which publishers there are: their identifiers and the names of their nodes."""
+        self._publishers = dict(publishers)
+        if len(publishers) == len(self._streams) == 1:
+            (stream,) = self._streams
+            if now_s - stream.first_s >= _ALONE_S:
+                (stream.publisher,) = publishers
+
+    def too_rare(self, now_s: float, stale_after_s: float) -> tuple[str, ...]:
+        """Return who is silent as `silence_s` says; several names if it is one of them."""
+        names: set[str] = set()
+        for one in self._silent(now_s, stale_after_s):
+            known = {each.publisher for each in self._streams if each is not one}
+            whose = [one.publisher] if one.publisher in self._publishers else self._publishers
+            names.update(self._publishers[gid] for gid in whose if gid and gid not in known)
+        return tuple(sorted(names))
+
+    def _silent(self, now_s: float, stale_after_s: float) -> Iterator[_Stream[Said]]:
         fresh = [one for one in self._streams if now_s - one.last_s <= stale_after_s]
-        silent = [one for one in self._streams if now_s - one.last_s > stale_after_s]
-        return max(
-            (
-                now_s - one.last_s
-                for one in silent
-                for other in fresh
-                if one.last_s >= other.first_s
-            ),
-            default=None,
-        )
+        for one in self._streams:
+            if now_s - one.last_s > stale_after_s and any(
+                one.last_s >= other.first_s for other in fresh
+            ):
+                yield one
 
 
 class LowestReading:
@@ -92,6 +117,16 @@ class LowestReading:
         self._are_several = publishers > 1
         if not self._are_several:
             self._streams.forget_but_newest()
+
+    def are(self, publishers: Mapping[bytes, str], now_s: float) -> None:
+        """Say which publishers there are: their identifiers and the names of their nodes."""
+        self._streams.are(publishers, now_s)
+
+    def too_rare(self, now_s: float, stale_after_s: float) -> tuple[str, ...]:
+        """Return who of several has fallen silent while others speak; one of them if more."""
+        if not self._are_several or now_s - self._seen_s > stale_after_s:
+            return ()
+        return self._streams.too_rare(now_s, stale_after_s)
 
     def reading(self, now_s: float, stale_after_s: float) -> Reading:
         """Return what counts now, and its age.

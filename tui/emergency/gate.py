@@ -40,6 +40,14 @@ TOO_CLOSE = {
     "front": N_("obstacle ahead too close to measure"),
     "rear": N_("obstacle behind too close to measure"),
 }
+TOO_RARE = {
+    "front": N_("{nodes} speaks too rarely ahead"),
+    "rear": N_("{nodes} speaks too rarely behind"),
+}
+ONE_TOO_RARE = {
+    "front": N_("one of {nodes} speaks too rarely ahead"),
+    "rear": N_("one of {nodes} speaks too rarely behind"),
+}
 REFUSED = {
     "m/s": N_("{value} m/s, limit {limit} m/s"),
     "rad": N_("{value} rad, limit {limit} rad"),
@@ -96,6 +104,9 @@ def gate_words(gate: Gate) -> str:
 
 def _sensor_words(gate: Gate, place: str, state: str) -> str:
     metres = gate.metres.get(place)
+    if nodes := gate.too_rare.get(place):
+        words = TOO_RARE[place] if len(nodes) == 1 else ONE_TOO_RARE[place]
+        return _(words).format(nodes=plain(", ".join(name.strip("/") for name in nodes), 100))
     if state == "free" and metres is None:
         return ""
     if metres is not None and math.isinf(metres) and state in ("free", "close"):

@@ -9,7 +9,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Image
 from std_msgs.msg import ByteMultiArray, Float32
 
-from tests.ros.gate import FRONT, REAR, Gate
+from tests.ros.gate import FRONT, REAR, Gate, values
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
@@ -55,3 +55,23 @@ def test_the_brain_hears_sensors_that_publish_by_best_effort(peer: Peer, ros_dom
         peer.saying("/audio/mic_raw", word, 0.5),
     ):
         node.wait_for_words("1.25 m ahead")
+
+
+def test_of_two_sonars_the_one_that_speaks_too_rarely_is_named(ros_domain: int) -> None:
+    """A forgotten mock at 0.7 Hz came beside the real sonar: not the front sonar is silent."""
+    with (
+        Gate(ros_domain, stale_after_s=0.5) as gate,
+        gate.peer.saying(FRONT, Float32(data=2.0), 0.05),
+    ):
+        gate.wait_for_state("free")
+        gate.states.clear()
+        wait_until(lambda: len(gate.states) > 3, "that it has been alone for a while")
+        with (
+            Peer(ros_domain, "forgotten") as forgotten,
+            forgotten.saying(FRONT, Float32(data=9.0), 1.4),
+        ):
+            wait_until(
+                lambda: values(gate.states[-1])["front_too_rare"] == "/forgotten", "its name"
+            )
+            gate.wait_for_state("blocked_forward")
+            gate.process.wait_for_words("/forgotten speaks too rarely")

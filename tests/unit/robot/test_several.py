@@ -135,3 +135,49 @@ def test_streams_keep_apart_by_number() -> None:
     assert sorted(streams.fresh(0.5, 1.0)) == ["a", "b"]
     streams.forget_but_newest()
     assert len(streams.fresh(0.5, 1.0)) == 1
+
+
+MOCK, REAL = b"mock", b"real"
+
+
+def two(*, at_once: bool, until_s: float) -> LowestReading:
+    """A real sonar at 10 Hz, and a forgotten mock at 0.7 Hz: a second later, or from the start."""
+    seen = LowestReading(0.0)
+    beside_s = 0.0 if at_once else 2.0
+    for tick in range(round(until_s * 10) + 1):
+        now_s = tick * 0.1
+        here = (
+            {REAL: "/sonar_front", MOCK: "/mock"} if now_s >= beside_s else {REAL: "/sonar_front"}
+        )
+        if tick % 10 == 0:
+            seen.are(here, now_s)
+        seen.see(0.8, now_s, number=1000 + tick, publishers=len(here))
+        if now_s >= beside_s and tick % 14 == 0:
+            seen.see(9.0, now_s + 0.01, number=1 + tick // 14, publishers=len(here))
+    return seen
+
+
+def test_who_speaks_too_rarely_is_named_if_it_came_beside_the_other() -> None:
+    seen = two(at_once=False, until_s=5.0)
+    assert state_of(seen, 5.0) == RangeState.SILENT
+    assert seen.too_rare(5.0, STALE_S) == ("/mock",)
+
+
+def test_of_two_that_were_there_from_the_start_it_is_one() -> None:
+    seen = two(at_once=True, until_s=5.0)
+    assert state_of(seen, 5.0) == RangeState.SILENT
+    assert seen.too_rare(5.0, STALE_S) == ("/mock", "/sonar_front")
+
+
+def test_if_the_real_one_falls_silent_beside_a_mock_it_is_named_not_the_mock() -> None:
+    seen = two(at_once=False, until_s=4.2)
+    for count in range(1, 20):
+        seen.see(9.0, 4.2 + count * 0.1, number=4 + count, publishers=2)
+    assert state_of(seen, 6.1) == RangeState.SILENT
+    assert seen.too_rare(6.1, STALE_S) == ("/sonar_front",)
+
+
+def test_while_all_speak_or_none_does_nobody_is_too_rare() -> None:
+    seen = two(at_once=False, until_s=4.2)
+    assert seen.too_rare(4.25, STALE_S) == ()
+    assert seen.too_rare(9.0, STALE_S) == ()

@@ -9,7 +9,7 @@ import pytest
 
 from robot.safety.gate_report import Gate
 from text.i18n import set_language
-from tui.emergency.gate import gate_words
+from tui.emergency.gate import gate_words, held_words
 
 
 @pytest.fixture(autouse=True)
@@ -32,3 +32,19 @@ def test_what_is_nearer_than_can_be_measured_has_words_of_its_own(
     states = {"front": "close", "rear": "close"}
     gate = Gate("blocked", states, dict.fromkeys(states, -math.inf))
     assert gate_words(gate).endswith(": " + ", ".join(words))
+
+
+@pytest.mark.parametrize(
+    ("nodes", "language", "words"),
+    [
+        (("/mock",), "en", "forward is blocked: mock speaks too rarely ahead"),
+        (("/a", "/b"), "en", "forward is blocked: one of a, b speaks too rarely ahead"),
+        (("/mock",), "ru", "вперёд нельзя: mock: спереди слишком редко"),
+    ],
+)
+def test_who_speaks_too_rarely_is_named_in_place_of_a_silent_sonar(
+    nodes: tuple[str, ...], language: str, words: str
+) -> None:
+    set_language(language)
+    gate = Gate("blocked_forward", {"front": "silent"}, too_rare={"front": nodes})
+    assert held_words(gate) == words
