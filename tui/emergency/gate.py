@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import math
 import re
+from typing import TYPE_CHECKING
 
 from robot.safety.gate_report import STOPPED, Gate
 from robot.topics import DRIVE_TELEOP
 from text.figures import figure
 from text.i18n import N_, _
 from text.plain import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 HELD = {
     "blocked_forward": N_("forward is blocked"),
@@ -72,6 +76,12 @@ def held_words(gate: Gate) -> str:
     return _(HELD[gate.verdict]) + (f": {why}" if why else "")
 
 
+def rare_words(gate: Gate) -> str:
+    """Say briefly who speaks too rarely; empty if nobody does."""
+    nodes = {name: None for place in gate.too_rare for name in gate.too_rare[place]}
+    return _("too rare: {nodes}").format(nodes=_names(nodes)) if nodes else ""
+
+
 def refused_words(gate: Gate) -> str:
     """Say what was refused; empty if nothing was."""
     told, what = gate.refused, plain(gate.refused, 60)
@@ -102,11 +112,15 @@ def gate_words(gate: Gate) -> str:
     return plain(" · ".join(filter(None, parts)), 400)
 
 
+def _names(nodes: Iterable[str]) -> str:
+    return plain(", ".join(name.strip("/") for name in nodes), 100)
+
+
 def _sensor_words(gate: Gate, place: str, state: str) -> str:
     metres = gate.metres.get(place)
     if nodes := gate.too_rare.get(place):
         words = TOO_RARE[place] if len(nodes) == 1 else ONE_TOO_RARE[place]
-        return _(words).format(nodes=plain(", ".join(name.strip("/") for name in nodes), 100))
+        return _(words).format(nodes=_names(nodes))
     if state == "free" and metres is None:
         return ""
     if metres is not None and math.isinf(metres) and state in ("free", "close"):

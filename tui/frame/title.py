@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from text.i18n import _, localized, ngettext, pick
 from text.plain import plain
 from tui.clock import time_of_day
+from tui.emergency.gate import rare_words
 from tui.emergency.state import held_reason
 from tui.emergency.words import stop_words
 from tui.frame.actions.app import TABS, EmergencyRelease
@@ -136,7 +137,9 @@ def _unguarded() -> Sequence[str]:
 def _held(state: Emergency) -> Sequence[str]:
     """Return why the gate holds the wheels, or what it refused although it does not hold them."""
     reason = held_reason(state)
-    return (f"⚠ {reason[:1].upper()}{reason[1:]}",)
+    whole = f"⚠ {reason[:1].upper()}{reason[1:]}"
+    rare = "" if state.gate is None else rare_words(state.gate)
+    return (whole, f"⚠ {rare}") if rare else (whole,)
 
 
 def _watched(app: Host, session: SessionInfo) -> Sequence[str]:

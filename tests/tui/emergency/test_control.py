@@ -31,6 +31,7 @@ from tests.tui.recorded import (
 )
 from tests.tui.recorded_emergency import GATE, gate_says, held, obeyed, said, word
 from tests.tui.snapshots import settle
+from text.i18n import set_language
 from tui.deck.command_line import CommandLine
 from tui.emergency import control
 from tui.emergency.state import TOPIC_TYPE
@@ -287,6 +288,25 @@ async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(
     one = sample(SAFETY_STATE, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
+        opener.graph.show(lesson_update(samples={SAFETY_STATE: (one,)}))
+        await settle(pilot)
+        assert words in app.screen.query_one(TitleBar).text
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [("en", " ⚠ too rare: mock_sonar "), ("ru", " ⚠ редко: mock_sonar ")],
+)
+async def test_who_speaks_too_rarely_is_named_whole_on_a_small_terminal(
+    language: str, words: str
+) -> None:
+    set_language(language)
+    told = {"verdict": "blocked_forward", "front": "silent", "front_too_rare": "/mock_sonar"}
+    values = [{"key": key, "value": value} for key, value in told.items()]
+    status = [{"level": b"\x02", "name": "safety_stop", "message": "-", "values": values}]
+    one = sample(SAFETY_STATE, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
+    opener = RecordedOpener()
+    async with opened(opener, size=(80, 24)) as (app, pilot):
         opener.graph.show(lesson_update(samples={SAFETY_STATE: (one,)}))
         await settle(pilot)
         assert words in app.screen.query_one(TitleBar).text
