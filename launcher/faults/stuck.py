@@ -30,10 +30,30 @@ MENDS = {
         "A Rate sleeps until its timer has run, which only this very thread can do: put what is"
         " done at each turn into a callback of create_timer."
     ),
+    "goal": N_(
+        "It waits for an answer that only this very thread can take in. In a callback:"
+        " client.send_goal_async(goal).add_done_callback(self.on_goal), and there"
+        " future.result().get_result_async().add_done_callback(self.on_result)."
+    ),
+    "loop": N_(
+        "The loop waits for an answer that only this very thread can take in, once the callback has"
+        " returned. Have it called back: client.call_async(request)"
+        ".add_done_callback(self.on_answer), where future.result() is the answer."
+    ),
+    "event": N_(
+        "What this waits for only another callback can bring, and none is called before this one"
+        " has returned. Have the answer called back: client.call_async(request)"
+        ".add_done_callback(self.on_answer), and go on there."
+    ),
+    "lock": N_(
+        "Nobody is there to release this lock: the same thread has it already, or nobody has"
+        " released it. Write: with lock: … (which releases it), and threading.RLock() if whoever"
+        " has it may take it again."
+    ),
     "group": N_(
-        "call() waits for an answer that its callback group takes in only after this callback. Give"
-        " the client another one: create_client(…,"
-        " callback_group=MutuallyExclusiveCallbackGroup())."
+        "This waits for an answer that its callback group takes in only after this callback. Have"
+        " it called back: client.call_async(request).add_done_callback(self.on_answer); or give the"
+        " client another group: create_client(…, callback_group=MutuallyExclusiveCallbackGroup())."
     ),
     "pool": N_(
         "Every thread of the executor waits for an answer that one of them would have to take in."
@@ -47,20 +67,52 @@ MENDS = {
         "call() waits for an answer that nobody takes in before rclpy.spin. Here: future ="
         " client.call_async(request), and rclpy.spin_until_future_complete(node, future)."
     ),
+    "main_loop": N_(
+        "The loop waits for an answer that nobody takes in before rclpy.spin. In its place:"
+        " rclpy.spin_until_future_complete(node, future, timeout_sec=5.0)."
+    ),
     "main_rate": N_(
         "A Rate sleeps until its timer has run, and before rclpy.spin none does: put what is done"
         " at each turn into a callback of create_timer."
     ),
-    "main_service": N_(
-        "It waits for a service that nobody offers: does the node that should run, and is the name"
-        " right?"
+    "forsaken": N_(
+        "rclpy.spin_until_future_complete and rclpy.spin_once take the node out of the executor"
+        " that spins it. In a callback: client.call_async(request)"
+        ".add_done_callback(self.on_answer), where future.result() is the answer."
     ),
     "": N_("Until a callback returns, the node hears nothing: let a timer do the waiting."),
 }
 """By what a callback waits in, as `launcher.callback_watch` names it."""
 
+AWAITED = {
+    ("nobody", "service"): N_(
+        "It waits for the service {name}, which nobody offers: does the node that should run, and"
+        " is the name right? Ask before: client.wait_for_service(timeout_sec=5.0) says whether it"
+        " is there; then client.call_async(request).add_done_callback(self.on_answer)."
+    ),
+    ("nobody", "action"): N_(
+        "It waits for the action {name}, which nobody offers: does the node that should run, and"
+        " is the name right? Ask before: client.wait_for_server(timeout_sec=5.0) says whether it"
+        " is there; then client.send_goal_async(goal).add_done_callback(self.on_goal)."
+    ),
+    ("lost", "service"): N_(
+        "It waits for an answer of the service {name} that does not come: nobody offered it when"
+        " the request was sent, or whoever did has ended since. Wait before:"
+        " client.wait_for_service(timeout_sec=5.0); then"
+        " client.call_async(request).add_done_callback(self.on_answer)."
+    ),
+    ("lost", "action"): N_(
+        "It waits for an answer of the action {name} that does not come: nobody offered it when"
+        " the goal was sent, or whoever did has ended since. Wait before:"
+        " client.wait_for_server(timeout_sec=5.0); then"
+        " client.send_goal_async(goal).add_done_callback(self.on_goal)."
+    ),
+}
+"""By why an answer does not come, and of what."""
+
 
 STUCK_SINCE = N_("{name} has been stuck since {time}")
+FORSAKEN = N_("nothing of the node {name} is called any more: no executor spins it")
 STILL_RUNS = N_("{name} still runs after {seconds} s")
 
 
@@ -86,6 +138,16 @@ def stuck_in(told: Mapping[str, Any]) -> tuple[NodeFault, bool] | None:
     source = linecache.getline(file, line).strip()
     linecache.clearcache()
     words = say(STUCK_SINCE, name=name, time=since)
-    meaning = say(MENDS.get(waits_in, MENDS[""]))
+    if waits_in == "forsaken":
+        words = say(FORSAKEN, name=name)
+    meaning = _meaning(waits_in, seen.get("awaited"))
     fault = NodeFault(STUCK, file, line, 0, plain(source), words, meaning)
     return fault, seen.get("over") is True
+
+
+def _meaning(waits_in: str, awaited: object) -> Words:
+    if isinstance(awaited, list) and len(awaited) == 2:
+        kind, name = map(str, awaited)
+        if (waits_in, kind) in AWAITED:
+            return say(AWAITED[waits_in, kind], name=name)
+    return say(MENDS.get(waits_in, MENDS[""]))

@@ -177,7 +177,7 @@ class SupervisedNode:
         if self.fault is None or self.fault.kind != STUCK:
             return
         self.fault = replace(self.fault, kind="warning")
-        self._around.say(self.plan.name, Severity.INFO, say("the callback has returned after all"))
+        self._around.say(self.plan.name, Severity.INFO, say("it goes on after all"))
         self._around.changed(self.plan.name, self.state)
 
     def halted(self, pid: int) -> None:

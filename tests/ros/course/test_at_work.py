@@ -44,6 +44,7 @@ node = Own()
 {spin}
 """
 SPIN = "rclpy.spin(node)"
+WAITS = "rclpy.spin_until_future_complete(self, self.client.call_async(Trigger.Request()))"
 FOR_A_MOMENT = "rclpy.spin_once(node, timeout_sec=0.0); time.sleep(1.0)"
 NODES: dict[str, tuple[dict[str, str], str]] = {
     "works": ({}, ""),
@@ -51,6 +52,7 @@ NODES: dict[str, tuple[dict[str, str], str]] = {
         {"begin": "while True: time.sleep(1)"},
         "",
     ),
+    "waits": ({"begin": WAITS}, "__init__ in waits.py does not return"),
     "calls": ({"tick": "self.client.call(Trigger.Request())"}, "tick in calls.py does not return"),
     "crashes": ({"tick": 'print("now", flush=True); 1 / 0'}, "ZeroDivisionError: division by zero"),
     "ends": ({"spin": FOR_A_MOMENT}, "it has ended"),
@@ -81,6 +83,8 @@ async def test_a_step_passes_only_if_its_node_is_at_work(tmp_path: Path, ros_dom
     try:
         async with judging(lesson, client, seed=1) as judge:
             await judge.settle()
+            # It answers, so that it is at work for all one knows until it is told.
+            await until(lambda: client.nodes["waits"].ails, "who waits for nobody ails")
             first, second = [
                 dict(
                     zip(

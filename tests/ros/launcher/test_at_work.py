@@ -20,6 +20,9 @@ NODE = """\
 import threading
 import time
 import rclpy
+from example_interfaces.action import Fibonacci
+from rclpy.action import ActionClient
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
@@ -27,12 +30,19 @@ from std_srvs.srv import Trigger
 class Own(Node):
     def __init__(self):
         super().__init__("own")
-        self.client = self.create_client(Trigger, "own_service")
-        self.create_service(Trigger, "own_service", self.answer)
+        self.client = self.create_client(
+            Trigger, "own_service", callback_group=self.group()
+        )
+        self.create_service(Trigger, "own_service", self.answer, callback_group=self.group())
+        self.nobody = self.create_client(Trigger, "nobody")
+        self.action = ActionClient(self, Fibonacci, "count")
         self.rate = self.create_rate(1)
         self.count = 0
         self.create_timer(0.1, self.tick)
         {begin}
+
+    def group(self):
+        return {group}
 
     def answer(self, request, response):
         return response
@@ -40,7 +50,7 @@ class Own(Node):
     def work(self):
         {work}
 
-    def tick(self):
+    {define} tick(self):
         self.count += 1
         {tick}
 
@@ -69,12 +79,13 @@ while True:
     time.sleep(0.5)"""
 IN_EVERY_THREAD = """
         from rclpy.callback_groups import ReentrantCallbackGroup
-        self.group = ReentrantCallbackGroup()
-        self.nobody = self.create_client(Trigger, "nobody", callback_group=self.group)
-        self.create_timer(0.1, self.ask, callback_group=self.group)
+        self.shared = ReentrantCallbackGroup()
+        self.ours = self.create_client(Trigger, "own_service", callback_group=self.shared)
+        self.create_timer(0.1, self.ask, callback_group=self.shared)
 
     def ask(self):
-        self.nobody.call(Trigger.Request())"""
+        time.sleep(0.3)
+        self.ours.call(Trigger.Request())"""
 DEBUGGED = """
         import io, pdb, sys
         commands = io.StringIO("self.client.call(Trigger.Request())\\n")
@@ -95,6 +106,42 @@ STOPPED = """
 SPUN = """
         future = self.client.call_async(Trigger.Request())
         rclpy.spin_until_future_complete(self, future)"""
+ASKS = "future = self.client.call_async(Trigger.Request())"
+POLLS = f"""
+        {ASKS}
+        while not future.done():
+            time.sleep(0.05)"""
+EVENT = f"""
+        event = threading.Event()
+        {ASKS}
+        future.add_done_callback(lambda _: event.set())
+        event.wait()"""
+GOAL = """
+        future = self.action.send_goal_async(Fibonacci.Goal(order=3))
+        rclpy.spin_until_future_complete(self, future)"""
+TURNS = """
+        future = self.nobody.call_async(Trigger.Request())
+        while not future.done():
+            rclpy.spin_once(self, timeout_sec=0.1)"""
+TOO_EARLY = """
+        future = self.create_client(Trigger, "too_late").call_async(Trigger.Request())
+        offer = (Trigger, "too_late", self.answer)
+        threading.Timer(2.0, self.create_service, offer).start()
+        rclpy.spin_until_future_complete(self, future)"""
+PATIENT = """
+        late = self.create_client(Trigger, "late_service")
+        while not late.wait_for_service(timeout_sec=1.0):
+            pass
+        future = late.call_async(Trigger.Request())
+        rclpy.spin_until_future_complete(self, future)
+        print("went on", flush=True)"""
+LATE = """
+time.sleep(3.0)
+node = Own()
+node.create_service(Trigger, "late_service", node.answer)
+rclpy.spin(node)"""
+SENDS = """
+        self.action.send_goal_async(Fibonacci.Goal(order=3)).add_done_callback(print)"""
 BUSY = """
         if self.count == 1:
             end = time.monotonic() + 5.0
@@ -104,16 +151,18 @@ BUSY = """
             print("went on", flush=True)"""
 
 
-def own(*, begin: str = "pass", work: str = "pass", tick: str = "pass", main: str = SPIN) -> str:
-    return textwrap.dedent(NODE).format(begin=begin, work=work, tick=tick, main=main)
+def own(**parts: str) -> str:
+    usual = {"begin": "pass", "work": "pass", "tick": "pass", "main": SPIN}
+    return textwrap.dedent(NODE).format(**{**usual, "group": "None", "define": "def", **parts})
 
 
-async def _ailing(client: SupervisorClient, name: str, kind: str) -> NodeFault:
+async def _ailing(client: SupervisorClient, name: str, kind: str, meaning: str = "") -> NodeFault:
     def found() -> NodeFault | None:
         fault = client.nodes[name].fault
-        return fault if fault is not None and fault.kind == kind else None
+        of_it = fault is not None and fault.kind == kind and meaning in fault.meaning
+        return fault if of_it else None
 
-    fault: NodeFault = await until(found, f"{name} ails", 60.0)
+    fault: NodeFault = await until(found, lambda: f"{name} ails: {client.nodes[name]}", 60.0)
     return fault
 
 
@@ -154,6 +203,63 @@ async def test_who_is_stuck_or_has_lost_a_thread_is_not_healthy(
     assert well(client.nodes["works"])
 
 
+async def test_who_waits_for_what_nobody_brings_is_not_healthy(
+    start: Launch, tmp_path: Path
+) -> None:
+    """For a service or action that nobody offers, or an answer that nobody takes in.
+
+    Whoever waits for a service that comes, is idle, or has its answers called back is healthy.
+    """
+    # What is sent before it is known who offers it is lost.
+    served = {
+        "group": "MutuallyExclusiveCallbackGroup()",
+        "begin": "self.client.wait_for_service()",
+    }
+    programs = {
+        "goal": (own(begin=GOAL), "the action /count, which nobody offers"),
+        "served": (own(begin="self.action.wait_for_server()"), "the action /count, which nobody"),
+        "turns": (own(begin=TURNS), "the service /nobody, which nobody offers"),
+        "early": (own(begin=TOO_EARLY), "an answer of the service /too_late"),
+        "polls": (own(tick=POLLS), "add_done_callback"),
+        "event": (own(tick=EVENT), "add_done_callback"),
+        "sends": (own(tick="self.action.send_goal(Fibonacci.Goal())"), "the action /count"),
+        "awaits": (own(define="async def", tick=f"{ASKS}; await future"), "callback group"),
+        "pool_polls": (own(tick=POLLS, main=IN_TWO_THREADS), "callback group"),
+        "pool_event": (own(tick=EVENT, main=IN_TWO_THREADS), "callback group"),
+        "pool_out": (own(tick=SPUN, main=IN_TWO_THREADS, **served), "out of the executor"),
+        "idle": (own(), ""),
+        "patient": (own(begin=PATIENT), ""),
+        "late": (own(main=LATE), ""),
+        "async": (own(begin=SENDS), ""),
+        "coroutine": (own(define="async def", tick=f"{ASKS}; await future", **served), ""),
+        "pooled": (own(tick=EVENT, main=IN_TWO_THREADS, **served), ""),
+        "nested": (own(tick=SPUN, **served), ""),
+    }
+    for name, (text, _meaning) in programs.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    client = await start({name: {"run": f"./{name}.py"} for name in programs})
+    for name, (_text, meaning) in programs.items():
+        if meaning:
+            await _ailing(client, name, STUCK, meaning)
+            assert not well(client.nodes[name])
+    fault = await _ailing(client, "goal", STUCK)
+    assert "__init__ has been stuck since" in fault.exception
+    assert fault.source_line == "rclpy.spin_until_future_complete(self, future)"
+    fault = await _ailing(client, "pool_out", STUCK)
+    assert (
+        fault.exception == "nothing of the node pool_out is called any more: no executor spins it"
+    )
+    assert fault.source_line == "rclpy.spin_until_future_complete(self, future)"
+
+    async def went_on() -> bool:
+        return any("went on" in line.text for line in await client.history("patient", 100))
+
+    assert await until(went_on, "the service comes", 60.0)
+    for name, (_text, meaning) in programs.items():
+        if not meaning:
+            assert well(client.nodes[name]), name
+
+
 async def test_who_never_spins_or_waits_in_a_circle_is_not_healthy(
     start: Launch, tmp_path: Path
 ) -> None:
@@ -177,7 +283,7 @@ async def test_who_never_spins_or_waits_in_a_circle_is_not_healthy(
     client = await start({name: {"run": f"./{name}.py"} for name in programs})
     for name, (_text, meaning) in programs.items():
         if meaning:
-            assert meaning in (await _ailing(client, name, STUCK)).meaning
+            await _ailing(client, name, STUCK, meaning)
             assert not well(client.nodes[name])
 
     async def went_on() -> bool:
