@@ -12,7 +12,6 @@ SCRIPTS = ROOT / "scripts"
 
 
 def load(name: str) -> ModuleType:
-    """Import `scripts/<name>.py`."""
     spec = importlib.util.spec_from_file_location(name, SCRIPTS / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
