@@ -1,1 +1,0 @@
-"""Tests of `cli` that need no ROS and no terminal."""

@@ -1,16 +1,26 @@
-"""Asking a device what it is: who answers, who does not, and that nothing moves by it."""
+"""Devices before a start: who answers, that nothing moves by it, and who holds a port."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import errno
+import os
+import pty
+import tty
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import cast
+from pathlib import Path
+from typing import Any, cast
 
 import pytest
 
 from cli.doctor import Level
+from cli.preflight import examine, media
 from cli.preflight.answers import DeviceAnswer, ask
 from cli.preflight.open_port import OpenPort
+from cli.preflight.opening import opened
+from launcher.profile.load import Profile
+from launcher.profile.model import ProfileDocument
+from launcher.serial_ports import SerialPort
 from robot.wire.lsc16 import Battery
 from robot.wire.lsc16 import encode as encode_servos
 from robot.wire.pico import Telemetry, Welcome
@@ -51,7 +61,6 @@ class Device:
 
 
 def asked(kind: str, device: Device) -> DeviceAnswer:
-    """Ask a device; whatever it is, nothing is said that moves, and what is not well has a fix."""
     answer = ask(kind, cast("OpenPort", device))
     assert set(device.said) <= {HELLO, BATTERY}
     assert (answer.level is Level.OK) is (answer.fix == "")
@@ -59,12 +68,10 @@ def asked(kind: str, device: Device) -> DeviceAnswer:
 
 
 def telemetry(flags: str = "WHA", battery_v: float | None = 7.4) -> bytes:
-    """Return a line of the Pico."""
     return encode_pico(Telemetry(1, 20, 0, 0.0, 0.0, 0.0, battery_v, 0.0, 0.0, 0, frozenset(flags)))
 
 
 def pico(flags: str = "WHA", protocol: int = 1, battery_v: float | None = 7.4) -> Device:
-    """Return a Pico that answers."""
     return Device(telemetry(flags, battery_v), {HELLO: encode_pico(Welcome(2, protocol, "1.0.0"))})
 
 
@@ -81,35 +88,6 @@ def test_devices_that_are_what_they_should_be() -> None:
     assert asked("tf_luna", Device(encode_tof(TofFrame(10, 900, 25.0)) * 20)).text.startswith(
         "too close to measure"
     )
-
-
-def test_a_pico_is_greeted_again_where_a_greeting_was_lost() -> None:
-    lossy = pico()
-    lossy.deaf_to = 2
-    assert asked("pico", lossy) == (Level.OK, "firmware 1.0.0, battery 7.4 V", "")
-    assert lossy.said == [HELLO] * 3
-
-
-def test_a_pico_whose_lines_come_garbled_is_told() -> None:
-    noisy = pico("WHAU")
-    noisy.chatter += telemetry().replace(b"7400", b"74~0")
-    answer = asked("pico", noisy)
-    assert answer.level is Level.WARN
-    assert answer.text.endswith("7.4 V, the battery is low, some lines arrive garbled")
-    assert "the cable: short" in answer.fix
-    dumb = Device(answers={HELLO: b"$T,4" * 99 + b"\n" + b"\xff\n" * 3 + pico().answers[HELLO]})
-    assert asked("pico", dumb).text == "firmware 1.0.0, some lines arrive garbled"
-
-
-def test_a_line_that_was_cut_by_the_opening_of_the_port_is_no_noise() -> None:
-    running = pico()
-    running.begins = telemetry()[7:]
-    assert asked("pico", running).level is Level.OK
-
-
-def test_a_device_without_a_protocol_of_ours_is_opened_and_no_more() -> None:
-    answer = asked("gps", Device(b"$GPGGA\n"))
-    assert answer.level is Level.OK
 
 
 @pytest.mark.parametrize(
@@ -155,8 +133,110 @@ def test_wrong_devices(kind: str, device: Device, words: str, fix: str) -> None:
     assert fix in answer.fix
 
 
-def test_what_talks_already_is_not_talked_to() -> None:
-    sonar = Device(READING * 9)
-    asked("pico", sonar)
-    asked("lsc16", sonar)
-    assert sonar.said == []
+@pytest.fixture
+def port() -> Iterator[str]:
+    """A pseudo-terminal with nothing behind it."""
+    ours, theirs = pty.openpty()
+    tty.setraw(theirs)
+    yield os.ttyname(theirs)
+    os.close(ours)
+    os.close(theirs)
+
+
+def failing(number: int) -> Callable[[str, int], OpenPort]:
+    def opening(path: str, _baud: int) -> OpenPort:
+        raise OSError(number, os.strerror(number), path)
+
+    return opening
+
+
+@pytest.mark.parametrize(
+    ("number", "words", "fix"),
+    [
+        (errno.EACCES, "no permission", "usermod -aG"),
+        (errno.EAGAIN, "another program is using it", "fuser -v"),
+        (errno.EBUSY, "another program is using it", "fuser -v"),
+        (errno.ENOTTY, "not a serial port", "DECK_PICO_PORT="),
+        (errno.ENXIO, "there is no such port", "plug it in"),
+        (errno.EIO, "cannot be opened", "dmesg"),
+    ],
+)
+def test_ports_that_cannot_be_opened(
+    number: int, words: str, fix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Here by a user who is in no group, whoever runs this."""
+    monkeypatch.setattr(os, "getgroups", list)
+    path = tmp_path / "pico"
+    path.touch()
+    answer = opened("pico", str(path), 115_200, [], failing(number))
+    assert isinstance(answer, DeviceAnswer)
+    assert answer.level is Level.FAIL
+    assert words in answer.text
+    assert fix in answer.fix
+
+
+def test_a_port_that_this_program_holds_is_taken(port: str) -> None:
+    line = opened("pico", port, 115_200, [])
+    assert isinstance(line, OpenPort)
+    taken = opened("pico", port, 115_200, [])
+    assert isinstance(taken, DeviceAnswer)
+    assert "another program is using it" in taken.text
+    line.close()
+    again = opened("pico", port, 115_200, [])
+    assert isinstance(again, OpenPort)
+    again.close()
+
+
+# -------------------------------------------------------------------- a profile
+
+
+def robot(*, used: bool = True, **devices: dict[str, Any]) -> Profile:
+    return Profile(
+        path=Path("robot.yaml"),
+        name="robot",
+        nodes={},
+        document=ProfileDocument.model_validate({"devices": devices}),
+        domain=0,
+        hardware="real",
+        used=tuple(devices) if used else (),
+    )
+
+
+def test_auto_takes_the_port_that_fits(port: str) -> None:
+    there = SerialPort(port, "", "2e8a:0005", "Board in FS mode")
+    (found,) = examine(robot(pico={"kind": "pico", "port": "auto"}), lambda: [there])
+    assert found.key == "device.pico"
+    assert f"pico {port}: the port is silent" in found.text
+    (missing,) = examine(robot(pico={"kind": "pico", "port": "auto"}), list)
+    assert "pico: no port matches (2e8a:0005)" in missing.text
+    assert missing.fix.startswith("choose with DECK_PICO_PORT=")
+
+
+CARDS = '[["USB Microphone, Audio"], ["HDMI", "MAX98357A"]]'
+
+
+@pytest.mark.parametrize(
+    ("cards", "settings", "level", "words"),
+    [
+        (CARDS, {}, Level.OK, "USB Microphone, Audio, HDMI"),
+        (CARDS, {"microphone": "usb", "speaker": "1"}, Level.OK, "MAX98357A"),
+        (CARDS, {"microphone": "none", "speaker": "none"}, Level.OK, "switched off"),
+        (CARDS, {"microphone": "MAX"}, Level.FAIL, "not found: microphone MAX; sound devices: USB"),
+        (CARDS, {"speaker": "2"}, Level.FAIL, "not found: loudspeaker 2;"),
+        ("[[], []]", {}, Level.FAIL, "not found: microphone, loudspeaker; sound devices: none"),
+        ("", {}, Level.FAIL, "sound devices: none"),
+        ("no JSON", {}, Level.FAIL, "sound devices: none"),
+    ],
+)
+def test_microphones_and_loudspeakers(
+    cards: str,
+    settings: dict[str, object],
+    level: Level,
+    words: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(media, "_run", lambda *_: cards)
+    (found,) = examine(robot(sound={"kind": "sound", **settings}), list)
+    assert found.level is level
+    assert words in found.text
+    assert (found.level is Level.OK) is (found.fix == "")
