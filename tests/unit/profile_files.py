@@ -13,19 +13,16 @@ from launcher.profile.load import Profile, load_profile
 
 
 def written(folder: Path, text: str, name: str = "lesson.yaml") -> Path:
-    """Write a profile into a folder."""
     path = folder / name
     path.write_text(dedent(text), encoding="utf-8")
     return path
 
 
 def loaded(folder: Path, text: str, **options: Any) -> Profile:
-    """Load a profile from its text."""
     return load_profile(written(folder, text), environ={}, **options)
 
 
 def problems(folder: Path, text: str, **options: Any) -> tuple[ProfileProblem, ...]:
-    """Return what is wrong with a profile, nothing if nothing is."""
     try:
         loaded(folder, text, **options)
     except ProfileError as error:
@@ -34,7 +31,6 @@ def problems(folder: Path, text: str, **options: Any) -> tuple[ProfileProblem, .
 
 
 def told(folder: Path, text: str, **options: Any) -> list[str]:
-    """Return the problems as `line:column: field: message (hint)`."""
     path = f"{folder / 'lesson.yaml'}:"
     return [str(problem).removeprefix(path) for problem in problems(folder, text, **options)]
 

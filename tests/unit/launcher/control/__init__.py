@@ -1,1 +1,0 @@
-"""Tests of the control protocol without a supervisor."""

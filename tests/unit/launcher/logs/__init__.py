@@ -1,1 +1,0 @@
-"""Tests of `launcher.logs` that need no ROS and no terminal."""

@@ -1,1 +1,0 @@
-"""Tests of `launcher.processes` that need no ROS and no terminal."""

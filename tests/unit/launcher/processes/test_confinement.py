@@ -18,7 +18,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.processes.confinement import Confinement, confinement, is_confined
+from launcher.processes.confinement import Confinement, confinement
 
 TRIES = """
 import ctypes, fcntl, json, os, resource, shutil, socket, struct, subprocess, sys, termios
@@ -155,7 +155,6 @@ def state(there: Path, victim: int) -> object:
 
 @pytest.fixture(scope="module")
 def tried() -> Tried:
-    """Try everything once."""
     with tempfile.TemporaryDirectory(dir="/tmp") as place:
         own, other = Path(place, "own"), Path(place, "other")
         own.mkdir()
@@ -220,18 +219,3 @@ def test_no_way_out(way: str, tried: Tried) -> None:
 
 def test_nothing_else_is_harmed(tried: Tried) -> None:
     assert tried.after == tried.before
-
-
-def test_a_confined_process_can_be_told(tmp_path: Path) -> None:
-    text = (
-        "import sys; from launcher.processes.confinement import confine; "
-        "confine([sys.argv[1]]); print('ready', flush=True); input()"
-    )
-    confined = subprocess.Popen(
-        [sys.executable, "-c", text, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    )
-    assert confined.stdout is not None
-    assert confined.stdout.readline() == b"ready\n"
-    told = is_confined(confined.pid), is_confined(os.getpid())
-    confined.communicate(b"\n")
-    assert told == (True, False)

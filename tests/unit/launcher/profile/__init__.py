@@ -1,1 +1,0 @@
-"""Tests of `launcher.profile` that need no ROS and no terminal."""

@@ -1,322 +1,140 @@
-"""Every way in which a profile can be wrong has its own message, with place, field and fix."""
+"""Everything that can be wrong with a profile: the place, the field and the mend are told."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
 
+from launcher.errors import ProfileError
 from launcher.profile.load import load_profile
+from launcher.profile.model import NodeDocument, ProfileDocument, ReadyDocument
 from tests.unit.profile_files import refused, told, written
 
-BAD = {
-    "unknown key": (
-        "lession: 1\nnodes: {a: {exec: [x]}}",
-        "1:1: lession: unknown key (did you mean lesson?)",
-    ),
-    "unknown key of a node": (
-        "nodes:\n  a:\n    exec: [x]\n    parms: {}",
-        "4:5: nodes.a.parms: unknown key (did you mean params?)",
-    ),
-    "unknown key near nothing": (
-        "nodes: {a: {exec: [x], ready: {zzz: 1, node: b}}}",
-        (
-            "1:32: nodes.a.ready.zzz: unknown key (known: topic, type, rate, service, node,"
-            " lifecycle, within)"
-        ),
-    ),
-    "number where text belongs": (
-        "nodes: {a: {run: 12}}",
-        "1:18: nodes.a.run: expected text, found 12 (put it in quotes)",
-    ),
-    "text where a number belongs": (
-        "domain: many\nnodes: {a: {exec: [x]}}",
-        "1:9: domain: expected a whole number, found the text 'many'",
-    ),
-    "a decimal comma": (
-        "nodes:\n  a:\n    exec: [x]\n    ready:\n      node: a\n      within: 2,5",
-        (
-            "6:15: nodes.a.ready.within: expected a number, found the text '2,5'"
-            " (write a fraction with a point: 2.5)"
-        ),
-    ),
-    "text where a list belongs": (
-        "nodes:\n  a: {exec: [x]}\n  b: {exec: [x], needs: a}",
-        "3:25: nodes.b.needs: expected a list, found the text 'a' (write [a])",
-    ),
-    "a command that is not a list": (
-        "nodes: {a: {exec: ros2 run pkg exe}}",
-        "1:19: nodes.a.exec: expected a list, found a single text; write [ros2, run, pkg, exe]",
-    ),
-    "an empty command": (
-        "nodes: {a: {exec: []}}",
-        "1:19: nodes.a.exec: an empty command; write for example [ros2, run, package, program]",
-    ),
-    "a list where keys belong": (
-        "nodes: [a]",
-        "1:8: nodes: expected keys and values, found a list",
-    ),
-    "text where a node belongs": (
-        "nodes: {a: sleep}",
-        "1:12: nodes.a: expected keys and values, found the text 'sleep'",
-    ),
-    "a word that is no choice": (
-        "nodes: {a: {exec: [x], restart: allways}}",
-        (
-            "1:33: nodes.a.restart: expected one of never, on-failure, always, found the text"
-            " 'allways' (did you mean always?)"
-        ),
-    ),
-    "an unknown panel": (
-        "panels: [sonr]\nnodes: {a: {exec: [x]}}",
-        (
-            "1:10: panels[0]: expected one of sonar, wheels, map, camera, head, voice, brain,"
-            " composer, found the text 'sonr' (did you mean sonar?)"
-        ),
-    ),
-    "a number out of range": (
-        "nodes: {a: {exec: [x], ready: {node: a, within: 0}}}",
-        "1:49: nodes.a.ready.within: expected more than 0, found 0",
-    ),
-    "a domain too high": (
-        "domain: 233\nnodes: {a: {exec: [x]}}",
-        "1:9: domain: expected at most 232, found 233",
-    ),
-    "a domain too low": (
-        "domain: -1\nnodes: {a: {exec: [x]}}",
-        "1:9: domain: expected at least 0, found -1",
-    ),
-    "an unknown discovery": (
-        "discovery: lan\nnodes: {a: {exec: [x]}}",
-        "1:12: discovery: expected localhost, subnet or a list of addresses, found 'lan'",
-    ),
-    "an address that is none": (
-        "discovery: [robot;rm]\nnodes: {a: {exec: [x]}}",
-        "1:12: discovery: 'robot;rm' is not an address; write it as 192.168.1.7 or robot.local",
-    ),
-    "a need of nobody": (
-        "nodes:\n  sonar: {exec: [x]}\n  b: {exec: [x], needs: [sonr]}",
-        "3:26: nodes.b.needs[0]: there is no node 'sonr' (did you mean sonar?)",
-    ),
-    "a cycle": (
-        (
-            "nodes:\n  a: {exec: [x], needs: [b]}\n  b: {exec: [x], needs: [c]}\n"
-            "  c: {exec: [x], needs: [a]}"
-        ),
-        (
-            "2:25: nodes.a.needs: nodes need each other in a cycle: a -> b -> c -> a"
-            " (remove one of the needs)"
-        ),
-    ),
-    "a need of oneself": (
-        "nodes: {a: {exec: [x], needs: [a]}}",
-        "1:31: nodes.a.needs: nodes need each other in a cycle: a -> a (remove one of the needs)",
-    ),
-    "a need of an optional node": (
-        "nodes:\n  a: {exec: [x], optional: true}\n  b: {exec: [x], needs: [a]}",
-        "3:26: nodes.b.needs[0]: a is optional, so nothing can need it",
-    ),
-    "an unknown module": (
-        "nodes: {a: {run: nodes.helo}}",
-        "1:18: nodes.a.run: there is no module 'nodes.helo' (did you mean nodes.hello?)",
-    ),
-    "a module without its package": (
-        "nodes: {a: {run: hello}}",
-        "1:18: nodes.a.run: there is no module 'hello' (did you mean nodes.hello?)",
-    ),
-    "a file of one's own without its folder": (
-        "nodes: {a: {run: mine.py}}",
-        "1:18: nodes.a.run: there is no module 'mine.py' (for your own file write run: ./mine.py)",
-    ),
-    "a package that cannot be run": (
-        "nodes: {a: {run: nodes}}",
-        "1:18: nodes.a.run: there is no module 'nodes'",
-    ),
-    "a file name where a module belongs": (
-        "nodes: {a: {run: nodes/hello.py}}",
-        (
-            "1:18: nodes.a.run: 'nodes/hello.py' is not a Python module; write a module as"
-            " nodes.hello, a file of your own as ./my_node.py"
-        ),
-    ),
-    "both run and exec": (
-        "nodes:\n  a:\n    run: nodes.hello\n    exec: [x]",
-        "4:5: nodes.a: has both `run` and `exec` (keep one)",
-    ),
-    "neither run nor exec": (
-        "nodes:\n  a: {params: {x: 1}}",
-        "2:3: nodes.a: needs `run` or `exec` (write run: nodes.hello)",
-    ),
-    "a node with nothing in it": (
-        "nodes:\n  a:\n",
-        "2:3: nodes.a: needs `run` or `exec` (write run: nodes.hello)",
-    ),
-    "a node's name that ROS refuses": (
-        "nodes: {front-sonar: {exec: [x]}}",
-        (
-            "1:9: nodes.front-sonar: 'front-sonar' is not a valid name for a ROS node (letters,"
-            " digits and _, not"
-            " beginning with a digit)"
-        ),
-    ),
-    "a duplicate node": (
-        "nodes:\n  a: {exec: [x]}\n  b: {exec: [x]}\n  a: {exec: [y]}",
-        "4:3: nodes.a: 'a' appears a second time, first on line 2: join them or rename one",
-    ),
-    "a duplicate key": (
-        "lesson: 1\nlesson: 2\nnodes: {a: {exec: [x]}}",
-        "2:1: lesson: 'lesson' appears a second time, first on line 1: join them or rename one",
-    ),
-    "a tab": (
-        "nodes:\n\ta: {exec: [x]}",
-        "2:1: this line is indented with a tab: use spaces, not tabs",
-    ),
-    "an empty file": ("", "1:1: is empty (a profile has at least `nodes:`)"),
-    "only a comment": ("# nothing\n", "1:1: is empty (a profile has at least `nodes:`)"),
-    "a list": ("- a\n- b", "1:1: expected `name: value`, found a list"),
-    "a word": ("hello", "1:1: expected `name: value`, found a single value"),
-    "two documents": (
-        "nodes: {a: {exec: [x]}}\n---\nnodes: {}",
-        "2:1: a second document begins here, and only one is read",
-    ),
-    "no nodes": ("lesson: 1", "1:1: nodes: there are no nodes to start"),
-    "a tag that would run code": (
-        "nodes: !!python/object/apply:os.system [ls]",
-        "1:8: the tag !!python/object/apply:os.system is refused: only plain values are read",
-    ),
-    "a condition that is none": (
-        "nodes: {a: {exec: [x], when: hardware = mock}}",
-        (
-            "1:30: nodes.a.when: 'hardware = mock' is not a condition"
-            ' (write for example: hardware == "mock")'
-        ),
-    ),
-    "a condition about something unknown": (
-        "nodes: {a: {exec: [x], when: 'hardwar == \"mock\"'}}",
-        "1:30: nodes.a.when: 'hardwar' is not known (did you mean hardware?)",
-    ),
-    "a condition that can never be": (
-        "nodes: {a: {exec: [x], when: 'hardware == \"rael\"'}}",
-        "1:30: nodes.a.when: hardware is never 'rael', only one of mock, real (did you mean real?)",
-    ),
-    "a parameter without a value": (
-        "nodes: {a: {exec: [x], params: {rate: }}}",
-        "nodes.a.params.rate: a ROS parameter cannot be empty (give it a value, or leave it out)",
-    ),
-    "a parameter of mixed types": (
-        "nodes: {a: {exec: [x], params: {l: [1, x]}}}",
-        (
-            "1:36: nodes.a.params.l: a list in ROS holds one type, this one holds integer, string"
-            " (quote all of them, or none)"
-        ),
-    ),
-    "a parameter that is an empty list": (
-        "nodes: {a: {exec: [x], params: {l: []}}}",
-        "1:36: nodes.a.params.l: an empty list has no type in ROS (leave the parameter out)",
-    ),
-    "a parameter that is a table": (
-        "nodes: {a: {exec: [x], params: {l: [[1]]}}}",
-        (
-            "1:37: nodes.a.params.l[0]: ROS has no parameter that is a list of lists (give each its"
-            " own name)"
-        ),
-    ),
-    "a parameter that no integer holds": (
-        "nodes: {a: {exec: [x], params: {n: 9223372036854775808}}}",
-        "1:36: nodes.a.params.n: 9223372036854775808 does not fit into 64 bits",
-    ),
-    "a parameter with a name that ROS refuses": (
-        "nodes: {a: {exec: [x], params: {max-speed: 1}}}",
-        (
-            "1:33: nodes.a.params.max-speed: 'max-speed' is not a valid name for a ROS parameter"
-            " (letters, digits"
-            " and _, joined by dots)"
-        ),
-    ),
-    "a topic name that ROS refuses": (
-        "nodes: {a: {exec: [x], remap: {/drive: drive safe}}}",
-        (
-            "1:40: nodes.a.remap./drive: 'drive safe' is not a ROS name;"
-            " write it as /sensor/sonar_front"
-        ),
-    ),
-    "two conditions of readiness": (
-        "nodes: {a: {exec: [x], ready: {node: a, topic: b}}}",
-        (
-            "1:31: nodes.a.ready: expected exactly one of topic, service, node,"
-            " lifecycle (write"
-            " ready: {topic:"
-            " /chatter, within: 10})"
-        ),
-    ),
-    "a state and a topic": (
-        "nodes: {a: {exec: [x], ready: {lifecycle: active, topic: b}}}",
-        "1:31: nodes.a.ready: expected exactly one of topic, service, node, lifecycle (write",
-    ),
-    "a state and a topic, where the node is brought up": (
-        "nodes: {a: {exec: [x], lifecycle: active, ready: {topic: b, service: c}}}",
-        "1:50: nodes.a.ready: expected exactly one of topic, service, node, lifecycle (write",
-    ),
-    "a state that nobody waits for": (
-        "nodes: {a: {exec: [x], ready: {lifecycle: activ}}}",
-        "1:43: nodes.a.ready.lifecycle: ",
-    ),
-    "a state that a node cannot be brought to": (
-        "nodes: {a: {exec: [x], lifecycle: finalized}}",
-        "1:35: nodes.a.lifecycle: ",
-    ),
-    "no state": (
-        "nodes: {a: {exec: [x], lifecycle: {state: active}}}",
-        "1:35: nodes.a.lifecycle: ",
-    ),
-    "a type that is none": (
-        "nodes: {a: {exec: [x], ready: {topic: b, type: Float32}}}",
-        (
-            "1:48: nodes.a.ready.type: 'Float32' is not a message type; write it as"
-            " std_msgs/msg/Float32"
-        ),
-    ),
-    "a rate without a topic": (
-        "nodes: {a: {exec: [x], ready: {service: b, rate: 5}}}",
-        (
-            "1:44: nodes.a.ready.rate: `rate` belongs to a topic, but none is given here (write"
-            " ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1})"
-        ),
-    ),
-    "a directory that is not there": (
-        "nodes: {a: {exec: [x], cwd: nowhere}}",
-        "1:29: nodes.a.cwd: there is no directory",
-    ),
-    "an extended profile that is not there": (
-        "extends: 09-brian\nnodes: {a: {exec: [x]}}",
-        "1:10: extends: there is no profile '09-brian' to extend (did you mean 09-brain?)",
-    ),
-    "a folder without a name extended": (
-        "extends: /\nnodes: {a: {exec: [x]}}",
-        "1:10: extends: there is no profile '/' to extend",
-    ),
-    "the folder above extended": (
-        "extends: ..\nnodes: {a: {exec: [x]}}",
-        "1:10: extends: there is no profile '..' to extend",
-    ),
-    "nothing extended": (
-        "extends: ''\nnodes: {a: {exec: [x]}}",
-        "1:10: extends: there is no profile '' to extend",
-    ),
-    "a profile that extends itself": (
-        "extends: lesson\nnodes: {a: {exec: [x]}}",
-        "1:10: extends: profiles extend each other in a cycle: lesson -> lesson",
-    ),
-    "a device setting that is not there": (
-        "devices: {pico: {port: /dev/a}}\nnodes: {a: {exec: [x, '${devices.pico.prt}']}}",
-        "2:23: nodes.a.exec[1]: there is no device setting 'pico.prt' (did you mean pico.port?)",
-    ),
-}
+BAD = [
+    ("nodes: {a: {run: ./mien.py}}", "1:18: nodes.a.run: there is no file "),
+    ("lession: 1\nnodes: {a: {exec: [x]}}", "1:1: lession: unknown key (did you mean lesson?)"),
+    ("nodes:\n  a:\n    exec: [x]\n    parms: {}",
+     "4:5: nodes.a.parms: unknown key (did you mean params?)"),
+    ("nodes: {a: {exec: [x], ready: {zzz: 1, node: b}}}",
+     "1:32: nodes.a.ready.zzz: unknown key (known: topic, type, rate, service, node, lifecycle, within)"),
+    ("nodes: {a: {run: 12}}", "1:18: nodes.a.run: expected text, found 12 (put it in quotes)"),
+    ("domain: many\nnodes: {a: {exec: [x]}}",
+     "1:9: domain: expected a whole number, found the text 'many'"),
+    ("nodes:\n  a:\n    exec: [x]\n    ready:\n      node: a\n      within: 2,5",
+     "6:15: nodes.a.ready.within: expected a number, found the text '2,5' (write a fraction with a point: 2.5)"),
+    ("nodes:\n  a: {exec: [x]}\n  b: {exec: [x], needs: a}",
+     "3:25: nodes.b.needs: expected a list, found the text 'a' (write [a])"),
+    ("nodes: {a: {exec: ros2 run pkg exe}}",
+     "1:19: nodes.a.exec: expected a list, found a single text; write [ros2, run, pkg, exe]"),
+    ("nodes: {a: {exec: []}}",
+     "1:19: nodes.a.exec: an empty command; write for example [ros2, run, package, program]"),
+    ("nodes: [a]", "1:8: nodes: expected keys and values, found a list"),
+    ("nodes: {a: sleep}", "1:12: nodes.a: expected keys and values, found the text 'sleep'"),
+    ("nodes: {a: {exec: [x], restart: allways}}",
+     "1:33: nodes.a.restart: expected one of never, on-failure, always, found the text 'allways' (did you mean always?)"),
+    ("panels: [sonr]\nnodes: {a: {exec: [x]}}",
+     "1:10: panels[0]: expected one of sonar, wheels, map, camera, head, voice, brain, composer, found the text 'sonr' (did you mean sonar?)"),
+    ("nodes: {a: {exec: [x], ready: {node: a, within: 0}}}",
+     "1:49: nodes.a.ready.within: expected more than 0, found 0"),
+    ("domain: 233\nnodes: {a: {exec: [x]}}", "1:9: domain: expected at most 232, found 233"),
+    ("domain: -1\nnodes: {a: {exec: [x]}}", "1:9: domain: expected at least 0, found -1"),
+    ("discovery: lan\nnodes: {a: {exec: [x]}}",
+     "1:12: discovery: expected localhost, subnet or a list of addresses, found 'lan'"),
+    ("discovery: [robot;rm]\nnodes: {a: {exec: [x]}}",
+     "1:12: discovery: 'robot;rm' is not an address; write it as 192.168.1.7 or robot.local"),
+    ("nodes:\n  sonar: {exec: [x]}\n  b: {exec: [x], needs: [sonr]}",
+     "3:26: nodes.b.needs[0]: there is no node 'sonr' (did you mean sonar?)"),
+    ("nodes:\n  a: {exec: [x], needs: [b]}\n  b: {exec: [x], needs: [c]}\n  c: {exec: [x], needs: [a]}",
+     "2:25: nodes.a.needs: nodes need each other in a cycle: a -> b -> c -> a (remove one of the needs)"),
+    ("nodes: {a: {exec: [x], needs: [a]}}",
+     "1:31: nodes.a.needs: nodes need each other in a cycle: a -> a (remove one of the needs)"),
+    ("nodes:\n  a: {exec: [x], optional: true}\n  b: {exec: [x], needs: [a]}",
+     "3:26: nodes.b.needs[0]: a is optional, so nothing can need it"),
+    ("nodes: {a: {run: nodes.helo}}",
+     "1:18: nodes.a.run: there is no module 'nodes.helo' (did you mean nodes.hello?)"),
+    ("nodes: {a: {run: hello}}",
+     "1:18: nodes.a.run: there is no module 'hello' (did you mean nodes.hello?)"),
+    ("nodes: {a: {run: mine.py}}",
+     "1:18: nodes.a.run: there is no module 'mine.py' (for your own file write run: ./mine.py)"),
+    ("nodes: {a: {run: nodes}}", "1:18: nodes.a.run: there is no module 'nodes'"),
+    ("nodes: {a: {run: nodes/hello.py}}",
+     "1:18: nodes.a.run: 'nodes/hello.py' is not a Python module; write a module as nodes.hello, a file of your own as ./my_node.py"),
+    ("nodes:\n  a:\n    run: nodes.hello\n    exec: [x]",
+     "4:5: nodes.a: has both `run` and `exec` (keep one)"),
+    ("nodes:\n  a: {params: {x: 1}}",
+     "2:3: nodes.a: needs `run` or `exec` (write run: nodes.hello)"),
+    ("nodes:\n  a:\n", "2:3: nodes.a: needs `run` or `exec` (write run: nodes.hello)"),
+    ("nodes: {front-sonar: {exec: [x]}}",
+     "1:9: nodes.front-sonar: 'front-sonar' is not a valid name for a ROS node (letters, digits and _, not beginning with a digit)"),
+    ("nodes:\n  a: {exec: [x]}\n  b: {exec: [x]}\n  a: {exec: [y]}",
+     "4:3: nodes.a: 'a' appears a second time, first on line 2: join them or rename one"),
+    ("lesson: 1\nlesson: 2\nnodes: {a: {exec: [x]}}",
+     "2:1: lesson: 'lesson' appears a second time, first on line 1: join them or rename one"),
+    ("nodes:\n\ta: {exec: [x]}", "2:1: this line is indented with a tab: use spaces, not tabs"),
+    ("", "1:1: is empty (a profile has at least `nodes:`)"),
+    ("# nothing\n", "1:1: is empty (a profile has at least `nodes:`)"),
+    ("- a\n- b", "1:1: expected `name: value`, found a list"),
+    ("hello", "1:1: expected `name: value`, found a single value"),
+    ("nodes: {a: {exec: [x]}}\n---\nnodes: {}",
+     "2:1: a second document begins here, and only one is read"),
+    ("lesson: 1", "1:1: nodes: there are no nodes to start"),
+    ("nodes: !!python/object/apply:os.system [ls]",
+     "1:8: the tag !!python/object/apply:os.system is refused: only plain values are read"),
+    ("nodes: {a: {exec: [x], when: hardware = mock}}",
+     "1:30: nodes.a.when: 'hardware = mock' is not a condition (write for example: hardware == \"mock\")"),
+    ("nodes: {a: {exec: [x], when: 'hardwar == \"mock\"'}}",
+     "1:30: nodes.a.when: 'hardwar' is not known (did you mean hardware?)"),
+    ("nodes: {a: {exec: [x], when: 'hardware == \"rael\"'}}",
+     "1:30: nodes.a.when: hardware is never 'rael', only one of mock, real (did you mean real?)"),
+    ("nodes: {a: {exec: [x], params: {rate: }}}",
+     "nodes.a.params.rate: a ROS parameter cannot be empty (give it a value, or leave it out)"),
+    ("nodes: {a: {exec: [x], params: {l: [1, x]}}}",
+     "1:36: nodes.a.params.l: a list in ROS holds one type, this one holds integer, string (quote all of them, or none)"),
+    ("nodes: {a: {exec: [x], params: {l: []}}}",
+     "1:36: nodes.a.params.l: an empty list has no type in ROS (leave the parameter out)"),
+    ("nodes: {a: {exec: [x], params: {l: [[1]]}}}",
+     "1:37: nodes.a.params.l[0]: ROS has no parameter that is a list of lists (give each its own name)"),
+    ("nodes: {a: {exec: [x], params: {n: 9223372036854775808}}}",
+     "1:36: nodes.a.params.n: 9223372036854775808 does not fit into 64 bits"),
+    ("nodes: {a: {exec: [x], params: {max-speed: 1}}}",
+     "1:33: nodes.a.params.max-speed: 'max-speed' is not a valid name for a ROS parameter (letters, digits and _, joined by dots)"),
+    ("nodes: {a: {exec: [x], remap: {/drive: drive safe}}}",
+     "1:40: nodes.a.remap./drive: 'drive safe' is not a ROS name; write it as /sensor/sonar_front"),
+    ("nodes: {a: {exec: [x], ready: {node: a, topic: b}}}",
+     "1:31: nodes.a.ready: expected exactly one of topic, service, node, lifecycle (write ready: {topic: /chatter, within: 10})"),
+    ("nodes: {a: {exec: [x], ready: {lifecycle: active, topic: b}}}",
+     "1:31: nodes.a.ready: expected exactly one of topic, service, node, lifecycle (write"),
+    ("nodes: {a: {exec: [x], lifecycle: active, ready: {topic: b, service: c}}}",
+     "1:50: nodes.a.ready: expected exactly one of topic, service, node, lifecycle (write"),
+    ("nodes: {a: {exec: [x], ready: {lifecycle: activ}}}", "1:43: nodes.a.ready.lifecycle: "),
+    ("nodes: {a: {exec: [x], lifecycle: finalized}}", "1:35: nodes.a.lifecycle: "),
+    ("nodes: {a: {exec: [x], lifecycle: {state: active}}}", "1:35: nodes.a.lifecycle: "),
+    ("nodes: {a: {exec: [x], ready: {topic: b, type: Float32}}}",
+     "1:48: nodes.a.ready.type: 'Float32' is not a message type; write it as std_msgs/msg/Float32"),
+    ("nodes: {a: {exec: [x], ready: {service: b, rate: 5}}}",
+     "1:44: nodes.a.ready.rate: `rate` belongs to a topic, but none is given here (write ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1})"),
+    ("nodes: {a: {exec: [x], cwd: nowhere}}", "1:29: nodes.a.cwd: there is no directory"),
+    ("extends: 09-brian\nnodes: {a: {exec: [x]}}",
+     "1:10: extends: there is no profile '09-brian' to extend (did you mean 09-brain?)"),
+    ("extends: /\nnodes: {a: {exec: [x]}}", "1:10: extends: there is no profile '/' to extend"),
+    ("extends: ..\nnodes: {a: {exec: [x]}}", "1:10: extends: there is no profile '..' to extend"),
+    ("extends: ''\nnodes: {a: {exec: [x]}}", "1:10: extends: there is no profile '' to extend"),
+    ("extends: lesson\nnodes: {a: {exec: [x]}}",
+     "1:10: extends: profiles extend each other in a cycle: lesson -> lesson"),
+    ("devices: {pico: {port: /dev/a}}\nnodes: {a: {exec: [x, '${devices.pico.prt}']}}",
+     "2:23: nodes.a.exec[1]: there is no device setting 'pico.prt' (did you mean pico.port?)"),
+    ("devices: {pico: {port: [a, b]}}\nnodes: {a: {exec: [x]}}", "expected a single value"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("case", BAD)
-def test_one_message_tells_place_field_and_mend(case: str, tmp_path: Path) -> None:
-    text, expected = BAD[case]
+@pytest.mark.parametrize(("text", "expected"), BAD)
+def test_one_message_tells_place_field_and_mend(text: str, expected: str, tmp_path: Path) -> None:
     (tmp_path / "mine.py").touch()
     messages = told(tmp_path, text)
     assert len(messages) == 1
@@ -379,3 +197,86 @@ def test_a_fault_in_an_extended_profile_names_that_file(tmp_path: Path) -> None:
     base = written(tmp_path, "nodes:\n  x: {exec: [x], warm: 1}", "base.yaml")
     own = written(tmp_path, "extends: base\nlesson: 2", "own.yaml")
     assert f"{base}:2:24: nodes.x.warm: expected true or false" in refused(own)
+
+
+def test_a_missing_file_is_told(tmp_path: Path) -> None:
+    assert "none.yaml: no such file" in refused(tmp_path / "none.yaml")
+
+
+def test_a_directory_is_told_with_the_profiles_in_it(tmp_path: Path) -> None:
+    written(tmp_path, "nodes: {}", "a.yaml")
+    assert "found a directory (it contains: a.yaml)" in refused(tmp_path)
+
+
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.yaml")
+    assert "not a regular file" in refused(tmp_path / "pipe.yaml")
+
+
+def test_a_file_without_permission_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = written(tmp_path, "nodes: {}")
+
+    def forbidden(*_args: object, **_options: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "open", forbidden)
+    assert "no permission to read it" in refused(path)
+
+
+def test_bytes_that_are_not_utf8_are_told_with_their_place(tmp_path: Path) -> None:
+    path = tmp_path / "latin.yaml"
+    path.write_bytes("nodes: {}\ntitle: Урок".encode("cp1251"))
+    assert "latin.yaml:2:8: is not UTF-8: byte 0xd3 (save the file as UTF-8)" in refused(path)
+
+
+def test_a_huge_file_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "huge.yaml"
+    path.write_text("#" * 300_000)
+    assert "is larger than 256 KiB" in refused(path)
+
+
+KEYS = sorted(
+    {
+        *(*ProfileDocument.model_fields, *NodeDocument.model_fields, *ReadyDocument.model_fields),
+        *("a", "b", "en", "pico", "port", "<<", "x y", "", "1"),
+    }
+)
+WORDS = st.sampled_from(
+    [*KEYS, "nodes.hello", "localhost", "sonar", "${devices.pico.port}", 'hardware == "mock"', "/x"]
+)
+SCALARS = st.one_of(
+    WORDS, st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8)
+)
+ANYTHING = st.recursive(
+    SCALARS,
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3), st.dictionaries(st.sampled_from(KEYS), inner, max_size=4)
+    ),
+    max_leaves=12,
+)
+NODE = st.dictionaries(st.sampled_from(sorted(NodeDocument.model_fields)), ANYTHING, max_size=6)
+PROFILE = st.fixed_dictionaries(
+    {"nodes": st.dictionaries(st.sampled_from(["a", "b", "c"]), NODE, max_size=3)},
+    optional={name: ANYTHING for name in ProfileDocument.model_fields if name != "nodes"},
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("profiles")
+
+
+def load(path: Path) -> None:
+    try:
+        load_profile(path, environ={"DECK_PICO_PORT": "x"}, overrides=("a.rate=1",))
+    except ProfileError as error:
+        for problem in error.problems:
+            assert problem.message
+            assert problem.line > 0 or problem.file.startswith("--set")
+
+
+@given(data=st.one_of(PROFILE, ANYTHING))
+def test_any_yaml(data: Any, folder: Path) -> None:
+    path = folder / "any.yaml"
+    path.write_text(yaml.safe_dump(data, allow_unicode=True, sort_keys=False), encoding="utf-8")
+    load(path)

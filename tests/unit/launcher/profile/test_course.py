@@ -1,16 +1,18 @@
-"""The course's own profiles are right, and the schema beside them says what the model says."""
+"""The course's profiles, and how they, their files and their steps are found and read."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
 
-from launcher.profile.catalog import list_profiles
+from launcher.errors import ProfileNotFoundError
+from launcher.profile.catalog import find_profile
 from launcher.profile.load import load_profile
 from launcher.profile.schema import render
-from tests.unit.profile_files import written
+from launcher.profile.steps.checks import KINDS, kind_of
+from launcher.profile.steps.expressions import ExpressionError, evaluate
+from tests.unit.profile_files import loaded, told, written
 
 PROFILES = Path(__file__).parents[4] / "profiles"
 LESSONS = sorted(PROFILES.glob("*.yaml"))
@@ -40,36 +42,10 @@ def test_a_lesson_is_valid_and_titled_in_both_languages(path: Path, hardware: st
     assert profile.path.read_text().startswith("# yaml-language-server: $schema=schema.json")
 
 
-@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
-def test_a_lesson_can_be_extended_from_any_folder(path: Path, tmp_path: Path) -> None:
-    profile = load_profile(written(tmp_path, f"extends: {path.stem}"))
-    assert profile.nodes == load_profile(path).nodes
-
-
 def test_the_schema_is_true() -> None:
     assert (PROFILES / "schema.json").read_text() == render(), (
         "python -m launcher.profile.schema > profiles/schema.json"
     )
-
-
-def test_the_schema_names_every_key_and_choice() -> None:
-    schema = json.loads(render())
-    node = schema["$defs"]["NodeDocument"]["properties"]
-    assert set(schema["properties"]) >= {"nodes", "title", "domain", "discovery", "extends"}
-    assert node["restart"]["enum"] == ["never", "on-failure", "always"]
-    assert all("description" in key for key in (*schema["properties"].values(), *node.values()))
-    assert schema["additionalProperties"] is False
-
-
-def test_the_brain_lesson_has_its_nine_nodes() -> None:
-    profile = load_profile(PROFILES / "09-brain.yaml")
-    assert list(profile.nodes) == [
-        *("sonar_front", "camera", "audio", "head_controller", "ai_driver"),
-        *("safety_stop", "electronic_differential", "llm_parser", "ai_brain"),
-    ]
-    assert profile.nodes["safety_stop"].params["gate"] is True
-    assert profile.nodes["electronic_differential"].params["drive_topic"] == "/drive_safe"
-    assert not any(node.needs for node in profile.nodes.values()), "all start at once"
 
 
 @pytest.mark.parametrize(
@@ -89,17 +65,6 @@ def test_who_is_to_publish_a_topic_is_ready_by_it_and_its_type(
     assert (ready.kind, ready.name, ready.type) == ("topic", topic, kind)
 
 
-def test_the_robot_has_the_same_drivers_on_mock_and_on_real_hardware() -> None:
-    mock = load_profile(PROFILES / "robot.yaml").nodes
-    real = load_profile(PROFILES / "robot.yaml", hardware="real").nodes
-    for name in ("chassis", "sonar_front", "sonar_rear", "head_controller", "safety_stop"):
-        assert mock[name].document.run == real[name].document.run
-        assert {**mock[name].params, "port": ""} == {**real[name].params, "port": ""}
-    assert not [name for name, node in real.items() if "mock" in str(node.document.run)]
-    assert set(real) - set(mock) == {"camera", "audio", "hearing", "speaking"}
-    assert set(mock) - set(real) == {"mock_robot", "mock_camera", "mock_audio"}
-
-
 def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
     nodes = load_profile(PROFILES / "robot.yaml").nodes
     assert nodes["safety_stop"].params["gate"] is True
@@ -109,15 +74,152 @@ def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
     assert nodes["drive_to_point"].params["simulate"] == "never"
 
 
-def test_rviz_is_optional() -> None:
-    rviz = load_profile(PROFILES / "06-rviz.yaml").nodes["rviz"]
-    assert rviz.document.optional
-    assert rviz.cwd is not None
-    assert (rviz.cwd / "robot.rviz").is_file()
+@pytest.fixture
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
 
 
-def test_the_catalog_lists_the_lessons_in_order(
+@pytest.mark.usefixtures("elsewhere")
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        ("09-brain", "09-brain"), ("9", "09-brain"), ("09", "09-brain"), ("1", "01-hello"),
+        ("10", "10-llm-json"), ("4", "04-ackermann"), ("4b", "04b-electronic-differential"),
+        ("06-r", "06-rviz"),
+    ],
+)  # fmt: skip
+def test_a_lesson_is_found_by_what_people_type(asked: str, found: str) -> None:
+    assert find_profile(asked).stem == found
+
+
+@pytest.mark.usefixtures("elsewhere")
+@pytest.mark.parametrize(
+    ("asked", "near"),
+    [("brain", "09-brain"), ("09-brian", "09-brain"), ("sonar", "02-sonar-safety")],
+)
+def test_a_wrong_name_gets_a_suggestion(asked: str, near: str) -> None:
+    with pytest.raises(ProfileNotFoundError) as caught:
+        find_profile(asked)
+    assert near in caught.value.near
+    assert near in str(caught.value)
+
+
+NEVER = "raise SystemExit('never imported')"
+
+
+def test_a_file_stands_relative_to_the_profile_that_names_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert [entry.path for entry in list_profiles()] == LESSONS
+    """And not to one that extends it from another folder, or to the current folder."""
+    robot, other = tmp_path / "robot", tmp_path / "other"
+    for folder in (robot, other):
+        folder.mkdir()
+        (folder / "my_sonar.py").write_text(NEVER)
+    written(robot, "nodes: {a: {run: ./my_sonar.py}}", "robot.yaml")
+    written(other, "extends: ../robot/robot.yaml\nnodes: {b: {run: ../robot/my_sonar.py}}")
+    monkeypatch.chdir(other)
+    nodes = load_profile("lesson.yaml").nodes
+    assert nodes["a"].document.run == nodes["b"].document.run == str(robot / "my_sonar.py")
+    assert nodes["a"].command == "./my_sonar.py"
+    assert nodes["a"].argv()[-4:] == [
+        *(str(robot / "my_sonar.py"), "--ros-args", "-r", "__node:=a")
+    ]
+
+
+HEAD = "nodes: {sonar: {exec: [x]}}\nvalues: {near_m: {between: [0.1, 0.4], digits: 3}}\nsteps:\n"
+BAD = {
+    "a kind misspelt": ("  - {id: a, checks: [{nod: /a}]}",
+     ["4:22: steps[0].checks[0]: no kind of check is named here (did you mean node?)"]),
+    "a key misspelt": ("  - {id: a, checks: [{rate: /a, between: [1, 2], ovr: 1}]}",
+     ["4:50: steps[0].checks[0].ovr: unknown key (did you mean over?)"]),
+    "a key of what follows misspelt": (
+        (
+            "  - id: a\n    checks:\n      - publish: /a\n        type: std_msgs/msg/Bool\n"
+            "        then: [{log: sonar, matches: x, levl: warn}]"
+        ),
+        ["8:41: steps[0].checks[0].then[0].levl: unknown key (did you mean level?)"],
+    ),
+    "a value that is not drawn": (
+        "  - {id: a, checks: [{field: /a, type: a/msg/B, path: data, equals: '${neer_m}'}]}",
+        [
+            "4:69: steps[0].checks[0].equals: there is no value 'neer_m': did you mean near_m?",
+        ],
+    ),
+    "a node that is not there": ("  - {id: a, checks: [{log: sonr, matches: x}]}",
+     ["4:28: steps[0].checks[0].log: there is no node 'sonr' (did you mean sonar?)"]),
+    "two conditions at once": (
+        "  - {id: a, checks: [{field: /a, type: a/msg/B, path: data, changes: true, equals: 1}]}",
+        [
+            "4:22: steps[0].checks[0]: expected exactly one of between, equals, changes, matches",
+        ],
+    ),
+    "the same id twice": ("  - {id: a, checks: [{node: /a}]}\n  - {id: a, checks: [{node: /a}]}",
+     ["5:10: steps[1].id: there is a step 'a' already"]),
+    "a step that waits for a later one": (
+        "  - {id: a, needs: [bb], checks: [{node: /a}]}\n  - {id: bb, checks: [{node: /a}]}",
+        ["4:21: steps[0].needs[0]: no step before this one is called 'bb'"],
+    ),
+    "no checks": ("  - {id: a, checks: []}", ["4:21: steps[0].checks: `checks` is empty"]),
+    "a pattern that cannot be one": (
+        "  - {id: a, checks: [{log: sonar, matches: '('}]}",
+        [
+            (
+                "4:44: steps[0].checks[0].matches: '(' is not a regular expression: missing ), "
+                "unterminated subpattern at position 0"
+            )
+        ],
+    ),
+    "a call that follows": (
+        "  - {id: a, checks: [{publish: /a, type: std_msgs/msg/Bool, then: [{node: /a}]}]}",
+        [
+            (
+                "4:68: steps[0].checks[0].then[0]: only these can follow: field, log, nothing, "
+                "python, image, rate"
+            )
+        ],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_what_is_wrong_with_a_step_is_told_with_its_place(case: str, tmp_path: Path) -> None:
+    written, wanted = BAD[case]
+    assert told(tmp_path, HEAD + written) == wanted
+
+
+def test_every_kind_is_read_by_its_own_key(tmp_path: Path) -> None:
+    text = (
+        HEAD
+        + "  - id: a\n    checks:\n"
+        + "".join(
+            f"      - {{{check}}}\n"
+            for check in (
+                "node: /a",
+                "topic: /a, type: std_msgs/msg/Bool, by: /b",
+                "subscription: /a, by: /b",
+                "image: /a, rate: [1, 2]",
+                "rate: /a, between: [1, '${near_m * 10}']",
+                "field: /a, type: std_msgs/msg/Bool, path: data, equals: true",
+                "qos: /a, reliability: reliable",
+                "service: /a, type: std_srvs/srv/Trigger, response: {success: true}",
+                "action: /a, type: a_msgs/action/Go, cancel: true",
+                "publish: /a, type: a/msg/B, then: [{nothing: /b, type: a/msg/B, for: 2}]",
+                "nothing: /a, type: std_msgs/msg/Bool",
+                "parameter: p, of: /a, type: double",
+                "transform: {from: a, to: b}, translation: [0.15, 0, 0.25]",
+                "log: sonar, matches: x",
+                "ends: sonar",
+                "no_publisher: /a, except: /b",
+                "gate: /a, from: /b, distance: /c, stop_below: 0.5",
+                "python: checks.py:f, topics: {/a: std_msgs/msg/Bool}",
+            )
+        )
+    )
+    (step,) = loaded(tmp_path, text).document.steps
+    assert {kind_of(check) for check in step.checks} == set(KINDS)
+
+
+@pytest.mark.parametrize("bad", ["v +", "__import__('os')", "v.real", "1 / 0", "missing", "[1]"])
+def test_anything_else_is_refused(bad: str) -> None:
+    with pytest.raises(ExpressionError):
+        evaluate(bad, {"v": 1.0})

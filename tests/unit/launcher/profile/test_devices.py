@@ -1,4 +1,4 @@
-"""Devices on mock and on real hardware, names of places, and `port: auto`."""
+"""Devices of a profile, and which serial port is which."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import pytest
 
 from launcher.errors import ProfileError
 from launcher.profile.load import Profile, load_profile
+from launcher.profile.serial_choice import KINDS, UnresolvedPort, WantedPort, choose
 from launcher.serial_ports import SerialPort
-from tests.unit.profile_files import loaded, told, written
+from tests.unit.profile_files import loaded, written
 
 ROBOT = """\
 devices:
@@ -26,7 +27,6 @@ PICO = SerialPort("/dev/ttyACM0", "/dev/serial/by-id/pico", "2e8a:0005")
 
 
 def started(folder: Path, *ports: SerialPort, **environ: str) -> Profile:
-    """Load the robot for real hardware, as one who is about to start it."""
     path = written(folder, ROBOT)
     return load_profile(path, hardware="real", environ=environ, ports=lambda: ports)
 
@@ -38,18 +38,6 @@ def test_places_are_put_in_on_mock_hardware(tmp_path: Path) -> None:
     assert port == "/run/x/devices/7/pico", "a variable never leads a mock robot to a real one"
     port = load_profile(path, environ=environ, domain=8).nodes["chassis"].params["port"]
     assert port == "/run/x/devices/8/pico"
-
-
-def test_the_profiles_own_domain_counts_in_places_too(tmp_path: Path) -> None:
-    profile = loaded(tmp_path, "domain: 9\n" + ROBOT)
-    assert str(profile.nodes["chassis"].params["port"]).endswith("/devices/9/pico")
-    assert profile.document.devices["pico"]["port"] == profile.nodes["chassis"].params["port"]
-    assert "mock" not in profile.document.devices["pico"]
-
-
-def test_reading_alone_looks_for_no_ports(tmp_path: Path) -> None:
-    profile = loaded(tmp_path, ROBOT, hardware="real")
-    assert profile.nodes["chassis"].params["port"] == "auto"
 
 
 def test_auto_becomes_the_port_that_was_found(tmp_path: Path) -> None:
@@ -73,14 +61,6 @@ def test_a_port_that_is_missing_is_told_with_its_place_and_its_mend(tmp_path: Pa
     assert "DECK_PICO_PORT=" in problem.hint
 
 
-@pytest.mark.parametrize("usb", ["1234:5678", "[1234:5678]", "[1234:5678, ABCD:0001]"])
-def test_usb_ids_of_ones_own(usb: str, tmp_path: Path) -> None:
-    path = written(tmp_path, ROBOT.replace("kind: pico", f"usb: {usb}"))
-    board = SerialPort("/dev/ttyACM3", "", "1234:5678")
-    profile = load_profile(path, hardware="real", environ={}, ports=lambda: [PICO, board])
-    assert profile.nodes["chassis"].params["port"] == "/dev/ttyACM3"
-
-
 def test_what_is_under_real_counts_on_real_hardware_alone(tmp_path: Path) -> None:
     text = (
         "devices: {eye: {source: 1, real: {source: 2}}}\n"
@@ -90,21 +70,6 @@ def test_what_is_under_real_counts_on_real_hardware_alone(tmp_path: Path) -> Non
     assert loaded(tmp_path, text, hardware="real").nodes["camera"].params["source"] == 2
 
 
-def test_settings_with_several_values_are_told(tmp_path: Path) -> None:
-    text = "nodes: {a: {exec: [x]}}\ndevices: {d: {port: [1], mock: {port: {x: 1}}}}"
-    assert told(tmp_path, text) == [
-        "2:21: devices.d.port: expected a single value",
-        "2:39: devices.d.mock.port: expected a single value",
-    ]
-
-
-def test_other_names_in_braces_stay(tmp_path: Path) -> None:
-    text = 'nodes: {a: {exec: [x, "${HOME}", "${run_dirs}", "${}"], env: {D: "${domain}"}}}'
-    node = loaded(tmp_path, "domain: 5\n" + text).nodes["a"]
-    assert node.document.exec == ("x", "${HOME}", "${run_dirs}", "${}")
-    assert node.document.env == {"D": "5"}
-
-
 @pytest.mark.parametrize("hardware", ["mock", "real"])
 @pytest.mark.parametrize("pico", ["5", "[1]", "{port: {x: 1}}", "null", "{mock: 3}"])
 def test_devices_that_make_no_sense_are_told(pico: str, hardware: str, tmp_path: Path) -> None:
@@ -112,3 +77,46 @@ def test_devices_that_make_no_sense_are_told(pico: str, hardware: str, tmp_path:
     path = written(tmp_path, text)
     with pytest.raises(ProfileError):
         load_profile(path, hardware=hardware, environ={}, ports=lambda: [PICO])
+
+
+PICO_SERIAL_CHOICE = SerialPort(
+    "/dev/ttyACM0", "/dev/serial/by-id/usb-MicroPython-if00", "2e8a:0005", "Board"
+)
+LUNA = SerialPort("/dev/ttyUSB0", "/dev/serial/by-id/usb-CP2102-if00", "10c4:ea60", "CP2102")
+MODEM = SerialPort("/dev/ttyACM1", "/dev/serial/by-id/usb-modem", "1234:5678", "Modem")
+UART = SerialPort("/dev/ttyAMA0")
+
+A_PICO = WantedPort(usb=KINDS["pico"])
+A_LUNA = WantedPort(usb=KINDS["tf_luna"])
+SERVO_BOARD = WantedPort(usb=KINDS["lsc16"])
+
+
+def paths(chosen: dict[str, SerialPort | UnresolvedPort]) -> dict[str, str | None]:
+    unresolved = [each for each in chosen.values() if isinstance(each, UnresolvedPort)]
+    assert all("DECK_" in each.hint and "devices." in each.hint for each in unresolved)
+    return {
+        device: each.path if isinstance(each, SerialPort) else None
+        for device, each in chosen.items()
+    }
+
+
+def test_a_pico_is_found_among_others_by_its_lasting_name() -> None:
+    assert paths(choose({"pico": A_PICO}, [UART, MODEM, LUNA, PICO_SERIAL_CHOICE])) == {
+        "pico": PICO_SERIAL_CHOICE.name
+    }
+
+
+def test_two_that_fit_are_listed_and_neither_is_taken() -> None:
+    other = SerialPort("/dev/ttyACM9", "", "2e8a:0005")
+    (found,) = choose({"pico": A_PICO}, [PICO_SERIAL_CHOICE, other]).values()
+    assert isinstance(found, UnresolvedPort)
+    assert PICO_SERIAL_CHOICE.name in found.message
+    assert "/dev/ttyACM9" in found.message
+
+
+def test_one_port_is_not_given_to_two_devices() -> None:
+    chosen = choose({"tof_front": A_LUNA, "lsc16": SERVO_BOARD}, [LUNA])
+    assert paths(chosen) == {"tof_front": None, "lsc16": None}
+    unresolved = chosen["tof_front"]
+    assert isinstance(unresolved, UnresolvedPort)
+    assert "may be this or lsc16" in unresolved.message

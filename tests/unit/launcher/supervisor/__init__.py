@@ -1,1 +1,0 @@
-"""Tests of `launcher.supervisor` that need no ROS and no terminal."""

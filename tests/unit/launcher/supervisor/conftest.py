@@ -9,5 +9,4 @@ from tests.unit.launcher.supervisor.fake_session import FakeSession
 
 @pytest.fixture
 async def session() -> FakeSession:
-    """A session that obeys."""
     return FakeSession()

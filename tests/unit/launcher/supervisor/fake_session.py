@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import signal
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from launcher.processes.exit import Exit
 from launcher.processes.table import Process
@@ -15,9 +15,6 @@ from launcher.supervisor.node import SupervisedNode
 from launcher.supervisor.plan import NodePlan
 from launcher.supervisor.readiness import ReadyCondition, Seen, UnwatchableError
 from tests.unit.manual_clock import ManualClock, settle
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 PLAN = NodePlan(name="sonar", command="nodes.sonar", argv=("sonar",), restart="on-failure")
 
