@@ -26,16 +26,9 @@ BATTERY = "other_msgs/msg/Battery"
 BATTERY_TEXT = "float32 volts\nuint8[] cells\nbool charging\nbyte level\nstring[] names\n"
 FOREVER = QosTime(9223372036, 854775807)
 LATCHED = Qos(
-    QosHistory.KEEP_LAST,
-    1,
-    QosReliability.RELIABLE,
-    QosDurability.TRANSIENT_LOCAL,
-    FOREVER,
-    FOREVER,
-    QosLiveliness.AUTOMATIC,
-    FOREVER,
-    False,
-)
+    QosHistory.KEEP_LAST, 1, QosReliability.RELIABLE, QosDurability.TRANSIENT_LOCAL,
+    FOREVER, FOREVER, QosLiveliness.AUTOMATIC, FOREVER, False,
+)  # fmt: skip
 
 
 def store() -> Typestore:

@@ -41,9 +41,6 @@ def write_mcap(
     *,
     qos: str = "",
     foreign: tuple[str, str, str] | None = None,
-    profile: str = "ros2",
-    stamps: Sequence[int] = (),
-    chunked: bool = True,
     statistics: bool = True,
     indexes: IndexType = IndexType.ALL,
     compression: CompressionType = CompressionType.ZSTD,
@@ -59,22 +56,20 @@ def write_mcap(
         writer = Writer(
             stream,
             chunk_size=chunk_bytes,
-            use_chunking=chunked,
             use_statistics=statistics,
             index_types=indexes,
             compression=compression,
         )
-        writer.start(profile, "a test")
+        writer.start("ros2", "a test")
         schema = writer.register_schema(TEXT, "ros2msg", DEFINITION)
         facts = {"offered_qos_profiles": qos} if qos else {}
         texts = writer.register_channel(topic, "cdr", schema, facts)
         other = None
         if foreign is not None:
             encoding, name, of_schema = foreign
-            other = writer.register_channel(
-                "/extra", encoding, writer.register_schema(name, of_schema, b"{}")
-            )
-        for number, at_ns in enumerate(stamps or times(first, count), first):
+            kind = writer.register_schema(name, of_schema, b"{}")
+            other = writer.register_channel("/extra", encoding, kind)
+        for number, at_ns in enumerate(times(first, count), first):
             writer.add_message(texts, at_ns, text_in_cdr(f"m{number}"), at_ns)
             if other is not None:
                 writer.add_message(other, at_ns, b'{"a": 1}', at_ns)
@@ -82,65 +77,35 @@ def write_mcap(
     return file
 
 
-def damage_chunk(file: Path, which: int, begin: int = 40) -> int:
-    """Write wrong bytes into one of the chunks, from `begin` on; return how many there are."""
+def damage_chunk(file: Path, which: int, begin: int = 40) -> None:
+    """Write wrong bytes into one of the chunks, from `begin` on."""
     raw = bytearray(file.read_bytes())
     inner = records(bytes(raw[len(MCAP_MAGIC) : -len(MCAP_MAGIC)]))
     chunks = [(at - RECORD_HEAD.size, end) for code, at, end in inner if code == CHUNK]
+    assert len(chunks) > 2
     at, end = (place + len(MCAP_MAGIC) for place in chunks[which])
     raw[at + begin : end] = b"\xff" * (end - at - begin)
     file.write_bytes(raw)
-    return len(chunks)
 
 
-def write_sqlite(
-    file: Path,
-    count: int = 20,
-    first: int = 0,
-    *,
-    encoding: str = "cdr",
-    qos: str | None = "",
-    definitions: tuple[str, str] | None = None,
-    contents: Sequence[bytes] = (),
-) -> Path:
-    """A file with `count` texts on /chatter.
-
-    `qos`: None for the first version, which has no such column; `definitions`: the encoding and
-    the text of the type's definition, in versions that have it.
-    """
+def write_sqlite(file: Path, count: int = 20, first: int = 0) -> Path:
+    """A file with `count` texts on /chatter."""
     file.parent.mkdir(parents=True, exist_ok=True)
     with sqlite3.connect(file) as base:
-        offered = "" if qos is None else ", offered_qos_profiles text"
         base.execute(
             "create table topics(id integer primary key, name text, type text, "
-            f"serialization_format text{offered})"
+            "serialization_format text, offered_qos_profiles text)"
         )
         base.execute(
             "create table messages(id integer primary key, topic_id integer, timestamp integer, "
             "data blob)"
         )
-        row = (1, TOPIC, TEXT, encoding, *(() if qos is None else (qos,)))
-        base.execute(f"insert into topics values({','.join('?' * len(row))})", row)
-        if definitions is not None:
-            base.execute(
-                "create table message_definitions(id integer primary key, topic_type text, "
-                "encoding text, encoded_message_definition text, type_description_hash text)"
-            )
-            base.execute("insert into message_definitions values(1,?,?,?,'')", (TEXT, *definitions))
-        put(base, count, first, contents)
+        base.execute("insert into topics values(1, ?, ?, 'cdr', '')", (TOPIC, TEXT))
+        for number, at_ns in enumerate(times(first, count), first):
+            row = (at_ns, text_in_cdr(f"m{number}"))
+            base.execute("insert into messages(topic_id, timestamp, data) values(1, ?, ?)", row)
     base.close()
     return file
-
-
-def put(
-    base: sqlite3.Connection, count: int, first: int = 0, contents: Sequence[bytes] = ()
-) -> None:
-    """Add messages."""
-    raws = contents or [text_in_cdr(f"m{number}") for number in range(first, first + count)]
-    for at_ns, raw in zip(times(first, count), raws, strict=True):
-        base.execute(
-            "insert into messages(topic_id, timestamp, data) values(1, ?, ?)", (at_ns, raw)
-        )
 
 
 def write_metadata(

@@ -1,1 +1,0 @@
-"""Tests of `graph` that need no ROS and no terminal."""

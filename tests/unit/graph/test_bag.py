@@ -1,19 +1,22 @@
-"""Bags that are no bags, cut short, or foreign: each gets a word that names file and fix."""
+"""Bags, whole, odd and damaged: what is there is read, what is missing is counted."""
 
 from __future__ import annotations
 
-import errno
-import os
-from io import BytesIO
 from pathlib import Path
 
 import pytest
-from mcap.reader import make_reader
+from mcap.writer import CompressionType, IndexType
 
-from graph.bag.errors import BagError, unreadable
-from graph.bag.reading import open_bag
+from graph.bag.errors import BagError
+from graph.bag.listing import ListedBag, bags_in
+from graph.bag.reading import Bag, open_bag
+from graph.observer.interest import Interest
+from graph.replay.topics import ReplayTopics
 from tests.unit.bags import write_bag
-from text.i18n import localized, set_language
+from tests.unit.odd_bags import TOPIC, damage_chunk, write_mcap, write_metadata, write_sqlite
+from text.i18n import localized
+
+UNKNOWN = "how many cannot be known"
 
 
 @pytest.fixture(scope="module")
@@ -46,106 +49,11 @@ def test_a_bag_is_opened_by_its_folder_or_its_files(tmp_path: Path, which: str) 
         assert len(list(bag.messages())) == 103
 
 
-def test_a_folder_without_metadata_is_opened_by_its_file(tmp_path: Path) -> None:
-    (write_bag(tmp_path / "walk") / "metadata.yaml").unlink()
-    with open_bag(tmp_path / "walk") as bag:
-        assert len(list(bag.messages())) == 103
-
-
-def test_what_is_not_there_is_no_bag(tmp_path: Path) -> None:
-    words = said_of(tmp_path / "nothing")
-    assert "nothing is not a bag: there is no such file or folder" in words
-    assert "metadata.yaml" in words
-
-
 def test_an_empty_folder_and_another_file_are_no_bags(tmp_path: Path) -> None:
     assert "neither metadata.yaml nor an .mcap file" in said_of(tmp_path)
     text = tmp_path / "letter.txt"
     text.write_text("hello")
     assert "ends neither in .mcap nor in .db3" in said_of(text)
-
-
-def test_what_is_neither_file_nor_folder_is_no_bag_and_is_not_waited_for(tmp_path: Path) -> None:
-    pipe = tmp_path / "pipe.mcap"
-    os.mkfifo(pipe)
-    for path in (pipe, Path("/dev/null"), Path("/dev/zero")):
-        assert f"{path} is not a bag: it is neither a file nor a folder" in said_of(path)
-
-
-def test_a_link_to_itself_and_an_endless_name_are_told(tmp_path: Path) -> None:
-    link = tmp_path / "l.mcap"
-    link.symlink_to(link)
-    assert "l.mcap is not a bag: there is no such file or folder" in said_of(link)
-    assert "cannot be read: File name too long" in said_of(tmp_path / ("n" * 300))
-
-
-def test_a_reason_that_is_a_sentence_brings_no_second_dot() -> None:
-    words = str(unreadable(Path("walk"), ValueError("File magic is invalid.")))
-    assert words == "walk cannot be read: it is damaged: File magic is invalid"
-
-
-@pytest.mark.parametrize("name", ["fake.mcap", "fake.db3"])
-def test_an_empty_file_is_told_as_such(tmp_path: Path, name: str) -> None:
-    fake = tmp_path / name
-    fake.touch()
-    assert said_of(fake) == f"{fake} cannot be read: {name} is empty, nothing was written to it"
-
-
-@pytest.mark.parametrize(("name", "kind"), [("fake.mcap", "MCAP"), ("fake.db3", "SQLite")])
-def test_a_file_that_only_looks_like_one_is_named(tmp_path: Path, name: str, kind: str) -> None:
-    fake = tmp_path / name
-    fake.write_bytes(b"hello, I am no bag")
-    assert said_of(fake) == f"{fake} cannot be read: {name} is not an {kind} file"
-
-
-def test_a_file_that_metadata_names_and_that_is_gone_is_told(tmp_path: Path) -> None:
-    bag = write_bag(tmp_path / "walk", seconds=1)
-    (bag / "walk.mcap").unlink()
-    assert said_of(bag).endswith("metadata.yaml names walk.mcap, which is not there")
-
-
-def test_what_is_wrong_with_a_file_is_told_in_russian_alone(tmp_path: Path) -> None:
-    bag = write_bag(tmp_path / "walk", seconds=1)
-    (bag / "walk.mcap").write_bytes(b"")
-    with pytest.raises(BagError) as told:
-        open_bag(bag)
-    set_language("ru")
-    try:
-        said_in_russian = localized(told.value.words)
-    finally:
-        set_language("en")
-    assert (
-        said_in_russian
-        == f"{bag} не удаётся прочитать: файл walk.mcap пуст, в него ничего не записано"
-    )
-
-
-def test_what_the_system_says_of_a_file_is_told_in_russian_too() -> None:
-    words = unreadable(Path("walk"), OSError(errno.EIO, os.strerror(errno.EIO))).words
-    assert words == "walk cannot be read: Input/output error"
-    set_language("ru")
-    try:
-        assert localized(words) == "walk не удаётся прочитать: ошибка ввода-вывода"
-    finally:
-        set_language("en")
-
-
-def test_an_unknown_storage_is_named(tmp_path: Path) -> None:
-    path = write_bag(tmp_path / "walk") / "metadata.yaml"
-    path.write_text(path.read_text().replace("storage_identifier: mcap", "storage_identifier: x9"))
-    with open_bag(tmp_path / "walk") as bag:
-        assert bag.notes == ("metadata.yaml names the storage x9, walk.mcap is mcap",)
-    (tmp_path / "walk" / "walk.mcap").write_bytes(b"of x9")
-    words = said_of(tmp_path / "walk")
-    assert "storage 'x9' is not known" in words
-    assert "where ROS is installed" in words
-
-
-def test_broken_metadata_are_named(tmp_path: Path) -> None:
-    (write_bag(tmp_path / "walk") / "metadata.yaml").write_text("a: [")
-    with open_bag(tmp_path / "walk") as bag:
-        # The file itself is whole.
-        assert len(list(bag.messages())) == 103
 
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.9, 0.99])
@@ -163,17 +71,7 @@ def test_a_bag_cut_anywhere_is_read_as_far_as_it_goes(
         assert f"{len(found)} messages are intact" in " ".join(bag.notes)
 
 
-def test_a_bag_cut_in_its_first_breath_is_empty_but_opens(tmp_path: Path) -> None:
-    file = write_bag(tmp_path / "walk") / "walk.mcap"
-    file.write_bytes(file.read_bytes()[:60])
-    with open_bag(tmp_path / "walk") as bag:
-        assert bag.messages_count == 0
-        assert list(bag.messages()) == []
-        assert bag.length_s == 0.0
-
-
 def damaged(file: Path, long_bag: bytes, share: float = 1.0) -> None:
-    """Write the long bag, or its first part, with 2000 wrong bytes at a third of it."""
     wrong = bytearray(long_bag[: int(len(long_bag) * share)])
     middle = len(long_bag) // 3
     wrong[middle : middle + 2000] = b"\xff" * 2000
@@ -194,53 +92,239 @@ def test_a_damaged_chunk_costs_that_chunk_and_is_told(tmp_path: Path, long_bag: 
         assert f"messages lost: {lost}, damaged places: 1," in str(bag.damage), "counted once"
 
 
-def test_a_damaged_chunk_of_a_bag_without_an_end_costs_that_chunk(
-    tmp_path: Path, long_bag: bytes
+FEWER = "metadata.yaml counts 40 messages, the files hold 20"
+
+
+def only(folder: Path) -> ListedBag:
+    (bag,) = bags_in(folder)
+    return bag
+
+
+def bag_of(folder: Path, ending: str, **facts: object) -> Path:
+    storage = "mcap" if ending == "mcap" else "sqlite3"
+    write = write_mcap if ending == "mcap" else write_sqlite
+    write(folder / f"walk_0.{ending}")
+    return write_metadata(folder, [f"walk_0.{ending}"], storage_identifier=storage, **facts)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("ending", ["mcap", "db3"])
+def test_fewer_messages_than_counted_are_told_with_what_is_there(
+    ending: str, tmp_path: Path
 ) -> None:
-    file = write_bag(tmp_path / "walk") / "walk.mcap"
-    file.write_bytes(long_bag[: int(len(long_bag) * 0.9)])
-    with open_bag(file) as bag:
-        whole = len(list(bag.messages()))
-    damaged(file, long_bag, 0.9)
-    with open_bag(file) as bag:
-        found = len(list(bag.messages()))
-        assert whole / 2 < found == bag.messages_count < whole
-        assert f"messages lost: {whole - found}, damaged places: 1," in str(bag.damage)
-        assert "was cut short" in " ".join(bag.notes)
+    bag_of(tmp_path / "walk", ending, count=40)
+    bag = only(tmp_path)
+    assert localized(bag.trouble, "en") == FEWER
+    assert (bag.messages, bag.topics) == (20, 1)
 
 
-def test_a_chunk_whose_own_head_is_damaged_is_left_out(tmp_path: Path, long_bag: bytes) -> None:
-    file = write_bag(tmp_path / "walk") / "walk.mcap"
-    summary = make_reader(BytesIO(long_bag)).get_summary()
-    assert summary is not None
-    place = summary.chunk_indexes[1].chunk_start_offset
-    wrong = bytearray(long_bag)
-    wrong[place : place + 40] = bytes(40)
-    file.write_bytes(wrong)
-    with open_bag(file) as bag:
-        found = len(list(bag.messages()))
-        assert f"messages lost: {bag.messages_count - found}," in str(bag.damage)
+def read(bag: Bag) -> list[str]:
+    """The texts on all topics, in their order."""
+    return [raw[8:-1].decode() for _topic, _stamp, raw in bag.messages()]
 
 
-def test_a_bag_of_which_the_first_chunk_is_damaged_names_what_nobody_can_name(
-    tmp_path: Path, long_bag: bytes
+def words_up_to(count: int) -> list[str]:
+    return [f"m{number}" for number in range(count)]
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(BagError) as told:
+        open_bag(path)
+    return str(told.value)
+
+
+def all_of(path: Path, count: int) -> tuple[str, ...]:
+    """What is told of a bag that is read to its last message, and is not incomplete."""
+    with open_bag(path) as bag:
+        assert read(bag) == words_up_to(count)
+        assert [(topic.name, topic.messages) for topic in bag.topics] == [(TOPIC, count)]
+        assert (bag.messages_count, bag.is_incomplete, bag.damage) == (count, False, None)
+        return bag.notes
+
+
+def part_of(path: Path, count: int) -> tuple[str, ...]:
+    """What is told of a bag of which only `count` messages are there."""
+    with open_bag(path) as bag:
+        assert read(bag) == words_up_to(count)
+        assert (bag.messages_count, bag.is_incomplete) == (count, True)
+        return bag.notes
+
+
+@pytest.mark.parametrize("ending", ["mcap", "db3"])
+def test_all_files_of_a_split_bag_are_read_and_counted_together(
+    tmp_path: Path, ending: str
 ) -> None:
-    file = write_bag(tmp_path / "walk") / "walk.mcap"
-    wrong = bytearray(long_bag[: int(len(long_bag) * 0.9)])
-    wrong[3000:5000] = bytes(2000)
-    file.write_bytes(wrong)
-    with open_bag(file) as bag:
-        assert bag.messages_count == len(list(bag.messages()))
-        assert "is damaged: messages lost: " in str(bag.damage)
+    write = write_mcap if ending == "mcap" else write_sqlite
+    for part, first in ((1, 0), (2, 10), (10, 20)):
+        write(tmp_path / f"walk_{part}.{ending}", 10, first)
+    assert all_of(tmp_path, 30) == ()
 
 
-def test_several_files_of_one_bag_are_read_though_the_last_is_cut(
-    tmp_path: Path, long_bag: bytes
+def test_a_missing_file_is_named_and_what_it_held_is_counted(tmp_path: Path) -> None:
+    write_mcap(tmp_path / "walk_0.mcap")
+    write_metadata(tmp_path, ["walk_0.mcap", "walk_1.mcap"], 40)
+    assert part_of(tmp_path, 20) == (
+        "metadata.yaml names walk_1.mcap, which is not there",
+        "metadata.yaml counts 40 messages, the files hold 20: /chatter 40 → 20",
+    )
+
+
+def test_a_file_that_cannot_be_read_does_not_cost_the_others(tmp_path: Path) -> None:
+    write_mcap(tmp_path / "walk_0.mcap")
+    (tmp_path / "walk_1.mcap").write_bytes(b"")
+    write_metadata(tmp_path, ["walk_0.mcap", "walk_1.mcap"], 40)
+    notes = part_of(tmp_path, 20)
+    assert "walk_1.mcap is empty, nothing was written to it" in notes[0]
+
+
+@pytest.mark.parametrize("said", [19, 21])
+def test_another_number_in_the_metadata_is_told(tmp_path: Path, said: int) -> None:
+    write_mcap(tmp_path / "walk_0.mcap")
+    write_metadata(tmp_path, ["walk_0.mcap"], said)
+    notes = (part_of if said > 20 else all_of)(tmp_path, 20)
+    assert notes == (
+        f"metadata.yaml counts {said} messages, the files hold 20: /chatter {said} → 20",
+    )
+
+
+@pytest.mark.parametrize("text", ["", "a: [", "[]", "rosbag2_bagfile_information: 3", "[" * 5000])
+def test_broken_metadata_are_told_and_the_files_are_read(tmp_path: Path, text: str) -> None:
+    write_mcap(tmp_path / "walk_0.mcap")
+    (tmp_path / "metadata.yaml").write_text(text)
+    assert all_of(tmp_path, 20) == ("metadata.yaml is damaged: only the files themselves count",)
+
+
+FOREIGN = [
+    ("json", "Log", "jsonschema"),
+    ("protobuf", "demo.Pose", "protobuf"),
+    ("ros1", "std_msgs/String", "ros1msg"),
+    ("flatbuffer", "Pose", "flatbuffer"),
+    ("cbor", "Pose", ""),
+]
+
+
+@pytest.mark.parametrize("foreign", FOREIGN)
+@pytest.mark.parametrize("statistics", [True, False])
+def test_a_channel_of_another_kind_is_named_and_the_others_are_read(
+    tmp_path: Path, foreign: tuple[str, str, str], *, statistics: bool
 ) -> None:
-    folder = write_bag(tmp_path / "walk", seconds=1)
-    (folder / "walk_1.mcap").write_bytes(long_bag[: len(long_bag) // 2])
-    (folder / "metadata.yaml").unlink()
-    with open_bag(folder) as bag:
-        assert len(list(bag.messages())) == bag.messages_count > 13
-        assert bag.is_cut
+    file = write_mcap(tmp_path / "walk.mcap", foreign=foreign, statistics=statistics)
+    assert all_of(file, 20) == (
+        f"left out, since their serialization format is not ROS 2's: /extra ({foreign[0]}: 20)",
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "begin", "words"),
+    [
+        ("robot.bag", b"#ROSBAG V2.0\n", "is a recording of ROS 1; convert it: `pip install"),
+        ("robot.mcap", b"#ROSBAG V2.0\n", "rosbags-convert --src robot.mcap --dst robot`"),
+        ("a.mcap", b"version https://git-lfs.github.com/spec/v1\noid", "is a Git LFS pointer"),
+        ("a.db3", b"version https://git-lfs.github.com/spec/v1\noid", "`git lfs pull`"),
+        ("a.mcap", b"\n<!DOCTYPE html><html>", "is a web page and no recording"),
+        ("a.mcap", b"PK\x03\x04rest", "is packed by zip; unpack it first"),
+        ("a.db3", b"\x1f\x8brest", "is packed by gzip; unpack it first"),
+    ],
+)
+def test_what_a_file_is_instead_is_told(
+    tmp_path: Path, name: str, begin: bytes, words: str
+) -> None:
+    file = tmp_path / "walk" / name
+    file.parent.mkdir()
+    file.write_bytes(begin + b"\0" * 64)
+    for path in (file, file.parent):
+        said = refusal(path)
+        assert f"{path} cannot be read: {name} is " in said
+        assert words in said
+        assert "reindex" not in said
+
+
+@pytest.mark.parametrize("place", ["middle", "end"])
+def test_a_damaged_database_is_read_from_both_ends(tmp_path: Path, place: str) -> None:
+    count = 5000
+    file = write_sqlite(tmp_path / "walk_0.db3", count)
+    write_metadata(tmp_path, ["walk_0.db3"], count, storage_identifier="sqlite3")
+    raw = bytearray(file.read_bytes())
+    if place == "middle":
+        middle = len(raw) // 2 // 4096 * 4096
+        raw[middle : middle + 4096] = b"\xff" * 4096
+    else:
+        del raw[len(raw) // 3 :]
+    file.write_bytes(raw)
+    with open_bag(tmp_path) as bag:
+        found = read(bag)
+        assert found == sorted(found, key=lambda word: int(word[1:]))
+        lost = count - len(found)
+        assert count / 10 < len(found) < count
+        told = lost if place == "middle" else UNKNOWN
+        assert f"messages lost: {told}," in str(bag.damage)
         assert bag.is_incomplete
+        assert f"counts 5000 messages, the files hold {len(found)}" in bag.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("statistics", "indexes", "counted"),
+    [
+        (True, IndexType.ALL, True),
+        (True, IndexType.NONE, True),
+        (False, IndexType.MESSAGE, True),
+        # Nothing counts them.
+        (False, IndexType.NONE, False),
+        (False, IndexType.CHUNK, False),
+    ],
+)
+@pytest.mark.parametrize("compression", list(CompressionType))
+@pytest.mark.parametrize(("which", "second"), [(0, 0), (1, 0), (-1, 2)])
+def test_what_a_damaged_chunk_held_is_counted_by_whatever_the_file_counts(
+    tmp_path: Path,
+    which: int,
+    second: int,
+    compression: CompressionType,
+    indexes: IndexType,
+    *,
+    statistics: bool,
+    counted: bool,
+) -> None:
+    file = write_mcap(
+        tmp_path / "walk.mcap",
+        30,
+        statistics=statistics,
+        indexes=indexes,
+        compression=compression,
+        chunk_bytes=400,
+    )
+    damage_chunk(file, which)
+    with open_bag(file) as bag:
+        found = read(bag)
+        assert 10 < len(found) < 30
+        lost = 30 - len(found) if counted else UNKNOWN
+        told = f"messages lost: {lost}, damaged places: 1, the first {second}."
+        assert told in str(bag.damage)
+        assert bag.notes == ()
+
+
+@pytest.mark.parametrize("indexes", [IndexType.ALL, IndexType.CHUNK, IndexType.NONE])
+def test_a_file_that_is_broken_in_its_middle_and_has_an_end_was_not_cut_short(
+    tmp_path: Path, indexes: IndexType
+) -> None:
+    file = write_mcap(tmp_path / "walk.mcap", 30, indexes=indexes, chunk_bytes=400)
+    damage_chunk(file, 1, begin=0)
+    with open_bag(file) as bag:
+        found = read(bag)
+        assert f"messages lost: {30 - len(found)}, damaged places: 1," in str(bag.damage)
+        assert not bag.is_cut
+        # By the indexes of the other chunks what follows is found.
+        assert ("m29" in found) == (indexes is not IndexType.NONE)
+
+
+def test_a_name_without_its_slash_is_resolved_as_ros_does_and_kept_as_it_is_recorded(
+    tmp_path: Path,
+) -> None:
+    write_mcap(tmp_path / "walk_0.mcap", 10, topic=TOPIC.removeprefix("/"))
+    write_mcap(tmp_path / "walk_1.mcap", 10, first=10)
+    with open_bag(tmp_path) as bag:
+        recorded = [(topic.name, topic.recorded) for topic in bag.topics]
+        assert recorded == [(TOPIC, TOPIC), (TOPIC, "chatter")]
+        assert {topic.name for topic, _stamp, _raw in bag.messages(names=[TOPIC])} == {TOPIC}
+        rows = ReplayTopics(bag.topics).rows(Interest(), 0.0, 0.0)
+        assert [(row.name, row.type_names) for row in rows] == [(TOPIC, ("std_msgs/msg/String",))]
+        assert read(bag) == words_up_to(20)

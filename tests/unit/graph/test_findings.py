@@ -1,4 +1,4 @@
-"""What is wrong with a graph: each rule on a graph made by hand, and silence on a healthy one."""
+"""What is wrong with a graph, who cannot hear whom, and diagnostics."""
 
 from __future__ import annotations
 
@@ -9,22 +9,27 @@ from typing import Any
 import pytest
 
 from graph.data import (
-    NAMELESS,
     ActionRow,
     EndpointInfo,
     GraphUpdate,
     NodeRow,
+    Sample,
     ServiceRow,
     TopicRow,
     Trouble,
 )
+from graph.diagnostics.book import STALE_S, DiagnosticsBook
+from graph.diagnostics.reading import StatusLevel
+from graph.diagnostics.tree import tree
 from graph.findings.examining import examine
-from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, GraphFinding
+from graph.findings.finding import FORGOTTEN_S, FindingLevel, GraphFinding
 from graph.findings.lasting import CHANGING_S, LastingFindings
 from graph.findings.names import meant
-from tests.hostile_text import EVIL
-from text.i18n import localized
-from text.plain import is_plain
+from graph.messages.types import UnknownTypeError
+from graph.observer.troubles import quiet, structural
+from graph.qos import Qos, to_be_heard, to_hear
+from graph.qos_compatibility import mismatches
+from graph.scan.endpoints import TopicEnds
 from tui.session.norms import NORMS
 
 FLOAT, STRING, RANGE = "std_msgs/msg/Float32", "std_msgs/msg/String", "sensor_msgs/msg/Range"
@@ -39,7 +44,6 @@ def end(node: str, kind: str = FLOAT, **policies: Any) -> EndpointInfo:
 
 
 def topic(name: str, by: str = "", to: str = "", kind: str = FLOAT, **more: Any) -> TopicRow:
-    """Return a topic with these nodes as publishers and subscribers, all of one type."""
     published = more.pop("published_by", tuple(end(node, kind) for node in by.split()))
     subscribed = more.pop("subscribed_by", tuple(end(node, kind) for node in to.split()))
     kinds = tuple(sorted({one.type_name for one in (*published, *subscribed)})) or (kind,)
@@ -87,37 +91,104 @@ def test_a_healthy_graph_has_none() -> None:
     assert found() == []
 
 
-def test_two_who_command_at_once_fight() -> None:
-    finding = only(topic("/drive", "/ai_driver /llm_parser", kind=DRIVE, several_send=True))
-    assert (finding.level, finding.rule) == (FindingLevel.ERROR, "fight")
-    assert finding.place == ("topic", "/drive")
-    assert finding.nodes == ("/ai_driver", "/llm_parser")
-    assert "/ai_driver, /llm_parser" in finding.what
+CLOCK = "rosgraph_msgs/msg/Clock"
+STAMPED: dict[str, Any] = {"measured": True}
+BOOL = "std_msgs/msg/Bool"
+LAZY = (end("/camera", reliability="best_effort"),)
+LATCHED = (end("/map", durability="transient_local"),)
+SILENT = topic("/sensor/sonar_front", "/sonar_front", trouble=Trouble.QUIET, age_s=8.0,
+               steady_hz=20.0, measured=True)  # fmt: skip
+CALLER = NodeRow("/caller", clients=("/add", "/other/get_parameters"))
+MAPPERS = tuple(NodeRow(name, publishes=("/map",)) for name in ("/gazebo", "/nav", "/slam"))
+Rows = list[TopicRow]
 
 
-def test_what_only_one_may_publish_has_a_fight_before_anything_is_sent() -> None:
-    assert only(topic("/drive_safe", "/safety_stop /rogue", kind=DRIVE)).rule == "fight"
-    assert found(topic("/drive_safe", "/safety_stop", kind=DRIVE)) == []
-    assert only(topic("/clock", "/gazebo /bag", kind="rosgraph_msgs/msg/Clock")).rule == "fight"
+def two(offered: dict[str, Any], asked: dict[str, Any]) -> Rows:
+    """One who publishes and one who hears, by these policies."""
+    lidar, nav = (end("/lidar", **offered),), (end("/nav", **asked),)
+    return [topic("/scan", published_by=lidar, subscribed_by=nav)]
 
 
-def test_mixed_measurements_are_a_warning() -> None:
-    finding = only(topic("/sensor/sonar_front", "/mock_sonar /tof_sonar", several_send=True))
-    assert (finding.level, finding.rule) == (FindingLevel.WARNING, "fight")
+@pytest.mark.parametrize(
+    ("rows", "more", "rule", "level", "nodes", "words"),
+    [
+        ([topic("/drive", "/ai_driver /llm_parser", kind=DRIVE, several_send=True)], {},
+         "fight", "ERROR", "/ai_driver /llm_parser", "/ai_driver, /llm_parser"),
+        # Also before anything is sent.
+        ([topic("/drive_safe", "/safety_stop /rogue", kind=DRIVE)], {},
+         "fight", "ERROR", "/safety_stop /rogue", ""),
+        ([topic("/clock", "/gazebo /bag", kind=CLOCK)], {}, "fight", "ERROR", "/bag /gazebo", ""),
+        ([topic("/sensor/sonar_front", "/mock_sonar /tof_sonar", several_send=True)], {},
+         "fight", "WARNING", "/mock_sonar /tof_sonar", ""),
+        ([topic("/chatter", published_by=(end("/talker", STRING),),
+                subscribed_by=(end("/listener"),))], {},
+         "two-types", "ERROR", "/listener /talker", f"{FLOAT} (/listener), {STRING} (/talker)"),
+        ([], {"nodes": (CALLER,), "services": (
+            ServiceRow("/add", ("a/srv/Add",), ("/server",), called_as=("a/srv/Sum",)),)},
+         "two-types", "ERROR", "/server /caller", "a/srv/Add, a/srv/Sum"),
+        (two({"reliability": "best_effort"}, {}), {}, "qos", "ERROR", "/lidar /nav",
+         "reliability reliable is asked for, best_effort"),
+        (two({}, {"durability": "transient_local"}), {}, "qos", "ERROR", "/lidar /nav",
+         "durability transient_local is asked for, volatile"),
+        (two({"deadline_s": 2.0}, {"deadline_s": 0.5}), {}, "qos", "ERROR", "/lidar /nav",
+         "at least every 0.5 s (deadline), 2 s is offered"),
+        (two({}, {"lease_s": 0.5}), {}, "qos", "ERROR", "/lidar /nav",
+         "at least every 0.5 s (liveliness lease duration), nothing"),
+        ([topic("/image", published_by=LAZY, lost=30, count=70, measured=True)], {},
+         "lost", "WARNING", "/camera", "30 of 100"),
+        ([topic("/burst", published_by=(end("/b", depth=1),), lost=30, count=70, measured=True)],
+         {}, "lost", "WARNING", "/b", "deeper queue than 1"),
+        ([topic("/scan", "", "/nav /rviz", RANGE)], {}, "unfed", "WARNING", "/nav /rviz", ""),
+        ([FED, topic("/sensor/sonar_frnt", "", "/guard")], {}, "near-name", "ERROR",
+         "/guard /sonar_front", "-r /sensor/sonar_frnt:=/sensor/sonar_front"),
+        ([FED, topic("/sensor/sonar_frnt", "", "/guard", STRING)], {},
+         "unfed", "WARNING", "/guard", ""),
+        ([topic("/emergency_stop", "", "/gate", BOOL), topic("/emergency_stpo", "/me", "", BOOL)],
+         {}, "near-name", "ERROR", "/me /gate", ""),
+        ([], {"nodes": (CALLER,), "services": (ServiceRow("/ad", ("a/srv/Add",), ("/h",)),)},
+         "unserved", "ERROR", "/caller", "served is /ad"),
+        ([], {"actions": (ActionRow("/go", ("a/action/Go",), (), ("/caller",)),)},
+         "unserved", "ERROR", "/caller", ""),
+        ([topic("/clock", "", "/nav", CLOCK)], {}, "no-clock", "ERROR", "/nav", ""),
+        ([topic("/clock", "/gazebo", "/nav", CLOCK), topic("/map", "/slam")], {"nodes": MAPPERS},
+         "clock-mix", "WARNING", "/slam", ""),
+        ([topic("/imu", "/imu", clock_off_s=1.7e9, **STAMPED)], {}, "clock", "WARNING", "/imu",
+         "19676 days behind"),
+        ([topic("/imu", "/imu", clock_off_s=-1200.0, **STAMPED)], {}, "clock", "WARNING", "/imu",
+         "20 min ahead"),
+        ([topic("/imu", "/imu", latency_s=-2.5, **STAMPED)], {}, "clock", "WARNING", "/imu",
+         "2.5 s in the future"),
+        ([topic("/imu", "/imu", latency_s=7.0, **STAMPED)], {}, "clock", "WARNING", "/imu",
+         "arrive 7.0 s after their stamp"),
+        ([SILENT], {}, "silent", "WARNING", "/sonar_front",
+         "20.0 Hz from /sonar_front, and then nothing for 8 s"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_found_with_its_nodes(
+    rows: Rows, more: dict[str, Any], rule: str, level: str, nodes: str, words: str
+) -> None:
+    finding = only(*rows, **more)
+    assert (finding.rule, finding.level) == (rule, FindingLevel[level])
+    assert {*finding.nodes} == {*nodes.split()}
+    assert words in f"{finding.what} {finding.mend}"
 
 
-def test_deck_itself_may_be_who_fights() -> None:
-    finding = only(topic("/drive", "/ai_driver", kind=DRIVE, several_send=True, own_publishers=1))
-    assert "/ai_driver, Deck" in finding.what
-    assert finding.nodes == ("/ai_driver",)
-    # The publisher of another screen is there before it is needed.
-    assert found(topic("/drive_safe", "/safety_stop /_deck_observer_7", kind=DRIVE)) == []
-
-
-def test_a_fight_of_one_name_may_be_a_node_and_its_successor() -> None:
-    finding = only(topic("/drive_safe", "/safety_stop /safety_stop", kind=DRIVE))
-    assert finding.settled_s == FORGOTTEN_S
-    assert "/safety_stop ×2" in finding.what
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [topic("/image", published_by=LAZY, lost=19, count=0)],
+        [topic("/image", published_by=LAZY, lost=30, count=1000)],
+        [topic("/scan", "", "/_deck_recorder_3", RANGE)],
+        [topic("/scan", "", "/nav", RANGE, own_publishers=1)],
+        [topic("/imu", "/imu", latency_s=-0.05)],
+        [topic("/map", published_by=LATCHED, latency_s=300.0)],
+        [topic("/clock", "/gazebo", "", CLOCK), topic("/imu", "/imu", clock_off_s=1.7e9)],
+        [replace(SILENT, steady_hz=None)],
+        [replace(SILENT, name="/drive", type_names=(DRIVE,))],
+    ],
+)
+def test_what_may_be_as_it_is_is_not_told(rows: Rows) -> None:
+    assert found(*rows) == []
 
 
 def test_nodes_with_one_name_are_told_by_their_processes_or_by_what_a_node_has_once() -> None:
@@ -127,125 +198,6 @@ def test_nodes_with_one_name_are_told_by_their_processes_or_by_what_a_node_has_o
     assert [one.place.name for one in findings] == ["/other", "/twin"]
     assert {one.rule for one in findings} == {"namesakes"}
     assert {one.settled_s for one in findings} == {FORGOTTEN_S}
-
-
-def test_a_topic_with_two_types_names_who_uses_which() -> None:
-    row = topic(
-        "/chatter", published_by=(end("/talker", STRING),), subscribed_by=(end("/listener"),)
-    )
-    finding = only(row)
-    assert (finding.rule, finding.level) == ("two-types", FindingLevel.ERROR)
-    assert f"{FLOAT} (/listener), {STRING} (/talker)" in finding.what
-    assert finding.nodes == ("/listener", "/talker")
-
-
-def test_a_type_that_cannot_be_subscribed_as_another_is_in_use_is_told_once() -> None:
-    row = topic("/chatter", published_by=(end("/a", STRING), end("/b")))
-    assert only(replace(row, trouble=Trouble.UNKNOWN_TYPE, detail="busy")).rule == "two-types"
-
-
-def test_services_and_actions_have_one_type_too() -> None:
-    nodes = (NodeRow("/caller", clients=("/add",)),)
-    service = ServiceRow("/add", ("a/srv/Add",), ("/server",), called_as=("a/srv/Sum",))
-    finding = only(services=(service,), nodes=nodes)
-    assert (finding.rule, finding.place) == ("two-types", ("service", "/add"))
-    assert finding.nodes == ("/server", "/caller")
-    assert "a/srv/Add, a/srv/Sum" in finding.what
-    action = ActionRow("/go", ("a/action/Go", "b/action/Go"), ("/server",), ("/caller",))
-    assert only(actions=(action,)).place == ("action", "/go")
-
-
-def test_an_unknown_type_says_what_to_install() -> None:
-    row = topic("/gps", "/gps", kind="ublox_msgs/msg/Fix", trouble=Trouble.UNKNOWN_TYPE,
-                detail="install ublox_msgs")  # fmt: skip
-    finding = only(row)
-    assert (finding.rule, finding.mend) == ("unknown-type", "install ublox_msgs")
-    assert "ublox_msgs/msg/Fix" in finding.what
-
-
-@pytest.mark.parametrize(
-    ("offered", "asked", "words"),
-    [
-        ({"reliability": "best_effort"}, {}, "reliability reliable is asked for, best_effort"),
-        (
-            {},
-            {"durability": "transient_local"},
-            "durability transient_local is asked for, volatile",
-        ),
-        (
-            {"deadline_s": 2.0},
-            {"deadline_s": 0.5},
-            "at least every 0.5 s (deadline), 2 s is offered",
-        ),
-        ({}, {"deadline_s": 0.5}, "at least every 0.5 s (deadline), nothing is offered"),
-        ({}, {"lease_s": 0.5}, "at least every 0.5 s (liveliness lease duration), nothing"),
-    ],
-)
-def test_qos_that_does_not_fit(offered: Any, asked: Any, words: str) -> None:
-    row = topic(
-        "/scan", published_by=(end("/lidar", **offered),), subscribed_by=(end("/nav", **asked),)
-    )
-    finding = only(row)
-    assert (finding.rule, finding.level) == ("qos", FindingLevel.ERROR)
-    assert finding.nodes == ("/lidar", "/nav")
-    assert "/nav does not hear /lidar" in finding.what
-    assert words in finding.what
-    assert finding.mend.startswith("Let /lidar offer ")
-
-
-def test_more_pairs_are_counted() -> None:
-    hearers = tuple(end(f"/nav{number}") for number in range(3))
-    lidar = (end("/lidar", reliability="best_effort"),)
-    finding = only(topic("/scan", published_by=lidar, subscribed_by=hearers))
-    assert "(and 2 more such pairs)" in finding.what
-
-
-def test_losses_that_matter_are_told_with_their_cause() -> None:
-    camera = (end("/camera", reliability="best_effort"),)
-    finding = only(topic("/image", published_by=camera, lost=30, count=70, measured=True))
-    assert (finding.rule, finding.level) == ("lost", FindingLevel.WARNING)
-    assert "30 of 100" in finding.what
-    assert "best_effort" in finding.what
-    burst = (end("/burst", depth=1),)
-    finding = only(topic("/burst", published_by=burst, lost=30, count=70, measured=True))
-    assert "deeper queue than 1" in finding.mend
-    for lost, count in ((19, 0), (30, 1000)):
-        assert found(topic("/image", published_by=camera, lost=lost, count=count)) == []
-
-
-def test_many_may_publish_the_states_of_joints() -> None:
-    joints = topic("/joint_states", "/arm /base", "", "sensor_msgs/msg/JointState")
-    assert found(replace(joints, several_send=True)) == []
-    assert only(replace(joints, name="/head_state", several_send=True)).rule == "fight"
-
-
-def test_a_subscriber_that_nobody_feeds() -> None:
-    finding = only(topic("/scan", "", "/nav /rviz", RANGE))
-    assert (finding.rule, finding.level) == ("unfed", FindingLevel.WARNING)
-    assert finding.nodes == ("/nav", "/rviz")
-    assert found(topic("/scan", "", "/_deck_recorder_3", RANGE)) == []
-    assert found(topic("/scan", "", "/nav", RANGE, own_publishers=1)) == []
-
-
-@pytest.mark.parametrize("name", ["/scan", "/sensor/sonar_frnt"])
-def test_who_hears_without_a_name_may_be_a_node_that_starts_or_has_died(name: str) -> None:
-    nameless = f"/{NAMELESS}"
-    assert only(FED, topic(name, "", nameless)).settled_s == FORGOTTEN_S
-    assert only(FED, topic(name, "", f"{nameless} /nav")).settled_s == SETTLED_S
-
-
-def test_a_name_that_nearly_matches_is_worse_than_none() -> None:
-    finding = only(FED, topic("/sensor/sonar_frnt", "", "/guard"))
-    assert (finding.rule, finding.level) == ("near-name", FindingLevel.ERROR)
-    assert "/sensor/sonar_front" in finding.what
-    assert "-r /sensor/sonar_frnt:=/sensor/sonar_front" in finding.mend
-    assert finding.nodes == ("/guard", "/sonar_front")
-    # Also of what may wait, but not of another type.
-    stop = topic("/emergency_stop", "", "/gate", "std_msgs/msg/Bool")
-    assert only(stop, topic("/emergency_stpo", "/me", "", "std_msgs/msg/Bool")).rule == "near-name"
-    drive = topic("/drive", "/ai_driver", "/gate", DRIVE)
-    assert only(drive, topic("/drve", "", "/wheels", DRIVE)).rule == "near-name"
-    assert only(FED, topic("/sensor/sonar_frnt", "", "/guard", STRING)).rule == "unfed"
 
 
 @pytest.mark.parametrize(
@@ -268,115 +220,6 @@ def test_a_name_that_nearly_matches_is_worse_than_none() -> None:
 )
 def test_which_names_are_taken_for_one(name: str, other: str, same: bool) -> None:
     assert meant(name, [other, name]) == (other if same else "")
-
-
-def test_the_nearest_name_is_meant() -> None:
-    assert meant("/scan", ["/robot/scan", "/scann", "/map"]) == "/scann"
-
-
-def test_a_service_that_nobody_serves() -> None:
-    nodes = (
-        NodeRow("/brain", clients=("/set_head_postion", "/other/get_parameters")),
-        NodeRow("/_deck_observer_1", clients=("/nowhere",)),
-    )
-    served = (ServiceRow("/set_head_position", ("a/srv/B",), ("/head",)),)
-    finding = only(nodes=nodes, services=served)
-    assert (finding.rule, finding.place) == ("unserved", ("service", "/set_head_postion"))
-    assert "served is /set_head_position" in finding.what
-    action = ActionRow("/go", ("a/action/Go",), (), ("/caller",))
-    finding = only(actions=(action,))
-    assert (finding.rule, finding.place) == ("unserved", ("action", "/go"))
-
-
-CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
-
-
-def test_a_simulated_time_that_nobody_publishes() -> None:
-    finding = only(topic("/clock", "", "/nav", CLOCK_TYPE))
-    assert (finding.rule, finding.nodes) == ("no-clock", ("/nav",))
-    assert finding.level is FindingLevel.ERROR
-
-
-def test_nodes_that_follow_different_clocks() -> None:
-    rows = (topic("/clock", "/gazebo", "/nav", CLOCK_TYPE), topic("/map", "/slam"))
-    nodes = tuple(NodeRow(name, publishes=("/map",)) for name in ("/gazebo", "/nav", "/slam"))
-    finding = only(*rows, nodes=nodes)
-    assert (finding.rule, finding.nodes) == ("clock-mix", ("/slam",))
-    assert found(topic("/clock", "/gazebo", "", CLOCK_TYPE), rows[1], nodes=nodes) == []
-
-
-@pytest.mark.parametrize(
-    ("seen", "words"),
-    [
-        ({"clock_off_s": 1.7e9}, "19676 days behind"),
-        ({"clock_off_s": -1200.0}, "20 min ahead"),
-        ({"latency_s": -2.5}, "2.5 s in the future"),
-        ({"latency_s": 7.0}, "arrive 7.0 s after their stamp"),
-    ],
-)
-def test_stamps_of_another_clock(seen: dict[str, Any], words: str) -> None:
-    finding = only(topic("/imu", "/imu", measured=True, **seen))
-    assert (finding.rule, finding.level) == ("clock", FindingLevel.WARNING)
-    assert words in finding.what
-
-
-def test_stamps_that_may_be_as_they_are() -> None:
-    assert found(topic("/imu", "/imu", latency_s=-0.05)) == []
-    latched = (end("/map", durability="transient_local"),)
-    assert found(topic("/map", published_by=latched, latency_s=300.0)) == []
-    simulated = topic("/clock", "/gazebo", "", CLOCK_TYPE)
-    assert found(simulated, topic("/imu", "/imu", clock_off_s=1.7e9)) == []
-
-
-def test_what_came_regularly_and_stopped_is_told() -> None:
-    silent = topic("/sensor/sonar_front", "/sonar_front", trouble=Trouble.QUIET, age_s=8.0,
-                   steady_hz=20.0, measured=True)  # fmt: skip
-    finding = only(silent)
-    assert (finding.rule, finding.nodes) == ("silent", ("/sonar_front",))
-    assert "20.0 Hz from /sonar_front, and then nothing for 8 s" in finding.what
-    assert found(replace(silent, steady_hz=None)) == []
-    assert found(replace(silent, name="/drive", type_names=(DRIVE,))) == []
-
-
-def test_a_sensor_that_never_began_is_told() -> None:
-    silent = topic("/scan", "/lidar", "", RANGE, trouble=Trouble.QUIET, measured=True)
-    assert only(silent).rule == "silent"
-    latched = (end("/lidar", RANGE, durability="transient_local"),)
-    assert found(replace(silent, published_by=latched)) == []
-
-
-def test_the_worst_comes_first() -> None:
-    levels = [
-        one.level
-        for one in found(
-            topic("/a", "", "/nav"),
-            topic("/clock", "", "/nav", CLOCK_TYPE),
-            topic("/b", "", "/nav"),
-        )
-    ]
-    assert levels == sorted(levels)
-    assert levels[0] is FindingLevel.ERROR
-
-
-def test_names_from_anywhere_are_made_harmless_in_every_language() -> None:
-    evil = f"/{EVIL}"
-    rows = (
-        topic(evil, "", evil),
-        topic(f"{evil}2", f"{evil} {evil}3", kind=DRIVE, several_send=True),
-        topic("/n", "", f"/{NAMELESS}"),
-        topic("/t", published_by=(end(evil, EVIL),), subscribed_by=(end(f"{evil}4"),)),
-    )
-    findings = found(*rows, nodes=(NodeRow(evil, clients=(evil,), processes=(1, 2)),))
-    assert len({one.rule for one in findings}) >= 4
-    for one in findings:
-        for code in ("en", "ru"):
-            assert is_plain(localized(one.what, code))
-            assert is_plain(localized(one.mend, code))
-
-
-def test_a_program_without_a_node_is_called_so() -> None:
-    finding = only(topic("/n", "", f"/{NAMELESS}"))
-    assert "a program without a node's name" in finding.what
 
 
 TYPO = GraphUpdate(0.0, (FED, topic("/sensor/sonar_frnt", "", "/guard")))
@@ -417,15 +260,6 @@ def test_while_nodes_come_and_go_it_is_told_later() -> None:
     assert changing(LastingFindings(NORMS), 99) == CHANGING_S
 
 
-def test_an_observer_that_fails_changes_nothing_and_another_graph_all() -> None:
-    lasting = LastingFindings(NORMS)
-    lasting.take(TYPO, 0.0)
-    lasting.take(GraphUpdate(1.0, error="gone"), 5.0)
-    assert len(lasting.told(6.0)) == 1
-    lasting.forget()
-    assert lasting.told(6.0) == ()
-
-
 def test_a_node_that_has_ended_for_good_is_told_at_once() -> None:
     lasting = LastingFindings(NORMS)
     lasting.take(GraphUpdate(0.0, (FED,)), 0.0, {"/sonar": "exit code 1"})
@@ -436,9 +270,140 @@ def test_a_node_that_has_ended_for_good_is_told_at_once() -> None:
     assert lasting.told(1.0) == ()
 
 
-def test_where_a_node_has_failed_commands_that_nobody_sends_are_told() -> None:
-    rows = (FED, topic("/drive", "", "/safety_stop", DRIVE), topic("/say", "", "/voice", STRING))
-    assert found(*rows) == []
-    findings = examine(GraphUpdate(0.0, rows), NORMS, {"/ai_driver": "exit code 1"})
-    told = [(finding.rule, finding.place.name) for finding in findings]
-    assert told == [("failed", "/ai_driver"), ("unfed", "/drive")]
+def end_troubles(
+    node: str, reliability: str = "reliable", durability: str = "volatile"
+) -> EndpointInfo:
+    return EndpointInfo(node, FLOAT, reliability, durability)
+
+
+BEST_EFFORT = end_troubles("/camera", "best_effort")
+LATCHED_MAP = end_troubles("/map", "reliable", "transient_local")
+PLAIN = end_troubles("/plain")
+
+
+@pytest.mark.parametrize(
+    ("publishers", "wanted"),
+    [
+        ([], Qos("reliable", "volatile")),
+        ([PLAIN], Qos("reliable", "volatile")),
+        ([BEST_EFFORT], Qos("best_effort", "volatile")),
+        ([LATCHED_MAP], Qos("reliable", "transient_local")),
+        ([LATCHED_MAP, PLAIN], Qos("reliable", "volatile")),
+        ([LATCHED_MAP, BEST_EFFORT], Qos("best_effort", "volatile")),
+    ],
+)
+def test_the_request_is_the_strongest_that_all_publishers_meet(
+    publishers: list[EndpointInfo], wanted: Qos
+) -> None:
+    assert to_hear(publishers) == wanted
+    ours = EndpointInfo("/deck", FLOAT, wanted.reliability, wanted.durability)
+    assert mismatches(publishers, [ours]) == []
+
+
+@pytest.mark.parametrize(
+    "subscribers", [[], [PLAIN], [BEST_EFFORT], [LATCHED_MAP], [LATCHED_MAP, PLAIN]]
+)
+def test_the_offer_meets_all_subscribers(subscribers: list[EndpointInfo]) -> None:
+    offer = to_be_heard(subscribers)
+    ours = EndpointInfo("/deck", FLOAT, offer.reliability, offer.durability)
+    assert mismatches([ours], subscribers) == []
+
+
+def test_a_mismatch_names_both_sides_and_the_ways_out() -> None:
+    (found,) = mismatches([BEST_EFFORT, PLAIN], [end_troubles("/vlm")])
+    assert found.what == (
+        "/vlm does not hear /camera: reliability reliable is asked for, best_effort is offered."
+    )
+    assert found.mend == "Let /camera offer reliable, or let /vlm ask for best_effort."
+    (found,) = mismatches([PLAIN], [LATCHED_MAP])
+    assert found.facts() == {
+        "policy": "durability",
+        "publisher": "/plain",
+        "subscriber": "/map",
+        "offered": "volatile",
+        "requested": "transient_local",
+    }
+
+
+def told(offer: dict[str, Any], request: dict[str, Any]) -> list[tuple[str, str, str]]:
+    """Policy, offer and request of each mismatch of one publisher and one subscriber."""
+    found = mismatches(
+        [replace(end_troubles("/p"), **offer)], [replace(end_troubles("/s"), **request)]
+    )
+    return [(one.policy, one.offered, one.requested) for one in found]
+
+
+def test_a_deadline_is_met_by_one_that_is_as_short() -> None:
+    assert told({"deadline_s": 0.5}, {"deadline_s": 0.5}) == []
+    assert told({"deadline_s": 0.1}, {"deadline_s": 0.5}) == []
+    assert told({"deadline_s": 0.1}, {}) == []
+    assert told({"deadline_s": 0.5}, {"deadline_s": 0.25}) == [("deadline", "0.5", "0.25")]
+    assert told({}, {"deadline_s": 2.0}) == [("deadline", "", "2")]
+
+
+def test_signs_of_life_are_as_many_and_of_the_kind_that_is_asked_for() -> None:
+    assert told({"liveliness": "manual_by_topic"}, {"liveliness": "automatic"}) == []
+    assert told({"liveliness": ""}, {"liveliness": "manual_by_topic"}) == []
+    assert told({"lease_s": 1.0}, {"lease_s": 1.0}) == []
+    assert told({"liveliness": "automatic"}, {"liveliness": "manual_by_topic"}) == [
+        ("liveliness", "automatic", "manual_by_topic")
+    ]
+    assert told({"lease_s": 2.0}, {"lease_s": 1.0}) == [("lease", "2", "1")]
+
+
+def test_each_trouble_has_its_own_words() -> None:
+    nobody = TopicEnds("/t", (FLOAT,), subscribers=(PLAIN,))
+    misfit = TopicEnds(
+        "/t", (FLOAT,), publishers=(BEST_EFFORT,), subscribers=(PLAIN, end_troubles("/b"))
+    )
+    fine = TopicEnds("/t", (FLOAT,), publishers=(PLAIN,), subscribers=(PLAIN,))
+    unknown = UnknownTypeError("foo_msgs/msg/Bar", "foo_msgs", "foo_msgs is not installed")
+    assert structural(nobody, FLOAT, None).trouble is Trouble.NO_PUBLISHER
+    found = structural(misfit, FLOAT, None)
+    assert found.trouble is Trouble.QOS_MISMATCH
+    found = structural(fine, "foo_msgs/msg/Bar", unknown)
+    assert found.trouble is Trouble.UNKNOWN_TYPE
+    assert found.facts["package"] == "foo_msgs"
+    assert structural(fine, FLOAT, None).trouble is None
+    assert quiet(4.4, ever=True).detail == "no data for 4 s"
+    assert quiet(4.4, ever=False).detail == "no data for 4 s, and never before"
+
+
+OK, WARN, ERROR, STALE = StatusLevel.OK, StatusLevel.WARN, StatusLevel.ERROR, StatusLevel.STALE
+T0 = 1_700_000_000.0
+
+
+def status(name: str, level: Any = 0, message: str = "", **values: Any) -> dict[str, Any]:
+    told = [{"key": key, "value": value} for key, value in values.items()]
+    return {
+        "name": name, "level": level, "message": message, "hardware_id": "", "values": told
+    }  # fmt: skip
+
+
+def said(*told: Any, at_s: float = T0) -> Sample:
+    kind = "diagnostic_msgs/msg/DiagnosticArray"
+    return Sample("/diagnostics", kind, at_s, 0.0, 100, {"status": list(told)})
+
+
+def book_of(*told: Any) -> DiagnosticsBook:
+    book = DiagnosticsBook()
+    book.take([said(*told)])
+    return book
+
+
+def drawn(book: DiagnosticsBook) -> list[str]:
+    return [f"{'  ' * row.depth}{row.label} {row.level.name}" for row in tree(book.records)]
+
+
+def test_what_is_not_repeated_is_stale_until_it_is_heard_again() -> None:
+    book = book_of(status("imu", 2, "broken"), status("camera"))
+    book.take([said(status("camera"), at_s=T0 + 4)])
+    book.look(T0 + STALE_S + 0.1)
+    assert drawn(book) == ["imu STALE", "camera OK"]
+    record = book.get("imu")
+    assert record is not None
+    assert record.history[-1] == (T0 + STALE_S + 0.1, STALE, "broken")
+    book.look(T0 + STALE_S + 0.2)
+    assert len(record.history) == 2
+    book.take([said(status("imu", 2, "broken"), at_s=T0 + 6)])
+    assert [change.level for change in record.history] == [ERROR, STALE, ERROR]

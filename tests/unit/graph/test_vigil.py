@@ -1,8 +1,13 @@
-"""Whether the observer's process hangs, on a machine that is busy or was asleep."""
+"""Whether the observer hangs, whom it does not see, and how it is found."""
 
 from __future__ import annotations
 
+import pytest
+
+from graph.observer.census import Census
+from graph.observer.doubt import LOOKS_FOR_S, SURE_S, SecondLook
 from graph.observer.vigil import GIVEN_UP_AFTER_S, HUNG_AFTER_S, LOOK_S, OLD_AFTER_S, Vigil
+from graph.ros import FAST_DDS, FAST_DDS_VARIABLES, ONLY_THESE, announcing
 
 
 def idle() -> bool:
@@ -44,9 +49,40 @@ def test_one_that_only_lacks_a_processor_does_not_hang_for_a_minute() -> None:
     assert ended_s > GIVEN_UP_AFTER_S
 
 
-def test_time_in_which_the_screen_itself_was_stopped_does_not_count() -> None:
-    vigil = Vigil(0.0)
-    assert not vigil.hangs(0.5, idle)
-    assert not vigil.hangs(50.0, idle)
-    assert not vigil.hangs(50.5, idle)
-    assert looked_at(vigil, 51.0, 70.0, ready=False) is not None
+ROBOT, SCREEN = b"robot", b"screen"
+
+
+def test_only_one_that_surely_sees_more_takes_over() -> None:
+    less, more, other = (Census(frozenset(known)) for known in ([ROBOT], [ROBOT, SCREEN], [SCREEN]))
+    look = SecondLook(0.0)
+    assert not look.sees_more(less, less, 1.0)
+    assert not look.sees_more(less, more, 2.0)
+    # The first has found it in the meantime.
+    assert not look.sees_more(more, more, 3.0)
+    assert not look.sees_more(less, more, 4.0)
+    assert not look.sees_more(less, other, 5.0)
+    assert not look.sees_more(less, more, 6.0)
+    assert look.sees_more(less, more, 6.0 + SURE_S)
+    assert not look.is_over(LOOKS_FOR_S - 1.0)
+    assert look.is_over(LOOKS_FOR_S)
+
+
+@pytest.fixture
+def nothing_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in FAST_DDS_VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+
+
+@pytest.mark.usefixtures("nothing_chosen")
+def test_on_one_machine_it_is_hurried() -> None:
+    ours = dict.fromkeys(FAST_DDS_VARIABLES, str(FAST_DDS))
+    assert announcing("localhost") == {**ours, ONLY_THESE: "1"}
+
+
+@pytest.mark.usefixtures("nothing_chosen")
+@pytest.mark.parametrize("discovery", ["subnet", ("192.0.2.7",)])
+def test_on_a_network_it_is_not_even_under_a_program_that_is(
+    discovery: str | tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(FAST_DDS_VARIABLES[0], str(FAST_DDS))
+    assert announcing(discovery) == dict.fromkeys((*FAST_DDS_VARIABLES, ONLY_THESE))

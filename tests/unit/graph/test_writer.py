@@ -1,4 +1,4 @@
-"""The thread before the disk: a slow disk costs counted messages, a full one the last chunk."""
+"""The thread before the disk: a slow disk costs counted messages, a full one ends it in time."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 
 import pytest
 from mcap.reader import make_reader
-from mcap.stream_reader import CRCValidationError
 
+from graph.bag.errors import BagError
 from graph.bag.metadata import BagTopic
 from graph.bag.reading import open_bag
+from graph.recording.disk_room import DiskRoom
 from graph.recording.file import BagFile
 from graph.recording.tap import Sequences
 from graph.recording.writer import Message, RecordingWriter
-from tests.waiting import wait_until
 
 TEXT = "uint8[] data\n"
 
@@ -50,19 +50,6 @@ def test_what_finds_the_buffer_full_is_dropped_and_counted(tmp_path: Path) -> No
     with open_bag(tmp_path / "bag") as bag:
         assert bag.messages_count == 10
         assert not bag.is_cut
-
-
-def test_a_flush_has_all_on_the_disk(tmp_path: Path) -> None:
-    file, big = BagFile(tmp_path / "bag"), topic()
-    writer = RecordingWriter(file)
-    writer.add_topic(big, TEXT)
-    writer.put([Message(1_000, big, b"\x00\x01\x00\x00" + b"here it is", 900)])
-    wait_until(lambda: b"here it is" in file.path.read_bytes(), "the message on the disk")
-    # As if the process were gone now.
-    with open_bag(tmp_path / "bag") as bag:
-        assert [raw for _topic, _stamp, raw in bag.messages()] == [b"\x00\x01\x00\x00here it is"]
-        assert "was cut short" in " ".join(bag.notes)
-    writer.finish(30)
 
 
 class FullDisk:
@@ -123,19 +110,34 @@ def test_what_is_missing_is_found_in_the_numbers(
     assert sum(sequences.missing(number, lambda: publishers) for number in numbers) == missing
 
 
-def test_other_readers_find_both_times_and_check_the_sums(tmp_path: Path) -> None:
-    file, big = BagFile(tmp_path / "bag"), topic()
-    writer = RecordingWriter(file)
-    writer.add_topic(big, TEXT)
-    for number in range(5):
-        writer.put([Message(1_000 + number, big, bytes([number]) * 400_000, 900 + number)])
-    assert writer.finish(30)
-    with file.path.open("rb") as stream:
-        reader = make_reader(stream, validate_crcs=True)
-        times = [(one.log_time, one.publish_time) for _s, _c, one in reader.iter_messages()]
-    assert times == [(1_000 + number, 900 + number) for number in range(5)]
-    whole = bytearray(file.path.read_bytes())
-    whole[whole.index(bytes([3]) * 400_000) + 9] = 77
-    file.path.write_bytes(whole)
-    with file.path.open("rb") as stream, pytest.raises(CRCValidationError):
-        list(make_reader(stream, validate_crcs=True).iter_messages())
+HERE = Path("/here/walk")
+MB = 1_000_000
+
+
+class Disk:
+    """A disk of which somebody else may write away the room."""
+
+    def __init__(self, free: int) -> None:
+        self.free = free
+
+    def __call__(self, folder: Path) -> int:
+        assert folder == HERE
+        if self.free < 0:
+            raise PermissionError("not yours")
+        return self.free
+
+
+def test_at_the_reserve_it_ends_with_a_word() -> None:
+    disk = Disk(501 * MB)
+    room = DiskRoom(HERE, 500 * MB, disk)
+    room.look(0.0, 0)
+    assert room.end is None
+    disk.free = 500 * MB
+    room.look(1.0, MB)
+    assert "500 MB are free on the disk of /here/walk" in str(room.end)
+
+
+def test_where_there_is_no_room_it_does_not_begin() -> None:
+    DiskRoom(HERE, 500 * MB, Disk(501 * MB)).check()
+    with pytest.raises(BagError, match=r"/here/walk: 499 MB are free.*500 MB must stay free"):
+        DiskRoom(HERE, 500 * MB, Disk(499 * MB)).check()

@@ -1,1 +1,0 @@
-"""How frames are counted, kept and replayed, without ROS."""

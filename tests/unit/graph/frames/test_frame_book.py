@@ -1,4 +1,4 @@
-"""What is counted of the frames on /tf and /tf_static: rates, faults, names, publishers, limits."""
+"""What is counted of the frames on /tf and /tf_static, and who publishes them."""
 
 from __future__ import annotations
 
@@ -59,15 +59,6 @@ def test_every_frame_of_every_message_has_its_place_rate_and_age(book: FrameBook
     assert [one.newest.child for one in book.rows(BEGIN_S)] == ["base_link", "eye", "head"]
 
 
-def test_a_frame_is_listed_once_for_each_parent_and_each_topic(book: FrameBook) -> None:
-    send(book, Sent("odom", "base_link"))
-    send(book, Sent("map", "base_link"))
-    send(book, Sent("odom", "base_link"), topic=TF_STATIC)
-    listed = [(one.newest.parent, one.is_static) for one in book.rows(BEGIN_S)]
-    assert listed == [("map", False), ("odom", False), ("odom", True)]
-    assert row(book, "base_link", static=True).hz is None
-
-
 @pytest.mark.parametrize(
     ("sent", "said"),
     [
@@ -91,33 +82,6 @@ def test_what_is_no_transform_is_not_taken_and_said(book: FrameBook, sent: Sent,
     assert found.newest.transform.rotation == NO_TURN
 
 
-def test_a_fault_among_good_ones_is_said_for_a_while_and_the_good_one_is_kept(
-    book: FrameBook,
-) -> None:
-    send(book, Sent("a", "b", translation=(1.0, 0.0, 0.0)))
-    send(book, Sent("a", "b", translation=(math.nan, 0.0, 0.0)))
-    send(book, Sent("a", "b", translation=(2.0, 0.0, 0.0)))
-    found = row(book, "b", BEGIN_S + 1)
-    assert found.newest.transform.translation == (2.0, 0.0, 0.0)
-    assert (found.faults, found.count) == (1, 3)
-    assert "nan" in found.fault
-    assert not row(book, "b", BEGIN_S + 20).fault
-
-
-def test_a_quaternion_as_long_as_tf2_allows_is_taken_and_scaled(book: FrameBook) -> None:
-    send(book, Sent("a", "b", rotation=(0.0, 0.0, 0.0, 1.004)))
-    found = row(book, "b")
-    assert not found.fault
-    assert found.newest.transform.rotation == NO_TURN
-
-
-def test_a_leading_slash_is_taken_away_and_told(book: FrameBook) -> None:
-    send(book, Sent("/odom", "/base_link"), Sent("base_link", "head"))
-    assert row(book, "base_link").newest.parent == "odom"
-    assert row(book, "base_link").slashed
-    assert not row(book, "head").slashed
-
-
 def test_numbers_that_go_back_again_and_again_tell_of_two_publishers(book: FrameBook) -> None:
     for turn in range(10):
         at_s = BEGIN_S + turn / 10
@@ -129,72 +93,6 @@ def test_numbers_that_go_back_again_and_again_tell_of_two_publishers(book: Frame
     assert not row(book, "head").contested
 
 
-def test_a_publisher_that_is_started_anew_is_not_taken_for_two(book: FrameBook) -> None:
-    for number in (7, 8, 9, 1, 2, 3):
-        send(book, Sent("odom", "base_link"), number=number)
-        book.rows(BEGIN_S)
-    assert not row(book, "base_link").contested
-
-
-def send_static(book: FrameBook, x: float, at_s: float, number: int) -> bool:
-    """Send it with this place, and return whether it is said to have moved."""
-    sent = Sent("a", "b", translation=(x, 0.0, 0.0))
-    send(book, sent, at_s=at_s, topic=TF_STATIC, number=number)
-    return row(book, "b", at_s, static=True).moved
-
-
-def test_a_static_frame_that_keeps_changing_has_moved(book: FrameBook) -> None:
-    moved = [send_static(book, number, BEGIN_S + number / 10, number) for number in range(1, 7)]
-    assert moved == [False, False, False, True, True, True]
-    assert not row(book, "b", BEGIN_S + 20, static=True).moved
-
-
-def test_a_parameter_that_is_set_and_a_node_that_is_restarted_move_no_static_frame(
-    book: FrameBook,
-) -> None:
-    assert not send_static(book, 1.0, BEGIN_S, number=1)
-    assert not send_static(book, 2.0, BEGIN_S + 1, number=2)
-    assert not send_static(book, 3.0, BEGIN_S + 2, number=1)
-    # What is latched comes again once Deck subscribes anew.
-    assert not send_static(book, 3.0, BEGIN_S + 2.1, number=1)
-
-
-def test_two_latched_messages_that_come_together_with_other_numbers_are_of_two_nodes(
-    book: FrameBook,
-) -> None:
-    assert not send_static(book, 1.0, BEGIN_S, number=1)
-    assert send_static(book, 2.0, BEGIN_S + 0.1, number=1)
-
-
-def publishers(book: FrameBook, child: str, now_s: float, *nodes: str) -> tuple[str, ...]:
-    book.published_by(TF, {node.encode(): node for node in nodes}, now_s)
-    return row(book, child, now_s).publishers
-
-
-def test_whoever_was_not_there_while_a_frame_came_is_not_its_publisher(book: FrameBook) -> None:
-    send(book, Sent("odom", "base_link"))
-    assert publishers(book, "base_link", BEGIN_S, "/a") == ("/a",)
-    # Endpoints become known a little later than their messages.
-    assert publishers(book, "base_link", BEGIN_S + 1, "/a", "/b") == ("/a", "/b")
-    assert publishers(book, "base_link", BEGIN_S + 9, "/a", "/b", "/c") == ("/a", "/b")
-    # A message that came just before its publisher left does not say that others sent it.
-    send(book, Sent("odom", "base_link"), at_s=BEGIN_S + 9.9)
-    assert publishers(book, "base_link", BEGIN_S + 10, "/a", "/c") == ("/a", "/b")
-    send(book, Sent("odom", "base_link"), at_s=BEGIN_S + 15)
-    assert publishers(book, "base_link", BEGIN_S + 15, "/a", "/c") == ("/a",)
-
-
-def test_a_frame_whose_publishers_have_all_gone_has_none_until_it_comes_again(
-    book: FrameBook,
-) -> None:
-    send(book, Sent("odom", "base_link"))
-    publishers(book, "base_link", BEGIN_S, "/a")
-    assert publishers(book, "base_link", BEGIN_S + 9, "/b") == ()
-    assert publishers(book, "base_link", BEGIN_S + 10, "/b") == ()
-    send(book, Sent("odom", "base_link"), at_s=BEGIN_S + 11)
-    assert publishers(book, "base_link", BEGIN_S + 12, "/b") == ("/b",)
-
-
 def test_room_is_limited_and_given_to_others_once_a_moving_frame_is_silent(book: FrameBook) -> None:
     send(book, *(Sent("odom", f"frame_{number}") for number in range(MOST_FRAMES + 500)))
     assert len(book.rows(BEGIN_S)) == MOST_FRAMES
@@ -203,24 +101,6 @@ def test_room_is_limited_and_given_to_others_once_a_moving_frame_is_silent(book:
     assert len(book.rows(late)) == 0
     send(book, Sent("odom", "late"), at_s=late)
     assert row(book, "late", late).count == 1
-
-
-def test_names_without_end_do_not_fill_the_memory(book: FrameBook) -> None:
-    for number in range(300):
-        send(book, Sent("a", "b" * 10_000 + str(number)), at_s=BEGIN_S + number / 1000)
-    kept = book.rows(BEGIN_S + 1)
-    assert max(len(one.newest.child) for one in kept) <= 200
-
-
-def test_names_are_taken_apart_only_once() -> None:
-    reader = TransformReader(_never)
-    first, other, again = (
-        reader.read(cdr(Sent("odom", child, at_s), Sent("base", "b", at_s), filler=filler)).names
-        for child, at_s, filler in (("a", 1.0, b"x"), ("c", 2.0, b"y"), ("a", 3.0, b"z"))
-    )
-    assert first == (("odom", "a"), ("base", "b"))
-    assert other == (("odom", "c"), ("base", "b"))
-    assert again is first
 
 
 @pytest.mark.parametrize(
@@ -244,3 +124,72 @@ def test_bytes_that_are_no_such_message_are_refused(raw: bytes) -> None:
 def _refuse(raw: bytes) -> Mapping[str, Any]:
     del raw
     raise ValueError("no message")
+
+
+def gid(process: int, entity: int = 3) -> bytes:
+    """As Fast DDS makes them: vendor, host and process, then the publisher in that process."""
+    return b"\x01\x0fhost" + process.to_bytes(6, "little") + entity.to_bytes(4, "big")
+
+
+A, B, C = gid(1), gid(2), gid(3)
+ALL = {A: "/a", B: "/b", C: "/c"}
+
+
+def send_frame_senders(
+    book: FrameBook, sender: bytes, at_s: float, x: float = 0.0, *, static: bool = False
+) -> None:
+    raw = cdr(Sent("odom", "base", translation=(x, 0.0, 0.0)))
+    book.take(TF_STATIC if static else TF, raw, at_s, 1, sender)
+
+
+def seen(book: FrameBook, now_s: float, there: Mapping[bytes, str]) -> FrameRow:
+    """The row of the frame while these are there."""
+    for topic in (TF, TF_STATIC):
+        book.published_by(topic, there, now_s)
+    (found,) = book.rows(now_s)
+    return found
+
+
+def test_both_who_send_it_by_turns_are_named_and_said_to_fight(book: FrameBook) -> None:
+    for turn in range(5):
+        send_frame_senders(book, A, BEGIN_S + turn)
+        send_frame_senders(book, C, BEGIN_S + turn + 0.5)
+        found = seen(book, BEGIN_S + turn + 0.6, ALL)
+    assert (found.publishers, found.certain) == (("/a", "/c"), True)
+    assert found.contested
+    # Then one of them gives up.
+    for turn in range(10):
+        send_frame_senders(book, C, BEGIN_S + 10 + turn)
+        found = seen(book, BEGIN_S + 10 + turn, ALL)
+    assert found.publishers == ("/c",)
+    assert not found.contested
+
+
+def test_a_node_that_is_started_anew_is_one_node(book: FrameBook) -> None:
+    for static in (False, True):
+        send_frame_senders(book, A, BEGIN_S, 1.0, static=static)
+        book.clear()
+        send_frame_senders(book, A, BEGIN_S, 1.0, static=static)
+        # It was killed: for some time the graph has both.
+        there = {A: "/a", gid(9): "/a"}
+        send_frame_senders(book, gid(9), BEGIN_S + 2, 2.0, static=static)
+        found = seen(book, BEGIN_S + 3, there)
+        assert (found.publishers, found.certain) == (("/a",), True)
+        assert not found.moved
+        assert not found.contested
+        book.clear()
+
+
+def test_two_latched_publishers_of_other_numbers_are_noticed_however_far_apart(
+    book: FrameBook,
+) -> None:
+    send_frame_senders(book, A, BEGIN_S, 1.0, static=True)
+    assert not seen(book, BEGIN_S + 1, ALL).moved
+    send_frame_senders(book, B, BEGIN_S + 60, 2.0, static=True)
+    found = seen(book, BEGIN_S + 60, ALL)
+    assert (found.publishers, found.certain) == (("/a", "/b"), True)
+    assert found.moved
+    # As long as both are there.
+    assert seen(book, BEGIN_S + 600, ALL).moved
+    assert not seen(book, BEGIN_S + 601, {B: "/b"}).moved
+    assert seen(book, BEGIN_S + 601, {B: "/b"}).publishers == ("/b",)

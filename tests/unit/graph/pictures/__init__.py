@@ -1,1 +1,0 @@
-"""Pictures: what messages hold, what is shown of them, and where they are taken from."""

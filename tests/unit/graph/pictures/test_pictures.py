@@ -1,9 +1,8 @@
-"""Pictures at the size that is shown: colours, depth with its range, JPEG and PNG, and refusals."""
+"""Pictures of every layout at the size that is shown: colours, depth, JPEG, and refusals."""
 
 from __future__ import annotations
 
 import struct
-import sys
 from typing import Any
 
 import cv2
@@ -11,7 +10,8 @@ import numpy as np
 import pytest
 
 from graph.data import Value
-from graph.pictures.picture import COMPRESSED, IMAGE, RAMP, ramp_colours, rounded
+from graph.pictures.images import to_rgb
+from graph.pictures.picture import COMPRESSED, IMAGE
 from graph.pictures.pixels import ImageError
 from graph.pictures.reading import read_picture
 from graph.pictures.thinning import thinned_picture
@@ -45,41 +45,6 @@ def compressed(pixels: Any, ending: str = ".jpg", words: str = "") -> dict[str, 
     return {"format": words or ending[1:], "data": data.tobytes()}
 
 
-@pytest.mark.parametrize(
-    ("encoding", "pixel", "shown"),
-    [
-        ("rgb8", ORANGE, ORANGE),
-        ("bgr8", ORANGE[::-1], ORANGE),
-        ("rgba8", (*ORANGE, 255), ORANGE),
-        ("bgra8", (*ORANGE[::-1], 255), ORANGE),
-        ("mono8", (77,), (77, 77, 77)),
-    ],
-)
-def test_colours_are_right_and_only_what_is_shown_is_taken(
-    encoding: str, pixel: tuple[int, ...], shown: tuple[int, ...]
-) -> None:
-    pixels = np.full((72, 128, len(pixel)), pixel, np.uint8)
-    picture = read_picture(IMAGE, image(pixels, encoding), small)
-    assert picture.rgb.shape == (4, 8, 3)
-    assert (picture.rgb == shown).all()
-    assert (picture.width, picture.height, picture.encoding) == (128, 72, encoding)
-    assert picture.range_m is None
-
-
-def test_a_picture_that_is_smaller_than_wanted_stays_as_it_is() -> None:
-    pixels = np.arange(12, dtype=np.uint8).reshape(2, 2, 3)
-    assert (read_picture(IMAGE, image(pixels, "rgb8"), small).rgb == pixels).all()
-
-
-def test_thinning_keeps_places() -> None:
-    pixels = np.zeros((80, 160, 3), np.uint8)
-    pixels[:40, :80] = ORANGE
-    rgb = read_picture(IMAGE, image(pixels, "rgb8"), small).rgb
-    assert (rgb[:2, :4] == ORANGE).all()
-    assert not rgb[2:].any()
-    assert not rgb[:, 4:].any()
-
-
 @pytest.mark.parametrize(("encoding", "kind", "unit"), [("16UC1", "u2", 1000), ("32FC1", "f4", 1)])
 @pytest.mark.parametrize(("big", "order"), [(0, "<"), (1, ">")])
 def test_depth_is_told_in_metres_and_near_is_bright(
@@ -96,48 +61,6 @@ def test_depth_is_told_in_metres_and_near_is_bright(
     assert light[0] > 2 * light[-1]
 
 
-def test_depth_without_a_reading_is_black_and_has_no_range() -> None:
-    numbers = np.array([[np.nan, np.inf, 0.0, -1.0]], "<f4")
-    picture = read_picture(IMAGE, image(numbers, "32FC1"), whole)
-    assert picture.range_m is None
-    assert not picture.rgb.any()
-
-
-@pytest.mark.parametrize("shape", [IMAGE, COMPRESSED])
-def test_a_distance_between_the_pixels_that_are_shown_is_one(shape: str) -> None:
-    numbers = np.zeros((80, 160), np.uint16)
-    assert read_picture(IMAGE, image(numbers, "16UC1"), small).is_empty_depth
-    numbers[1, 1] = 1500
-    value = image(numbers, "16UC1")
-    if shape == COMPRESSED:
-        value = compressed(numbers, ".png", "16UC1; compressedDepth png")
-        value["data"] = struct.pack("<iff", 0, 0.0, 0.0) + value["data"]  # type: ignore[operator]
-    picture = read_picture(shape, value, small)
-    assert not picture.rgb.any()
-    assert not picture.is_empty_depth
-
-
-def test_one_stray_reading_does_not_take_all_colours() -> None:
-    numbers = np.full((100, 100), 1500, "<u2")
-    numbers[:50] = 1000
-    numbers[0, 0] = 65_535
-    assert read_picture(IMAGE, image(numbers, "16UC1"), whole).range_m == (1.0, 1.5)
-
-
-@pytest.mark.parametrize(
-    ("near", "far", "shown"),
-    [(0.52, 3.97, (0.5, 4.0)), (2.0, 2.0, (2.0, 2.005)), (0.001, 65.5, (0.0, 70.0))],
-)
-def test_ranges_are_round(near: float, far: float, shown: tuple[float, float]) -> None:
-    assert rounded(near, far) == pytest.approx(shown)
-
-
-def test_the_ramp_goes_from_bright_to_dark() -> None:
-    ramp = ramp_colours(16).astype(float) @ (0.2126, 0.7152, 0.0722)
-    assert (np.diff(ramp) < 0).all()
-    assert ramp_colours(2).tolist() == [list(RAMP[0]), list(RAMP[-1])]
-
-
 @pytest.mark.parametrize(("ending", "encoding"), [(".jpg", "jpeg"), (".png", "png")])
 def test_compressed_pictures_have_their_colours_and_size(ending: str, encoding: str) -> None:
     pixels = np.full((720, 1280, 3), ORANGE[::-1], np.uint8)
@@ -145,17 +68,6 @@ def test_compressed_pictures_have_their_colours_and_size(ending: str, encoding: 
     assert (picture.width, picture.height, picture.encoding) == (1280, 720, encoding)
     assert picture.rgb.shape == (4, 8, 3)
     assert np.abs(picture.rgb.astype(int) - ORANGE).max() <= 3
-
-
-@pytest.mark.parametrize("encoding", ["rgb8", "mono8"])
-def test_a_thinned_picture_is_small_and_tells_the_size_of_the_camera(encoding: str) -> None:
-    shape = (720, 1280, 3) if encoding == "rgb8" else (720, 1280)
-    words, data = thinned_picture(image(np.full(shape, 90, np.uint8), encoding))
-    assert len(data) < 10_000
-    picture = read_picture(COMPRESSED, {"format": words, "data": data}, whole)
-    assert (picture.width, picture.height) == (1280, 720)
-    assert picture.rgb.shape == (225, 400, 3)
-    assert (abs(picture.rgb.astype(int) - 90) < 3).all()
 
 
 @pytest.mark.parametrize(("encoding", "unit"), [("16UC1", 1000), ("32FC1", 1.0)])
@@ -168,35 +80,7 @@ def test_thinned_depth_stays_depth(encoding: str, unit: float) -> None:
     assert picture.range_m == pytest.approx((2.0, 4.0), abs=0.1)
 
 
-def test_what_is_no_picture_is_not_thinned() -> None:
-    with pytest.raises(ImageError):
-        thinned_picture({"width": 4, "height": 4, "step": 12, "encoding": "rgb8", "data": b""})
-
-
-def test_compressed_grey_is_grey() -> None:
-    picture = read_picture(COMPRESSED, compressed(np.full((8, 8), 77, np.uint8), ".png"), whole)
-    assert (picture.rgb == 77).all()
-
-
-def test_compressed_depth_is_depth() -> None:
-    numbers = np.full((20, 20), 1500, np.uint16)
-    numbers[:10] = 1000
-    value = compressed(numbers, ".png", "16UC1; compressedDepth png")
-    value["data"] = struct.pack("<iff", 0, 0.0, 0.0) + value["data"]  # type: ignore[operator]
-    picture = read_picture(COMPRESSED, value, whole)
-    assert (picture.encoding, picture.range_m) == ("16UC1", (1.0, 1.5))
-
-
-def test_compressed_inverse_depth_is_depth() -> None:
-    numbers = np.full((20, 20), 200, np.uint16)
-    numbers[:10] = 100
-    value = compressed(numbers, ".png", "32FC1; compressedDepth png")
-    value["data"] = struct.pack("<iff", 1, 200.0, 0.0) + value["data"]  # type: ignore[operator]
-    assert read_picture(COMPRESSED, value, whole).range_m == (1.0, 2.0)
-
-
 def bomb(width: int, height: int) -> bytes:
-    """Return a PNG that asks for this many pixels and has none."""
     head = b"IHDR" + struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
     return b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + head + bytes(4) + b"IEND\xaeB`\x82"
 
@@ -232,12 +116,6 @@ def test_too_many_bytes_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> No
         read_picture(COMPRESSED, {"format": "jpeg", "data": JPEG_BYTES}, whole)
 
 
-def test_without_opencv_a_word_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "cv2", None)
-    with pytest.raises(ImageError, match="OpenCV, which decodes them, is missing"):
-        read_picture(COMPRESSED, {"format": "jpeg", "data": JPEG_BYTES}, whole)
-
-
 def test_no_damage_ends_in_anything_but_a_word() -> None:
     random = np.random.default_rng(7)
     for _round in range(200):
@@ -249,3 +127,113 @@ def test_no_damage_ends_in_anything_but_a_word() -> None:
         except ImageError:
             continue
         assert picture.rgb.size
+
+
+def message(encoding: str, rows: list[bytes], width: int, **others: Value) -> dict[str, Value]:
+    return {
+        "header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "camera_link"},
+        "height": len(rows),
+        "width": width,
+        "encoding": encoding,
+        "is_bigendian": 0,
+        "step": len(rows[0]) if rows else 0,
+        "data": b"".join(rows),
+        **others,
+    }
+
+
+@pytest.mark.parametrize(
+    ("encoding", "pixel"),
+    [
+        ("rgb8", bytes(ORANGE)),
+        ("bgr8", bytes(reversed(ORANGE))),
+        ("8UC3", bytes(reversed(ORANGE))),
+        ("rgba8", bytes((*ORANGE, 255))),
+        ("bgra8", bytes((*reversed(ORANGE), 255))),
+    ],
+)
+def test_colours_are_right_in_every_order_and_with_padded_rows(encoding: str, pixel: bytes) -> None:
+    black = bytes(len(pixel))
+    rgb = to_rgb(message(encoding, [pixel + black + b"PAD", black + pixel + b"PAD"], 2))
+    assert rgb.tolist() == [[list(ORANGE), [0, 0, 0]], [[0, 0, 0], list(ORANGE)]]
+    assert rgb.dtype == np.uint8
+
+
+@pytest.mark.parametrize(
+    ("broken", "word"),
+    [
+        ({"encoding": "nv21"}, "encoding 'nv21' is not supported; supported: rgb8"),
+        ({"step": 5}, "step 5 is too small: 2 pixels of 3 bytes take 6"),
+        ({"height": 3}, "3 rows of 6 bytes take 18, there are 12"),
+        ({"height": 0}, "the picture is empty: 2 x 0"),
+        ({"width": 0}, "the picture is empty: 0 x 2"),
+        ({"data": "text"}, "not a sensor_msgs/Image"),
+        ({"width": None}, "width is missing"),
+    ],
+)
+def test_what_is_no_picture_is_refused_in_words(broken: dict[str, Value], word: str) -> None:
+    value = {**message("rgb8", [bytes(6), bytes(6)], 2), **broken}
+    with pytest.raises(ImageError, match=word.replace("(", r"\(")):
+        to_rgb(value)
+
+
+PATTERNS = ("rggb", "bggr", "gbrg", "grbg")
+RED_Y, RED_U, RED_V = 81, 90, 240
+"""Pure red (source: ITU-R BT.601, 8 bits, 16 to 235)."""
+
+
+def image_raw_colours(
+    encoding: str, width: int, height: int, data: bytes, step: int = 0, **others: Value
+) -> dict[str, Value]:
+    return {
+        "height": height,
+        "width": width,
+        "encoding": encoding,
+        "is_bigendian": 0,
+        "step": step or len(data) // height,
+        "data": data,
+        **others,
+    }
+
+
+def mosaic(pattern: str, colours: dict[str, int], width: int, height: int, kind: str = "u1") -> Any:
+    """What a sensor behind this pattern gives of a wall of one colour."""
+    cells = [[colours[pattern[0]], colours[pattern[1]]], [colours[pattern[2]], colours[pattern[3]]]]
+    return np.tile(np.array(cells, kind), (height, width))[:height, :width]
+
+
+def all_of(rgb: Any) -> set[tuple[int, ...]]:
+    return {tuple(pixel) for pixel in rgb.reshape(-1, 3).tolist()}
+
+
+@pytest.mark.parametrize(
+    ("encoding", "pair"),
+    [
+        ("uyvy", (RED_U, RED_Y, RED_V, RED_Y)),
+        ("yuv422", (RED_U, RED_Y, RED_V, RED_Y)),
+        ("yuyv", (RED_Y, RED_U, RED_Y, RED_V)),
+        ("yuv422_yuy2", (RED_Y, RED_U, RED_Y, RED_V)),
+    ],
+)
+@pytest.mark.parametrize("width", [4, 5, 3])
+def test_red_is_red_in_every_order_of_yuv_and_at_odd_widths(
+    encoding: str, pair: tuple[int, ...], width: int
+) -> None:
+    row = (bytes(pair) * 3)[: 2 * width]
+    rgb = to_rgb(image_raw_colours(encoding, width, 2, (row + b"PAD") * 2))
+    assert rgb.shape == (2, width, 3)
+    assert np.abs(rgb.astype(int) - (255, 0, 0)).max() <= 3
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.parametrize(("width", "height"), [(4, 4), (5, 3), (2, 2), (7, 2)])
+def test_every_bayer_pattern_gives_the_colour_of_the_wall(
+    pattern: str, width: int, height: int
+) -> None:
+    wall = mosaic(pattern, {"r": 250, "g": 120, "b": 10}, width, height)
+    rgb = to_rgb(image_raw_colours(f"bayer_{pattern}8", width, height, wall.tobytes()))
+    assert rgb.shape == (height, width, 3)
+    assert all_of(rgb) == {(250, 120, 10)}
+
+
+HERE, ELSEWHERE = b"\x01\x0f\x11\x22", b"\x01\x0f\x33\x44"

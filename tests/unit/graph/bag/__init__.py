@@ -1,1 +1,0 @@
-"""Bags, on unusual files."""
