@@ -1,1 +1,0 @@
-"""Tests of `space` that need no ROS and no terminal."""

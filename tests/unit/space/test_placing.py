@@ -1,21 +1,16 @@
-"""Drawables in the fixed frame, and frames with their names."""
+"""What is seen, in the fixed frame, and markers."""
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
 import pytest
 
 from space.buffer import NoTransformError, Stamped, TransformBuffer
-from space.drawing.camera import Angle, SpaceCamera
-from space.drawing.extent import extent_of
-from space.drawing.paints import Tint
-from space.drawing.shapes import Floor, Shape, Sign, Speckles, Strokes, places
-from space.frame_names import FrameNames
-from space.placing import Placer, cube_of, robot_root
+from space.drawing.shapes import Faces, Shape, Sign, Speckles, Strokes, places
+from space.placing import Placer, robot_root
 from space.reading.fields import Drawable
+from space.reading.markers import MarkerBook
 from space.transform import Transform
+from tests.unit.space.trees import marker
 
 NOW_S = 10.0
 
@@ -28,11 +23,6 @@ def placed(
     return placer.place(found, cube_m), why
 
 
-def with_names(known: TransformBuffer, fixed: str, camera: SpaceCamera) -> list[Shape]:
-    """Axes and names of all frames."""
-    return FrameNames().shapes(Placer().frames(known, fixed)[0], camera)
-
-
 def buffer(*edges: tuple[str, str, float], stamp_s: float = NOW_S) -> TransformBuffer:
     """A tree: parent, child, and how far along x the child is."""
     made = TransformBuffer()
@@ -43,19 +33,6 @@ def buffer(*edges: tuple[str, str, float], stamp_s: float = NOW_S) -> TransformB
 def dot(frame: str, stamp_s: float | None = None) -> Drawable:
     """One point in the origin of a frame."""
     return Drawable(frame, (Speckles(places((0.0, 0.0, 0.0))),), stamp_s)
-
-
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("metres", [1e9, 1e300])
-def test_what_is_no_place_on_earth_is_not_drawn_but_told(metres: float) -> None:
-    known = buffer(("map", "base_link", 1.0), ("base_link", "lost", metres))
-    shapes, why = placed(Placer(), known, [dot("base_link"), dot("lost")])
-    assert len(shapes) == 1
-    assert why == "not joined to map: lost is farther than 100000 km from map"
-    found, apart = Placer().frames(known, "map")
-    assert [one.drawable.frame for one in found] == ["map", "base_link"]
-    assert apart == ["lost"]
-    assert with_names(known, "map", SpaceCamera())
 
 
 @pytest.mark.parametrize(
@@ -72,11 +49,6 @@ def test_the_fixed_frame_is_the_root_of_the_robots_tree(
     edges: tuple[tuple[str, str, float], ...], root: str
 ) -> None:
     assert robot_root(buffer(*edges)) == root
-
-
-def test_without_frames_the_frame_of_what_is_seen_is_the_fixed_one() -> None:
-    assert robot_root(TransformBuffer(), ["lidar", "map"]) == "lidar"
-    assert robot_root(TransformBuffer()) == ""
 
 
 def test_what_is_seen_is_placed_in_the_fixed_frame() -> None:
@@ -114,94 +86,41 @@ def test_a_mount_is_used_until_somebody_publishes_it() -> None:
         placer.where(TransformBuffer(), "odom", "sonar")
 
 
-def test_without_any_frame_what_is_mounted_is_seen_about_the_robot() -> None:
-    placer, nothing = (
-        Placer({"sonar": ("base_link", Transform((0.3, 0.0, 0.0)))}),
-        TransformBuffer(),
-    )
-    assert placer.root(nothing, ["sonar", "odom"]) == "base_link"
-    assert placer.root(nothing, ["odom", "sonar"]) == "odom"
-    found, why = placer.find(nothing, "base_link", [dot("sonar")])
-    assert [one.at.translation[0] for one in found] == [0.3]
-    assert not why
+KINDS: dict[int, type] = {
+    0: Strokes,
+    1: Faces,
+    2: Faces,
+    3: Faces,
+    4: Strokes,
+    5: Strokes,
+    6: Faces,
+    7: Faces,
+    8: Speckles,
+    9: Sign,
+}
+POINTS = [{"x": 0.0, "y": 0.0, "z": 0.0}, {"x": 1.0, "y": 0.0, "z": 0.0}]
 
 
-def test_a_cloud_is_thinned_once_for_each_size() -> None:
-    rng = np.random.default_rng(1)
-    cloud = Drawable("map", (Speckles(rng.uniform(0, 1, (9000, 3)).astype(np.float32)),))
-    placer, known = Placer(), buffer(("map", "odom", 0.0))
-    (coarse,), _why = placed(placer, known, [cloud], 0.25)
-    (fine,), _why = placed(placer, known, [cloud], 0.0625)
-    assert isinstance(coarse, Speckles)
-    assert isinstance(fine, Speckles)
-    assert len(coarse.places) == 64
-    assert 64 < len(fine.places) <= 4096
+@pytest.mark.parametrize(("kind", "shape"), KINDS.items())
+def test_each_kind_of_marker_is_drawn(kind: int, shape: type) -> None:
+    book = MarkerBook()
+    at = Transform((1.0, 0.0, 0.0))
+    book.read(marker(1, kind, at, (0.5, 0.5, 0.5), points=POINTS, text="here"), 0.0)
+    (drawable,) = book.shown(0.0)
+    assert isinstance(drawable.shapes[0], shape)
+    assert book.remark is None
 
 
-def test_the_cubes_are_about_as_large_as_a_dot() -> None:
-    for dots_per_m in (1.0, 7.0, 40.0, 100.0):
-        assert 0.5 < cube_of(SpaceCamera(dots_per_m=dots_per_m)) * dots_per_m <= 1.0
-    assert cube_of(SpaceCamera(dots_per_m=20_000.0)) == 0.004
-
-
-def test_each_frame_has_three_axes_and_a_name() -> None:
-    known = buffer(("map", "base_link", 3.0))
-    shapes = with_names(known, "map", SpaceCamera(Angle.ABOVE, dots_per_m=40.0))
-    signs = {shape.text: shape.place for shape in shapes if isinstance(shape, Sign)}
-    assert signs == {"map": (0.0, 0.0, 0.0), "base_link": (3.0, 0.0, 0.0)}
-    strokes = [shape for shape in shapes if isinstance(shape, Strokes)]
-    assert [stroke.paint for stroke in strokes] == [Tint.X_AXIS, Tint.Y_AXIS, Tint.Z_AXIS] * 2
-    assert strokes[3].ends[0].tolist() == pytest.approx([3.15, 0.0, 0.0])
-
-
-def test_frames_in_one_place_share_a_line_the_parents_first() -> None:
-    edges = [("map", "odom", 0.0), ("odom", "base", 0.0), ("base", "a", 0.0), ("base", "b", 0.001)]
-    shapes = with_names(buffer(*edges), "map", SpaceCamera())
-    assert [shape.text for shape in shapes if isinstance(shape, Sign)] == ["map +4"]
-
-
-def test_axes_are_seen_from_afar() -> None:
-    camera = SpaceCamera(dots_per_m=1.0)
-    shapes = with_names(buffer(("map", "odom", 0.0)), "map", camera)
-    (first, *_rest) = (shape for shape in shapes if isinstance(shape, Strokes))
-    assert np.linalg.norm(first.ends - first.starts) == pytest.approx(5.0)
-
-
-def test_a_loop_of_frames_ends() -> None:
-    known = buffer(("a", "b", 1.0), ("b", "a", 1.0))
-    found, apart = Placer().frames(known, robot_root(known))
-    assert {*apart} | {one.drawable.frame for one in found} == {"a", "b"}
-
-
-def test_the_extent_holds_all_but_outliers_and_rays_that_met_nothing() -> None:
-    points = np.zeros((5000, 3), dtype=np.float32)
-    points[:, 0] = np.linspace(0, 10, 5000)
-    points[17] = (900.0, 0.0, 0.0)
-    cells = np.zeros((10, 10), dtype=np.uint8)
-    cells[2, 3] = Tint.FREE
-    far = places((99.0, 0.0, 0.0))
-    box = extent_of(
-        [
-            Speckles(points),
-            Floor(cells, 1.0, Transform((-5.0, 0.0, 0.0))),
-            Strokes(far, far, Tint.MUTED),
-        ]
-    )
-    assert box is not None
-    assert box.least == pytest.approx((-2.0, 0.0, 0.0), abs=0.1)
-    assert box.most == pytest.approx((10.0, 3.0, 0.0), abs=0.1)
-    assert extent_of([]) is None
-    assert not box.holds(box.widened(0.1, 0.0))
-    assert box.widened(0.0, 100.0).size_m == pytest.approx(100.0)
-    assert math.isfinite(box.size_m)
-
-
-def test_what_stands_looks_the_same_and_what_moves_does_not() -> None:
-    placer, drawable = Placer(), dot("odom")
-    ((first,), _why), ((near,), _), ((far,), _) = (
-        placer.find(buffer(("map", "odom", x)), "map", [drawable]) for x in (1.0, 1.001, 1.1)
-    )
-    assert first.looks_like(near, 0.002)
-    assert not first.looks_like(far, 0.002)
-    turned = first._replace(at=Transform.from_rpy((1.0, 0.0, 0.0), (0.0, 0.0, 0.01)))
-    assert not first.looks_like(turned, 0.002)
+def test_markers_stay_until_deleted_replaced_or_expired() -> None:
+    book = MarkerBook()
+    first = marker(1, 1, Transform(), (1.0, 1.0, 1.0))
+    book.read({"markers": [first, {**first, "id": 2}, {**first, "id": 3, "ns": "other"}]}, 0.0)
+    book.read(first, 0.0)
+    assert len(book.shown(0.0)) == 3
+    book.read({**first, "action": 2}, 0.0)
+    assert len(book.shown(0.0)) == 2
+    book.read({**first, "id": 4, "lifetime": {"sec": 1, "nanosec": 500_000_000}}, 10.0)
+    assert len(book.shown(11.4)) == 3
+    assert len(book.shown(11.6)) == 2
+    book.read({**first, "action": 3}, 12.0)
+    assert book.shown(12.0) == []

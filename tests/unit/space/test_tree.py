@@ -1,13 +1,19 @@
-"""The tree that frames make: its drawing, its roots and its loops."""
+"""The tree of frames, and what is wrong with it."""
 
 from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from graph.data import FrameRow
 from space.buffer import Stamped
 from space.transform import IDENTITY
+from space.tree.finding import FrameFinding, FrameTrouble
+from space.tree.findings import Surroundings, frame_findings
 from space.tree.tree import FrameTree
+from text.i18n import localized
 
 
 def tree(*edges: str) -> FrameTree:
@@ -38,10 +44,6 @@ def test_a_robot_is_drawn_from_its_root_down() -> None:
     assert not robot.loops
 
 
-def test_the_largest_tree_comes_first() -> None:
-    assert drawn(tree("a/b", "map/odom", "odom/base")) == ["map", "└ odom", "  └ base", "a", "└ b"]
-
-
 def test_a_frame_with_two_parents_is_drawn_below_both_and_its_children_once() -> None:
     both = tree("odom/base", "world/base", "base/head")
     assert drawn(both) == ["odom", "└ base", "  └ head", "world", "└ base *"]
@@ -54,12 +56,6 @@ def test_a_frame_with_two_parents_is_drawn_below_both_and_its_children_once() ->
     )
 
 
-def test_one_that_comes_on_both_topics_is_one_line() -> None:
-    (root, line) = tree("odom/base", "odom:base").lines()
-    assert root.heard == ()
-    assert [one.is_static for one in line.heard] == [False, True]
-
-
 def test_loops_are_found_and_drawn_to_where_they_close() -> None:
     ring = tree("a/b", "b/c", "c/a", "b/lamp")
     assert ring.loops == (("a", "b", "c"),)
@@ -67,33 +63,111 @@ def test_loops_are_found_and_drawn_to_where_they_close() -> None:
     assert tree("a/b", "b/a", "root/x").roots == ("a", "root")
 
 
-def test_a_loop_that_hangs_on_a_root_is_found_too() -> None:
-    caught = tree("root/a", "a/b", "b/a")
-    assert caught.loops == (("a", "b"),)
-    assert caught.roots == ("root",)
-    assert drawn(caught) == ["root", "└ a", "  └ b", "    └ a *"]
+NOW_S = 1.75e9
 
 
-@pytest.mark.parametrize("closed", [False, True])
-def test_an_arm_of_two_thousand_joints_is_drawn(closed: bool) -> None:
-    edges = [f"joint_{number}/joint_{number + 1}" for number in range(2000)]
-    if closed:
-        edges.append("joint_2000/joint_0")
-    arm = tree(*edges)
-    assert len(arm.lines()) == 2001 + closed
-    assert len(arm.loops) == closed
+def heard(parent: str, child: str, *, static: bool = False, **changes: Any) -> FrameRow:
+    """A frame with which nothing is wrong, but for the changes."""
+    stamp_s = changes.pop("stamp_s", NOW_S)
+    publishers = changes.pop("publishers", ("/static",) if static else ("/driver",))
+    newest = Stamped(parent, child, stamp_s, IDENTITY, static)
+    row = FrameRow(newest, 100, None if static else 50.0, 0.1, 0.01, publishers)
+    return replace(row, **changes)
 
 
-def test_names_that_are_none_make_no_tree() -> None:
-    rows = [FrameRow(Stamped("a", name, 0.0, IDENTITY), 1) for name in ("", "a")]
-    assert FrameTree(rows).lines() == []
+ROBOT = (
+    heard("odom", "base_link"),
+    heard("base_link", "camera_link", static=True),
+    heard("base_link", "wheel_left"),
+    heard("base_link", "wheel_right"),
+)
 
 
-def test_some_frames_are_drawn_with_all_that_is_above_them() -> None:
-    robot = tree("odom/base", "base:head", "head:eye", "base:sonar", "map/base", "x/y", "y/x")
-    only = robot.with_ancestors(["eye"])
-    assert only == {"eye", "head", "base", "odom", "map"}
-    shown = [f"{line.branch}{line.frame}" for line in robot.lines(only)]
-    assert shown == ["map", "└ base", "  └ head", "    └ eye", "odom", "└ base"]
-    assert robot.with_ancestors(["y", "nowhere"]) == {"x", "y", "nowhere"}
-    assert robot.lines(()) == []
+def find(*rows: FrameRow, **around: Any) -> list[FrameFinding]:
+    return frame_findings(FrameTree(rows), rows, Surroundings(**around))
+
+
+def only(*rows: FrameRow, **around: Any) -> FrameFinding:
+    (found,) = find(*rows, **around)
+    # Both are sentences in either language, whatever is put into them.
+    assert localized(found.text, "ru") != found.text
+    assert localized(found.advice, "ru") != found.advice
+    return found
+
+
+def test_nothing_is_wrong_with_a_robot_as_it_should_be() -> None:
+    named = {"/image": "camera_link", "/scan": "/base_link", "/map": ""}
+    assert find(*ROBOT, named=named, most=2000) == []
+    assert find() == find(named={"/image": "camera_link"}) == []
+
+
+HEAD = heard("base_link", "head")
+SILENT = replace(HEAD, age_s=4.0)
+BY_TURNS = replace(HEAD, contested=True, publishers=("/ekf", "/wheels"))
+STATIC = heard("base_link", "head", static=True)
+LENS = heard("camera_lnk", "lens", publishers=("/camera",))
+NAMED = {"/camera/image": "camera_lnk", "/camera/info": "camera_lnk"}
+
+
+@pytest.mark.parametrize(
+    ("rows", "trouble", "frames", "said"),
+    [
+        ([SILENT], "STALE", "head", ["head: silent for 4 s", "/driver"]),
+        ([replace(SILENT, publishers=())], "STALE", "head",
+         ["the node that published it has gone"]),
+        ([replace(SILENT, publishers=(), gone="/neck")], "STALE", "head",
+         ["/neck, which published it, has gone: start it again"]),
+        ([heard("map", "odom"), heard("map", "base_link", publishers=("/slam",))], "PARENTS",
+         "base_link map odom", ["base_link has two parents: map by /slam, odom by /driver"]),
+        ([heard("arm_base", "gripper")], "ROOTS", "odom arm_base",
+         ["--frame-id odom --child-frame-id arm_base"]),
+        ([LENS], "ROOTS", "odom camera_lnk", ["is camera_lnk a slip for camera_link?", "/camera"]),
+        (NAMED, "UNKNOWN", "camera_lnk",
+         ["/camera/image, /camera/info: the header names camera_lnk", "camera_link"]),
+        ({"/scan": "lidar"}, "UNKNOWN", "lidar", ["--frame-id odom --child-frame-id lidar"]),
+        ([replace(HEAD, delay_s=-0.5)], "CLOCK", "head", ["0.5 s in the future"]),
+        ([replace(HEAD, delay_s=2.0)], "CLOCK", "head", ["2.0 s before it arrives"]),
+        ([heard("base_link", "head", delay_s=NOW_S, stamp_s=0.0)], "CLOCK", "head",
+         ["0.0 s, which cannot be the present time"]),
+        ([replace(STATIC, moved=True)], "STATIC_MOVED", "head",
+         ["head: comes on /tf_static with different numbers"]),
+        ([BY_TURNS], "CONTESTED", "head",
+         ["/ekf, /wheels publish head by turns, so that it jumps"]),
+        ([replace(BY_TURNS, certain=False)], "CONTESTED", "head",
+         ["several publishers send head by turns", "/ekf, /wheels"]),
+        ([replace(BY_TURNS, publishers=("/ekf", "/ekf"))], "CONTESTED", "head",
+         ["/ekf (2 of this name) publish head by turns"]),
+        ([replace(HEAD, fault="its quaternion is all zeros", faults=7)], "NUMBERS", "head",
+         ["head: its quaternion is all zeros; refused 7 of 100"]),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_with_frames_is_told_with_what_to_do(
+    rows: list[FrameRow] | dict[str, str], trouble: str, frames: str, said: list[str]
+) -> None:
+    found = only(*ROBOT, named=rows) if isinstance(rows, dict) else only(*ROBOT, *rows)
+    assert found.trouble is FrameTrouble[trouble]
+    assert set(found.frames) == set(frames.split())
+    assert all(words in f"{found.text}\n{found.advice}" for words in said)
+
+
+@pytest.mark.parametrize(("certain", "said"), [(False, "one of /x, /y"), (True, "/x, /y")])
+def test_a_loop_is_told_with_the_publisher_that_closes_it(certain: bool, said: str) -> None:
+    closing = heard("c", "a", publishers=("/x", "/y"), certain=certain)
+    (loop,) = find(heard("a", "b"), heard("b", "c"), closing)
+    assert loop.trouble is FrameTrouble.LOOP
+    assert loop.text.startswith("a → b → c and back to a")
+    assert f"c → a out of {said}" in loop.advice
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        replace(SILENT, hz=0.5),
+        replace(HEAD, age_s=0.9, hz=100.0),
+        # A static frame holds whenever it was stamped.
+        replace(STATIC, delay_s=-0.5),
+        heard("base_link", "head", static=True, delay_s=NOW_S, stamp_s=0.0),
+    ],
+)
+def test_what_may_be_as_it_is_is_not_told(row: FrameRow) -> None:
+    assert find(*ROBOT, row) == []

@@ -11,12 +11,10 @@ from space.transform import Transform
 
 
 def header(frame: str) -> dict[str, Any]:
-    """A header without a stamp."""
     return {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
 
 
 def pose_tree(transform: Transform) -> dict[str, Any]:
-    """A geometry_msgs/Pose."""
     return {
         "position": dict(zip("xyz", transform.translation, strict=True)),
         "orientation": dict(zip("xyzw", transform.rotation, strict=True)),
@@ -45,7 +43,6 @@ def cloud_tree(places: np.ndarray[Any, Any], frame: str, **more: Any) -> dict[st
 def marker(
     number: int, kind: int, at: Transform, size: Sequence[float], **more: Any
 ) -> dict[str, Any]:
-    """A visualization_msgs/Marker."""
     colour = {"r": 1.0, "g": 0.5, "b": 0.0, "a": 1.0}
     tree = {
         "header": header("map"),

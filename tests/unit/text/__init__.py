@@ -1,1 +1,0 @@
-"""Tests of `text` that need no ROS and no terminal."""

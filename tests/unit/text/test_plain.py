@@ -1,14 +1,18 @@
-"""What of a text from outside is shown: all of it, and nothing that is obeyed, hidden or a lie."""
+"""Text from anywhere made harmless, and sentences that can be translated."""
 
 from __future__ import annotations
 
 import unicodedata
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from launcher.errors import SessionError
+from text.i18n import localized, set_language
 from text.plain import is_plain, plain, plain_lines
+from text.sentences import reason_of, say
 
 HOSTILE = {
     "clipboard": ("\x1b]52;c;aGk=\x07", "␛]52;c;aGk=␇"),
@@ -98,3 +102,42 @@ def test_lines_are_kept_where_there_are_lines(text: str) -> None:
 
 def test_no_more_is_looked_at_than_is_shown() -> None:
     assert plain("abc\x1bd", 4) == "abc␛"
+
+
+SENTENCE = say("ROS cannot be used: {error}", error="no rclpy")
+
+
+def test_the_sentence_of_an_error_can_still_be_translated() -> None:
+    error = SessionError(SENTENCE)
+    assert reason_of(error) == str(error)
+    assert localized(reason_of(error), "ru") == "ROS не работает: no rclpy"
+    assert localized(str(error), "ru") == str(error)
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (ValueError("not a number"), "not a number"),
+        (OSError(5, "Input/output error"), "[Errno 5] Input/output error"),
+        (TimeoutError(), "TimeoutError"),
+        (RuntimeError(SENTENCE, 7), str(RuntimeError(str(SENTENCE), 7))),
+    ],
+)
+def test_an_error_without_a_sentence_says_its_text_or_its_kind(
+    error: Exception, words: str
+) -> None:
+    assert reason_of(error) == words
+
+
+@pytest.fixture
+def in_russian() -> Iterator[None]:
+    set_language("ru")
+    yield
+    set_language("en")
+
+
+@pytest.mark.usefixtures("in_russian")
+def test_a_number_has_a_comma_and_a_text_keeps_its_point() -> None:
+    words = say("{a:.2f}, {b}, {c}", a=0.5, b="1.2.0", c=3)
+    assert localized(words) == localized(words, "ru") == "0,50, 1.2.0, 3"
+    assert localized(words, "en") == "0.50, 1.2.0, 3"

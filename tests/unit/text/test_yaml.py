@@ -1,13 +1,21 @@
-"""YAML as a tree: what a word means, where everything stands, what is refused and how."""
+"""YAML with places: what it means, what is refused and where, and how deep it may be."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
+import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from graph.calls.parameters_values import WrongValueError, carried
+from graph.messages.yaml_reading import read_message
+from launcher.profile.problems import Problems
+from launcher.profile.reading import read_yaml as read_profile
+from text.nested import MAX_DEPTH, NestedTooDeeplyError, read_json
+from text.nested_yaml import read_yaml
 from text.yaml_faults import YamlError
 from text.yaml_reading import Rules, mapping, read
 from text.yaml_tree import Branch, FilePlace, field_name, find, place_of, plain
@@ -17,7 +25,6 @@ SHARING = Rules(shares=True, longest=1024 * 1024, deepest=24, most=1000)
 
 
 def fields(text: str, rules: Rules = STRICT) -> Branch:
-    """Read a mapping."""
     root = read(text, rules)
     assert root is not None
     return mapping(root)
@@ -31,37 +38,15 @@ def meant(text: str) -> object:
 @pytest.mark.parametrize(
     ("word", "value"),
     [
-        ("on", True),
-        ("No", False),
-        ("y", "y"),
-        ("1e3", 1000.0),
-        ("-.5e-1", -0.05),
-        ("0o17", 15),
-        ("017", 15),
-        ("09", "09"),
-        ("0x1F", 31),
-        ("1_000", 1000),
-        ("12:30", "12:30"),
-        ("2026-01-01", "2026-01-01"),
-        ("~", None),
-        ("", None),
-        ("inf", math.inf),
-        ("-.inf", -math.inf),
-        ("1e400", "1e400"),
-        ("'on'", "on"),
-        ('"5"', "5"),
-        ("! 5", "5"),
-        ("!!str 5", "5"),
-        ("!!int 0o17", 15),
-        ("!!int '5'", 5),
-        ("!!float 5", 5.0),
-        ("!!bool 'yes'", True),
-        ("!!null ~", None),
-        ("=", "="),
-        ("<<", "<<"),
+        ("on", True), ("No", False), ("y", "y"), ("1e3", 1000.0), ("-.5e-1", -0.05), ("0o17", 15),
+        ("017", 15), ("09", "09"), ("0x1F", 31), ("1_000", 1000), ("12:30", "12:30"),
+        ("2026-01-01", "2026-01-01"), ("~", None), ("", None), ("inf", math.inf),
+        ("-.inf", -math.inf), ("1e400", "1e400"), ("'on'", "on"), ('"5"', "5"), ("! 5", "5"),
+        ("!!str 5", "5"), ("!!int 0o17", 15), ("!!int '5'", 5), ("!!float 5", 5.0),
+        ("!!bool 'yes'", True), ("!!null ~", None), ("=", "="), ("<<", "<<"),
         ("9" * 2000, "9" * 2000),
     ],
-)
+)  # fmt: skip
 def test_words_mean_what_a_ros_user_expects(word: str, value: object) -> None:
     found = meant(word)
     assert found == value
@@ -198,16 +183,6 @@ def test_what_is_refused_tells_its_place(
     assert str(raised.value) == f"{line}:{column}: {raised.value.message}"
 
 
-def test_who_takes_what_is_wrong_gets_all_of_it_with_the_names_and_the_rest_is_read() -> None:
-    found: list[YamlError] = []
-    text = "a: {b: 1, b: 2}\nc: [{d: !!int x}, {e: {f: 1, f: 2}}]\ng: 3"
-    tree = read(text, SHARING, tell=found.append)
-    assert tree is not None
-    assert plain(tree) == {"a": {"b": 1}, "c": [{"d": None}, {"e": {"f": 1}}], "g": 3}
-    assert [field_name(error.where) for error in found] == ["a.b", "", "c[1].e.f"]
-    assert [(error.line, error.column) for error in found] == [(1, 11), (2, 9), (2, 30)]
-
-
 @pytest.mark.parametrize(("rules", "words"), [(STRICT, "anchors"), (SHARING, "more than 1000")])
 def test_a_bomb_of_aliases_does_not_go_off(rules: Rules, words: str) -> None:
     lines = ["a0: &a0 [x, x]"]
@@ -230,3 +205,90 @@ def test_any_text_is_a_tree_or_an_error_with_a_place(text: str, rules: Rules) ->
         place = (error.line, error.column)
     assert 1 <= place[0] <= text.count("\n") + 2
     assert place[1] >= 1
+
+
+NBSP = "the character U+00A0 only looks like a space: write an ordinary one"
+WRONG = [
+    ("[1, 2", "this list is not closed: a ',' or a ']' is missing"),
+    ("[1, ", "a value is missing here, or a ']' or '}'"),
+    ("[1, 'x]", "the text in quotes is not closed"),
+    ("[@a]", "nothing can begin with this character: put the text in quotes"),
+    ("[\a]", "the character U+0007 is not allowed: remove it"),
+    ("[{b: 1, b: 2}]", "'b' appears a second time, first on line 1: join them or rename one"),
+    ("[!env x]", "the tag !env is refused: only plain values are read"),
+    ("[{[b]: 1}]", "expected a name before the ':', found a list or a mapping"),
+    ("[x]\n---", "a second document begins here, and only one is read"),
+    ("[{b:[1]}]", "a space is missing after this ':'"),
+    ("[\u00a0b]", NBSP),
+    ("[{b\u00a0: 1}]", NBSP),
+    ("[1\u202f# b\n]", "the character U+202F only looks like a space: write an ordinary one"),
+    ('["\\q"]', "YAML does not know this \\ in double quotes: use single quotes"),
+]
+
+
+def in_profile(text: str) -> Any:
+    problems = Problems()
+    tree = read_profile(f"a: {text}", "a.yaml", problems)
+    for problem in problems.found:
+        raise YamlError(problem.line, problem.column, problem.message)
+    assert tree is not None
+    return plain(tree)["a"]
+
+
+def in_form(text: str) -> Any:
+    return plain(read_message(f"a: {text}"))["a"]
+
+
+@pytest.mark.parametrize(("text", "words"), WRONG)
+def test_what_is_wrong_is_told_in_the_same_words_at_the_same_place(text: str, words: str) -> None:
+    places = set()
+    for reading in (in_profile, in_form):
+        with pytest.raises(YamlError) as caught:
+            reading(text)
+        assert caught.value.message == words
+        places.add((caught.value.line, caught.value.column))
+    assert len(places) == 1
+    with pytest.raises(WrongValueError) as refused:
+        carried("string_array", text)
+    assert str(refused.value) == words
+
+
+@pytest.mark.parametrize("opening", ["[", '{"a":', '[{"a":'])
+@pytest.mark.parametrize("times", [MAX_DEPTH + 1, 900, 200_000])
+def test_what_is_nested_without_end_is_refused(opening: str, times: int) -> None:
+    closing = opening.replace('"a":', "")[::-1].translate(str.maketrans("[{", "]}"))
+    text = opening * times + "1" + closing * times
+    for form in (text, text.encode()):
+        with pytest.raises(ValueError, match="nested deeper than 64 levels"):
+            read_json(form)
+    with pytest.raises(
+        (NestedTooDeeplyError, yaml.YAMLError), match=r"nested deeper|nesting depth"
+    ):
+        read_yaml(opening.replace(":", ": ") * times + "1" + closing * times)
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "words"),
+    [
+        ("{x:0}", (1, 2), "a space is missing after the ':': x: 0"),
+        ("linear: {x: 1, y:0.5}", (1, 16), "a space is missing after the ':': y: 0.5"),
+        ("data:hello world", (1, 1), "a space is missing after the ':': data: hello world"),
+        ("x:0\ny:1", (1, 1), "a space is missing after the ':': x: 0 y:1"),
+        ('- {data:"x"}', (1, 4), "a space is missing after the ':': data: \"x\""),
+        ("data:\u00a0hello", (1, 6), NBSP),
+        ("linear:\n\u00a0 x: 1.0", (2, 1), NBSP),
+        ("linear:\n  x: 1.0\n \u00a0y: 2.0", (3, 2), NBSP),
+        ("x:\n  -\u00a0y", (2, 4), NBSP),
+    ],
+)
+def test_a_space_that_is_none_is_told_in_a_message(
+    text: str, place: tuple[int, int], words: str
+) -> None:
+    with pytest.raises(YamlError) as caught:
+        read_message(text)
+    assert ((caught.value.line, caught.value.column), caught.value.message) == (place, words)
+
+
+@pytest.mark.parametrize("text", ["data: a:b", "data: http://x", "data: 'x:0'", "{'x:0': 1}"])
+def test_a_colon_may_stand_in_a_value(text: str) -> None:
+    assert len(read_message(text).entries) == 1
