@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import math
 import random
-from typing import TYPE_CHECKING
 
 from robot.kinematics import wheel_speeds
 from robot.motion.odometry import Pose
 from robot.safety.distance import Reading, SafetyZone, Shares, gate, range_state, share, where
 from robot.words import STOP, DriveSetpoint
-from robot.world.world import STEP_S, Wheels
-from tests.unit.free_floor import on_free_floor
-
-if TYPE_CHECKING:
-    from robot.world.world import World
+from robot.world.room import Box, Room
+from robot.world.world import STEP_S, Wheels, World
 
 CONTROL_STEPS = 5
 """20 commands a second."""
@@ -23,7 +19,6 @@ CARRIED_AFTER_S = 20.0
 
 
 def drive(world: World, speed: float, steering: float = 0.0) -> None:
-    """Ask the wheels for a speed, m/s, and a steering angle, rad."""
     wheels = wheel_speeds(speed, steering)
     radius = world.body.wheel_radius_m
     world.asked = Wheels(wheels.left_m_s / radius, wheels.right_m_s / radius, steering)
@@ -33,6 +28,18 @@ def let_pass(world: World, seconds: float) -> None:
     """Let so many seconds pass in the simulated room."""
     for _ in range(round(seconds / STEP_S)):
         world.step()
+
+
+def on_free_floor(room: Room, x_m: float, y_m: float) -> bool:
+    """Whether a point lies between the walls and outside all boxes."""
+
+    def covers(box: Box) -> bool:
+        cos, sin = math.cos(box.heading_rad), math.sin(box.heading_rad)
+        east, north = x_m - box.x_m, y_m - box.y_m
+        along, across = cos * east + sin * north, cos * north - sin * east
+        return abs(along) <= box.length_m / 2 and abs(across) <= box.width_m / 2
+
+    return covers(room.walls) and not any(map(covers, room.boxes))
 
 
 class RandomDriver:
@@ -52,7 +59,6 @@ class RandomDriver:
         self._silent_until_s = self._stalled_until_s = 0.0
 
     def drive_for(self, seconds: float) -> None:
-        """Drive on for so long."""
         for _ in range(round(seconds / CARRIED_AFTER_S)):
             before_m = self.driven_m
             for _ in range(round(CARRIED_AFTER_S / STEP_S) // CONTROL_STEPS):
@@ -62,7 +68,6 @@ class RandomDriver:
 
     @property
     def now_s(self) -> float:
-        """Seconds since the beginning."""
         return self.world.steps * STEP_S
 
     def _round(self) -> None:

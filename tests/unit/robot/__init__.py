@@ -1,1 +1,0 @@
-"""Tests of `robot` that need no ROS and no terminal."""

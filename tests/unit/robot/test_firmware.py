@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -21,9 +22,6 @@ from robot.wire.pico import (
     Welcome,
     encode,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 ROOT = Path(__file__).parents[3]
 FIRMWARE = ROOT / "firmware"
@@ -263,12 +261,6 @@ def test_lines_beyond_the_limits_are_no_heartbeat(pico: Pico) -> None:
     for sequence in range(2, 16):
         answer = pico.hear(Drive(sequence, 200, 200, 0), ms=20)
     assert {"W", "A"} <= flags(answer)
-
-
-def test_current_is_told(pico: Pico) -> None:
-    pico.start()
-    answer = pico.hear(Drive(2, 5, 5, 0), analog={LEFT_CURRENT: 2780})
-    assert answer["told"][-1].left_a == pytest.approx(1.0, abs=0.02)
 
 
 def test_encoders_are_read_and_close_the_loop(pico: Pico) -> None:

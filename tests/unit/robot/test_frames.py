@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import json
-from itertools import pairwise
-from typing import TYPE_CHECKING
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.frames.batches import Chunk, FrameBatcher
-from robot.frames.lines import MOST, FrameLine, decode, encode
 from robot.frames.lsc16 import ServoReader
 from robot.frames.pico import PicoReader
-from robot.frames.protocols import FrameKind, RawReader
+from robot.frames.protocols import FramePiece, FrameReader
 from robot.frames.tof import TofReader
 from robot.wire import lsc16 as wire_lsc16
 from robot.wire import pico as wire_pico
@@ -25,10 +19,6 @@ from robot.wire.pico import Drive, Halt, Hello, Release, Telemetry, Welcome
 from robot.wire.tfluna import TofFrame
 from tests.unit.streams import cut
 
-if TYPE_CHECKING:
-    from robot.frames.protocols import FramePiece, FrameReader
-
-READERS = (PicoReader, TofReader, ServoReader, RawReader)
 TELEMETRY = Telemetry(3, 61250, 2, 6.18, -6.15, 0.35, 7.42, 0.81, None, 0, frozenset("EN"))
 TELEMETRY_EN = (
     "wheels left 6.18 right -6.15 rad/s steering 0.35 rad, flags: emergency stop latched,"
@@ -58,29 +48,17 @@ def said(reader: FrameReader, *chunks: bytes) -> list[tuple[str, str]]:
     ("message", "en", "ru"),
     [
         (Hello(0), "hello, protocol 1, seq 0, crc ok", "привет, протокол 1, № 0, crc верна"),
-        (
-            Drive(17, 3.2, 3.4, 0.1),
-            "drive left 3.20 right 3.40 rad/s steering 0.10 rad, seq 17, crc ok",
-            "движение: левое 3,20 правое 3,40 рад/с, руль 0,10 рад, № 17, crc верна",
-        ),
+        (Drive(17, 3.2, 3.4, 0.1),
+         "drive left 3.20 right 3.40 rad/s steering 0.10 rad, seq 17, crc ok",
+         "движение: левое 3,20 правое 3,40 рад/с, руль 0,10 рад, № 17, crc верна"),
         (Halt(7), "EMERGENCY STOP, seq 7, crc ok", "АВАРИЙНЫЙ СТОП, № 7, crc верна"),
-        (
-            Release(8),
-            "emergency stop released, seq 8, crc ok",
-            "аварийный стоп снят, № 8, crc верна",
-        ),
-        (
-            Welcome(0, 1, "1.0.0"),
-            "the Pico answers: firmware 1.0.0, protocol 1, seq 0, crc ok",
-            "Pico отвечает: прошивка 1.0.0, протокол 1, № 0, crc верна",
-        ),
-        (
-            TELEMETRY,
-            TELEMETRY_EN,
-            TELEMETRY_RU,
-        ),
+        (Release(8), "emergency stop released, seq 8, crc ok",
+         "аварийный стоп снят, № 8, crc верна"),
+        (Welcome(0, 1, "1.0.0"), "the Pico answers: firmware 1.0.0, protocol 1, seq 0, crc ok",
+         "Pico отвечает: прошивка 1.0.0, протокол 1, № 0, crc верна"),
+        (TELEMETRY, TELEMETRY_EN, TELEMETRY_RU),
     ],
-)
+)  # fmt: skip
 def test_lines_of_the_pico(message: wire_pico.Message, en: str, ru: str) -> None:
     line = wire_pico.encode(message)
     assert said(PicoReader("en"), line[:5], line[5:]) == [("frame", en)]
@@ -102,11 +80,6 @@ def test_what_is_no_line_of_the_pico(line: bytes, kind: str, words: str) -> None
     assert said(PicoReader("en"), line) == [(kind, words)]
 
 
-def test_noise_before_a_line_is_told_apart_from_it() -> None:
-    found = said(PicoReader("en"), b"\r\n\n", b"ab$c" + wire_pico.encode(Halt(7)) + b"\r\n")
-    assert found == [("noise", "noise 4 bytes"), ("frame", "EMERGENCY STOP, seq 7, crc ok")]
-
-
 @pytest.mark.parametrize(
     ("frame", "words"),
     [
@@ -118,20 +91,6 @@ def test_noise_before_a_line_is_told_apart_from_it() -> None:
 )
 def test_frames_of_a_sonar(frame: TofFrame, words: str) -> None:
     assert said(TofReader("en"), wire_tfluna.encode(frame)) == [("frame", words)]
-
-
-def test_bad_frames_of_a_sonar_and_what_is_between() -> None:
-    bad = NEAR[:-1] + b"\x00"
-    found = said(TofReader("en"), b"noise" + bad[:4], bad[4:] + NEAR[:3] + NEAR, b"Y", b"Z" + NEAR)
-    assert found == [
-        ("noise", "noise 5 bytes"),
-        ("bad", "CHECKSUM FAILED: got 00, expected E8"),
-        ("noise", "noise 3 bytes"),
-        ("frame", "distance 1.23 m, strength 1000, 25.0 °C"),
-        ("noise", "noise 2 bytes"),
-        ("frame", "distance 1.23 m, strength 1000, 25.0 °C"),
-    ]
-    assert said(TofReader("ru"), bad) == [("bad", "СУММА НЕ СОШЛАСЬ: пришла 00, верно E8")]
 
 
 @pytest.mark.parametrize(
@@ -168,77 +127,3 @@ def test_no_byte_of_noise_is_lost_or_said_twice(
     pieces = [piece for chunk in chunks for piece in reader.feed(chunk)]
     together = b"".join(piece.octets for piece in [*pieces, *reader.flush()])
     assert together.translate(None, b"\r\n") == stream.translate(None, b"\r\n")
-
-
-def test_ten_megabytes_of_noise_keep_less_than_a_frame() -> None:
-    block = bytes(range(256)) * 4096
-    for make in READERS:
-        reader = make("en")
-        for _ in range(10):
-            reader.feed(block)
-        assert sum(len(piece.octets) for piece in reader.flush()) < 128
-
-
-def test_a_batch_is_bounded_and_tells_what_it_left_out() -> None:
-    teller = FrameBatcher(TofReader, "en")
-    lines = teller.tell([Chunk(1.0, "in", NEAR * (MOST + 12))], 1.0, missed=500)
-    assert [line.text for line in lines[-2:]] == ["12 more", "500 more bytes"]
-    assert (len(lines), lines[-2].kind, lines[-2].count) == (MOST + 2, FrameKind.MORE, 12)
-    assert FrameBatcher(TofReader, "ru").tell([], 0.0, 7)[0].text == "ещё байт: 7"
-
-
-def test_who_comes_in_the_middle_of_a_frame_sees_no_noise() -> None:
-    teller = FrameBatcher(TofReader, "en")
-    lines = teller.tell([Chunk(1.0, "in", NEAR[4:] + NEAR)], 1.0)
-    assert [line.kind for line in lines] == [FrameKind.FRAME]
-    lines = teller.tell([Chunk(1.1, "in", NEAR[4:])], 1.1)
-    assert [line.kind for line in lines] == [FrameKind.NOISE]
-
-
-def test_noise_in_drips_is_one_line_and_both_ways_keep_their_order() -> None:
-    teller = FrameBatcher(PicoReader, "en")
-    teller.tell([Chunk(0.5, "in", wire_pico.encode(Halt(1)))], 0.5)
-    chunks = [Chunk(1.0 + at / 100, "in", b"x\n") for at in range(5)]
-    chunks += [Chunk(1.1, "out", wire_pico.encode(Halt(7))), Chunk(1.2, "in", b"y\n")]
-    lines = teller.tell(chunks, 1.2)
-    assert [(line.way, line.text) for line in lines] == [
-        ("in", "noise 10 bytes"),
-        ("out", "EMERGENCY STOP, seq 7, crc ok"),
-        ("in", "noise 2 bytes"),
-    ]
-    assert all(one.time_s <= other.time_s for one, other in pairwise(lines))
-
-
-def test_a_frame_that_does_not_end_is_given_up() -> None:
-    teller = FrameBatcher(PicoReader, "en")
-    assert teller.tell([Chunk(1.0, "in", b"login: ")], 1.0) == []
-    assert teller.tell([], 1.2) == []
-    assert [line.text for line in teller.tell([], 1.4)] == ["noise 7 bytes"]
-
-
-def test_lines_are_told_and_read_again() -> None:
-    lines = [
-        FrameLine(1.5, "in", FrameKind.FRAME, NEAR, "distance 1.23 m\u2028"),
-        FrameLine(1.6, "out", FrameKind.MORE, b"", "ещё 3", 3),
-    ]
-    text = encode(lines)
-    assert decode(text) == (lines, 0)
-    first = json.loads(text.split("\n")[0])
-    assert first == {
-        "t": 1.5, "way": "in", "kind": "frame", "hex": NEAR.hex(), "text": "distance 1.23 m\u2028"
-    }  # fmt: skip
-
-
-def test_lines_of_another_make_are_read_as_far_as_they_make_sense() -> None:
-    text = '{"t": 1, "way": "in", "hex": "59 59", "text": "x"}\n{"t": 1}\nno json\n[1]\n'
-    found, odd = decode(text + '{"t": NaN, "way": "in", "text": ""}')
-    assert ([line.octets for line in found], odd) == ([b"YY"], 4)
-    assert decode("") == ([], 0)
-    assert decode("{}\n" * 5000)[1] > 4000
-    assert decode("[" * 100_000) == ([], 1)
-
-
-@given(st.text())
-def test_no_text_breaks_the_reading_of_lines(text: str) -> None:
-    decode(text)
-    decode(json.dumps({"t": 1, "way": "in", "hex": text, "text": text, "kind": text}))

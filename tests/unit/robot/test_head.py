@@ -1,18 +1,21 @@
-"""The joints of the head: angles to pulses within limits, and turns at a speed."""
+"""The head's joints, and the sizes of the robot's model."""
 
 from __future__ import annotations
 
-from typing import Any
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.drivers.head_words import SERVO_SETTINGS, contradiction
+from robot.joints import DRIVE_JOINTS, HEAD_JOINTS
+from robot.kinematics import TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M
 from robot.limits import Limits
 from robot.motion.head import HeadJoint, turn_ms
 from robot.wire.lsc16 import PULSE, ServoMove, decode, encode
-from text.i18n import translated
+from space.robot_model import Cylinder, RobotModel
+from space.transform import IDENTITY, Transform
+from space.urdf import read_urdf
 
 JOINTS = st.builds(
     HeadJoint,
@@ -27,16 +30,12 @@ JOINTS = st.builds(
 @pytest.mark.parametrize(
     ("joint", "angle", "pulse"),
     [
-        (HeadJoint(1), 0, 1500),
-        (HeadJoint(1), 90, 2500),
-        (HeadJoint(1), -90, 500),
-        (HeadJoint(1, reversed=True), 90, 500),
-        (HeadJoint(1, trim_deg=9), 0, 1600),
-        (HeadJoint(1, trim_deg=9), -90, 600),
-        (HeadJoint(1, trim_deg=9, reversed=True), 90, 600),
+        (HeadJoint(1), 0, 1500), (HeadJoint(1), 90, 2500), (HeadJoint(1), -90, 500),
+        (HeadJoint(1, reversed=True), 90, 500), (HeadJoint(1, trim_deg=9), 0, 1600),
+        (HeadJoint(1, trim_deg=9), -90, 600), (HeadJoint(1, trim_deg=9, reversed=True), 90, 600),
         (HeadJoint(1, turn_deg=270), 90, 2167),
     ],
-)
+)  # fmt: skip
 def test_angles_become_pulses(joint: HeadJoint, angle: float, pulse: int) -> None:
     assert joint.pulse_us(angle) == pulse
 
@@ -79,18 +78,45 @@ def test_a_turn_takes_its_time_and_the_longest_one_from_who_knows_where() -> Non
     assert turn_ms(360, 1) == 30_000
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({}, None),
-        ({"pan_servo": 2}, "pan_servo and tilt_servo are both"),
-        ({"pan_min": 10.0, "pan_max": 5.0}, "between pan_min and pan_max"),
-        ({"tilt_min": 40.0, "servo_turn": 90.0, "tilt_trim": 10.0}, "with tilt_trim"),
-    ],
-)
-def test_joints_without_room_are_told(changes: dict[str, Any], words: str | None) -> None:
-    values = {setting.name: setting.default for setting in SERVO_SETTINGS} | changes
-    phrase = contradiction(values)
-    assert (phrase is None) if words is None else (phrase is not None and words in phrase)
-    if phrase is not None:
-        assert translated(phrase, "ru").format(**values)
+FILE = Path(__file__).parents[3] / "robot" / "description" / "robot.urdf"
+WHEELS = ("rear_left_wheel", "rear_right_wheel", "front_left_wheel", "front_right_wheel")
+
+
+@pytest.fixture(scope="module")
+def model() -> RobotModel:
+    return read_urdf(FILE.read_text())
+
+
+def place(model: RobotModel, link: str, **positions: float) -> Transform:
+    """Where a link is in base_link, each joint at its position, 0 where none is given."""
+    held = {joint.child: joint for joint in model.joints.values()}
+    where, known = IDENTITY, model.followed(positions)
+    while link in held:
+        joint = held[link]
+        where = joint.transform(known.get(joint.name, 0.0)) @ where
+        link = joint.parent
+    assert link == model.root == "base_link"
+    return where
+
+
+def test_every_joint_that_drivers_report_is_there_and_every_other_follows(
+    model: RobotModel,
+) -> None:
+    movable = {name: joint for name, joint in model.joints.items() if joint.movable}
+    reported = {name for name, joint in movable.items() if joint.mimic is None}
+    assert reported == {*DRIVE_JOINTS, *HEAD_JOINTS}
+    assert all(joint.movable or joint.type.value == "fixed" for joint in model.joints.values())
+
+
+def test_the_wheels_are_where_the_kinematics_have_them(model: RobotModel) -> None:
+    left, right = (place(model, link).translation for link in WHEELS[:2])
+    assert left == pytest.approx((0.0, TRACK_M / 2, WHEEL_RADIUS_M))
+    assert right == pytest.approx((0.0, -TRACK_M / 2, WHEEL_RADIUS_M))
+    for link in WHEELS[2:]:
+        assert place(model, link).translation[0] == pytest.approx(WHEELBASE_M)
+    for link in WHEELS:
+        tyre = model.links[link].visuals[0]
+        assert isinstance(tyre.shape, Cylinder)
+        assert tyre.shape.radius_m == WHEEL_RADIUS_M
+        # Its axis is across the robot.
+        assert tyre.origin.point((0.0, 0.0, 1.0)) == pytest.approx((0, -1, 0), abs=1e-6)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from robot.commands.schema import parse_llm
 from robot.commands.so_far import so_far
@@ -48,9 +46,3 @@ def test_what_is_wrong_already_is_said_at_once(text: str, problem: str) -> None:
 def test_a_value_that_is_still_being_written_is_no_problem() -> None:
     """`-0.` may become `-0.3`, and `tr` may become `true`: nothing is said before the comma."""
     assert so_far('{"thought": "x", "commands": [{"action": "drive", "speed": 5') == (0, ())
-
-
-@given(st.text(alphabet='{}[]",:\\ a1\n'))
-def test_any_text_is_survived(text: str) -> None:
-    so_far(text)
-    so_far('{"thought": ' + text)

@@ -48,18 +48,12 @@ def test_the_frames_of_the_maker(octets: str, frame: ServoFrame) -> None:
 @pytest.mark.parametrize(
     "frame",
     [
-        ServoMove(30_001, ((1, 1500),)),
-        ServoMove(-1, ((1, 1500),)),
-        ServoMove(100, ((1, 499),)),
-        ServoMove(100, ((1, 2501),)),
-        ServoMove(100, ((0, 1500),)),
-        ServoMove(100, ((17, 1500),)),
-        ServoMove(100, ((1, 1500), (1, 1600))),
-        ServoMove(100, ()),
-        Battery(30_001),
+        ServoMove(30_001, ((1, 1500),)), ServoMove(-1, ((1, 1500),)), ServoMove(100, ((1, 499),)),
+        ServoMove(100, ((1, 2501),)), ServoMove(100, ((0, 1500),)), ServoMove(100, ((17, 1500),)),
+        ServoMove(100, ((1, 1500), (1, 1600))), ServoMove(100, ()), Battery(30_001),
         ActionRun(256, 1),
     ],
-)
+)  # fmt: skip
 def test_values_that_the_controller_does_not_know_are_refused(frame: ServoFrame) -> None:
     with pytest.raises(ValueError, match="out of range"):
         encode(frame)

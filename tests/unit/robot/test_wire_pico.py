@@ -53,7 +53,6 @@ messages: st.SearchStrategy[Message] = st.one_of(
 
 
 def decode(line: bytes) -> Message | None:
-    """Return the message in one line given without its end, None if there is none."""
     body = unwrap(line)
     return None if body is None else parse(body)
 
@@ -108,16 +107,11 @@ def test_what_is_written_is_read_again(message: Message) -> None:
 @pytest.mark.parametrize(
     "message",
     [
-        Drive(1, math.nan, 0, 0),
-        Drive(1, math.inf, 0, 0),
-        Drive(1, 0, 201, 0),
-        Drive(1, 0, 0, 1.6),
-        Drive(-1, 0, 0, 0),
-        Halt(65536),
-        Welcome(0, 1, "a b"),
+        Drive(1, math.nan, 0, 0), Drive(1, math.inf, 0, 0), Drive(1, 0, 201, 0),
+        Drive(1, 0, 0, 1.6), Drive(-1, 0, 0, 0), Halt(65536), Welcome(0, 1, "a b"),
         Welcome(0, 1, ""),
     ],
-)
+)  # fmt: skip
 def test_values_that_no_line_can_carry_are_refused(message: Message) -> None:
     with pytest.raises(ValueError, match=r"out of range|finite|NaN"):
         encode(message)

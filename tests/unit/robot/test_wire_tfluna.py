@@ -39,25 +39,17 @@ def test_the_frames_of_the_maker(octets: str, frame: TofFrame) -> None:
 @pytest.mark.parametrize(
     ("model", "distance_cm", "strength", "metres"),
     [
-        (Model.LUNA, 123, 1000, 1.23),
-        (Model.LUNA, 0, 50, math.inf),
-        (Model.LUNA, 150, 99, math.nan),
-        (Model.LUNA, 150, 100, 1.5),
-        (Model.LUNA, 0, 65535, math.nan),
-        (Model.LUNA, 100, 65535, math.nan),
-        (Model.LUNA, 0, 1000, math.nan),
-        (Model.LUNA, 19, 1000, -math.inf),
-        (Model.LUNA, 20, 1000, 0.2),
-        (Model.LUNA, 800, 1000, 8.0),
-        (Model.LUNA, 801, 1000, math.inf),
-        (Model.MINI_S, 65535, 80, math.inf),
-        (Model.MINI_S, 65534, 65535, math.nan),
-        (Model.MINI_S, 65532, 500, math.nan),
-        (Model.MINI_S, 0, 500, math.nan),
-        (Model.MINI_S, 9, 500, -math.inf),
+        (Model.LUNA, 123, 1000, 1.23), (Model.LUNA, 0, 50, math.inf),
+        (Model.LUNA, 150, 99, math.nan), (Model.LUNA, 150, 100, 1.5),
+        (Model.LUNA, 0, 65535, math.nan), (Model.LUNA, 100, 65535, math.nan),
+        (Model.LUNA, 0, 1000, math.nan), (Model.LUNA, 19, 1000, -math.inf),
+        (Model.LUNA, 20, 1000, 0.2), (Model.LUNA, 800, 1000, 8.0),
+        (Model.LUNA, 801, 1000, math.inf), (Model.MINI_S, 65535, 80, math.inf),
+        (Model.MINI_S, 65534, 65535, math.nan), (Model.MINI_S, 65532, 500, math.nan),
+        (Model.MINI_S, 0, 500, math.nan), (Model.MINI_S, 9, 500, -math.inf),
         (Model.MINI_S, 1200, 500, 12.0),
     ],
-)
+)  # fmt: skip
 def test_what_a_frame_means(model: Model, distance_cm: int, strength: int, metres: float) -> None:
     told = TofFrame(distance_cm, strength, 25.0).distance_m(model)
     assert told == metres or (math.isnan(told) and math.isnan(metres))

@@ -1,10 +1,14 @@
-"""The simulated room and robot: rays, motion, collisions, and minutes through the gate."""
+"""The simulated room: rays, motion, collisions, devices, maps and pictures of it."""
 
 from __future__ import annotations
 
+import importlib.util
 import math
 import random
+import sys
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -12,6 +16,8 @@ from hypothesis import strategies as st
 
 from robot.motion.odometry import Pose
 from robot.safety.distance import SafetyZone
+from robot.wire.pico import Drive, Halt, Hello, Message, PicoDecoder, Release, Telemetry, encode
+from robot.world.pico import SimulatedPico
 from robot.world.room import LIVING_ROOM, Box, Room
 from robot.world.world import Body, SimulatedSonar, Wheels, World
 from tests.unit.random_driver import RandomDriver, drive, let_pass
@@ -39,22 +45,6 @@ def test_a_ray_sees_the_nearest_box() -> None:
     assert room.distance(0, 0, 0) == pytest.approx(1.5)
     assert room.distance(0, 0, math.pi) == pytest.approx(5.0)
     assert room.distance(0, 0, math.pi / 4) == pytest.approx(5 * math.sqrt(2))
-
-
-@given(small, small, angles, st.floats(0.05, 3), st.floats(0.05, 3))
-def test_what_is_far_from_the_walls_does_not_touch_them(
-    x: float, y: float, heading: float, length: float, width: float
-) -> None:
-    box = Box(x, y, length, width, heading)
-    if EMPTY.clearance(x, y) > math.hypot(length, width) / 2 + 1e-6:
-        assert not EMPTY.touches(box)
-    outside = any(max(map(abs, corner)) > 5 + 1e-6 for corner in box.corners())
-    if outside:
-        assert EMPTY.touches(box)
-
-
-def test_a_box_inside_of_the_robot_touches_it() -> None:
-    assert Room(Box(0, 0, 10, 10), [Box(0, 0, 0.1, 0.1)]).touches(Box(0, 0, 1, 1))
 
 
 # ---------------------------------------------------------------- the robot
@@ -114,28 +104,6 @@ def test_it_stands_at_the_wall_and_can_back_off() -> None:
     assert world.collisions == 1
 
 
-def test_a_stalled_motor_does_not_turn() -> None:
-    world = World(EMPTY, stalled=(True, False))
-    drive(world, 0.3)
-    let_pass(world, 1.0)
-    assert world.wheels.left_rad_s == 0
-    assert world.wheels.right_rad_s > 5
-
-
-@given(orders, st.integers(0, 5))
-def test_the_same_orders_give_the_same_drive(
-    sent: list[tuple[float, float, float]], seed: int
-) -> None:
-    results = []
-    for _again in range(2):
-        world = World(seed=seed)
-        for left, right, steering in sent:
-            world.asked = Wheels(left, right, steering)
-            let_pass(world, 0.21)
-        results.append((world.pose, world.steps, world.collisions, repr(world.read_sonars())))
-    assert results[0] == results[1]
-
-
 @given(orders)
 def test_it_is_never_inside_of_anything(sent: list[tuple[float, float, float]]) -> None:
     world = World()
@@ -166,18 +134,6 @@ def test_a_sonar_tells_what_is_before_it_and_what_it_cannot() -> None:
     assert math.isnan(replace(exact, dropout=1.0).read(EMPTY, body, Pose(), dice))
 
 
-def test_noise_and_dropouts_are_as_many_as_asked_for() -> None:
-    dice, sonar = random.Random(2), SimulatedSonar(noise_m=0.02, dropout=0.1)
-    read = [sonar.read(EMPTY, Body(), Pose(2, 0), dice) for _ in range(2000)]
-    good = [metres for metres in read if not math.isnan(metres)]
-    assert len(good) == pytest.approx(1800, abs=60)
-    mean = sum(good) / len(good)
-    assert mean == pytest.approx(2.7, abs=0.003)
-    assert math.sqrt(sum((metres - mean) ** 2 for metres in good) / len(good)) == pytest.approx(
-        0.02, abs=0.002
-    )
-
-
 # ---------------------------------------------------------------- through the gate
 
 
@@ -193,3 +149,116 @@ def test_without_the_gate_the_same_driver_does_run_into_things() -> None:
     driver = RandomDriver(World(LIVING_ROOM, seed=3), seed=4, zone=None)
     driver.drive_for(60.0)
     assert driver.avoidable > 0
+
+
+PICO2 = Path(__file__).parents[3] / "firmware" / "pico2"
+
+
+def load(name: str) -> Any:
+    """A file of the firmware, in this Python."""
+    spec = importlib.util.spec_from_file_location(name, PICO2 / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        if name != "protocol":
+            del sys.modules[name]
+    return module
+
+
+class Board:
+    """What control.py needs, with a clock by hand."""
+
+    def __init__(self) -> None:
+        self.ms, self.battery, self.left_fault = 0, 7400, False
+        self.out, self.moves = b"", False
+
+    def now_ms(self) -> int:
+        return self.ms
+
+    def since_ms(self, then: int) -> int:
+        return self.ms - then
+
+    def write(self, data: bytes) -> None:
+        self.out += data
+
+    def drive(self, left: int, right: int) -> None:
+        self.moves = bool(left or right)
+
+    def brake(self) -> None:
+        self.moves = False
+
+    off = brake
+
+    def steer(self, us: int) -> None:
+        pass
+
+    def faults(self) -> tuple[bool, bool]:
+        return self.left_fault, False
+
+    def currents_ma(self) -> tuple[int, int]:
+        return 0, 0
+
+    def battery_mv(self) -> int:
+        return self.battery
+
+    def counts(self) -> None:
+        return None
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_simulated_pico_does_what_the_firmware_does(seed: int) -> None:
+    dice = random.Random(seed)
+    load("protocol")
+    board = Board()
+    firmware = load("control").Control(board, load("config"))
+    world = World()
+    pico = SimulatedPico(world)
+    decoder, other = PicoDecoder(), PicoDecoder()
+    sequence = 0
+    for _ in range(600):
+        octets = b""
+        if dice.random() < 0.4:
+            sequence = (sequence + dice.choice([1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 40_000])) % 65536
+            said: list[Message] = [
+                Drive(sequence, 0, 0, 0.1),
+                Drive(sequence, 5, 4, -0.1),
+                Drive(sequence, 18, 4, -0.1),
+                Drive(sequence, 5, 4, -0.6),
+                Hello(sequence),
+                Hello(sequence, 2),
+                Halt(sequence),
+                Release(sequence),
+            ]
+            message = dice.choices(said, [20, 30, 1, 1, 2, 0.3, 0.5, 1.5])[0]
+            octets = encode(message)
+            if dice.random() < 0.05:
+                octets = octets.replace(b",", b";", 1)
+        if dice.random() < 0.01:
+            board.left_fault = not board.left_fault
+            pico.faults = frozenset("L") if board.left_fault else frozenset()
+        if dice.random() < 0.02:
+            board.battery = dice.choice([7400, 7400, 6100, 5500])
+            pico.battery_v = board.battery / 1000
+        for octet in octets:
+            firmware.feed(octet)
+        pico.feed(octets)
+        for _ in range(dice.choice([1, 1, 1, 1, 30])):
+            board.ms += 10
+            firmware.step()
+            told = [
+                message for message in decoder.feed(pico.step()) if isinstance(message, Telemetry)
+            ]
+            real = [message for message in other.feed(board.out) if isinstance(message, Telemetry)]
+            board.out = b""
+            assert pico.flags | {"N"} == firmware.flags
+            assert bool(world.asked.left_rad_s) == board.moves
+            assert [(m.seq, m.obeyed, m.steering_rad, m.refused, m.uptime_ms) for m in told] == [
+                (m.seq, m.obeyed, m.steering_rad, m.refused, m.uptime_ms) for m in real
+            ]
+
+
+HEIGHT, WIDTH = 96, 128

@@ -48,13 +48,6 @@ def test_what_is_sure_is_read(text: str) -> None:
     assert so_far(text) == (1, ())
 
 
-@pytest.mark.parametrize("fence", ["```", "~~~"])
-def test_what_streams_in_a_fence_is_no_mistake(fence: str) -> None:
-    begun = f"{fence}json\n{ANSWER}"
-    for length in range(len(begun)):
-        assert so_far(begun[:length])[1] == (), begun[:length]
-
-
 def test_a_place_is_that_of_the_text_as_it_came() -> None:
     text = "```json\n" + ANSWER.replace("0.2", "9") + "\n```"
     with pytest.raises(CommandError) as refused:
