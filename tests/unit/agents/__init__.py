@@ -1,1 +1,0 @@
-"""Tests of what agents may do, without ROS."""

@@ -1,1 +1,0 @@
-"""Tests of `brain` against real sockets; they need no ROS and no terminal."""

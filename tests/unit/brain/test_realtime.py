@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 import base64
 import json
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from http import HTTPStatus
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -15,13 +15,10 @@ from brain.budget import Ledger
 from brain.faults import FaultKind, ModelError
 from brain.key import ServerKey
 from brain.realtime import ACT, SENSE, RealtimeTalk, TalkHandlers
-from brain.settings import BudgetSettings, ModelSettings
+from brain.settings import ModelSettings
 from tests.model_server import KEY
 from tests.realtime_server import RealtimeServer, Talk
 from tests.waiting import until
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncIterator
 
 DRIVE = {"action": "drive", "speed": 0.2, "steering": 0.0}
 GO = json.dumps({"thought": "go", "commands": [DRIVE]})
@@ -191,22 +188,6 @@ async def test_a_person_who_speaks_interrupts() -> None:
     assert kinds.index("interrupted") > kinds.index("sound")
 
 
-@pytest.mark.parametrize(
-    ("status", "kind"),
-    [
-        (HTTPStatus.UNAUTHORIZED, FaultKind.KEY),
-        (HTTPStatus.NOT_FOUND, FaultKind.MODEL),
-        (HTTPStatus.TOO_MANY_REQUESTS, FaultKind.BUSY),
-        (HTTPStatus.INTERNAL_SERVER_ERROR, FaultKind.SERVER),
-    ],
-)
-async def test_a_handshake_that_is_refused_is_told(status: HTTPStatus, kind: FaultKind) -> None:
-    with RealtimeServer(quiet) as server:
-        server.refuse = status
-        fault = await Client(server).fault()
-    assert fault.kind is kind
-
-
 async def test_however_a_talk_ends_it_is_told() -> None:
     """Closed, failed, an error event, sound that is none, nobody there."""
 
@@ -247,14 +228,3 @@ async def test_however_a_talk_ends_it_is_told() -> None:
         assert fault.kind is kind
         assert words in str(fault)
     assert (await Client(server).fault()).kind is FaultKind.UNREACHABLE
-
-
-async def test_a_spent_budget_ends_the_talk() -> None:
-    async def script(talk: Talk) -> None:
-        for _ in range(3):
-            await talk.says(b"\x01\x00")
-
-    with RealtimeServer(script) as server:
-        client = Client(server, budget=BudgetSettings(tokens_per_session=300))
-        assert (await client.fault()).kind is FaultKind.BUDGET
-    assert len(client.of("used")) == 2

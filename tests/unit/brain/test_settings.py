@@ -1,19 +1,19 @@
-"""Settings: mistakes are named by place, and no key can be seen."""
+"""Settings, key and budget of a model: each mistake with its place, the key never shown."""
 
 from __future__ import annotations
 
+import multiprocessing
 import os
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
+from brain.budget import Ledger, TokenUsage
 from brain.faults import ModelError
-from brain.key import ServerKey, key_of
-from brain.settings import ModelSettings, load
+from brain.key import key_of
+from brain.settings import BudgetSettings, ModelSettings, PriceSettings, load
 from tests.model_server import KEY
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from text.run_path import MODEL_USAGE
 
 GOOD = "base_url: http://127.0.0.1:8080/v1/\nmodel: qwen3-1.7b\n"
 
@@ -73,22 +73,6 @@ def test_a_mistake_is_named_by_its_place(path: Path, text: str, words: str, fix:
     assert KEY not in f"{raised.value} {raised.value.fix}"
 
 
-def test_a_variable_with_a_mistake_is_named(path: Path) -> None:
-    path.write_text(GOOD)
-    with pytest.raises(ModelError, match="DECK_LLM_BASE_URL: expected an address"):
-        load(path, {"DECK_LLM_BASE_URL": "nowhere"})
-
-
-def test_a_file_that_is_no_text(path: Path) -> None:
-    path.write_bytes(b"\xff\xfe")
-    with pytest.raises(ModelError, match="is not UTF-8"):
-        load(path, {})
-    path.unlink()
-    path.mkdir()
-    with pytest.raises(ModelError, match="cannot be read"):
-        load(path, {})
-
-
 def settings(**fields: str) -> ModelSettings:
     return ModelSettings(base_url="http://h/v1", model="m", **fields)  # type: ignore[arg-type]
 
@@ -124,15 +108,43 @@ def test_what_is_no_key_is_not_shown(tmp_path: Path, text: str) -> None:
     assert not text or text not in str(raised.value)
 
 
-def test_a_missing_key_is_told_by_name(tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="the variable MINE with the key is not set"):
-        key_of(settings(key_env="MINE"), {})
-    with pytest.raises(ModelError, match=r"no key in .*none: "):
-        key_of(settings(key_file=str(tmp_path / "none")), {})
+BUDGET = BudgetSettings(calls_per_minute=40)
+USAGE = TokenUsage("m", 100, 20, 0.1, 0.5)
 
 
-def test_a_key_prints_as_stars() -> None:
-    key = ServerKey(KEY)
-    assert KEY not in f"{key} {key!r} {[key]}"
-    assert key.hidden_in(f"bad key {KEY}!") == "bad key ***!"
-    assert ServerKey().hidden_in("as it is") == "as it is"
+def _calls(folder: Path, count: int) -> None:
+    ledger = Ledger(folder)
+    for _ in range(count):
+        ledger.begin("node", BUDGET)
+        ledger.end("node", USAGE)
+
+
+def test_processes_share_a_budget(tmp_path: Path) -> None:
+    """Four processes at once: no call is lost, and the limit is that of all together."""
+    spawn = multiprocessing.get_context("spawn")
+    processes = [spawn.Process(target=_calls, args=(tmp_path, 10)) for _ in range(4)]
+    for process in processes:
+        process.start()
+    for process in processes:
+        process.join()
+        assert process.exitcode == 0
+    totals = Ledger(tmp_path).totals()
+    assert (totals.calls, totals.calls_last_minute, totals.tokens) == (40, 40, 40 * 120)
+    with pytest.raises(ModelError, match="40 calls a minute is used up"):
+        Ledger(tmp_path).begin("node", BUDGET)
+    assert (tmp_path / MODEL_USAGE).stat().st_mode & 0o077 == 0
+
+
+def test_a_line_that_was_cut_short_does_no_harm(tmp_path: Path) -> None:
+    ledger = Ledger(tmp_path)
+    ledger.begin("node", BUDGET)
+    with (tmp_path / MODEL_USAGE).open("a") as file:
+        file.write('{"begun_s": 17\n[]\nnull\n')
+    ledger.end("node", USAGE)
+    assert (ledger.totals().calls, ledger.totals().tokens) == (1, 120)
+
+
+def test_the_cost_is_by_the_users_prices() -> None:
+    prices = PriceSettings(input_per_million=2.0, output_per_million=10.0)
+    assert USAGE.cost(prices) == pytest.approx(0.0004)
+    assert USAGE.cost(None) is None

@@ -1,27 +1,25 @@
-"""Speech without ROS: utterances, the robot's commands in English, and a voice."""
+"""Hearing and speaking: what is cut out, recognised and said, here or by a server."""
 
 from __future__ import annotations
 
-import wave
-from typing import TYPE_CHECKING
+import json
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from brain.speech.espeak import LONGEST_S, EspeakVoice
+from brain.speech.espeak import EspeakVoice
 from brain.speech.faults import SpeechError
-from brain.speech.folders import one_file
 from brain.speech.recognisers import recogniser
 from brain.speech.server import wav_of
 from brain.speech.sound import Sound
-from brain.speech.sound_file import read_sound
 from brain.speech.sphinx import SphinxRecogniser
 from brain.speech.utterances import CLOSING_S, Utterances
-from brain.speech.voices import language_of, voice
-from robot.sound import RATE_HZ, level_dbfs
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from robot.sound import RATE_HZ
 
 SECOND = bytes(2 * RATE_HZ)
 
@@ -33,11 +31,6 @@ def ears() -> SphinxRecogniser:
 
 def spoken(text: str, name: str = "en", **how: int) -> bytes:
     return EspeakVoice(**how).speak(text, name).at(RATE_HZ).pcm
-
-
-def noise(seconds: float, amplitude: float) -> bytes:
-    samples = np.random.default_rng(3).normal(0.0, amplitude, int(seconds * RATE_HZ))
-    return samples.astype("<i2").tobytes()
 
 
 @pytest.mark.parametrize("text", ["stop", "robot, turn left", "robot, have a look around"])
@@ -67,13 +60,6 @@ def test_who_does_not_cease_to_speak_is_cut() -> None:
     assert max(lengths) == pytest.approx(2.0, abs=0.05)
 
 
-def test_what_was_heard_before_a_reset_is_forgotten() -> None:
-    utterances = Utterances(RATE_HZ)
-    utterances.feed(SECOND + spoken("robot turn left"))
-    utterances.reset()
-    assert utterances.feed(2 * SECOND) == []
-
-
 @pytest.mark.parametrize(
     "text",
     ["robot forward", "robot turn left", "robot turn right", "robot go back", "robot stop", "stop"],
@@ -87,67 +73,91 @@ def test_a_command_is_recognised(ears: SphinxRecogniser, text: str, name: str) -
 @pytest.mark.parametrize(
     "text",
     [
-        "good morning everybody",
-        "there is nothing left in the fridge",
-        "you are quite right about this",
-        "I am looking forward to your letter",
-        "turn on the light in the kitchen",
-        "bright",
-        "left",
+        "good morning everybody", "there is nothing left in the fridge",
+        "you are quite right about this", "I am looking forward to your letter",
+        "turn on the light in the kitchen", "bright", "left",
     ],
-)
+)  # fmt: skip
 def test_what_is_no_command_is_not_taken_for_one(ears: SphinxRecogniser, text: str) -> None:
     for said in Utterances(RATE_HZ).feed(SECOND + spoken(text) + SECOND):
         assert ears.transcribe(said) == ""
 
 
-def test_a_voice_speaks_both_languages_plainly_and_not_for_ever() -> None:
-    plain, marked = (voice("espeak", "").speak(text, "en") for text in ("hi", "<b>hi</b>"))
-    assert level_dbfs(plain.pcm) > -30.0
-    assert marked.seconds > plain.seconds, "markup is read out"
-    assert voice("espeak", "").speak("Вижу стену", "ru").seconds > 0.5
-    assert EspeakVoice().speak("word " * 9999, "en").seconds <= LONGEST_S
-    with pytest.raises(SpeechError, match="no voice xx-none"):
-        EspeakVoice().speak("hi", "xx-none")
+KEY = "sk-test-77aa"
+SAID = Sound(b"\x01\x02" * 4000, RATE_HZ)
 
 
-def test_the_language_of_words() -> None:
-    assert [language_of(text) for text in ("Стой", "stop", "", "ёж", "5 m")] == [
-        *("ru", "en", "en", "ru", "en")
-    ]
+class Requests(list[tuple[str, str, bytes]]):
+    """Path, Authorization and body of each."""
+
+    url = ""
 
 
-def test_another_rate_keeps_length_and_loudness() -> None:
-    said = EspeakVoice().speak("robot forward", "en")
-    for rate_hz in (8000, 16_000, 48_000):
-        made = said.at(rate_hz)
-        assert made.seconds == pytest.approx(said.seconds, abs=0.01)
-        assert level_dbfs(made.pcm) == pytest.approx(level_dbfs(said.pcm), abs=1.0)
+@contextmanager
+def server(status: int, kind: str, answer: bytes) -> Iterator[Requests]:
+    seen = Requests()
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            body = self.rfile.read(int(self.headers["Content-Length"]))
+            seen.append((self.path, self.headers["Authorization"], body))
+            self.send_response(status)
+            self.send_header("Content-Type", kind)
+            self.send_header("Content-Length", str(len(answer)))
+            self.end_headers()
+            self.wfile.write(answer)
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    http = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=http.serve_forever, args=(0.02,))
+    thread.start()
+    seen.url = f"http://127.0.0.1:{http.server_port}/v1"
+    try:
+        yield seen
+    finally:
+        http.shutdown()
+        http.server_close()
+        thread.join()
 
 
-def test_a_sound_file_is_read_at_the_rate_that_is_wanted(tmp_path: Path) -> None:
-    path, tone = tmp_path / "said.wav", noise(0.5, 3000.0)
-    with wave.open(str(path), "wb") as file:
-        file.setnchannels(2)
-        file.setsampwidth(2)
-        file.setframerate(48_000)
-        file.writeframes(tone)
-    assert read_sound(str(path), RATE_HZ).seconds == pytest.approx(len(tone) / 4 / 48_000, abs=0.01)
-    path.write_bytes(wav_of(Sound(tone, RATE_HZ)))
-    assert read_sound(str(path), RATE_HZ) == Sound(tone, RATE_HZ)
-    path.write_bytes(b"RIFF")
-    with pytest.raises(SpeechError, match="is not a sound file"):
-        read_sound(str(path), RATE_HZ)
+@pytest.fixture(autouse=True)
+def _settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    monkeypatch.setenv("DECK_LLM_MODEL", "m-1")
+    monkeypatch.setenv("DECK_LLM_KEY", KEY)
 
 
-def test_the_smaller_of_a_models_files_is_taken(tmp_path: Path) -> None:
-    for name in ("encoder.onnx", "encoder.int8.onnx", "tokens.txt"):
-        (tmp_path / name).touch()
-    assert one_file(tmp_path, "*encoder*.onnx") == str(tmp_path / "encoder.int8.onnx")
-    assert one_file(tmp_path, "*joiner*.onnx") is None
+def test_an_utterance_is_transcribed(monkeypatch: pytest.MonkeyPatch) -> None:
+    with server(200, "application/json", b'{"text": " robot forward "}') as seen:
+        monkeypatch.setenv("DECK_LLM_BASE_URL", seen.url)
+        ears = recogniser("server", "en", "")
+        assert ears.transcribe(SAID) == "robot forward"
+        assert ears.transcribe(SAID) == "robot forward"
+    (path, key, body), _again = seen
+    assert path == "/v1/audio/transcriptions"
+    assert key == f"Bearer {KEY}"
+    assert wav_of(SAID) in body
+    assert b"whisper-1" in body
 
 
-def test_russian_needs_a_model_of_the_users_own() -> None:
-    with pytest.raises(SpeechError, match="knows only English") as caught:
-        recogniser("sphinx", "ru", "")
-    assert "backend:=vosk" in caught.value.sentence
+@pytest.mark.parametrize(
+    ("status", "answer"),
+    [
+        (401, {"error": {"message": f"bad key {KEY}"}}),
+        (404, {"error": {"message": "no such model"}}),
+        (429, {"error": {"message": "slow down"}}),
+        (500, {"error": {"message": "oh"}}),
+        (200, [1, 2]),
+    ],
+)
+def test_a_server_that_fails_is_told_without_the_key(
+    status: int, answer: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with server(status, "application/json", json.dumps(answer).encode()) as seen:
+        monkeypatch.setenv("DECK_LLM_BASE_URL", seen.url)
+        with pytest.raises(SpeechError) as caught:
+            recogniser("server", "en", "").transcribe(SAID)
+    assert str(caught.value.sentence)
+    assert KEY not in caught.value.sentence

@@ -1,29 +1,23 @@
-"""An answer is checked here whatever the server promised, and repaired once at most."""
+"""What a model is asked, in which form, and what is taken of its answer."""
 
 from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from brain.faults import FaultKind, ModelError
-from brain.ladder import Ladder
-from brain.looking import look, parse_seen
-from brain.situation import LONGEST_HEARD, Memory, Situation, conversation
-from brain.thinking import think
+from brain.ladder import Ladder, Rung
+from brain.looking import parse_seen
+from brain.situation import Memory, Situation, conversation
+from brain.thinking import Thought, think
 from robot.commands.problems import CommandError
-from robot.commands.schema import SpokenResponse, parse_llm
+from robot.commands.schema import LlmResponse, SpokenResponse, parse_llm
 from robot.motion.odometry import Pose
-from tests.model_server import ModelServer, obeys, rung_of
+from tests.model_server import Exchange, ModelServer, obeys, rung_of
 from tests.unit.brain.asking import HELLO, client_of
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from brain.thinking import Thought
-    from tests.model_server import Exchange
 
 SCHEMA = SpokenResponse.model_json_schema()
 DRIVE = {"action": "drive", "speed": 0.2, "steering": 0.0}
@@ -79,15 +73,6 @@ async def test_a_second_bad_answer_is_the_end(tmp_path: Path) -> None:
     assert raised.value.kind is FaultKind.SHAPE
 
 
-def test_the_spoken_form_obeys_the_rules_of_strict_output() -> None:
-    """Every field required, nothing more allowed, no oneOf and no defaults."""
-    for schema in (SCHEMA, *SCHEMA["$defs"].values()):
-        assert schema["additionalProperties"] is False
-        assert schema["required"] == list(schema["properties"])
-    assert "oneOf" not in json.dumps(SCHEMA)
-    assert "default" not in json.dumps(SCHEMA)
-
-
 def test_the_model_is_told_what_the_senses_say() -> None:
     """Unknown, invalid and out of range are three different things."""
     situation = Situation(
@@ -117,44 +102,6 @@ def test_the_model_is_told_what_the_senses_say() -> None:
         assert words in Situation("", distance).message()["content"]
 
 
-def test_a_picture_goes_inside_the_message() -> None:
-    text, picture = Situation("look", picture=b"\xff\xd8jpeg").message()["content"]
-    assert "look" in text["text"]
-    assert picture["image_url"]["url"] == "data:image/jpeg;base64,/9hqcGVn"
-
-
-def test_the_memory_is_bounded() -> None:
-    """In turns and in characters; the newest turn is always kept."""
-    memory = Memory(turns=3, characters=100)
-    for number in range(5):
-        memory.add(f"word {number}", "{}")
-    assert [message["content"] for message in memory.messages()][::2] == [
-        f'Somebody says: "word {number}"' for number in (2, 3, 4)
-    ]
-    memory.add("x" * 10_000, "{}")
-    assert len(memory.messages()) == 2
-    assert len(memory.messages()[0]["content"]) < LONGEST_HEARD + 50
-    memory.forget()
-    assert memory.messages() == []
-
-
-async def test_a_picture_is_described_with_boxes(tmp_path: Path) -> None:
-    box = {"left": 0.1, "top": 0.2, "right": 0.5, "bottom": 0.9}
-    seen = {
-        "description": " A cup. ",
-        "things": [{"label": "cup", "box": box}, {"label": "table", "box": None}],
-    }
-    with ModelServer(Answers(json.dumps(seen))) as server:
-        async with client_of(server) as client:
-            found = (await look(Ladder(client, "m-1", tmp_path), "Describe.", b"\xff\xd8")).value
-        sent = server.exchanges[-1].request
-        assert rung_of(sent) is not None
-        assert sent["messages"][-1]["content"][0]["type"] == "image_url"
-    assert found.description == "A cup."
-    assert found.things[0].box is not None
-    assert found.things[0].box.right == 0.5
-
-
 def _with_a_box(left: float = 0, right: float = 1) -> str:
     box = {"left": left, "top": 0, "right": right, "bottom": 1}
     return json.dumps({"description": "x", "things": [{"label": "cup", "box": box}]})
@@ -163,14 +110,10 @@ def _with_a_box(left: float = 0, right: float = 1) -> str:
 @pytest.mark.parametrize(
     "text",
     [
-        "A cup.",
-        "[" * 100_000,
-        '{"description": "x"}',
-        _with_a_box(right=7),
-        _with_a_box(left=1, right=0),
-        '{"description": NaN, "things": []}',
+        "A cup.", "[" * 100_000, '{"description": "x"}', _with_a_box(right=7),
+        _with_a_box(left=1, right=0), '{"description": NaN, "things": []}',
     ],
-)
+)  # fmt: skip
 def test_what_describes_no_picture_is_refused(text: str) -> None:
     with pytest.raises(CommandError):
         parse_seen(text)
@@ -179,3 +122,52 @@ def test_what_describes_no_picture_is_refused(text: str) -> None:
 def test_what_stands_in_place_of_a_description_is_named() -> None:
     with pytest.raises(CommandError, match=r"^2:1: only words stand here"):
         parse_seen("\nA cup.")
+
+
+SCHEMA_LADDER = LlmResponse.model_json_schema()
+ANSWER = '{"thought": "clear", "commands": []}'
+
+
+def refusing(*rungs: Rung) -> object:
+    def script(exchange: Exchange) -> None:
+        rung = rung_of(exchange.request)
+        if rung in rungs:
+            exchange.fails(400, json.dumps({"error": {"message": "unknown response_format"}}))
+        elif rung is not None:
+            obeys(ANSWER, rung)(exchange)
+
+    return script
+
+
+@pytest.mark.parametrize("rung", list(Rung))
+async def test_the_first_way_that_is_obeyed_is_kept(rung: Rung, tmp_path: Path) -> None:
+    """A server that says 200 to every way and ignores the schema is found out."""
+    with ModelServer(obeys(ANSWER, rung)) as server:
+        async with client_of(server) as client:
+            ladder = Ladder(client, "m-1", tmp_path)
+            assert (await ladder.ask(SCHEMA_LADDER, HELLO)).text == ANSWER
+        tried = [rung_of(exchange.request) for exchange in server.exchanges]
+        assert tried == [*list(Rung)[: list(Rung).index(rung) + 1], rung]
+        for exchange in server.exchanges:
+            assert not ("response_format" in exchange.request and "tools" in exchange.request)
+
+
+async def test_a_server_that_changed_is_asked_again(tmp_path: Path) -> None:
+    """After a 400 to the known way the question fails, and the next one finds out anew."""
+    with ModelServer(obeys(ANSWER, Rung.STRICT)) as server:
+        async with client_of(server) as client:
+            ladder = Ladder(client, "m-1", tmp_path)
+            await ladder.rung()
+            server.script = refusing(Rung.STRICT)  # type: ignore[assignment]
+            with pytest.raises(ModelError) as raised:
+                await ladder.ask(SCHEMA_LADDER, HELLO)
+            assert raised.value.kind is FaultKind.REQUEST
+            assert (await ladder.ask(SCHEMA_LADDER, HELLO)).text == ANSWER
+
+
+async def test_a_server_that_obeys_nothing_is_told(tmp_path: Path) -> None:
+    with ModelServer(lambda exchange: exchange.says("Hello! How can I help?")) as server:
+        async with client_of(server) as client:
+            with pytest.raises(ModelError, match="gives no answers in the form") as raised:
+                await Ladder(client, "m-1", tmp_path).ask(SCHEMA_LADDER, HELLO)
+    assert raised.value.kind is FaultKind.SHAPE

@@ -1,4 +1,4 @@
-"""What the judge takes for a run of a node: all since it began, however late it is told."""
+"""What the judge takes for a run, for progress, and for a task."""
 
 from __future__ import annotations
 
@@ -15,7 +15,16 @@ import pytest
 
 from course.judge.evidence import TICK_S, Evidence
 from course.judge.judge import Judge
-from graph.data import NAMELESS, PROCESS_NUMBERS, EndpointInfo, GraphUpdate, NodeRow, TopicRow
+from course.progress.files import state_of
+from course.progress.progress import load_progress, noted
+from graph.data import (
+    NAMELESS,
+    PROCESS_NUMBERS,
+    EndpointInfo,
+    GraphUpdate,
+    NodeRow,
+    TopicRow,
+)
 from launcher.events import LogEvent, StatusEvent
 from launcher.status import LogLine, NodeState, NodeStatus, Severity
 
@@ -41,27 +50,6 @@ async def test_what_a_node_says_before_its_judge_hears_of_it_counts() -> None:
     assert [line.text for line in evidence.lines("talker", 0.0)] == ["ready"]
 
 
-def test_a_start_by_the_judge_counts_as_the_learners_if_the_file_was_saved_meanwhile(
-    tmp_path: Path,
-) -> None:
-    """Saved between the judge's stop and its start, it is started once, for both reasons."""
-    file = tmp_path / "talker.py"
-    file.write_text("")
-    status = NodeStatus("talker", "talker.py", NodeState.RUNNING, pid=os.getpid(), file=str(file))
-    client = _ToldLate()
-    client.nodes["talker"] = status
-    evidence = Evidence(cast("Any", None), cast("Any", client), tmp_path, {})
-
-    def started_by_the_judge(pid: int, saved_s: float) -> int:
-        os.utime(file, (saved_s, saved_s))
-        evidence.touched.add("talker")
-        evidence.note_starts([replace(status, pid=pid)])
-        return evidence.restarts
-
-    assert started_by_the_judge(os.getppid(), 1.0) == 0
-    assert started_by_the_judge(os.getpid(), time.time() + 1.0) == 1
-
-
 async def test_the_crash_before_a_quick_restart_is_not_that_of_the_new_process() -> None:
     """It is heard of later than the new process began: both are told in one breath."""
     client = _ToldLate()
@@ -84,7 +72,6 @@ async def test_the_crash_before_a_quick_restart_is_not_that_of_the_new_process()
 
 
 def _graph(pid: int, *nodes: str) -> GraphUpdate:
-    """Return a graph in which each of these nodes of one process subscribes to a topic."""
     process = pid % PROCESS_NUMBERS
     ends = tuple(
         EndpointInfo(node, "std_msgs/msg/Empty", "reliable", "volatile", process=process)
@@ -116,3 +103,44 @@ async def test_nodes_are_judged_once_the_middleware_knows_them(
     evidence.take(_graph(os.getpid(), name))
     await settling
     await judge.close()
+
+
+LESSON = "02-sonar-safety"
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        b"",
+        b"\xff\xfe",
+        b"[1, 2]",
+        b'{"lessons": {"02-sonar-safety": {"topic": {"passed"',
+        b'{"lessons": [], "last": 7}',
+        b'{"lessons": {"02-sonar-safety": {"topic": {"passed": 1, "points": 9999999}}}}',
+        b"[" * 100_000,
+        b" " * (1 << 21),
+    ],
+)
+def test_a_broken_file_counts_as_nothing_done_and_is_kept_beside_the_next(
+    tmp_path: Path, broken: bytes
+) -> None:
+    path = tmp_path / "progress.json"
+    path.write_bytes(broken)
+    assert not load_progress(path).passed(LESSON)
+    assert noted(LESSON, "rate", {"passed": True, "points": 2}, path).passed(LESSON) == {"rate"}
+    assert load_progress(path).points(LESSON, {"rate"}) == 2
+    assert path.with_name("progress.json.broken").read_bytes() == broken
+
+
+def test_a_step_holds_with_the_files_that_it_passed_with(tmp_path: Path) -> None:
+    path, file = tmp_path / "progress.json", tmp_path / "mine.py"
+    file.write_text("right = 1")
+    before = state_of([str(file)])
+    noted(LESSON, "rate", {"passed": True, "points": 2, "files": before, "at": 5}, path)
+    assert load_progress(path).held(LESSON, before) == {"rate"}
+    file.write_text("right = 2")
+    after = state_of([str(file)])
+    assert load_progress(path).held(LESSON, after) == frozenset()
+    assert load_progress(path).step(LESSON, "rate").at == 5
+    file.write_text("right = 1")
+    assert load_progress(path).held(LESSON, state_of([str(file)])) == {"rate"}

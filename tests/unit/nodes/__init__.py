@@ -1,1 +1,0 @@
-"""Tests of `nodes` that need no ROS and no terminal."""

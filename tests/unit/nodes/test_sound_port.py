@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import struct
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,13 +13,8 @@ from nodes.drivers import sound_child as _sound_child
 from nodes.drivers import sound_port as _sound_port
 from nodes.drivers.sound_device import IN, OUT, choose
 from nodes.drivers.sound_port import SoundPort
-from nodes.drivers.sound_queue import SoundQueue
 from nodes.parts.translated_logger import TranslatedLogger
 from tests.waiting import wait_until
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from pathlib import Path
 
 RATE_HZ = 8000
 BEGINNING = """
@@ -38,19 +34,6 @@ def test_a_device_is_named_by_a_part_of_its_name_or_by_its_number(
     wanted: str, at: int | None
 ) -> None:
     assert choose(MICROPHONES, wanted) == at
-
-
-def test_a_queue_forgets_its_oldest() -> None:
-    queue = SoundQueue(6)
-    assert queue.put(b"abcd") == 0
-    assert queue.put(b"efgh") == 2
-    assert queue.take(4) == b"cdef"
-    assert len(queue) == 2
-    assert queue.put(b"0123456789") == 6
-    assert queue.take(100) == b"456789"
-    queue.put(b"ab")
-    queue.clear()
-    assert queue.take(100) == b""
 
 
 class Log:
@@ -122,10 +105,7 @@ def test_sound_goes_out_whole(begin: Callable[..., tuple[SoundPort, Log]], tmp_p
             "Lost the microphone stub: the library of sound does not answer",
         ),
         ("time.sleep(60)", "No microphone: the library of sound does not answer"),
-        (
-            "tell(problem='busy')",
-            "close the program that uses it (fuser -v /dev/snd/*)",
-        ),
+        ("tell(problem='busy')", "close the program that uses it (fuser -v /dev/snd/*)"),
         ("tell(problem='missing', detail='')", "plug it in (arecord -l and aplay -l list them)"),
         ("tell(problem='package')", "pip install miniaudio"),
         ("tell(problem='other', detail='{odd} \\x1b[31m')", "{odd} ␛[31m"),
@@ -149,67 +129,3 @@ def test_whatever_goes_wrong_is_told_and_tried_again(
     monkeypatch.setattr(_sound_port, "_ANSWER_S", 30.0)
     _sound_child.PROGRAM.write_text(BEGINNING + again, encoding="utf-8")
     has(log, "Microphone: stub")
-
-
-def test_a_child_that_takes_its_time_to_end_is_collected_nevertheless(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    (tmp_path / "program.py").write_text("import time; time.sleep(60)", encoding="utf-8")
-    monkeypatch.setattr(_sound_child, "PROGRAM", tmp_path / "program.py")
-    monkeypatch.setattr(_sound_child, "_LAST_WAIT_S", 0.0)
-    child = _sound_child.SoundChild(IN, "", RATE_HZ, 100)
-    child.close()
-    wait_until(lambda: child._process.returncode is not None, "its end is taken note of")
-
-
-def test_a_card_that_comes_is_seen_at_once(
-    begin: Callable[..., tuple[SoundPort, Log]], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    cards = tmp_path / "cards"
-    monkeypatch.setattr(_sound_port, "CARDS", cards)
-    monkeypatch.setattr(_sound_port, "_FIRST_WAIT_S", 600.0)
-    _port, log = begin("tell(problem='missing')")
-    has(log, "No microphone")
-    _sound_child.PROGRAM.write_text(BEGINNING + OPENED + "time.sleep(60)", encoding="utf-8")
-    cards.write_text(" 0 [Device]: USB-Audio\n")
-    has(log, "Microphone: stub")
-
-
-def test_a_card_that_comes_while_one_is_looked_for_is_seen_at_once(
-    begin: Callable[..., tuple[SoundPort, Log]], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    cards, tries = tmp_path / "cards", tmp_path / "tries"
-    monkeypatch.setattr(_sound_port, "CARDS", cards)
-    monkeypatch.setattr(_sound_port, "_FIRST_WAIT_S", 600.0)
-    begin(
-        f"open({str(tries)!r}, 'a').write('.'); open({str(cards)!r}, 'w').write('0 [Device]')\n"
-        "tell(problem='missing')"
-    )
-    wait_until(lambda: tries.exists() and len(tries.read_text()) == 2, "the second try")
-
-
-def test_faults_are_counted_over_every_connection(
-    begin: Callable[..., tuple[SoundPort, Log]],
-) -> None:
-    port, _log = begin(OPENED + "tell(faults=2)\ntell(faults=3)\ntell(problem='gone')")
-    wait_until(lambda: port.connections == 2 and port.faults == 6, "six faults")
-
-
-def test_sound_for_a_speaker_that_is_not_there_is_not_kept(
-    begin: Callable[..., tuple[SoundPort, Log]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    port, log = begin("tell(problem='missing')", OUT, queue_s=1.0)
-    has(log, "No speaker")
-    assert port.play(bytes(100)) == (0, True), "it may be opened yet"
-    monkeypatch.setattr(_sound_port, "_PATIENCE_S", -math.inf)
-    assert port.play(bytes(100)) == (100, False)
-
-
-def test_none_is_no_device(begin: Callable[..., tuple[SoundPort, Log]]) -> None:
-    port, log = begin("sys.exit(1)", OUT)
-    port.close()
-    off = SoundPort(TranslatedLogger(log, "en"), OUT, "None", RATE_HZ, 100)  # type: ignore[arg-type]
-    off.start()
-    assert not off.wants
-    assert not off._thread.is_alive()
-    off.close()

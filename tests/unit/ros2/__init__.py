@@ -1,1 +1,0 @@
-"""Tests of the command `ros2` that need no ROS."""

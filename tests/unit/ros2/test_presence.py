@@ -1,9 +1,8 @@
-"""Who has not told all: participants by the kernel's word, set against those who were found."""
+"""Who is there for `ros2`, and packages that are elsewhere."""
 
 from __future__ import annotations
 
 import os
-import socket
 import struct
 
 import pytest
@@ -11,7 +10,7 @@ import pytest
 from graph.participants.roll import Attendance
 from launcher.domain.participants import LocalParticipant
 from ros2 import presence
-from ros2.presence import Missing, is_off, is_wide, missing, words
+from ros2.presence import Missing, missing, words
 
 HERE, THERE = b"\x01\x0f\x10\x10", b"\x01\x0f\x20\x20"
 OTHER_MAKE = b"\x01\x10\x10\x10"
@@ -68,16 +67,3 @@ def test_it_is_said_who(monkeypatch: pytest.MonkeyPatch) -> None:
         "python3 n1000000002.py (pid 1000000002), 1 more, 1 of other users or containers, "
         "2 on other machines"
     )
-
-
-def test_where_others_may_be(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(socket, "if_nameindex", lambda: [(1, "lo"), (2, "eth0")])
-    assert is_wide({})
-    assert is_wide({"ROS_AUTOMATIC_DISCOVERY_RANGE": "subnet"})
-    assert not is_wide({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"})
-    assert is_wide({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_STATIC_PEERS": "10.0.0.2"})
-    assert not is_wide({"ROS_LOCALHOST_ONLY": "1"})
-    assert is_off({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"})
-    assert not is_wide({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF", "ROS_STATIC_PEERS": "10.0.0.2"})
-    monkeypatch.setattr(socket, "if_nameindex", lambda: [(1, "lo")])
-    assert not is_wide({})

@@ -1,1 +1,0 @@
-"""Tests of `tui` that need no ROS and no terminal."""

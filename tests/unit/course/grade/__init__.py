@@ -1,1 +1,0 @@
-"""Tests of grading without nodes: formats, folders, names."""

@@ -17,7 +17,6 @@ HOSTILE = "=cmd|'/c calc'!A1 \x1b[31m\x00]]> <b> & \ud800 \N{RIGHT-TO-LEFT OVERR
 
 
 def grade(*states: State, student: str = "alice", reason: str = "", said: str = "it is 7") -> Grade:
-    """Return a grade of lesson 2 with these states of its steps."""
     steps = tuple(
         StepGrade(
             step,

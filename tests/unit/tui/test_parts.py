@@ -1,4 +1,4 @@
-"""The keys that drive: what they ask for, and that silence always ends it."""
+"""Parts of the screen that need none: keys, bandwidth, estimates, logs of others, driving."""
 
 from __future__ import annotations
 
@@ -9,11 +9,114 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from graph.data import Sample
 from graph.publishing.dead_man_switch import CommandRepeater, HeldCommand
 from robot.limits import SPEED, STEERING
 from robot.words import STOP, DriveSetpoint
+from tui.actions.layouts import on_all_layouts
+from tui.recording.wish import RecordingLimit, read_limit
+from tui.session.rosout import TOPIC, RosoutReader
 from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, Move, Teleop, TeleopLimits
 from tui.teleop.route import RATE_HZ, command
+from tui.terminal.bandwidth import OVER_SSH, SAVED_S, Bandwidth, default_limit
+
+
+class Clock:
+    """Stands still until it is moved."""
+
+    def __init__(self) -> None:
+        self.now_s = 100.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+@pytest.mark.parametrize(
+    ("env", "limit"),
+    [({}, 0), ({"SSH_CONNECTION": ""}, 0), ({"SSH_CONNECTION": "::1 1 ::1 22"}, 40_000)],
+)
+def test_there_is_a_limit_over_ssh_alone(env: dict[str, str], limit: int) -> None:
+    assert default_limit(env) == limit
+
+
+def test_a_picture_waits_until_what_was_written_is_earned() -> None:
+    clock = Clock()
+    bandwidth = Bandwidth(40_000, clock)
+    bandwidth.written(10_000 + 20_000)
+    assert bandwidth.wait_s() == pytest.approx(0.5)
+    clock.now_s += 0.4
+    assert bandwidth.wait_s() == pytest.approx(0.1)
+    clock.now_s += 0.1 + 1e-9
+    assert bandwidth.wait_s() == 0
+
+
+@pytest.mark.parametrize("size", [300, 5_000, 70_000])
+def test_pictures_of_any_size_keep_to_the_limit(size: int) -> None:
+    clock = Clock()
+    bandwidth = Bandwidth(OVER_SSH, clock)
+    written, pictures = 0, 0
+    while clock.now_s < 160:
+        if not (wait_s := bandwidth.wait_s()):
+            bandwidth.written(size)
+            written, pictures = written + size, pictures + 1
+            wait_s = 1 / 200
+        clock.now_s += wait_s
+    assert written <= OVER_SSH * (60 + SAVED_S) + size
+    assert written >= min(OVER_SSH * 60, 60 * 200 * size) * 0.95
+
+
+@pytest.mark.parametrize(
+    ("keys", "expected"),
+    [
+        ("x,ч", "x,ч,χ,ס"),
+        ("s", "s,ы,і,σ,ד"),
+        ("N", "N,Т,Ν"),
+        ("alt+v", "alt+v,alt+м,alt+ω,alt+ה"),
+        ("f12,slash,ctrl+space,left", "f12,slash,ctrl+space,left"),
+    ],
+)
+def test_the_keys_of_other_layouts_are_those_in_its_place(keys: str, expected: str) -> None:
+    assert on_all_layouts(keys) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "limit"),
+    [
+        ("", RecordingLimit()),
+        ("10", RecordingLimit(seconds=600.0)),
+        ("90 s", RecordingLimit(seconds=90.0)),
+        (" 1,5 ч ", RecordingLimit(seconds=5400.0)),
+        ("10 мин.", RecordingLimit(seconds=600.0)),
+        ("500MB", RecordingLimit(bytes=500e6)),
+        ("2.5 ГБ", RecordingLimit(bytes=2.5e9)),
+    ],
+)
+def test_a_limit_is_read_in_both_languages(text: str, limit: RecordingLimit) -> None:
+    assert read_limit(text) == limit
+
+
+def message(**value: Any) -> Sample:
+    return Sample(TOPIC, "rcl_interfaces/msg/Log", 1000.0, 0.0, 100, value)
+
+
+def log(text: str, name: str = "talker", level: int = 20) -> Sample:
+    stamp = {"sec": 900, "nanosec": 500_000_000}
+    return message(stamp=stamp, level=level, name=name, msg=text, file="", function="", line=1)
+
+
+def test_a_message_is_a_line_of_its_node_with_the_node_s_own_time() -> None:
+    reader = RosoutReader()
+    one, two, other = reader.lines([log("a"), log("b"), log("c", name="listener")])
+    assert (one.node, one.seq, one.text, one.time_s) == ("talker", 1, "a", 900.5)
+    assert (two.seq, other.seq) == (2, 1)
+    assert one.logger == "talker"
+
+
+@given(st.dictionaries(st.sampled_from(["stamp", "level", "name", "msg"]), st.none() | st.text()))
+def test_a_topic_of_that_name_with_anything_in_it_breaks_nothing(value: dict[str, Any]) -> None:
+    for line in RosoutReader().lines([message(**value)]):
+        assert line.time_s == 1000.0
+
 
 LIMITS = TeleopLimits()
 REPEAT_S = 0.033
@@ -47,23 +150,6 @@ def test_left_while_it_goes_forward_is_a_curve_for_as_long_as_left_is_held() -> 
     keys = held(keys, Move.LEFT, 11.0, 1.0)
     assert keys.at(12.0).setpoint(LIMITS) == DriveSetpoint(0.2, 0.3)
     assert keys.at(12.0 + NEXT_HOLD_S) is NOTHING
-
-
-def test_forward_after_left_is_a_curve_too() -> None:
-    keys = held(Teleop().pressed(Move.RIGHT, 10.0), Move.FORWARD, 10.2, 2.0)
-    assert keys.at(12.2).setpoint(LIMITS) == DriveSetpoint(0.2, -0.3)
-
-
-def test_forward_once_more_in_a_curve_is_straight_on() -> None:
-    keys = Teleop().pressed(Move.FORWARD, 10.0).pressed(Move.LEFT, 10.2)
-    assert keys.pressed(Move.FORWARD, 10.4).setpoint(LIMITS) == DriveSetpoint(0.2, 0.0)
-    assert keys.pressed(Move.BACK, 10.4).setpoint(LIMITS) == DriveSetpoint(-0.2, 0.3)
-
-
-def test_a_key_that_was_up_begins_anew() -> None:
-    keys = Teleop().pressed(Move.FORWARD, 10.0).pressed(Move.LEFT, 12.0)
-    assert keys.setpoint(LIMITS) == DriveSetpoint(0.0, 0.3)
-    assert keys.until_s == 12.0 + FIRST_HOLD_S
 
 
 def test_the_limits_stay_within_what_a_robot_may_be_asked() -> None:
