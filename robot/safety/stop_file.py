@@ -105,14 +105,17 @@ class StopFile:
             place = self._place()
         except RuntimeError:
             return SavedStop(StopRecord(), None)
-        record = _parse_released(_released(place))
+        return self._read(place, _parse_released(_released(place)))
+
+    def _read(self, path: Path, record: StopRecord) -> SavedStop:
+        """Read a file of a stop; `record` has what was released."""
         try:
-            stops, stop, written_ns = _parse(_bytes(place))
+            stops, stop, written_ns = _parse(_bytes(path))
         except FileNotFoundError:
             self._unknown = None
             return SavedStop(record, None)
         except _NO_SENSE as error:
-            unread = self._unread(place)
+            unread = self._unread(path)
             stops, written_ns = frozenset({unread}), unread.said_ns
             stop = KeptStop(time.time(), "", remembered=True, unreadable=os_reason(error))
         record = record.stopped(*stops)
@@ -148,13 +151,23 @@ class StopFile:
                 known = record.merged(saved)
                 if known.released != saved.released:
                     self._write(known, None)
-                # What others have given without waiting for this.
                 if not self.read().record.engaged:
-                    place.unlink(missing_ok=True)
-                    _flush(place.parent)
+                    self._remove(place, known)
         except (OSError, RuntimeError) as error:
             return os_reason(error)
         return ""
+
+    def _remove(self, place: Path, record: StopRecord) -> None:
+        """Remove the file, and give back a stop that others have put there without waiting."""
+        taken = place.with_name(f"{self._draft}.taken")
+        with contextlib.suppress(FileNotFoundError):
+            place.replace(taken)
+            found = self._read(taken, record)
+            known = found.record.merged(self.read().record)
+            if found.stop is not None and known.engaged:
+                self._write(known, found.stop)
+            taken.unlink()
+            _flush(place.parent)
 
     @contextlib.contextmanager
     def _alone(self) -> Iterator[None]:

@@ -16,7 +16,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.safety.stop_file import BY_SCREEN, KeptStop, StopFile
+from robot.safety.stop_file import BY_SCREEN, KeptStop, SavedStop, StopFile
 from robot.safety.stop_place import stop_place
 from robot.safety.stop_record import (
     MOST_HELD,
@@ -170,6 +170,26 @@ def test_a_release_that_is_carried_out_late_leaves_what_came_since(place: Path) 
     assert place.exists()
     assert file.release(said_ns + 2) == ""
     assert not place.exists()
+
+
+def test_a_stop_given_while_a_released_one_is_removed_stays(
+    place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever removes it may be held up for longer than a stop waits."""
+    file, read, newer = StopFile(7, "/a"), StopFile.read, Stop(time.time_ns() + 1)
+    file.give(FIRST, BY_SCREEN)
+
+    def held_up(self: StopFile) -> SavedStop:
+        saved = read(self)
+        if self is file and not saved.record.engaged:
+            StopFile(7, "/b").give(newer, BY_SCREEN)
+        return saved
+
+    with monkeypatch.context() as patch:
+        patch.setattr(StopFile, "read", held_up)
+        file.forget(record(FIRST).freed())
+    assert file.read().record.held == {newer}
+    assert sorted(each.name for each in place.parent.iterdir()) == ["7", "7.released"]
 
 
 GIVEN = 150
