@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from textual.app import App, ComposeResult
-from textual.geometry import Region
 
 from tui.echo.lines import MAX_LINES, EchoLine, echo_lines
 from tui.echo.tree import EchoTree
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from graph.data import Value
 
 STAMP: dict[str, Value] = {"sec": 17, "nanosec": 250_000_000}
@@ -103,14 +100,6 @@ def test_a_long_array_tells_its_length_and_opens_item_by_item() -> None:
     assert texts(opened)[-1].strip() == "… 160 more items"
 
 
-def test_a_long_text_tells_its_length() -> None:
-    lines = echo_lines({"data": "x" * 1_000_000}, as_is)
-    assert len(lines) == 1
-    assert lines[0].text.startswith('(1000000 characters) "xxx')
-    assert len(lines[0].text) < 500
-    assert "more characters" in echo_lines({"data": "x" * 1_000_000}, all_open)[-1].text
-
-
 def test_bytes_are_shown_in_hex_and_as_text() -> None:
     lines = echo_lines({"data": b"RIFF\x00\x01" * 1000}, all_open)
     assert lines[0].text.startswith("(6000 bytes)  52 49 46 46 00 01 52")
@@ -119,19 +108,9 @@ def test_bytes_are_shown_in_hex_and_as_text() -> None:
     assert "… 2800 more bytes" in lines[-1].text
 
 
-def test_hostile_text_is_harmless() -> None:
-    lines = echo_lines({"\x1b[2J": "[red]\x1b]52;c;QQ==\x07\x00\u202e\ud800\n"}, as_is)
-    assert lines[0].label == "␛[2J:"
-    assert lines[0].text == '"[red]␛]52;c;QQ==␇␀��␊"'
-
-
 def test_a_message_of_any_size_makes_a_bounded_tree() -> None:
     points: list[Value] = [{"x": 1.0, "y": 2.0, "z": [{"deep": 1}] * 300} for _ in range(500)]
     assert len(echo_lines({"points": points}, all_open)) == MAX_LINES + 1
-
-
-def test_a_message_without_fields_says_so() -> None:
-    assert echo_lines({}, as_is)[0].text == "(a message without fields)"
 
 
 async def test_a_fold_outlives_the_next_message_and_a_visit_to_another_topic() -> None:
@@ -164,76 +143,3 @@ async def test_keys_walk_the_tree_and_open_what_is_folded() -> None:
         assert "[0]:" in app.screen_text()
         await pilot.press("end")
         assert "… 160 more items" in app.screen_text()
-
-
-async def test_a_click_folds_and_unfolds() -> None:
-    app = EchoApp()
-    async with app.run_test(size=(60, 12)) as pilot:
-        app.echo.show("/joint_states", JOINTS)
-        await pilot.pause()
-        await pilot.click(EchoTree, offset=(2, 0))
-        assert "nanosec" in app.screen_text()
-        await pilot.click(EchoTree, offset=(2, 1))
-        assert "nanosec" not in app.screen_text()
-
-
-async def test_only_the_value_that_changed_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    app = EchoApp()
-    async with app.run_test(size=(40, 12)) as pilot:
-        app.echo.show("/joint_states", JOINTS)
-        await pilot.pause()
-        asked: list[tuple[Region, ...]] = []
-
-        def refresh(*regions: Region, **_options: bool) -> EchoTree:
-            asked.append(regions)
-            return app.echo
-
-        monkeypatch.setattr(app.echo, "refresh", refresh)
-        app.echo.show("/joint_states", dict(JOINTS))
-        assert asked == []
-        app.echo.show("/joint_states", {**JOINTS, "velocity": np.array([7.5, -11.3])})
-        assert asked == [(Region(31, 2, 9, 1),)]
-
-
-async def test_a_pause_keeps_the_message_and_its_end_shows_the_newest() -> None:
-    app = EchoApp()
-    async with app.run_test(size=(40, 6)):
-        app.echo.show("/sonar", {"data": 1.0})
-        app.echo.pause(True)
-        for distance in (2.0, 3.0):
-            app.echo.show("/sonar", {"data": distance})
-        assert "1.0" in app.screen_text()
-        app.echo.pause(False)
-        assert "3.0" in app.screen_text()
-
-
-async def test_another_topic_ends_the_pause() -> None:
-    app = EchoApp()
-    async with app.run_test(size=(40, 6)):
-        app.echo.show("/sonar", {"data": 1.0})
-        app.echo.pause(True)
-        app.echo.show("/other", {"data": 2.0})
-        assert not app.echo.paused
-        assert "2.0" in app.screen_text()
-
-
-async def test_words_stand_where_there_is_no_message() -> None:
-    app = EchoApp()
-    async with app.run_test(size=(30, 6)) as pilot:
-        app.echo.show_words("/drive", "nobody publishes this topic", "start [b]ai_driver[/b]")
-        await pilot.pause()
-        words = " ".join(app.screen_text().split())
-        assert words == "nobody publishes this topic start [b]ai_driver[/b]"
-
-
-@pytest.mark.parametrize("size", [(1, 1), (3, 2), (12, 4), (200, 60)])
-async def test_every_line_fills_its_width_at_any_size(size: tuple[int, int]) -> None:
-    wide: Mapping[str, Value] = {**JOINTS, "text": "日本語のテキスト" * 9, "robot": "🤖" * 50}
-    app = EchoApp()
-    async with app.run_test(size=size) as pilot:
-        app.echo.show("/wide", wide)
-        await pilot.pause()
-        tree = app.echo
-        assert {tree.render_line(y).cell_length for y in range(size[1])} == {
-            tree.scrollable_size.width
-        }

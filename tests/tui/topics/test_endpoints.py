@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from rich.cells import cell_len
 
-from graph.data import NAMELESS, EndpointInfo, TopicRow
+from graph.data import EndpointInfo, TopicRow
 from tests.tui.recorded import TOPICS, lesson_update
 from tests.tui.snapshots import Look, settle
-from text.i18n import set_language
 from tui.topics.endpoint_lines import endpoint_lines
 from tui.topics.screen import TopicsScreen
 from tui.topics.words import ends
-from tui.widgets.figures import count_text, seconds_text
+from tui.widgets.figures import seconds_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,22 +53,6 @@ def test_every_policy_is_shown() -> None:
     assert "“–” is unknown" in shown
 
 
-def test_a_name_that_its_column_cuts_stands_whole_below() -> None:
-    long = replace(LIDAR, node="/robot_with_a_long_name/lidar_that_looks_ahead_and_to_the_side")
-    at_60 = text(a_row([long], [replace(BRAIN, reliability="best_effort")]), 60)
-    assert f"\n{long.node[:56]}\n{long.node[56:]} · history keep_last 5" in at_60
-    assert f"\n{long.node}" in text(a_row([long], []), 160)
-    assert at_60.count("/brain") == 1
-
-
-def test_what_has_no_column_stands_below() -> None:
-    shown = text(a_row([LIDAR], []), 60)
-    assert "/lidar best_effort volatile" in shown
-    assert (
-        "history keep_last 5 · deadline 100 ms · lifespan 500 ms · liveliness manual_by_topic"
-    ) in shown.replace("\n", " ")
-
-
 def test_a_pair_that_does_not_fit_is_marked_and_told_with_the_way_out() -> None:
     shown = text(a_row([LIDAR], [BRAIN]))
     words = "✗ /brain does not hear /lidar: reliability reliable is asked for, best_effort is"
@@ -79,23 +62,12 @@ def test_a_pair_that_does_not_fit_is_marked_and_told_with_the_way_out() -> None:
     assert "✓" not in shown
 
 
-def test_only_the_endpoints_that_do_not_fit_are_marked() -> None:
-    shown = text(a_row([LIDAR, replace(BRAIN, node="/other")], [BRAIN]))
-    assert "\n/other reliable" in shown
-
-
 def test_who_disagrees_about_the_type_is_named_and_no_qos_is_held_against_it() -> None:
     shown = text(a_row([LIDAR], [replace(BRAIN, type_name=DOUBLE)]))
     assert "✗ The endpoints use different types" in shown
     assert f"{FLOAT}: published by lidar" in shown
     assert f"{DOUBLE}: expected by brain" in shown
     assert "does not hear" not in shown
-
-
-def test_nobody_is_said_to_be_nobody() -> None:
-    shown = text(a_row())
-    assert "nobody publishes" in shown
-    assert "nobody listens" in shown
 
 
 def test_deck_is_not_nobody() -> None:
@@ -111,18 +83,6 @@ def test_who_listens_twice_is_told_as_often_as_the_table_counts() -> None:
     row = a_row([LIDAR, BRAIN, BRAIN], [LIDAR, BRAIN, LIDAR, LIDAR])
     assert (row.publishers, row.subscribers) == (3, 4)
     assert ends(row) == "lidar, brain ×2 → lidar ×3, brain"
-
-
-def test_a_crowd_that_does_not_fit_is_cut() -> None:
-    crowd = [replace(BRAIN, node=f"/brain_{number}") for number in range(40)]
-    assert "… and 28 more pairs" in text(a_row([LIDAR], crowd))
-
-
-@pytest.mark.parametrize("width", [1, 9, 30, 64, 200])
-def test_hostile_names_fit_any_width(width: int) -> None:
-    evil = replace(LIDAR, node="/\x1b[2J[red]" + "x" * 500, type_name="\x1b]0;title\x07" * 50)
-    for line in endpoint_lines(a_row([evil], [BRAIN]), max(width, 12)):
-        assert "\x1b" not in "".join(ink.text for ink in line)
 
 
 @pytest.mark.parametrize(
@@ -141,14 +101,6 @@ def test_hostile_names_fit_any_width(width: int) -> None:
 )
 def test_times_have_three_figures_and_a_unit(seconds: float | None, shown: str) -> None:
     assert seconds_text(seconds) == shown
-
-
-@pytest.mark.parametrize(
-    ("count", "shown"),
-    [(None, "–"), (0, "0"), (99_999, "99999"), (123_456, "123k"), (12_345_678, "12M")],
-)
-def test_counts_stay_short(count: int | None, shown: str) -> None:
-    assert count_text(count) == shown
 
 
 async def test_a_key_brings_the_endpoints_to_the_front_and_back() -> None:
@@ -180,20 +132,3 @@ async def test_a_key_brings_the_endpoints_to_the_front_and_back() -> None:
         assert "Deck itself publishes here" in screen.detail.endpoints.text
         await pilot.press("I")
         assert screen.detail.echo.has_focus
-
-
-@pytest.mark.parametrize(
-    ("language", "called"), [("en", "unknown node"), ("ru", "неизвестный узел")]
-)
-def test_an_endpoint_whose_node_nobody_knows_is_shown_in_words(language: str, called: str) -> None:
-    row = a_row([replace(LIDAR, node=f"/{NAMELESS}")], [BRAIN])
-    set_language(language)
-    try:
-        shown, listed = text(row, 200), ends(row)
-    finally:
-        set_language("en")
-    assert NAMELESS not in shown + listed
-    # In the list of publishers, and in the sentence on who does not hear whom.
-    assert f"✗ {called} best_effort" in shown
-    assert shown.count(called) > 2
-    assert listed == f"{called} → brain"

@@ -54,35 +54,6 @@ async def test_only_messages_are_shown_for_which_the_expression_holds(stage: Top
     assert filter_line(stage) == "2 of 5 messages"
 
 
-async def test_a_message_that_does_not_fit_goes_out_of_sight_and_comes_back(
-    stage: TopicsStage,
-) -> None:
-    await stage.choose(SONAR)
-    await stage.show(sonar(0.25))
-    assert "0.25" in stage.echo()
-    await only_if(stage, "m.data > 0.5")
-    assert stage.echo().splitlines()[0] == "no message matches the expression yet"
-    assert "0 of 1 message" in stage.echo()
-    await stage.pilot.press("escape")
-    assert "0.25" in stage.echo()
-    assert not stage.screen.detail.filter.display
-    assert SONAR not in stage.graph.followed
-
-
-async def test_each_topic_has_its_own_expression(stage: TopicsStage) -> None:
-    await only_if(stage, "m.data > 0.5")
-    stage.screen.table.focus()
-    await stage.choose("/drive")
-    assert not stage.screen.detail.filter.display
-    await stage.show(lesson_update())
-    assert "speed" in stage.echo()
-    await stage.choose(SONAR)
-    assert stage.screen.detail.filter.field.value == "m.data > 0.5"
-    await stage.show(sonar(0.1, 0.8))
-    assert "0.8" in stage.echo()
-    assert filter_line(stage) == "1 of 2 messages"
-
-
 async def test_an_expression_that_is_wrong_names_the_place_and_lets_nothing_through(
     stage: TopicsStage,
 ) -> None:
@@ -102,16 +73,3 @@ async def test_a_field_that_is_missing_is_told_once_and_counted(stage: TopicsSta
     told = "0 of 3 messages · ✗ column 1: m.dat: no such field; did you mean data? (×3)"
     assert filter_line(stage) == told
     assert not stage.app._notifications
-
-
-async def test_what_fits_while_another_screen_is_in_front_is_seen_when_one_comes_back(
-    stage: TopicsStage,
-) -> None:
-    await only_if(stage, "m.data > 5")
-    await stage.app.show_screen("logs")
-    assert SONAR in stage.graph.followed
-    await stage.show(sonar(7.5, 0.1))
-    await stage.app.show_screen("topics")
-    await stage.show(sonar(0.2))
-    assert "7.5" in stage.echo()
-    assert filter_line(stage) == "1 of 3 messages"

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from textual.app import App, ComposeResult
 
 from graph.pictures.picture import Picture
 from graph.pictures.reading import read_picture
@@ -23,8 +22,6 @@ from tests.tui.topics_stage import (
     opened,
     with_camera,
 )
-from tui.topics.detail import TopicDetail
-from tui.topics.pictures import TopicPictures
 from tui.widgets import newest_picture
 
 
@@ -104,37 +101,11 @@ async def test_depth_without_a_distance_says_so_and_is_a_picture_again_with_one(
     assert stage.screen.detail.picture.caption.startswith(f"{encoding} 40×20")
 
 
-async def test_no_picture_of_the_topic_before_stays_while_the_line_is_busy(
-    stage: TopicsStage,
-) -> None:
-    await stage.choose(CAMERA)
-    await stage.show(with_camera("sensor_msgs/msg/Image", depth_message()))
-    view = stage.screen.detail.picture
-    before = view.has_picture
-    assert before
-    stage.app.bandwidth.behind = True
-    await stage.choose("/drive")
-    assert not view.has_picture
-    await stage.choose(CAMERA)
-    await stage.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message()))
-    await stage.decoded()
-    assert view.caption == "jpeg 640×480 · 10.0 Hz"
-
-
 async def test_a_compressed_image_is_decoded_and_shown(stage: TopicsStage) -> None:
     await stage.choose(CAMERA)
     await stage.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message()))
     await stage.decoded()
     assert stage.screen.detail.picture.caption == "jpeg 640×480 · 10.0 Hz"
-
-
-async def test_a_compressed_image_that_is_cut_short_says_so(stage: TopicsStage) -> None:
-    await stage.choose(CAMERA)
-    await stage.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message(5000)))
-    await stage.decoded()
-    headline, detail = stage.screen.detail.picture.words
-    assert headline == "this picture cannot be shown"
-    assert detail == "the JPEG data are cut short: no end in 5000 bytes"
 
 
 async def test_late_pictures_are_left_out_while_one_is_decoded(
@@ -156,26 +127,6 @@ async def test_late_pictures_are_left_out_while_one_is_decoded(
     release.set()
     await stage.decoded()
     assert seen == [0, 4]
-
-
-class DetailApp(App[None]):
-    """Nothing but the detail of a topic."""
-
-    def compose(self) -> ComposeResult:
-        """The detail."""
-        yield TopicDetail()
-
-
-@pytest.mark.parametrize("wanted", [True, False])
-async def test_a_picture_that_nobody_wants_any_more_when_it_is_decoded_is_not_shown(
-    wanted: bool,
-) -> None:
-    async with DetailApp().run_test() as pilot:
-        detail = pilot.app.query_one(TopicDetail)
-        pictures = TopicPictures(detail, lambda _sample: wanted, lambda: None)
-        pictures.show(sample(CAMERA, "sensor_msgs/msg/CompressedImage", jpeg_message()))
-        await pilot.app.workers.wait_for_complete()
-        assert detail.picture.has_picture is wanted
 
 
 async def test_a_picture_asks_for_ten_updates_a_second_and_rates_stay_as_they_are(

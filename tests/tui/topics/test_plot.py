@@ -15,11 +15,10 @@ from textual.app import App, ComposeResult
 from graph.data import GraphUpdate, Sample
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.snapshots import Look, settle
-from tui.topics.plot.axis import axis_for, steadied
+from tui.topics.plot.axis import axis_for
 from tui.topics.plot.curve import curve
 from tui.topics.plot.field import PlotField
-from tui.topics.plot.history import SLOT_S, History
-from tui.topics.plot.legend import number_text
+from tui.topics.plot.history import History
 from tui.topics.plot.plot import TopicPlot
 from tui.topics.plotting import PlotPlace
 from tui.topics.screen import TopicsScreen
@@ -93,18 +92,6 @@ def test_any_number_of_a_message_can_be_had(
     assert PlotField("/a", path).number(value) == number
 
 
-def test_a_field_is_named_as_one_writes_it() -> None:
-    assert PlotField("/a", ("joints", 1, "x")).name == "joints[1].x"
-
-
-def test_a_history_knows_the_range_of_its_window_only() -> None:
-    kept = history([(0, 99.0), (20, -1.0), (21, 3.0), (22, math.nan), (23, math.inf)])
-    assert kept.range(NOW_S + 25, 10.0) == (-1.0, 3.0)
-    assert kept.range(NOW_S + 25, 60.0) == (-1.0, 99.0)
-    assert kept.range(NOW_S + 100, 10.0) is None
-    assert kept.last == math.inf
-
-
 def drawn_in(dots: NDArray[Any]) -> NDArray[np.bool_]:
     """Of each column whether anything is drawn in it."""
     drawn: NDArray[np.bool_] = np.any(dots, axis=0)
@@ -124,26 +111,6 @@ def test_what_is_not_finite_leaves_a_gap_and_so_does_silence() -> None:
     assert not drawn_in(curve(silent.columns(NOW_S + 10, 10.0, 40), axis, 2))[8:16].any()
 
 
-def test_a_slow_topic_is_a_line_all_the_same() -> None:
-    slow = history([(t * 10, 1.0) for t in range(6)])
-    drawn = curve(slow.columns(NOW_S + 50, 60.0, 80), axis_for(0, 2, 2), 2)
-    assert drawn_in(drawn)[8:39].all()
-
-
-def test_a_steep_line_has_no_holes() -> None:
-    steep = history([(t / 2, 0.0 if t % 2 else 100.0) for t in range(20)])
-    drawn = curve(steep.columns(NOW_S + 10, 10.0, 40), axis_for(0, 100, 4), 12)
-    assert drawn.any(axis=1).all()
-
-
-def test_a_curve_is_not_redrawn_otherwise_while_it_moves() -> None:
-    rough = history([(t / 10, math.sin(t * 7)) for t in range(100)])
-    axis = axis_for(-1, 1, 4)
-    before = curve(rough.columns(NOW_S + 10, 10.0, 40), axis, 5)
-    after = curve(rough.columns(NOW_S + 10.5, 10.0, 40), axis, 5)
-    assert (before[:, 2:-1] == after[:, 1:-2]).all()
-
-
 def test_a_peak_between_two_dots_is_not_lost() -> None:
     peak = history([*((t / 100, 0.0) for t in range(3000)), (30.005, 5.0), (30.01, 0.0)])
     assert np.nanmax(peak.columns(NOW_S + 300, 300.0, 40).high) == 5.0
@@ -161,13 +128,6 @@ def test_memory_is_bounded_however_much_comes() -> None:
     assert kept.range(NOW_S + 600, 300.0) == pytest.approx((6_000, 11_999), abs=5)
 
 
-def test_a_clock_that_is_set_back_begins_anew() -> None:
-    kept = history([(100, 5.0), (0, 1.0), (1, 2.0)])
-    assert kept.range(NOW_S + 1, 300.0) == (1.0, 2.0)
-    near = history([(1, 5.0), (1 - SLOT_S / 2, 6.0)])
-    assert near.range(NOW_S + 1, 300.0) == (5.0, 6.0)
-
-
 @pytest.mark.parametrize(
     ("low", "high"),
     [(0, 1), (-0.2, 2.82), (1e-7, 3e-7), (-1e12, 5e13), (5, 5), (0, 0), (-3, -3), (1e300, 1e308)],
@@ -182,21 +142,6 @@ def test_axes_hold_their_numbers_and_have_round_ticks(low: float, high: float, t
     labels = [axis.label(tick) for tick in axis.ticks]
     assert len(set(labels)) == len(labels)
     assert all(len(label) <= 10 for label in labels)
-
-
-def test_an_axis_grows_at_once_and_shrinks_late() -> None:
-    axis = steadied(None, 0.0, 9.0, 4)
-    assert steadied(axis, 1.0, 7.0, 4) is axis
-    assert steadied(axis, 0.0, 11.0, 4).high >= 11
-    assert steadied(axis, 1.0, 1.5, 4).high <= 2
-
-
-@pytest.mark.parametrize(
-    ("number", "text"),
-    [(None, "–"), (math.nan, "nan"), (-math.inf, "-inf"), (0.3, "0.3000"), (1e9, "1.00e+09")],
-)
-def test_numbers_of_the_legend_are_short(number: float | None, text: str) -> None:
-    assert number_text(number) == text
 
 
 async def test_two_fields_have_letters_a_range_and_their_own_look() -> None:
@@ -220,47 +165,12 @@ async def test_two_fields_have_letters_a_range_and_their_own_look() -> None:
         assert "B /other pose.x" in app.text()
 
 
-async def test_a_pause_holds_the_picture_and_keeps_what_comes() -> None:
-    app = PlotApp()
-    async with app.run_test(size=(90, 24)):
-        app.plot.toggle(DATA)
-        app.plot.take(update(NOW_S, said("/number", NOW_S, data=1.0)))
-        app.plot.pause(True)
-        held = app.text()
-        assert "PAUSED" in held
-        app.plot.take(update(NOW_S + 5, said("/number", NOW_S + 5, data=9.0)))
-        assert app.text() == held
-        app.plot.pause(False)
-        assert "9.0000" in app.text()
-
-
-async def test_no_more_fields_than_letters_and_letters_are_given_again() -> None:
-    app = PlotApp()
-    async with app.run_test(size=(90, 24)):
-        for n in range(6):
-            assert app.plot.toggle(PlotField("/a", ("data", n)))
-        assert not app.plot.toggle(PlotField("/a", ("data", 9)))
-        app.plot.toggle(PlotField("/a", ("data", 2)))
-        assert app.plot.toggle(PlotField("/a", ("data", 9)))
-        assert app.plot.marks("/a")["data", 9] == "C"
-
-
 async def test_a_field_that_is_gone_says_so() -> None:
     app = PlotApp()
     async with app.run_test(size=(90, 24)):
         app.plot.toggle(PlotField("/a", ("ranges", 3)))
         app.plot.take(update(NOW_S, said("/a", NOW_S, ranges=np.arange(2))))
         assert "no number there" in app.text()
-
-
-@pytest.mark.parametrize("size", [(1, 1), (4, 3), (12, 5), (40, 8)])
-async def test_any_size_is_survived(size: tuple[int, int]) -> None:
-    app = PlotApp()
-    async with app.run_test(size=size):
-        for n in range(6):
-            app.plot.toggle(PlotField("/\x1b[2J[red]", ("data" * 50, n)))
-        app.plot.take(update(NOW_S, said("/\x1b[2J[red]", NOW_S, **{"data" * 50: [1.0] * 6})))
-        assert "\x1b" not in app.text()
 
 
 @pytest.fixture

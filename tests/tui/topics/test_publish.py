@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import AsyncIterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -10,29 +9,20 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from textual.widgets import Static
 
-from graph.data import Publication, Sample
-from graph.messages.yaml_form import check
+from graph.data import Sample
 from graph.publishing.outbox import PublishError
 from robot.topics import EMERGENCY_STOP
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, lesson_update
 from tests.waiting import until
 from tui.emergency.state import TOPIC_TYPE
-from tui.frame.title_bar import TitleBar
-from tui.help.page import Page
-from tui.help.screen import HelpScreen
-from tui.topics.publish.actions import PublishAtRate
 from tui.topics.publish.dialog import PublishDialog
 from tui.topics.publish.publication_list import PublicationList
 from tui.topics.screen import TopicsScreen
-from tui.yaml_form import form as yaml_form
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from textual.pilot import Pilot
 
-    from graph.data import Value
     from tui.app import DeckApp
 
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
@@ -120,25 +110,6 @@ async def test_what_is_wrong_publishes_nothing_and_is_gone_to(desk: Desk) -> Non
     await until(lambda: desk.said == "", "the word gone that it was not sent")
 
 
-async def test_the_newest_message_fills_the_form(desk: Desk) -> None:
-    await desk.open()
-    await desk.pilot.press("ctrl+t")
-    await until(lambda: "speed: 0.3" in desk.dialog.form.text, "the newest message in the form")
-    assert "frame_id: base_link  # string" in desk.dialog.form.text
-    await desk.pilot.press("ctrl+s")
-    await desk.says("Sent")
-    assert desk.graph.published[0][2]["drive"]["steering_angle"] == 0.5
-
-
-async def test_a_picture_is_cut_and_that_is_said(desk: Desk) -> None:
-    await desk.open("/camera/color/image_raw")
-    await desk.pilot.press("ctrl+t")
-    await desk.says("Its long arrays were cut")
-    await until(
-        lambda: "# the first 1000 of" in desk.dialog.form.text, "the cut message in the form"
-    )
-
-
 async def test_a_message_is_published_at_a_rate_until_it_is_stopped(desk: Desk) -> None:
     await desk.open()
     desk.dialog.rate.field.value = "2,5"
@@ -179,14 +150,6 @@ async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter
     assert desk.graph.stopped_publications == [1]
 
 
-async def test_a_publication_that_ended_by_itself_says_why(desk: Desk) -> None:
-    await desk.open()
-    gone = Publication(7, "/drive", DRIVE, 10.0, 3, 0, "the type has changed")
-    desk.graph.show(replace(lesson_update(), publications=(gone,)))
-    listed = desk.dialog.query_one(PublicationList)
-    await until(lambda: "the type has changed" in listed.render_line(1).text, "why it ended")
-
-
 async def test_a_rate_that_is_none_is_refused(desk: Desk) -> None:
     await desk.open()
     for rate in ("0", "-1", "nan", "inf", "fast", "", "1e9"):
@@ -219,30 +182,6 @@ async def test_a_new_topic_needs_a_type_which_is_completed(desk: Desk) -> None:
     assert desk.graph.published[0][:2] == ("/my/new_one", "std_msgs/msg/Float32")
 
 
-async def test_another_topic_that_is_there_brings_its_type(desk: Desk) -> None:
-    await desk.open()
-    desk.dialog.target.field.value = "/ai_command"
-    await until(lambda: desk.dialog.form.text == 'data: ""  # string\n', "the form of a text")
-    assert desk.dialog.target.type.value == "std_msgs/msg/String"
-    # The message that is shown is not of this topic.
-    assert desk.dialog.newest is None
-
-
-async def test_a_type_that_is_not_installed_says_so_and_publishes_nothing(desk: Desk) -> None:
-    await desk.open()
-    desk.dialog.target.field.value = "/new"
-    desk.dialog.target.type.field.focus()
-    desk.dialog.target.type.field.value = "nope_msgs/msg/Thing"
-    await desk.pilot.press("enter")
-    await until(
-        lambda: "nope_msgs is not installed" in desk.dialog.form.verdict,
-        "the word that it is not there",
-    )
-    await desk.pilot.press("ctrl+s")
-    await desk.says("Not sent")
-    assert desk.graph.published == []
-
-
 async def test_what_is_no_name_of_a_topic_is_refused(desk: Desk) -> None:
     await desk.open()
     for name in ("", "/", "/1x", "a b", "/a//b", "/привет", "~/x", "/a/"):
@@ -259,18 +198,6 @@ async def test_what_ros_refuses_is_said(desk: Desk) -> None:
     for key in ("ctrl+s", "ctrl+g"):
         await desk.pilot.press(key)
         await desk.says("Not sent: /drive carries std_msgs/msg/Bool")
-
-
-async def test_the_emergency_stop_works_from_the_form_and_shows(desk: Desk) -> None:
-    await desk.open()
-    desk.dialog.form.editor.focus()
-    before = desk.dialog.form.text
-    await desk.pilot.press("ctrl+x")
-    await until(lambda: desk.dialog.query_one(TitleBar).has_class("-stop"), "the stop in the title")
-    assert "EMERGENCY STOP" in desk.dialog.query_one(TitleBar).text
-    assert desk.dialog.form.text == before
-    topic, _type, value, _latched = desk.graph.published[0]
-    assert (topic, value) == ("/emergency_stop", {"data": True})
 
 
 async def test_the_emergency_stop_ends_what_deck_publishes_and_says_so(desk: Desk) -> None:
@@ -316,56 +243,9 @@ async def test_what_is_published_in_spite_of_a_stop_ends_with_its_release(desk: 
     await until(lambda: not desk.dialog.is_publishing, "the end of all that is published")
 
 
-async def test_a_click_on_a_tab_leaves_the_dialog_where_it_is(desk: Desk) -> None:
-    await desk.open()
-    for x in range(1, 60, 6):
-        await desk.pilot.click(TitleBar, offset=(x, 0))
-    assert desk.dialog.form.value is not None
-
-
-async def test_the_verdict_leads_to_what_is_wrong(desk: Desk) -> None:
-    await desk.open()
-    desk.fill("stamp: now", "stamp: {sec: 0, nanosec: -1}")
-    desk.dialog.rate.field.focus()
-    await until(lambda: desk.dialog.form.error is not None, "the error")
-    await desk.pilot.click("YamlForm > Static")
-    assert desk.dialog.form.editor.cursor_location == (1, 27)
-
-
-async def test_what_is_typed_is_checked_beside_the_screen(
-    desk: Desk, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    await desk.open("/ai_command")
-    threads: list[int] = []
-
-    def noted(type_name: str, text: str) -> Mapping[str, Value]:
-        threads.append(threading.get_ident())
-        return check(type_name, text)
-
-    monkeypatch.setattr(yaml_form, "check", noted)
-    desk.dialog.form.editor.focus()
-    await desk.pilot.press("x")
-    await until(lambda: threads, "a check")
-    assert threading.get_ident() not in threads
-
-
 async def test_without_a_session_nothing_is_sent(desk: Desk) -> None:
     await desk.open()
     await desk.app.feed.disconnect("it has ended")
     await desk.pilot.press("ctrl+s")
     await desk.says("no lesson is running")
     assert desk.graph.published == []
-
-
-async def test_help_lists_the_keys_of_the_dialog_and_closes_again(desk: Desk) -> None:
-    await desk.open()
-    dialog = desk.dialog
-    await desk.pilot.press("f1")
-    await desk.pilot.pause()
-    page_screen = desk.app.screen
-    assert isinstance(page_screen, HelpScreen)
-    page = " ".join(page_screen.query_one(Page).text.split())
-    assert PublishAtRate.tooltip in page
-    await desk.pilot.press("escape")
-    await desk.pilot.pause()
-    assert desk.app.screen is dialog

@@ -8,16 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from textual.events import Key
 
 from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
 from launcher.status import NodeState
-from tests.tui.recorded import NOW_S, TOPICS, RecordedSession, lesson_update, sample
-from tests.tui.snapshots import Look, settle
-from tests.tui.topics_stage import CAMERA, SONAR, TopicsStage, opened, row, with_row
+from tests.tui.recorded import NOW_S, RecordedSession, lesson_update, sample
+from tests.tui.snapshots import settle
+from tests.tui.topics_stage import SONAR, TopicsStage, opened, row, with_row
 from tests.waiting import until
 from tui.frame.key_bar import KeyBar
-from tui.topics.detail import TopicHead
 
 ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
 
@@ -86,34 +84,6 @@ async def test_nobody_who_publishes_is_told(stage: TopicsStage) -> None:
     assert stage.echo().startswith("nobody publishes this topic\nStart the node")
 
 
-async def test_a_topic_that_only_deck_publishes_is_not_said_to_have_a_silent_publisher(
-    stage: TopicsStage,
-) -> None:
-    await stage.choose(SONAR)
-    quiet = row(SONAR, trouble=Trouble.QUIET, publishers=0, age_s=None, hz=None, bytes_per_s=None)
-    await stage.show(with_row(quiet))
-    assert stage.echo() == "only Deck itself publishes here\nIt has sent nothing yet."
-
-
-async def test_topics_that_only_deck_knows_are_not_listed(stage: TopicsStage) -> None:
-    ours = TopicRow("/llm_result", ("std_msgs/msg/String",), 0, 0, trouble=Trouble.NO_PUBLISHER)
-    await stage.show(lesson_update())
-    count = stage.count()
-    await stage.show(with_row(ours))
-    assert "/llm_result" not in [row.name for row in stage.screen.table.shown]
-    assert stage.count() == count
-
-
-async def test_the_chosen_topic_stays_when_everybody_has_left_it(stage: TopicsStage) -> None:
-    await stage.choose(SONAR)
-    left = row(SONAR, publishers=0, subscribers=0, trouble=Trouble.NO_PUBLISHER)
-    await stage.show(with_row(left))
-    assert stage.screen.table.chosen == SONAR
-    await stage.choose(CAMERA)
-    await stage.show(with_row(left))
-    assert SONAR not in [row.name for row in stage.screen.table.shown]
-
-
 @pytest.mark.parametrize(
     ("state", "topics", "words"),
     [
@@ -136,19 +106,6 @@ async def test_why_there_is_no_topic_is_told(
     assert lines == words
 
 
-@pytest.mark.parametrize(
-    ("more", "words"),
-    [(0, "11 из 13 топиков"), (7, "11 из 20 топиков"), (8, "11 из 21 топика")],
-)
-async def test_of_how_many_topics_is_told_in_good_russian(
-    stage: TopicsStage, more: int, words: str
-) -> None:
-    stage.app.speak("ru")
-    hidden = tuple(replace(ROSOUT, name=f"/_hidden/{number}") for number in range(more))
-    await stage.show(lesson_update(time_s=NOW_S + 1, topics=(*TOPICS, *hidden)))
-    assert stage.count() == words
-
-
 async def test_a_qos_mismatch_names_who_and_what_to_change(stage: TopicsStage) -> None:
     facts = {
         "policy": "reliability", "publisher": "/lidar", "subscriber": "/brain",
@@ -162,15 +119,6 @@ async def test_a_qos_mismatch_names_who_and_what_to_change(stage: TopicsStage) -
     assert words.startswith("QoS is incompatible")
     assert "/brain does not hear /lidar: reliability reliable is asked for" in words
     assert "Let /lidar offer reliable, or let /brain ask for best_effort." in words
-
-
-async def test_an_unknown_type_names_its_package(stage: TopicsStage) -> None:
-    facts = {"type": "my_msgs/msg/Thing", "package": "my_msgs", "reason": "not installed"}
-    await stage.choose(SONAR)
-    await stage.show(
-        with_row(row(SONAR, trouble=Trouble.UNKNOWN_TYPE, hz=None, age_s=None, facts=facts))
-    )
-    assert "install the package my_msgs" in " ".join(stage.echo().split())
 
 
 async def test_a_package_that_can_be_had_is_told_by_its_names(stage: TopicsStage) -> None:
@@ -203,12 +151,6 @@ async def test_a_quiet_topic_keeps_its_last_message_and_says_for_how_long(
     assert ends.startswith("sonar_front → ")
 
 
-async def test_what_is_not_measured_says_so(stage: TopicsStage) -> None:
-    await stage.show(with_row(row(SONAR, measured=False, hz=None, bytes_per_s=None, age_s=None)))
-    await stage.choose(SONAR)
-    assert "not measured: Deck is not subscribed" in stage.head()
-
-
 async def test_a_pause_holds_the_message_and_says_so(stage: TopicsStage) -> None:
     await stage.choose(SONAR)
     await stage.show(lesson_update())
@@ -232,12 +174,6 @@ async def test_the_message_is_copied_as_yaml(stage: TopicsStage, key: str) -> No
     assert "steering_angle: 0.5" in stage.app.clipboard
 
 
-async def test_without_a_message_there_is_nothing_to_copy(stage: TopicsStage) -> None:
-    await stage.choose("/emergency_stop")
-    await stage.pilot.press("y")
-    assert stage.app.clipboard == ""
-
-
 async def test_the_filter_narrows_down_as_one_types_and_escape_ends_it(stage: TopicsStage) -> None:
     await stage.pilot.press("slash", *"audio", "space", *"mic")
     await stage.pilot.pause()
@@ -249,26 +185,6 @@ async def test_the_filter_narrows_down_as_one_types_and_escape_ends_it(stage: To
     await stage.pilot.press("escape")
     await stage.pilot.pause()
     assert len(stage.screen.table.shown) == 11
-
-
-async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_filter(
-    stage: TopicsStage,
-) -> None:
-    for key in ("slash", *"sonar"):
-        stage.app.post_message(Key(key, "/" if key == "slash" else key))
-    await stage.pilot.pause()
-    assert stage.screen.filter.value == "sonar"
-    await stage.pilot.press("slash", "f")
-    assert stage.screen.filter.value == "sonar/f"
-
-
-async def test_space_stops_the_robot_from_table_and_tree(stage: TopicsStage) -> None:
-    for widget in (stage.screen.table, stage.screen.detail.echo):
-        stage.app.emergency.forget()
-        widget.focus()
-        await stage.pilot.press("space")
-        await stage.pilot.pause()
-        assert stage.app.emergency.state.engaged
 
 
 async def test_keys_sort_turn_round_and_show_the_topics_of_ros_itself(stage: TopicsStage) -> None:
@@ -288,23 +204,6 @@ async def test_an_observer_that_cannot_work_says_why(stage: TopicsStage) -> None
     assert "rclpy is missing: source ROS 2" in text
 
 
-async def test_the_language_changes_under_the_screen(stage: TopicsStage) -> None:
-    await stage.choose("/emergency_stop")
-    await stage.pilot.press("f9")
-    await stage.pilot.pause()
-    assert stage.echo().startswith("никто не публикует")
-    assert "Топик" in stage.screen.table.render_line(0).text
-
-
-async def test_any_size_is_survived(stage: TopicsStage) -> None:
-    for size in ((1, 1), (10, 4), (30, 8), (59, 19)):
-        await stage.choose(CAMERA)
-        await stage.pilot.resize_terminal(*size)
-        await stage.show(lesson_update())
-        await stage.choose(SONAR)
-        await stage.show(lesson_update())
-
-
 async def test_five_megabytes_are_shown_with_few_objects_and_cut(stage: TopicsStage) -> None:
     cloud = {
         "height": 1, "width": 312_500, "point_step": 16, "row_step": 5_000_000,
@@ -321,15 +220,3 @@ async def test_five_megabytes_are_shown_with_few_objects_and_cut(stage: TopicsSt
     tree.focus()
     await stage.pilot.press("end", "enter")
     assert "… 1249800 more items" in tree._lines[-1].text
-
-
-async def test_a_name_longer_than_a_line_is_told_whole_above_its_message() -> None:
-    name = "/robot/front_left/" + "a_rather_long_name_of_a_sonar/" * 3 + "END"
-    async with opened(Look((80, 24), "en")) as stage:
-        await stage.show(with_row(replace(row(SONAR), name=name)))
-        await stage.choose(name)
-        head = stage.screen.query_one(TopicHead)
-        lines = [head.render_line(y).text for y in range(head.size.height)]
-        assert name in "".join(lines)
-        assert "std_msgs/msg/Float32" in lines[1]
-        assert "1.0 Hz" in lines[2]

@@ -10,7 +10,7 @@ import pytest
 from textual.app import App, ComposeResult
 from textual.geometry import Region
 
-from graph.data import TopicRow, Trouble
+from graph.data import Trouble
 from tests.tui.recorded import TOPICS, topic
 from text.i18n import _, set_language
 from tui.topics.table.columns import (
@@ -150,24 +150,6 @@ def test_a_narrow_table_gives_up_the_type_first_and_the_rate_last() -> None:
     assert len(placed(118)) == len(COLUMNS) - 3
 
 
-def test_jitter_latency_and_losses_come_all_at_once_and_cut_no_name() -> None:
-    extra = {"jitter", "latency", "lost"}
-    for width in range(60, 220):
-        places = {place.column.id: place for place in placed(width, 23)}
-        assert extra.isdisjoint(places) or extra <= places.keys()
-        if "lost" in places:
-            assert places["name"].width >= 23
-            assert places["type"].width >= 26
-    assert extra <= {place.column.id for place in placed(131, 23)}
-
-
-def test_the_longest_name_is_whole_before_the_types_get_room() -> None:
-    widths = {place.column.id: place.width for place in placed(118, 30)}
-    assert widths["name"] == 30
-    assert widths["type"] > 18
-    assert placed(118, 30)[-1].x + placed(118, 30)[-1].width == 118
-
-
 def test_rows_are_sorted_by_any_column_and_equal_ones_by_name() -> None:
     rows = [
         topic("/c", FLOAT, 5.0),
@@ -182,11 +164,6 @@ def test_rows_are_sorted_by_any_column_and_equal_ones_by_name() -> None:
         "/c",
     ]
     assert [row.name for row in TopicsOrder().by("age").arranged(rows)] == ["/a", "/c", "/b"]
-
-
-def test_troubles_come_first_when_sorted_by_state() -> None:
-    first = TopicsOrder().by("state").arranged(TOPICS)[0]
-    assert first.trouble is Trouble.NO_PUBLISHER
 
 
 def test_the_filter_wants_every_word_in_name_or_type() -> None:
@@ -215,15 +192,6 @@ async def test_the_first_topic_is_chosen_and_keys_choose_another() -> None:
         assert app.chosen[0] == "/ai_command"
         assert app.table.chosen == "/wheel_commands"
         assert any(line.startswith("▶ /wheel_commands") for line in app.lines())
-
-
-async def test_a_topic_that_is_chosen_as_soon_as_the_rows_come_is_in_sight() -> None:
-    app = TableApp()
-    async with app.run_test(size=(80, 6)) as pilot:
-        app.table.show([topic(f"/n{n}", FLOAT, 1.0) for n in range(10)])
-        app.table.choose("/n9")
-        await pilot.pause()
-        assert any("/n9" in line for line in app.lines())
 
 
 async def test_the_chosen_topic_stays_chosen_when_rows_come_and_the_order_changes() -> None:
@@ -279,45 +247,3 @@ async def test_an_update_draws_only_the_cells_whose_text_changed(
         app.table.show(faster)
         hz = next(place for place in app.table._places if place.column.id == "hz")
         assert asked == [Region(2 + hz.x, 1 + names(app).index("/drive"), hz.width, 1)]
-
-
-async def test_a_row_that_takes_another_place_takes_its_mark_along(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    app = TableApp()
-    async with app.run_test(size=(80, 20)) as pilot:
-        app.table.show([topic("/a", FLOAT, 1.0), topic("/b", FLOAT, 2.0)])
-        app.table.reorder(TopicsOrder().by("hz"))
-        await pilot.pause()
-        assert [line[:4] for line in app.lines()[1:3]] == ["  /b", "▶ /a"]
-        asked = asked_regions(app.table, monkeypatch)
-        app.table.show([topic("/a", FLOAT, 3.0), topic("/b", FLOAT, 2.0)])
-        assert {region.y for region in asked if region.x == 0} == {1, 2}
-        monkeypatch.undo()
-        app.table.refresh()
-        await pilot.pause()
-        assert [line[:4] for line in app.lines()[1:3]] == ["▶ /a", "  /b"]
-
-
-async def test_no_rows_are_told_in_words() -> None:
-    app = TableApp()
-    async with app.run_test(size=(80, 20)) as pilot:
-        app.table.show_words("no topics yet", "nodes are starting")
-        await pilot.pause()
-        assert app.lines()[1:3] == ["no topics yet", "nodes are starting"]
-        app.table.show(TOPICS)
-        app.table.filter("zzz")
-        await pilot.pause()
-        assert app.lines()[1] == "no topic matches “zzz”"
-
-
-@pytest.mark.parametrize("size", [(1, 1), (4, 2), (20, 5), (80, 24), (200, 60)])
-async def test_every_line_fills_its_width_at_any_size(size: tuple[int, int]) -> None:
-    hostile = TopicRow("/\x1b[2J[red]日本", ("a/msg/\x07",), 9, 9, detail="\x1b]52;c;QQ\x07" * 99)
-    app = TableApp()
-    async with app.run_test(size=size) as pilot:
-        app.table.show([hostile, *TOPICS])
-        await pilot.pause()
-        strips = [app.table.render_line(y) for y in range(size[1])]
-        assert {strip.cell_length for strip in strips} == {app.table.size.width}
-        assert not any(char in strip.text for strip in strips for char in "\x1b\x07")
