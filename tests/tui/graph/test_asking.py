@@ -13,8 +13,6 @@ from textual.widgets import Input
 from graph.data import CallResult, GoalStatus, SeenGoal
 from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
-from tests.tui.recorded_nodes import SERVICES, graph_update
-from tests.tui.snapshots import Look
 from tui.frame.key_bar import KeyBar
 from tui.graph.places import GraphKind, GraphPlace
 
@@ -80,29 +78,6 @@ async def test_tab_leads_into_the_form_where_digits_and_enter_stay() -> None:
         assert stage.screen.is_in_list
 
 
-async def test_tab_goes_on_from_the_form_to_the_time_out_and_from_a_list_to_its_detail() -> None:
-    async with opened() as stage:
-        await stage.press("tab")
-        assert stage.screen.focused not in {None, stage.screen.names}
-        await stage.press("escape")
-        await stage.screen.go(GraphPlace(GraphKind.SERVICE, SERVICE))
-        await stage.wait_for("✓ valid ")
-        await stage.press("tab", "tab", "backspace", "9")
-        assert timeout_field(stage).value == "9"
-
-
-@pytest.mark.parametrize(("language", "words"), [("en", "tab Fill in"), ("ru", "tab Заполнить")])
-@pytest.mark.parametrize(
-    "place", [GraphPlace(GraphKind.SERVICE, SERVICE), GraphPlace(GraphKind.ACTION, ACTION)]
-)
-async def test_the_footer_of_a_small_terminal_says_where_tab_leads(
-    language: str, words: str, place: GraphPlace
-) -> None:
-    async with opened(look=Look((80, 24), language)) as stage:
-        await stage.screen.go(place)
-        await stage.wait(lambda: stage.screen.ask_pane is not None and words in footer(stage))
-
-
 def footer(stage: GraphStage) -> str:
     """Return the keys that are shown."""
     return str(stage.screen.query_one(KeyBar).render())
@@ -113,24 +88,6 @@ async def test_a_wrong_request_is_not_sent(service: GraphStage) -> None:
     await service.press("ctrl+s")
     assert service.graph.called == []
     assert "✗" in service.seen()
-
-
-async def test_a_call_that_waits_freezes_nothing_and_can_be_given_up(service: GraphStage) -> None:
-    service.graph.hold_calls = True
-    await service.press("ctrl+s")
-    await service.wait_for("Still waiting: 0 s of 5 s")
-    assert "f12 stops waiting for it." in service.seen()
-    assert "f12 Cancel" in service.seen()
-    await service.press("escape")
-    await service.press("left")
-    assert "/ai_brain" in service.seen()
-    await service.press("right", "x")
-    await service.wait_for("given up")
-    # Its time passes too, and still nobody is told that it has failed.
-    late = time_is_over(service)
-    late.set_result(CallResult(SERVICE, True, {"sum": 7}, "", 9.0))
-    await service.wait_for("Late response after 9.0 s (time-out 5 s)")
-    await service.wait_for("sum: 7")
 
 
 def time_is_over(stage: GraphStage) -> Future[CallResult]:
@@ -162,21 +119,6 @@ async def test_the_time_out_is_chosen_below_the_form_and_each_service_keeps_its_
     assert timeout_field(service).value == "30"
 
 
-@pytest.mark.parametrize("typed", ["", "soon", "0", "-3", "nan", "1e9"])
-async def test_a_time_out_that_is_none_is_told_and_nothing_is_called(
-    service: GraphStage, typed: str
-) -> None:
-    timeout_field(service).value = typed
-    await service.wait_for("✗ 0.1 to 3600 s")
-    service.screen.names.focus()
-    await service.press("ctrl+s")
-    assert service.graph.called == []
-    assert timeout_field(service).has_focus
-    timeout_field(service).value = "0,5"
-    await service.press("ctrl+s")
-    assert service.graph.waited_s == [0.5]
-
-
 async def test_a_late_answer_is_told_wherever_one_is_and_shown_as_late(service: GraphStage) -> None:
     service.graph.hold_calls = True
     await service.press("ctrl+s")
@@ -193,17 +135,6 @@ async def test_a_late_answer_is_told_wherever_one_is_and_shown_as_late(service: 
     await service.wait_for("sum: 42")
 
 
-async def test_a_service_that_leaves_after_the_time_out_is_told(service: GraphStage) -> None:
-    service.graph.hold_calls = True
-    await service.press("ctrl+s")
-    await service.wait_for("Still waiting")
-    late = time_is_over(service)
-    await service.wait_for("no response yet")
-    why = f"{SERVICE} has left the graph and has not answered"
-    late.set_result(CallResult(SERVICE, False, None, why, 8.0))
-    await service.wait_for(why)
-
-
 async def test_a_call_that_fails_says_why(service: GraphStage) -> None:
     why = "no answer within 5 s"
     service.graph.answers[SERVICE] = CallResult(SERVICE, False, None, why, 5.0)
@@ -213,26 +144,6 @@ async def test_a_call_that_fails_says_why(service: GraphStage) -> None:
     assert "No response · 5000.0 ms" in service.seen()
 
 
-async def test_calls_are_listed_and_an_older_answer_can_be_seen_again(service: GraphStage) -> None:
-    await service.press("ctrl+s")
-    await service.wait_for("Response in")
-    service.graph.answers[SERVICE] = CallResult(SERVICE, True, {"sum": 0}, "", 0.2)
-    await service.press("ctrl+s")
-    await service.wait_for("sum: 0")
-    pane = service.screen.ask_pane
-    assert pane is not None
-    pane.asked_rows.choose("1")
-    await service.wait_for("sum: 1")
-
-
-async def test_a_service_that_vanishes_is_told_and_not_called(service: GraphStage) -> None:
-    rest = tuple(row for row in SERVICES if row.name != SERVICE)
-    await service.show(graph_update(services=rest))
-    assert "nobody serves it any more" in service.seen()
-    await service.press("ctrl+s")
-    assert service.graph.called == []
-
-
 async def test_what_was_typed_is_there_when_one_comes_back(service: GraphStage) -> None:
     fill(service, "a: 5\nb: 6\n")
     await service.press("escape", "a")
@@ -240,14 +151,6 @@ async def test_what_was_typed_is_there_when_one_comes_back(service: GraphStage) 
     await service.wait_for("valid rcl_interfaces/srv/SetParameters")
     await service.choose(SERVICE)
     await service.wait_for("a: 5")
-
-
-async def test_names_lead_to_the_type_and_to_the_server(service: GraphStage) -> None:
-    await service.screen.go(GraphPlace(GraphKind.TYPE, ADD))
-    await service.wait_for("response")
-    assert "int64" in service.seen()
-    await service.press("escape")
-    assert service.screen.history.here == GraphPlace(GraphKind.SERVICE, SERVICE)
 
 
 async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: GraphStage) -> None:
@@ -280,14 +183,6 @@ async def test_several_goals_are_listed_and_the_chosen_one_is_cancelled(action: 
     assert action.graph.canceled_goals == [2, 1]
 
 
-async def test_a_goal_is_forgotten(action: GraphStage) -> None:
-    await action.press("ctrl+s")
-    await action.wait_for("#1")
-    await action.press("escape", "d")
-    assert action.graph.forgotten_goals == [1]
-    await action.wait_for("no goal has been sent yet")
-
-
 async def test_a_goal_that_is_refused_says_why(action: GraphStage) -> None:
     await action.press("ctrl+s")
     await action.wait_for("#1")
@@ -299,52 +194,12 @@ async def test_a_goal_that_is_refused_says_why(action: GraphStage) -> None:
     await action.wait(lambda: told in [one.message for one in action.app._notifications])
 
 
-async def test_a_goal_that_was_just_sent_is_chosen_as_soon_as_it_is_listed(
-    action: GraphStage, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    await action.press("ctrl+s")
-    await action.wait_for("#1 ◌ sending")
-    pane = action.screen.ask_pane
-    assert pane is not None
-    number: Future[int] = Future()
-    number.set_result(2)
-    monkeypatch.setattr(action.graph, "send_goal", lambda *_goal: number)
-    await action.press("ctrl+s")
-    update = action.graph.update
-    assert update is not None
-    assert pane.asked_rows.chosen == "1"
-    await action.show(replace(update, goals=(*update.goals, replace(update.goals[0], number=2))))
-    await action.wait_for("#2 ◌ sending")
-    assert pane.asked_rows.chosen == "2"
-    # Once, and then whoever looks at another one is left alone.
-    pane.asked_rows.choose("1")
-    action.graph.change_goal(2, elapsed_s=1.5)
-    await action.wait_for("1.5 s")
-    assert pane.asked_rows.chosen == "1"
-
-
 MINE, THEIRS = "3f2a9c1e" + "0" * 24, "8d00b7f4" + "0" * 24
 SEEN = (
     SeenGoal(ACTION, DRIVE, MINE, GoalStatus.SUCCEEDED, 63.0),
     SeenGoal(ACTION, DRIVE, THEIRS, GoalStatus.EXECUTING, 12.3, {"distance": 0.7}, 9),
     SeenGoal("/another", DRIVE, "7" * 32, GoalStatus.EXECUTING, 1.0),
 )
-
-
-async def test_goals_of_other_clients_are_listed_with_id_state_age_and_feedback(
-    action: GraphStage,
-) -> None:
-    assert action.graph.goals_watched == {ACTION}
-    await action.show(graph_update(seen_goals=SEEN))
-    await action.wait_for("8d00b7f4 ● executing 12.3 s other · feedback 9")
-    await action.wait_for("3f2a9c1e ✓ succeeded 63.0 s other · feedback 0")
-    await action.wait_for("distance: 0.7")
-    assert "77777777" not in action.seen()
-    # Nobody need look at them who looks at something else.
-    await action.app.show_screen("topics")
-    assert action.graph.goals_watched == set()
-    await action.app.show_screen("graph")
-    assert action.graph.goals_watched == {ACTION}
 
 
 async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: GraphStage) -> None:
@@ -373,55 +228,6 @@ async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: G
     action.screen.names.focus()
     await action.press("d")
     assert action.graph.forgotten_goals == []
-
-
-async def test_the_newest_goal_of_others_is_meant_where_the_chosen_one_has_ended(
-    action: GraphStage,
-) -> None:
-    await action.show(graph_update(seen_goals=SEEN[:1]))
-    await action.wait_for("3f2a9c1e ✓ succeeded")
-    assert "f12 Cancel" not in action.seen()
-    await action.show(graph_update(seen_goals=SEEN))
-    await action.wait_for("f12 Cancel")
-    await action.press("f12")
-    await action.wait_for("Cancel a goal of another client?")
-    assert THEIRS in action.seen()
-
-
-async def test_why_a_goal_of_another_client_was_not_cancelled_is_told(action: GraphStage) -> None:
-    why = "the server refuses to cancel it"
-    await action.show(graph_update(seen_goals=(replace(SEEN[1], error=why),)))
-    await action.wait_for("8d00b7f4 ● executing · of another client")
-    assert why in action.seen()
-
-
-async def test_what_is_not_in_front_is_neither_sent_nor_forgotten(action: GraphStage) -> None:
-    await action.press("ctrl+s")
-    await action.wait_for("#1")
-    await action.press("escape", "slash", *"x: 2")
-    await action.wait_for("nothing matches the filter")
-    assert "Send goal" not in action.seen()
-    await action.press("ctrl+s")
-    assert len(action.graph.sent_goals) == 1
-    # What is under way can be ended from anywhere.
-    assert "f12 Cancel" in action.seen()
-    await action.press("f12")
-    assert action.graph.canceled_goals == [1]
-    action.screen.names.focus()
-    await action.press("d")
-    assert action.graph.forgotten_goals == []
-    await action.press("escape")
-    await action.wait_for("Send goal")
-    await action.press("ctrl+s")
-    assert len(action.graph.sent_goals) == 2
-
-
-async def test_what_is_asked_belongs_to_its_place(action: GraphStage) -> None:
-    await action.press("ctrl+s")
-    await action.wait_for("#1")
-    await action.press("escape", "left")
-    await action.wait_for("not called yet")
-    assert action.screen.history.kind is GraphKind.SERVICE
 
 
 async def test_all_types_that_are_installed_can_be_looked_into(service: GraphStage) -> None:

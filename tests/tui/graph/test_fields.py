@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from textual.app import App, ComposeResult
@@ -41,27 +40,11 @@ async def test_what_is_pasted_is_made_visible_and_that_is_the_value() -> None:
         assert field.cursor_position == len(field.value)
 
 
-async def test_a_cursor_that_waits_sends_nothing_over_the_line() -> None:
-    app = FieldApp()
-    async with app.run_test() as pilot:
-        field = app.query_one(Field)
-        await pilot.pause()
-        assert field.has_focus
-        assert not field.cursor_blink
-        await pilot.press("a")
-        assert not field.cursor_blink
-
-
 @given(st.text(st.characters(exclude_categories=["Cs"]), max_size=80))
 def test_a_text_typed_as_it_is_shown_is_that_text(text: str) -> None:
     assert is_plain(typed(text))
     assert meant(typed(text)) == text
     assert unquoted(in_quotes(text)) == text
-
-
-@pytest.mark.parametrize("text", ["plain", "two words", "1.5", 'a "quote" in it', "", "'", '"'])
-def test_an_ordinary_text_is_shown_without_quotes(text: str) -> None:
-    assert typed(text) == text
 
 
 async def asked(value: object, *keys: str) -> tuple[str, object]:
@@ -87,14 +70,3 @@ async def test_a_parameter_that_nobody_changed_is_not_corrupted() -> None:
     assert is_plain(stood)
     assert "\\u001b]52;c;" in stood
     assert sent == EVIL
-
-
-async def test_of_a_hostile_parameter_only_what_was_typed_is_changed() -> None:
-    _stood, sent = await asked(EVIL, "left", "x")
-    assert sent == f"{EVIL}x"
-
-
-async def test_quotes_that_belong_to_a_value_stay_with_it() -> None:
-    stood, sent = await asked('"quoted"', "left", "x")
-    assert stood == r'"\"quoted\""'
-    assert sent == '"quoted"x'

@@ -17,7 +17,6 @@ from tui.widgets.tab_line import TabLine
 
 LATER_S = 60.0
 NEAR = "near-name topic /sensor/sonar_frnt"
-UNSERVED = "unserved service /set_head_postion"
 
 
 @pytest.fixture
@@ -92,17 +91,6 @@ async def test_enter_goes_to_the_topic_and_links_to_the_nodes(listed: GraphStage
     await listed.press("enter")
     assert listed.app.screen is listed.app.get_screen("topics")
     await listed.wait_for("/sensor/sonar_frnt")
-
-
-async def test_a_service_that_does_not_exist_leads_to_who_calls_it(listed: GraphStage) -> None:
-    await listed.choose(UNSERVED)
-    await listed.press("enter")
-    assert listed.screen.history.here == GraphPlace(GraphKind.NODE, "/guard")
-
-
-async def test_the_filter_finds_words_of_the_sentence(listed: GraphStage) -> None:
-    listed.screen.filter.value = "future"
-    await listed.wait(lambda: listed.screen.names.chosen_name == "clock topic /imu")
 
 
 async def test_a_node_of_the_lesson_that_has_failed_is_found() -> None:

@@ -7,12 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from graph.inner_states import ContainerRow, LifecycleRow, TransitionResult
-from tests.tui.graph.test_looks import app_of, at
+from graph.inner_states import LifecycleRow, TransitionResult
 from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
-from tests.tui.recorded_inner import LIFECYCLES, managed_update
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
+from tests.tui.recorded_inner import managed_update
 from tui.dialogs.choice import ChoiceScreen
 from tui.frame.key_bar import KeyBar
 from tui.graph.places import GraphKind, GraphPlace
@@ -20,7 +18,6 @@ from tui.graph.places import GraphKind, GraphPlace
 pytestmark = pytest.mark.nightly
 
 CAMERA = GraphPlace(GraphKind.NODE, "/camera")
-CONTAINER = GraphPlace(GraphKind.NODE, "/perception")
 
 
 @pytest.fixture
@@ -35,38 +32,6 @@ async def until_told(stage: GraphStage, words: str) -> None:
 
 def footer(stage: GraphStage) -> str:
     return str(stage.app.screen.query_one(KeyBar).render())
-
-
-@every_look
-def test_a_node_with_a_lifecycle(look: Look, dump_compare: SnapCompare) -> None:
-    """The camera: inactive, what it can do, that it is in a container; the key J in the footer."""
-    app = app_of(look, managed_update())
-    assert dump_compare(app, terminal_size=look.size, run_before=at(CAMERA))
-
-
-@both_languages
-def test_a_container(look: Look, dump_compare: SnapCompare) -> None:
-    """What it contains: two components with their numbers."""
-    app = app_of(look, managed_update())
-    assert dump_compare(app, terminal_size=look.size, run_before=at(CONTAINER))
-
-
-@both_languages
-def test_transitions_to_choose_from(look: Look, dump_compare: SnapCompare) -> None:
-    """A dialog with the three that are possible now, each with what it means."""
-    app = app_of(look, managed_update())
-    assert dump_compare(app, terminal_size=look.size, run_before=at(CAMERA, "J"))
-
-
-@both_languages
-def test_log_levels_to_choose_from(look: Look, dump_compare: SnapCompare) -> None:
-    """A dialog with the five levels, each with what it means; info, which it has, is chosen."""
-    app = app_of(look, managed_update())
-    assert dump_compare(app, terminal_size=look.size, run_before=at(CAMERA, "K"))
-
-
-async def test_the_graph_is_asked_for_inner_states(stage: GraphStage) -> None:
-    assert stage.graph.inner_wanted
 
 
 async def test_a_state_is_followed_and_only_what_is_possible_is_offered(stage: GraphStage) -> None:
@@ -99,13 +64,6 @@ async def test_a_transition_is_made_by_a_key_and_its_outcome_is_told(stage: Grap
     await until_told(stage, "/camera refuses to cleanup and stays inactive")
 
 
-async def test_nothing_is_done_if_none_is_chosen(stage: GraphStage) -> None:
-    await stage.choose("/camera")
-    await stage.press("J", "escape", "K", "escape", "K", "enter")
-    await stage.wait(lambda: not isinstance(stage.app.screen, ChoiceScreen))
-    assert (stage.graph.inner.changes, stage.graph.inner.levels) == ([], {})
-
-
 async def test_a_log_level_is_set_or_it_is_said_how_to_allow_that(stage: GraphStage) -> None:
     await stage.choose("/camera")
     await stage.press("K")
@@ -125,24 +83,3 @@ async def test_a_link_leads_from_a_container_to_its_component_and_back(stage: Gr
     await stage.press("enter", "enter")
     await stage.wait(lambda: stage.screen.history.here == CAMERA)
     await stage.wait_for("Is in the container")
-
-
-async def test_a_container_says_that_it_is_empty_or_does_not_answer(stage: GraphStage) -> None:
-    await stage.choose("/perception")
-    for row, words in (
-        (ContainerRow("/perception"), "An empty container"),
-        (ContainerRow("/perception", (), "it hangs"), "An empty container · it hangs"),
-    ):
-        await stage.show(replace(managed_update(), containers=(row,)))
-        await stage.wait_for(words)
-
-
-async def test_what_a_node_calls_its_states_cannot_harm_the_terminal(stage: GraphStage) -> None:
-    evil = replace(LIFECYCLES[0], state="\x1b[2Jin[red]ert", transitions=("\x1b]52;c;x\x07go",))
-    await stage.show(replace(managed_update(), lifecycles=(evil,)))
-    await stage.choose("/camera")
-    await stage.press("J")
-    await stage.wait(lambda: isinstance(stage.app.screen, ChoiceScreen))
-    assert "in[red]ert" in stage.seen()
-    assert "\x1b" not in stage.seen()
-    assert "\x07" not in stage.seen()

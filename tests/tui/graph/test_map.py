@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 
 import pytest
-from textual.events import Key
 
 from graph.data import GraphUpdate, NodeRow
 from tests.tui.graph_stage import GraphStage, opened
@@ -41,17 +40,6 @@ def drawn(name: str, width: int, height: int, update: GraphUpdate | None = None)
     return drawing(name, neighbours(update, node), width, height)
 
 
-async def held(stage: GraphStage, key: str, times: int, place: GraphPlace) -> None:
-    """Press a key as one that is held down, and wait for where that leads.
-
-    A busy machine takes a minute for sixty keys if each is waited for.
-    """
-    for _press in range(times):
-        stage.app.post_message(Key(key, None))
-    await stage.wait(lambda: stage.screen.map.here == place)
-    await stage.pilot.pause()
-
-
 def text(made: MapDrawing, width: int) -> str:
     rows = [[" "] * width for _row in range(made.height)]
     for piece in made.pieces:
@@ -74,17 +62,6 @@ def test_no_piece_lies_on_another_or_outside(row: NodeRow, width: int, height: i
     assert all(0 <= piece.row < made.height for piece in made.pieces)
 
 
-def test_every_neighbour_can_be_reached() -> None:
-    made = drawn("/safety_stop", 78, 21)
-    left, centre, right = ([stop.place.name for stop in stops] for stops in made.stops)
-    assert left == [
-        "/drive", "/ai_driver", "/drive_to_point", "/emergency_stop", "/sensor/sonar_front",
-        "/sonar_front",
-    ]  # fmt: skip
-    assert centre == ["/safety_stop"]
-    assert right == ["/drive_safe", "/electronic_differential", "/safety_state"]
-
-
 async def test_arrows_walk_and_enter_goes_on_from_there(stage: GraphStage) -> None:
     assert stage.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
     await stage.press("right", "up", "up", "up", "down")
@@ -94,52 +71,3 @@ async def test_arrows_walk_and_enter_goes_on_from_there(stage: GraphStage) -> No
     assert "/wheel_commands" in stage.seen()
     await stage.press("escape")
     assert stage.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
-
-
-async def test_the_edge_is_not_walked_over(stage: GraphStage) -> None:
-    await stage.press("left", "left", "left")
-    for key, times, edge in (
-        ("up", 10, GraphPlace(GraphKind.TOPIC, "/drive")),
-        ("down", 30, GraphPlace(GraphKind.NODE, "/sonar_front")),
-    ):
-        await held(stage, key, times, edge)
-        await stage.press(key)
-        assert stage.screen.map.here == edge
-
-
-async def test_enter_on_a_service_goes_to_its_form(stage: GraphStage) -> None:
-    await stage.screen.go(GraphPlace(GraphKind.NODE, "/head_controller"))
-    await stage.pilot.pause()
-    await stage.press("left", *("up",) * 5, "enter")
-    assert stage.screen.history.here == GraphPlace(GraphKind.SERVICE, "/set_head_position")
-    assert not stage.screen.draws
-    await stage.wait_for("valid example_interfaces/srv/AddTwoInts")
-
-
-async def test_a_node_that_vanishes_is_said_to_have_left(stage: GraphStage) -> None:
-    rest = tuple(row for row in NODE_ROWS if row.name != "/safety_stop")
-    await stage.show(graph_update(nodes=rest))
-    assert "this node has left the graph" in stage.seen()
-    await stage.show(graph_update())
-    assert "┌" in stage.seen()
-
-
-async def test_without_a_node_it_says_so(stage: GraphStage) -> None:
-    await stage.press("M")
-    stage.screen.history.forget()
-    await stage.show(GraphUpdate(0.0))
-    await stage.press("M")
-    assert "no node to draw" in stage.seen()
-    await stage.press("M")
-    assert "no node in this domain" in stage.seen()
-
-
-async def test_more_neighbours_than_rows_are_scrolled(stage: GraphStage) -> None:
-    hub = NodeRow("/hub", publishes=tuple(f"/topic_{n:02}" for n in range(60)))
-    await stage.show(graph_update(nodes=(hub,)))
-    await stage.screen.go(GraphPlace(GraphKind.NODE, "/hub"))
-    await stage.pilot.pause()
-    await stage.press("right")
-    await held(stage, "down", 60, GraphPlace(GraphKind.TOPIC, "/topic_59"))
-    assert "/topic_59" in stage.seen()
-    assert "/hub" in stage.seen()

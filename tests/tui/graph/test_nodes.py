@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Callable
-from dataclasses import replace
+from collections.abc import AsyncIterator
 
 import pytest
-from textual.message import Message
 
-from graph.data import GraphUpdate, NodeRow
+from graph.data import GraphUpdate
 from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tui.graph.places import GraphKind, GraphPlace
-from tui.session.messages import LanguageChanged, SessionChanged, StatusChanged
 from tui.topics.screen import TopicsScreen
 
 
@@ -30,12 +27,6 @@ async def test_a_node_tells_with_whom_it_talks_and_which_process_it_is(stage: Gr
     assert "/sensor/sonar_front ← sonar_front" in seen
     assert "/emergency_stop nobody" in seen
     assert "parameter_events" not in seen
-
-
-async def test_a_node_of_somebody_else_is_said_to_be_one(stage: GraphStage) -> None:
-    await stage.choose("/lesson_helper")
-    assert "not started by Deck" in stage.seen()
-    assert "Sends goals to" in stage.seen()
 
 
 async def test_what_ros_needs_is_hidden_until_it_is_asked_for(stage: GraphStage) -> None:
@@ -58,15 +49,6 @@ async def test_a_filter_narrows_down_as_one_types_and_escape_ends_it(stage: Grap
     assert "nothing matches the filter" in stage.seen()
 
 
-async def test_enter_follows_a_link_to_a_service_and_escape_goes_back(stage: GraphStage) -> None:
-    await stage.choose("/head_controller")
-    await stage.screen.go(GraphPlace(GraphKind.SERVICE, "/set_head_position"))
-    await stage.pilot.pause()
-    assert stage.screen.names.chosen_name == "/set_head_position"
-    await stage.press("escape")
-    assert stage.screen.history.here == GraphPlace(GraphKind.NODE, "/head_controller")
-
-
 async def test_enter_on_a_topic_goes_to_the_screen_of_topics(stage: GraphStage) -> None:
     await stage.choose("/sonar_front")
     await stage.press("enter", "enter")
@@ -77,13 +59,6 @@ async def test_enter_on_a_topic_goes_to_the_screen_of_topics(stage: GraphStage) 
     await stage.press("5")
     assert stage.app.screen is stage.screen
     assert stage.screen.history.here == GraphPlace(GraphKind.NODE, "/sonar_front")
-
-
-async def test_a_topic_of_ros_itself_is_shown_though_topics_hides_it(stage: GraphStage) -> None:
-    await stage.screen.go(GraphPlace(GraphKind.TOPIC, "/rosout"))
-    topics = stage.app.screen
-    assert isinstance(topics, TopicsScreen)
-    await stage.wait(lambda: topics.table.chosen == "/rosout")
 
 
 async def test_a_chosen_node_that_vanishes_stays_and_says_so(stage: GraphStage) -> None:
@@ -98,50 +73,9 @@ async def test_a_chosen_node_that_vanishes_stays_and_says_so(stage: GraphStage) 
     assert "this node has left the graph" not in stage.seen()
 
 
-async def test_a_node_that_does_nothing_is_said_to(stage: GraphStage) -> None:
-    await stage.show(graph_update(nodes=(NodeRow("/idle"),)))
-    await stage.choose("/idle")
-    assert "it talks to nobody" in stage.seen()
-
-
 async def test_without_ros_it_says_why(stage: GraphStage) -> None:
     await stage.show(GraphUpdate(0.0, error="rclpy is missing: source ROS 2"))
     assert "/ai_brain (gone)" in stage.seen()
     stage.screen.history.forget()
     await stage.show(GraphUpdate(1.0, error="rclpy is missing: source ROS 2"))
     assert "rclpy is missing: source ROS 2" in stage.seen()
-
-
-async def test_an_empty_domain_is_told_for_every_kind(stage: GraphStage) -> None:
-    stage.screen.history.forget()
-    await stage.show(GraphUpdate(0.0))
-    assert "no node in this domain" in stage.seen()
-    for words in ("nobody serves a service", "nobody serves an action", "no type is in use"):
-        await stage.press("right")
-        assert words in stage.seen()
-
-
-async def test_hostile_names_are_shown_as_they_are(stage: GraphStage) -> None:
-    evil = replace(NODE_ROWS[0], name="/\x1b[2J[red]", publishes=("/\x1b]0;x\x07[/]",))
-    await stage.show(graph_update(nodes=(evil,)))
-    await stage.choose(evil.name)
-    assert "\x1b" not in stage.seen()
-    assert "/␛[2J[red]" in stage.seen()
-
-
-async def test_space_stops_the_robot_from_the_list(stage: GraphStage) -> None:
-    await stage.press("space")
-    assert stage.app.emergency.state.engaged
-
-
-@pytest.mark.parametrize(
-    "told", [lambda: StatusChanged({}, frozenset()), SessionChanged, LanguageChanged]
-)
-async def test_the_frame_is_shown_once_for_all_that_it_is_told(
-    stage: GraphStage, monkeypatch: pytest.MonkeyPatch, told: Callable[[], Message]
-) -> None:
-    shown: list[str] = []
-    monkeypatch.setattr(stage.screen, "show_frame", lambda: shown.append("frame"))
-    stage.screen.post_message(told())
-    await stage.pilot.pause()
-    assert shown == ["frame"]

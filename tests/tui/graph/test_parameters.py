@@ -13,7 +13,6 @@ from textual.widgets import Input
 
 from graph.data import GraphUpdate, ParametersResult, Sample
 from tests.tui.graph_stage import GraphStage, opened
-from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import settle
 from tui.graph.parameter_dialog import ParameterDialog
 from tui.graph.parameters import PARAMETER_EVENTS
@@ -42,20 +41,6 @@ async def test_they_are_read_when_asked_and_not_before(stage: GraphStage) -> Non
     assert "⊘ sonar_front" in stage.seen()
     await stage.press("E")
     assert "5 parameters" not in stage.seen()
-
-
-async def test_those_of_a_node_that_is_not_in_front_are_not_offered(stage: GraphStage) -> None:
-    await stage.press("E")
-    await stage.wait_for("5 parameters")
-    await stage.press("slash", "q", "q")
-    await stage.wait_for("nothing matches the filter")
-    assert "W Save" not in stage.seen()
-    stage.screen.names.focus()
-    await stage.press("W", "O", "E")
-    assert stage.app.screen is stage.screen
-    assert stage.graph.asked_parameters == [NODE]
-    await stage.press("escape")
-    await stage.wait_for("W Save")
 
 
 async def test_another_value_is_set_and_read_back(stage: GraphStage) -> None:
@@ -94,51 +79,6 @@ async def test_a_change_from_outside_is_read_at_once(stage: GraphStage) -> None:
     assert stage.graph.asked_parameters == [NODE, NODE], "they are not shown"
 
 
-def started(stage: GraphStage, *processes: int) -> GraphUpdate:
-    """The graph in which the node lives in these processes, in none if there are none."""
-    others = [row for row in shown(stage).nodes if row.name != NODE]
-    (node,) = (row for row in graph_update().nodes if row.name == NODE)
-    nodes = (*others, replace(node, processes=processes)) if processes else tuple(others)
-    return replace(shown(stage), nodes=nodes)
-
-
-async def test_a_node_that_was_started_again_is_read_anew(stage: GraphStage) -> None:
-    """It has its first values again, and who listens now may not have heard it tell so."""
-    await stage.show(started(stage, 7))
-    await stage.press("E")
-    await stage.wait_for("5 parameters")
-    await stage.show(started(stage))
-    await stage.show(started(stage, 7))
-    assert stage.graph.asked_parameters == [NODE]
-    await stage.show(started(stage))
-    await stage.show(started(stage, 8))
-    await stage.wait(lambda: stage.graph.asked_parameters == [NODE, NODE])
-
-
-async def test_changes_faster_than_the_answers_are_read_once_more(
-    stage: GraphStage, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """One that asked anew at each of them would never see an answer."""
-    asked: list[Future[ParametersResult]] = []
-
-    def ask(_node: str) -> Future[ParametersResult]:
-        asked.append(Future())
-        return asked[-1]
-
-    monkeypatch.setattr(stage.graph, "parameters", ask)
-    await stage.press("E")
-    for _round in range(3):
-        await stage.show(changed(stage, NODE))
-    assert len(asked) == 1
-    asked[0].set_result(ParametersResult(NODE, (), "the first answer"))
-    await stage.wait_for("the first answer")
-    await stage.wait(lambda: len(asked) == 2)
-    asked[1].set_result(ParametersResult(NODE, (), "the second answer"))
-    await stage.wait_for("the second answer")
-    await settle(stage.pilot)
-    assert len(asked) == 2
-
-
 async def test_a_refusal_keeps_the_dialog_open_and_says_why(stage: GraphStage) -> None:
     stage.graph.refusals["rate"] = "outside of 0.1 to 50"
     await stage.press("E", "down", "enter")
@@ -148,18 +88,6 @@ async def test_a_refusal_keeps_the_dialog_open_and_says_why(stage: GraphStage) -
     assert stage.app.screen is stage.screen
 
 
-async def test_a_name_that_the_title_of_the_dialog_cuts_stands_whole_in_it(
-    stage: GraphStage,
-) -> None:
-    await stage.press("E", "down", "enter")
-    dialog = stage.app.screen
-    assert isinstance(dialog, ParameterDialog)
-    assert NODE not in dialog.words().plain
-    row = replace(dialog._row, name="a_namespace_of_parameters." * 3 + "END")
-    long = ParameterDialog(NODE, row, dialog._apply)
-    assert long.words().plain.startswith(f"{NODE} · {row.name}\n")
-
-
 async def test_what_can_only_be_read_is_not_offered_for_change(stage: GraphStage) -> None:
     await stage.press("E", "enter")
     assert isinstance(stage.app.screen, ParameterDialog)
@@ -167,18 +95,6 @@ async def test_what_can_only_be_read_is_not_offered_for_change(stage: GraphStage
     assert "It can only be read" in stage.seen()
     await stage.press("escape")
     await stage.wait(lambda: stage.app.screen is stage.screen)
-
-
-async def test_a_node_that_does_not_answer_freezes_nothing(
-    stage: GraphStage, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    future: Future[ParametersResult] = Future()
-    monkeypatch.setattr(stage.graph, "parameters", lambda _node: future)
-    await stage.press("E")
-    assert "the node is being asked" in stage.seen()
-    assert "asked, no answer for 0 s" in stage.seen()
-    future.set_result(ParametersResult(NODE, (), "no answer within 5 s"))
-    await stage.wait_for("no answer within 5 s")
 
 
 async def test_an_answer_that_comes_late_is_not_taken_for_another_node(
