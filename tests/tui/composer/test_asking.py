@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from textual.widgets import OptionList
 
-from brain.settings import settings_path
-from robot.topics import LLM_RESULT
 from tests.model_server import KEY, Exchange, ModelServer
 from tests.tui.composer.asking import (
     FAST,
     GOOD,
-    WORDS,
     Answers,
     InPieces,
     answered,
@@ -30,13 +26,9 @@ from tests.tui.composer.asking import (
     status,
     verdict,
 )
-from tests.tui.composer.test_outcome import result
-from tests.tui.recorded import lesson_update
 from tests.tui.recorded_lesson import SESSION
 from tests.waiting import until
-from text.i18n import localized
 from text.run_path import MODEL_USAGE
-from tui import clock
 from tui.composer.prompt_dialog import PromptDialog
 
 if TYPE_CHECKING:
@@ -165,16 +157,6 @@ async def test_each_failure_has_its_own_words_that_stay(kind: str, server: Model
         assert words in stage.screen.line.note
 
 
-async def test_nobody_at_the_address() -> None:
-    set_up("http://127.0.0.1:9/v1")
-    async with composer() as stage:
-        await ask(stage)
-        await answered(stage)
-        assert (
-            "nobody answers at http://127.0.0.1:9/v1 — start the server" in stage.screen.line.note
-        )
-
-
 async def test_the_budget_is_shared_with_the_nodes_and_kept(
     server: ModelServer, tmp_path: Path
 ) -> None:
@@ -251,56 +233,6 @@ async def test_the_emergency_stop_ends_auto_while_the_answer_comes(server: Model
         assert not is_auto(stage)
 
 
-async def test_auto_ends_with_the_session_and_is_not_remembered(server: ModelServer) -> None:
-    set_up(server.url)
-    async with composer() as stage:
-        await stage.pilot.press("alt+a")
-        await stage.app.feed.disconnect("it has ended")
-        await stage.pilot.pause()
-        assert not is_auto(stage)
-        await stage.pilot.press("alt+a")
-        assert not is_auto(stage)
-        assert "no lesson is running" in stage.screen.line.note
-    async with composer() as stage:
-        assert not is_auto(stage)
-
-
-async def test_the_end_of_the_session_hangs_up(server: ModelServer) -> None:
-    answer = InPieces(GOOD[:19], GOOD[19:])
-    server.script = Answers(answer)
-    set_up(server.url)
-    async with composer() as stage:
-        await ask(stage)
-        await until(lambda: len(server.exchanges) == 2, "the question")
-        await stage.app.feed.disconnect("it has ended")
-        await until(answer.hung_up.is_set, "the end of the connection")
-        assert not is_asking(stage)
-
-
-async def test_the_model_is_told_what_the_screen_sees(server: ModelServer) -> None:
-    set_up(server.url)
-    async with composer() as stage:
-        report = result(event="refused", problems=["too fast"])
-        await stage.hear(report, after_s=0.0)
-        near = replace(
-            report, topic="/sensor/sonar_front", value={"data": 1.25}, received_s=clock.now()
-        )
-        old = replace(near, topic="/sensor/sonar_rear", received_s=clock.now() - 60)
-        stage.graph.show(lesson_update(samples={one.topic: (one,) for one in (near, old)}))
-        await stage.pilot.pause()
-        await ask(stage)
-        await answered(stage)
-    system, user = server.exchanges[-1].request["messages"]
-    assert system["content"].startswith("You turn what a person says into commands")
-    assert user["content"].splitlines() == [
-        "Distance ahead: 1.25 m",
-        "Distance behind: unknown",
-        "Your last commands: refused: ['too fast']",
-        f'Somebody says: "{WORDS}"',
-    ]
-    assert LLM_RESULT in stage.graph.followed
-
-
 async def test_the_prompt_that_went_out_can_be_looked_at(server: ModelServer) -> None:
     """Every message with the repair, and the form; the key is nowhere, here or on any screen."""
     server.script = Answers(FAST, GOOD)
@@ -327,17 +259,6 @@ async def test_the_prompt_that_went_out_can_be_looked_at(server: ModelServer) ->
     assert server.exchanges[-1].headers["authorization"] == f"Bearer {KEY}"
 
 
-async def test_a_key_that_the_server_repeats_is_not_shown(server: ModelServer) -> None:
-    complaint = json.dumps({"error": {"message": f"wrong: {KEY}"}})
-    set_up(server.url)
-    server.script = Answers(lambda one: one.fails(500, complaint))
-    async with composer() as stage:
-        await ask(stage)
-        await answered(stage)
-        assert "wrong: ***" in stage.screen.line.note
-        assert KEY not in shown(stage)
-
-
 async def test_no_model_is_set_up() -> None:
     """The line says so and where to read on; the rest of the Composer works."""
     async with composer() as stage:
@@ -349,65 +270,3 @@ async def test_no_model_is_set_up() -> None:
         await stage.pilot.press("ctrl+s")
         await stage.pilot.pause()
         assert sent(stage) == [GOOD]
-
-
-async def test_settings_that_cannot_be_used_are_named_by_their_place() -> None:
-    set_up("http://127.0.0.1:9/v1", modell="x")
-    async with composer() as stage:
-        assert f"{settings_path()}:4:1: modell" in status(stage)
-        await ask(stage)
-        assert ":4:1: modell" in stage.screen.line.note
-
-
-async def test_settings_are_read_again_for_each_question(server: ModelServer) -> None:
-    async with composer() as stage:
-        await ask(stage)
-        assert not is_asking(stage)
-        set_up(server.url)
-        await ask(stage)
-        await answered(stage)
-        assert stage.screen.editor.text == GOOD
-
-
-async def test_what_an_answer_took_is_shown_and_noted_when_it_is_sent(server: ModelServer) -> None:
-    set_up(server.url, prices="{input_per_million: 1, output_per_million: 10, currency: EUR}")
-    async with composer() as stage:
-        await ask(stage)
-        await answered(stage)
-        took, budget = status(stage).splitlines()
-        assert took.startswith("m-1: 412 + 86 tokens · first ")
-        assert took.endswith("0.0013 EUR")
-        # Two calls: the first question to a model finds out how it takes a form.
-        assert budget.startswith("2 of 20 calls a minute")
-        await stage.pilot.press("ctrl+s")
-        await stage.pilot.pause()
-        line = stage.app.feed.history.all()[-1]
-        assert line.node == "composer"
-        assert localized(line.text).startswith("m-1: 412 + 86 tokens, the first after ")
-        assert "EUR" in line.text
-
-
-async def test_a_hostile_answer_is_shown_and_noted_harmlessly(server: ModelServer) -> None:
-    """What would reach the terminal is written as an escape, which means the same in JSON."""
-    hostile = json.dumps({"thought": "\u202e [b]x", "commands": []}, ensure_ascii=False)
-    server.script = Answers(hostile)
-    set_up(server.url)
-    async with composer() as stage:
-        await ask(stage, "look \x1b[2J [/] there")
-        await answered(stage)
-        assert "\\u202e [b]x" in stage.screen.editor.text
-        assert verdict(stage) == "✓ valid: 0 commands"
-        await stage.pilot.press("ctrl+s", "alt+p")
-        await stage.pilot.pause()
-        assert json.loads(str(sent(stage)[0])) == json.loads(hostile)
-        assert stage.app.feed.history.all()[-1].node == "composer"
-        assert not {"\x1b", "\u202e"} & set(shown(stage))
-
-
-@pytest.mark.parametrize("words", ["", "   "])
-async def test_nothing_said_asks_nothing(words: str, server: ModelServer) -> None:
-    set_up(server.url)
-    async with composer() as stage:
-        await ask(stage, words)
-        assert not is_asking(stage)
-    assert server.exchanges == []

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from textual.widgets import Static
 
-from brain.settings import settings_path
 from tests.model_server import Exchange, ModelServer
 from tests.tui.composer.asking import GOOD, WORDS, Answers, composer, sent, set_up
 from tests.tui.composer.test_composer import ComposerStage
@@ -56,37 +55,3 @@ async def test_two_models_are_compared_and_one_answer_is_taken(server: ModelServ
         await stage.pilot.pause()
         assert stage.screen.editor.text == GOOD.replace("closer", "nearer")
         assert sent(stage) == []
-
-
-async def test_a_model_that_fails_does_not_spoil_the_comparison(server: ModelServer) -> None:
-    server.script = Answers(lambda one: one.fails(404), GOOD)
-    set_up(server.url, compare_with="m-2")
-    async with composer((80, 24)) as stage:
-        before = stage.screen.editor.text
-        dialog = await opened_comparison(stage)
-        first, second = below(dialog)
-        assert first.startswith("✗ ")
-        assert second.startswith("✓ valid")
-        await stage.pilot.press("enter")
-        assert stage.app.screen is dialog
-        await stage.pilot.press("escape")
-        await stage.pilot.pause()
-        assert stage.screen.editor.text == before
-
-
-async def test_comparing_needs_a_second_model(server: ModelServer) -> None:
-    set_up(server.url)
-    async with composer() as stage:
-        await stage.pilot.press("alt+c")
-        await stage.pilot.pause()
-        assert f"compare_with: MODEL in {settings_path()}" in stage.screen.line.note
-        assert server.exchanges == []
-
-
-async def test_the_emergency_stop_works_in_both_dialogs(server: ModelServer) -> None:
-    set_up(server.url, compare_with="m-2")
-    async with composer() as stage:
-        await opened_comparison(stage)
-        await stage.pilot.press("space")
-        await stage.pilot.pause()
-        assert stage.app.emergency.state.engaged

@@ -122,27 +122,6 @@ async def test_the_trail_is_followed_also_while_another_screen_is_in_front(
     assert stage.told()[0].startswith("✓ /llm_result: accepted")
 
 
-async def test_without_a_message_nothing_is_followed_behind_another_screen(
-    stage: ComposerStage,
-) -> None:
-    await stage.pilot.press("f5")
-    await settle(stage.pilot)
-    assert not stage.graph.followed & {"/drive", "/wheel_commands"}
-
-
-async def test_silence_is_told_after_three_seconds(
-    stage: ComposerStage, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    await stage.write(VALID)
-    await stage.pilot.press("ctrl+s")
-    later = clock.now() + 3.1
-    monkeypatch.setattr(clock, "now", lambda: later)
-    await stage.hear()
-    assert stage.told() == [
-        "✗ /llm_result: no answer within 3 s: is llm_parser running? Listening: llm_parser"
-    ]
-
-
 async def test_what_is_wrong_is_marked_listed_and_not_sent(stage: ComposerStage) -> None:
     await stage.write(TOO_FAST)
     assert stage.screen.editor.render_line(0).text.startswith("1✗")
@@ -168,13 +147,6 @@ async def test_what_is_wrong_is_sent_by_a_key_of_its_own(stage: ComposerStage) -
     ]
 
 
-async def test_that_key_does_nothing_while_all_is_well(stage: ComposerStage) -> None:
-    await stage.write(VALID)
-    await stage.pilot.press("ctrl+o")
-    await stage.pilot.pause()
-    assert stage.graph.published == []
-
-
 async def test_typing_is_checked_by_itself(stage: ComposerStage) -> None:
     stage.screen.editor.replace_all("")
     await stage.pilot.press("{")
@@ -189,23 +161,6 @@ async def test_a_key_walks_from_problem_to_problem(stage: ComposerStage) -> None
         await stage.pilot.press("ctrl+n")
         seen.append(stage.screen.editor.cursor_location)
     assert seen == [(0, 12), (2, 12), (0, 12)]
-
-
-async def test_enter_in_the_list_of_problems_goes_to_the_place(stage: ComposerStage) -> None:
-    await stage.write('{"thought": 1,\n "commands": [\n {"action": "jump"}]}')
-    stage.screen.verdict.query_one(OptionList).focus()
-    await stage.pilot.press("end", "enter")
-    await stage.pilot.pause()
-    assert stage.screen.editor.cursor_location == (2, 12)
-    assert stage.screen.editor.has_focus
-
-
-async def test_a_graph_that_refuses_is_told(stage: ComposerStage) -> None:
-    stage.graph.publish_error = RuntimeError("no publisher for you \x1b[2J")
-    await stage.write(VALID)
-    await stage.pilot.press("ctrl+s")
-    await stage.pilot.pause()
-    assert stage.told() == ["✗ /llm_raw_json: not sent: no publisher for you ␛[2J"]
 
 
 async def test_a_graph_that_never_answers_does_not_hold_the_keys(
@@ -229,14 +184,6 @@ async def test_space_types_a_space_and_ctrl_x_stops_the_robot(stage: ComposerSta
     await stage.pilot.pause()
     assert stage.app.emergency.state.engaged
     assert stage.screen.editor.text == "a 1q"
-
-
-async def test_enter_is_a_new_line_and_sends_nothing(stage: ComposerStage) -> None:
-    await stage.write("")
-    stage.screen.editor.focus()
-    await stage.pilot.press("enter")
-    assert stage.screen.editor.text == "\n"
-    assert stage.graph.published == []
 
 
 async def test_a_template_takes_the_place_of_the_text(stage: ComposerStage) -> None:
@@ -283,13 +230,6 @@ async def test_without_a_lesson_nothing_is_sent() -> None:
         assert graph.published == []
 
 
-async def test_any_size_is_survived(stage: ComposerStage) -> None:
-    await stage.write(TOO_FAST)
-    for size in ((1, 1), (10, 4), (30, 8), (59, 19)):
-        await stage.pilot.resize_terminal(*size)
-        await stage.hear(drive("/drive", 0.1, 0.0))
-
-
 def test_a_broken_history_is_as_good_as_none(tmp_path: Path) -> None:
     path = tmp_path / "composer.json"
     for text in ("", "{", '{"a": 1}', "[1, null]", "[" * 100_000, "\x00"):
@@ -309,10 +249,3 @@ def test_the_history_is_bounded_and_knows_no_doubles(tmp_path: Path) -> None:
     assert len(texts) == KEPT
     assert texts[-1] == "20"
     assert json.loads(path.read_text(encoding="utf-8")) == texts
-
-
-def test_a_history_that_cannot_be_written_is_passed_over(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("", encoding="utf-8")
-    sent = Sent(tmp_path / "file" / "composer.json")
-    sent.add("text")
-    assert recalled(sent) == ["text"]

@@ -7,14 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from textual.app import App, ComposeResult
 
 from graph.data import Sample
 from robot.commands.schema import parse_llm
 from tests.tui.recorded import NOW_S, joints, sample
 from text.i18n import set_language
-from tui.outcome.trail import OutcomeEntry, OutcomeTrail
-from tui.outcome.view import Outcome, delay_text
+from tui.outcome.trail import OutcomeTrail
+from tui.outcome.view import delay_text
 
 SENT_S = NOW_S + 100
 LOOK_AND_DRIVE = parse_llm(
@@ -130,14 +129,6 @@ def test_nobody_who_listens_is_told_at_once() -> None:
     ]
 
 
-def test_a_parser_that_does_not_report_is_no_silence() -> None:
-    trail = begun()
-    trail.see({"/drive": [at(0.02, drive("/drive", 0.2, -0.3))]})
-    assert told(trail, 4.0)[-1] == (
-        "·", "/llm_result", "no reply: this parser does not report",
-    )  # fmt: skip
-
-
 def test_what_safety_holds_back_is_told_with_its_reason() -> None:
     trail = begun({"/drive_safe": drive("/drive_safe", 0.0, 0.0)})
     trail.see(
@@ -154,21 +145,6 @@ def test_what_safety_holds_back_is_told_with_its_reason() -> None:
     assert ("!", "/safety_state", "obstacle at 0.3 m") in told(trail)
 
 
-def test_the_same_command_again_is_not_taken_for_silence_of_the_wheels() -> None:
-    trail = begun({"/wheel_commands": wheels(6.2, 5.1)})
-    trail.see({"/drive": [at(0.02, drive("/drive", 0.2, -0.3))]})
-    trail.see({"/wheel_commands": [at(delay, wheels(6.2, 5.1)) for delay in (0.1, 0.2, 0.4)]})
-    assert [
-        entry.delay_s for entry in trail.entries(SENT_S) if entry.topic == "/wheel_commands"
-    ] == [pytest.approx(0.4)]
-
-
-def test_what_came_before_the_sending_is_no_part_of_it() -> None:
-    trail = begun()
-    trail.see({"/drive": [at(-0.2, drive("/drive", 0.5, 0.0))]})
-    assert told(trail) == [("·", "/llm_result", "waiting for an answer")]
-
-
 @pytest.mark.parametrize(
     "data",
     ["", "null", "[1]", "{", '{"event": 7}', '{"event": "refused", "problems": 3}',
@@ -179,66 +155,3 @@ def test_any_words_on_the_result_topic_are_survived(data: str) -> None:
     trail = begun()
     trail.see({"/llm_result": [at(0.1, sample("/llm_result", "", {"data": data}))]})
     assert trail.entries(SENT_S + 9)
-
-
-def test_messages_of_another_shape_are_survived() -> None:
-    trail = begun()
-    odd: dict[str, Any] = {"drive": 5, "name": None, "velocity": "x", "status": 3}
-    topics = ("/drive", "/drive_safe", "/wheel_commands", "/head_state", "/safety_state")
-    trail.see({topic: [at(0.1 * n, sample(topic, "", odd))] for n, topic in enumerate(topics, 1)})
-    assert trail.entries(SENT_S + 9)
-
-
-class OutcomeApp(App[None]):
-    """A bare app with nothing but the outcome."""
-
-    def compose(self) -> ComposeResult:
-        """It fills the screen."""
-        yield Outcome()
-
-    def lines(self) -> list[str]:
-        """What stands there now."""
-        outcome = self.query_one(Outcome)
-        return [outcome.render_line(y).text.rstrip() for y in range(outcome.size.height)]
-
-
-ENTRIES = (
-    OutcomeEntry("✓", "/llm_result", "accepted: 2 commands", 0.012),
-    OutcomeEntry("✗", "set_head_position", "pan -45°, tilt 10°: refused " * 4, 1.2),
-    OutcomeEntry("·", "/head_state", "pan 0°, tilt 0°", None),
-)
-
-
-async def test_columns_stand_under_each_other_where_there_is_room() -> None:
-    app = OutcomeApp()
-    async with app.run_test(size=(80, 10)) as pilot:
-        app.query_one(Outcome).show("Sent at 12:00:00", ENTRIES)
-        await pilot.pause()
-        assert app.lines()[0] == "Sent at 12:00:00"
-        assert app.lines()[1] == "   12 ms ✓ /llm_result       accepted: 2 commands"
-        assert app.lines()[3].startswith(" " * 29)
-        assert "       … · /head_state       pan 0°, tilt 0°" in app.lines()
-
-
-@pytest.mark.parametrize("width", [1, 12, 40])
-async def test_where_there_is_none_everything_is_still_there(width: int) -> None:
-    app = OutcomeApp()
-    async with app.run_test(size=(width, 60)) as pilot:
-        app.query_one(Outcome).show("Sent at 12:00:00", ENTRIES)
-        await pilot.pause()
-        if width == 40:
-            assert app.lines()[1] == "   12 ms ✓ /llm_result: accepted: 2"
-        strips = [app.query_one(Outcome).render_line(y) for y in range(60)]
-        assert {strip.cell_length for strip in strips} == {app.query_one(Outcome).size.width}
-
-
-async def test_its_colours_are_those_of_the_theme_that_was_switched_to() -> None:
-    app = OutcomeApp()
-    async with app.run_test() as pilot:
-        outcome = app.query_one(Outcome)
-        outcome.show("Sent", ENTRIES[:1])
-        app.theme = "textual-light"
-        await pilot.pause()
-        text = [part for part in outcome.render_line(1) if "accepted" in part.text]
-        wanted = outcome.get_component_rich_style("outcome--good", partial=True)
-        assert [part.style.color for part in text if part.style] == [wanted.color]
