@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
@@ -61,22 +59,6 @@ def test_growing_line_by_line_gives_what_building_at_once_gives(
     assert (grown.rows, grown.found) == (built.rows, built.found)
 
 
-def test_every_row_is_found_and_belongs_to_its_line() -> None:
-    index = LogIndex(text_of)
-    index.fold(9)
-    index.rebuild(entries())
-    places = [index.locate(row) for row in range(index.rows)]
-    expected = [
-        (place, part)
-        for place, entry in enumerate(index.shown)
-        for part in range(len(folded(text_of(entry), 9)))
-    ]
-    assert places == expected
-    assert [index.row_of(place) for place, part in places if part == 0] == [
-        row for row, (_place, part) in enumerate(places) if part == 0
-    ]
-
-
 def test_dropped_lines_leave_the_rest_on_the_rows_of_a_new_index() -> None:
     index, fresh = LogIndex(text_of), LogIndex(text_of)
     whole = entries()
@@ -92,25 +74,6 @@ def test_dropped_lines_leave_the_rest_on_the_rows_of_a_new_index() -> None:
     assert [index.locate(row) for row in range(index.rows)] == [
         fresh.locate(row) for row in range(fresh.rows)
     ]
-
-
-@pytest.mark.parametrize("chosen", FILTERS)
-def test_marks_for_dropped_lines_stand_where_a_new_index_has_them(chosen: LogFilter) -> None:
-    ring, index, fresh = LineRing(max_lines=40), LogIndex(text_of), LogIndex(text_of)
-    for each in (index, fresh):
-        each.filter = chosen
-        each.fold(9)
-    lines = [LogLine(f"node{n % 3}", 1 + n, 0.0, Severity.INFO, TEXTS[2]) for n in range(0, 600, 3)]
-    lines += [LogLine("node1", n, 0.0, Severity.WARN, TEXTS[3]) for n in range(1, 200)]
-    index.extend(ring.append(lines[:20], {}))
-    ring.hold()
-    for start in range(20, len(lines), 30):
-        index.extend(ring.append(lines[start : start + 30], {}))
-        if ring.full:
-            index.prune(ring.trim())
-    fresh.rebuild(ring.entries)
-    assert (index.shown, index.found, index.rows) == (fresh.shown, fresh.found, fresh.rows)
-    assert any(entry.skipped > 2 for entry in ring.entries)
 
 
 def test_the_search_goes_around_the_ends() -> None:
@@ -133,15 +96,6 @@ def test_only_one_node_and_back_to_what_was_muted() -> None:
     assert [node for node in "abc" if muted.shows_node(node)] == ["a", "c"]
 
 
-def test_the_lowest_severity_goes_round() -> None:
-    chosen, seen = LogFilter(), []
-    for _step in range(6):
-        seen.append(chosen.minimum)
-        chosen = chosen.next_minimum()
-    assert seen == [*Severity, Severity.DEBUG]
-    assert replace(chosen, minimum=Severity.DEBUG) == LogFilter()
-
-
 ALPHABET = st.sampled_from("ab ё—\u0301你🧠\ufe0f\u200d🎙")
 
 
@@ -153,9 +107,3 @@ def test_folding_keeps_every_character_and_no_row_is_too_wide(text: str, width: 
     assert "".join(pieces) == text
     assert all(cell_len(piece.removesuffix(" ")) <= width for piece in pieces)
     assert folded_rows(text, width) == len(pieces)
-
-
-def test_folding_prefers_the_end_of_a_word() -> None:
-    assert folded("Путь свободен до препятствия", 15) == ["Путь свободен ", "до препятствия"]
-    assert folded("x" * 20, 8) == ["x" * 8, "x" * 8, "x" * 4]
-    assert folded("", 8) == [""]

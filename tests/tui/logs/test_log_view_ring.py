@@ -29,16 +29,6 @@ def test_a_flood_of_one_node_leaves_the_lines_of_the_others() -> None:
     assert ring.entries[-1].text == "hello"
 
 
-def test_lines_stay_in_order_and_the_oldest_go_first() -> None:
-    ring = LineRing(max_lines=100)
-    for batch in range(20):
-        fill(ring, "noisy", 1 + batch * 30, 30)
-    ids = [entry.id for entry in ring.entries]
-    assert ids == sorted(ids)
-    assert ids[-1] == 599
-    assert ids[0] == 600 - len(ids)
-
-
 def test_memory_is_bounded_in_bytes_too() -> None:
     ring = LineRing(max_lines=20_000, max_bytes=1_000_000)
     for batch in range(30):
@@ -59,19 +49,6 @@ def test_a_gap_in_the_numbers_is_marked_where_it_is() -> None:
     ring.append([line("a", 1), line("b", 7)], {})
     entries = ring.append([line("b", 8), line("a", 12)], {"a": 10})
     assert [(entry.node, entry.skipped) for entry in entries] == [("b", 0), ("a", 10), ("a", 0)]
-
-
-def test_lines_reported_as_skipped_are_marked_once() -> None:
-    ring = LineRing()
-    ring.append([line("a", 1)], {})
-    assert [entry.skipped for entry in ring.append([], {"a": 5})] == [5]
-    assert [entry.skipped for entry in ring.append([line("a", 7)], {})] == [0]
-
-
-def test_the_first_line_of_a_node_is_no_gap_whatever_its_number() -> None:
-    ring = LineRing()
-    assert [entry.skipped for entry in ring.append([line("a", 500)], {})] == [0]
-    assert [entry.skipped for entry in ring.append([line("a", 1)], {})] == [0]
 
 
 def test_what_somebody_reads_is_not_dropped_and_the_gap_behind_it_is_marked() -> None:
@@ -95,11 +72,3 @@ def test_control_characters_become_their_pictures() -> None:
     ring = LineRing()
     (entry,) = ring.append([line("a", 1, "\x1b]52;c;AAAA\x07 \x00 \ud800 [red]x[/red]")], {})
     assert entry.text == "␛]52;c;AAAA␇ ␀ � [red]x[/red]"
-
-
-def test_lines_are_counted_by_node_and_severity() -> None:
-    ring = LineRing(max_lines=4)
-    for seq in range(10):
-        fill(ring, "a", seq, 1)
-    ring.append([line("a", 10, severity=Severity.WARN), line("b", 1, severity=Severity.FATAL)], {})
-    assert ring.counts == {"a": [0, 10, 1, 0, 0], "b": [0, 0, 0, 0, 1]}

@@ -7,16 +7,14 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from textual.events import Key
 from textual.pilot import Pilot
-from textual.widgets import Input
 
 from graph.data import GraphUpdate, NodeRow
 from launcher.events import LogEvent
 from launcher.status import Severity
 from tests.tui.recorded import LINES, RecordedGraph, RecordedOpener, RecordedSession, line
 from tests.tui.recorded_nodes import graph_update
-from tests.tui.snapshots import Look, SnapCompare, every_look, settle
+from tests.tui.snapshots import Look, settle
 from tests.waiting import until
 from tui.dialogs.choice import ChoiceScreen
 from tui.frame.key_bar import KeyBar
@@ -69,25 +67,6 @@ async def test_lines_that_come_are_appended_whatever_screen_is_in_front() -> Non
         assert screen.pane.view.ring.entries[-1].text == "while away"
 
 
-async def test_what_is_typed_without_a_pause_after_the_key_is_searched_for() -> None:
-    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
-        await settle(pilot)
-        for key in ("slash", *"sonar"):
-            pilot.app.post_message(Key(key, "/" if key == "slash" else key))
-        view = screen_of(pilot).pane.view
-        await until(lambda: view.log_filter.search == "sonar", "all that was typed")
-        await pilot.press("slash", "x")
-        assert screen_of(pilot).pane.view.log_filter.search == "sonar/x"
-
-
-async def test_a_slash_is_a_part_of_a_files_name() -> None:
-    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
-        await settle(pilot)
-        await pilot.press("W", "slash", "x")
-        field = screen_of(pilot).query_one(Input)
-        assert (screen_of(pilot).pane.prompt.kind, field.value[-2:]) == ("save", "/x")
-
-
 async def test_the_key_that_pauses_is_called_by_what_it_does_now() -> None:
     async with HOME.app("logs").run_test(size=HOME.size) as pilot:
         await settle(pilot)
@@ -114,24 +93,6 @@ async def test_mute_and_only_this_work_on_the_row_of_the_list(keys: str) -> None
         assert nodes_shown(screen) == everybody - {"sonar_front"}
         await pilot.press("a")
         assert nodes_shown(screen) == everybody
-
-
-async def test_enter_in_the_list_mutes_and_escape_goes_back_to_the_lines() -> None:
-    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
-        await settle(pilot)
-        screen = screen_of(pilot)
-        await pilot.press("I", "enter")
-        assert "sonar_front" not in nodes_shown(screen)
-        await pilot.press("escape")
-        assert screen.pane.view.has_focus
-
-
-async def test_mute_works_on_the_node_of_the_chosen_line() -> None:
-    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
-        await settle(pilot)
-        screen = screen_of(pilot)
-        await pilot.press("up", "o")
-        assert nodes_shown(screen) == {LINES[-1].node}
 
 
 async def test_the_level_of_the_chosen_lines_node_is_changed() -> None:
@@ -188,64 +149,3 @@ async def test_in_the_search_field_letters_and_space_are_text() -> None:
         assert len(screen.pane.view.index.shown) == 2
         await pilot.press("f", "N")
         assert screen.pane.view.choice.found_number == 1
-
-
-async def test_on_a_narrow_screen_the_list_comes_and_goes() -> None:
-    async with HOME.app("logs").run_test(size=(80, 24)) as pilot:
-        await settle(pilot)
-        nodes = screen_of(pilot).node_list
-
-        def listed() -> bool:
-            return nodes.display
-
-        assert not listed()
-        await pilot.press("I")
-        assert listed()
-        await pilot.press("I")
-        assert not listed()
-
-
-async def test_it_fits_any_terminal() -> None:
-    async with HOME.app("logs").run_test(size=(1, 1)) as pilot:
-        await settle(pilot)
-        for size in ((1, 1), (20, 5), (300, 80)):
-            await pilot.resize_terminal(*size)
-            await pilot.press("up", "I", "down", "slash", "x", "escape", "W", "escape")
-            await pilot.resize_terminal(80, 24)
-            await pilot.pause()
-            assert len(screen_of(pilot).pane.view.index.shown) == len(LINES)
-
-
-@every_look
-def test_logs(look: Look, snap_compare: SnapCompare) -> None:
-    """Newest lines at the bottom, WARN and ERROR by word and colour; nodes at the left if wide."""
-    assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=look.settle)
-
-
-@pytest.mark.parametrize("language", ["en", "ru"])
-def test_nodes_over_a_narrow_log(language: str, dump_compare: SnapCompare) -> None:
-    """The list lies over the log; camera is mute, and the line below the log says so."""
-    look = Look((80, 24), language)
-
-    async def prepare(pilot: Pilot[Any]) -> None:
-        await settle(pilot)
-        # The next key is for the list, once it is there and has the focus.
-        await pilot.press("I")
-        await pilot.pause()
-        await pilot.press("down", "enter")
-
-    assert dump_compare(look.app("logs"), terminal_size=look.size, run_before=prepare)
-
-
-@pytest.mark.parametrize("language", ["en", "ru"])
-def test_a_search_and_chosen_lines(language: str, dump_compare: SnapCompare) -> None:
-    """The text found is marked, two lines are chosen, the log is paused, and all that is told."""
-    look = Look((120, 40), language)
-
-    async def prepare(pilot: Pilot[Any]) -> None:
-        await settle(pilot)
-        await pilot.press("slash")
-        await pilot.pause()
-        await pilot.press(*"way", "enter", "shift+up")
-
-    assert dump_compare(look.app("logs"), terminal_size=look.size, run_before=prepare)

@@ -4,23 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Input, Static
 
 from graph.heavy_types import IMAGE, POINT_CLOUD
 from graph.recording import recorder as recording
 from launcher import rundir
 from tests.tui.app_runs import opened
-from tests.tui.recorded import RecordedOpener, lesson_update, topic
 from tests.tui.recording.test_screen import Recorder, stand_in, told
-from tests.tui.snapshots import Look, SnapCompare, every_look
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.bags.begin import BeginRecordingScreen
-from tui.lifecycle.stopping import StoppingScreen
 from tui.widgets.rows import Rows
 
 pytestmark = pytest.mark.nightly
@@ -75,14 +70,6 @@ async def test_enter_starts_at_once_and_so_does_the_key_itself() -> None:
         assert recorder.asked[2] == frozenset()
 
 
-async def test_escape_records_nothing() -> None:
-    async with opened() as (app, pilot):
-        await pilot.press("f6", "escape")
-        await pilot.pause()
-        assert not app.recording.active
-        assert not Recorder.made
-
-
 async def test_pictures_are_left_out_by_choice_and_the_choice_is_kept() -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6", "m")
@@ -101,35 +88,6 @@ async def test_pictures_are_left_out_by_choice_and_the_choice_is_kept() -> None:
         await pilot.press("ь", "down", "down", "m", "enter")
         await until(lambda: app.recording.active, "the other recording")
         assert Recorder.made[-1].asked[2] == {POINT_CLOUD}
-
-
-async def test_every_topic_is_measured_as_long_as_it_asks() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        unknown = topic(IMAGE_TOPIC, IMAGE, None, measured=False)
-        opener.graph.show(lesson_update(topics=(unknown,)))
-        await until(lambda: app.feed.update and len(app.feed.update.topics) == 1, "the topic")
-        assert not opener.graph.measured
-        await pilot.press("f6")
-        await pilot.pause()
-        await until(lambda: opener.graph.measured, "the measurement")
-        assert "measuring…" in shares(app)
-        assert "enough" not in words(app)
-        opener.graph.show(lesson_update(topics=(topic(IMAGE_TOPIC, IMAGE, 10.0, 1000),)))
-        await until(lambda: "628 kB/min" in shares(app), "its rate")
-        await pilot.press("escape")
-        await until(lambda: not opener.graph.measured, "the end of the measurement")
-
-
-@pytest.mark.parametrize(("room", "said"), [(None, "unknown"), (0, "0 B, enough for 0 s")])
-async def test_a_full_disk_and_one_that_does_not_say(
-    monkeypatch: pytest.MonkeyPatch, room: int | None, said: str
-) -> None:
-    monkeypatch.setattr(recording, "room_bytes", lambda _folder: room)
-    async with opened() as (app, pilot):
-        await pilot.press("f6")
-        await pilot.pause()
-        assert words(app).endswith(f"Room on this disk: {said}")
 
 
 async def test_a_limit_ends_the_recording_by_itself() -> None:
@@ -155,38 +113,3 @@ async def test_a_limit_that_cannot_be_read_is_said_before_anything_is_recorded()
         assert not Recorder.made
         await pilot.press(*["backspace"] * 4, "enter")
         await until(lambda: app.recording.active, "the recording without a limit")
-
-
-@pytest.mark.parametrize("key", ["f6", "shift+f6"])
-async def test_nothing_covers_the_dialog_that_goes_by_itself(key: str) -> None:
-    opener = RecordedOpener()
-    opener.link.hold_shutdown = True
-    async with opened(opener) as (app, pilot):
-        await pilot.press("q")
-        await until(lambda: isinstance(app.screen, StoppingScreen), "the nodes that stop")
-        await pilot.press(key)
-        await pilot.pause()
-        assert isinstance(app.screen, StoppingScreen)
-        await pilot.press("q")
-
-
-async def test_names_from_the_graph_cannot_control_the_terminal() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        evil = topic("/cam\x1b[31mera\u202e", IMAGE, 10.0, 1000)
-        opener.graph.show(lesson_update(topics=(evil,)))
-        await pilot.press("f6")
-        await until(lambda: "/cam␛[31mera�" in shares(app), "the name, made harmless")
-        assert "\x1b" not in shares(app)
-
-
-@every_look
-def test_the_question_looks(look: Look, dump_compare: SnapCompare) -> None:
-    """Folder and room, a tick for each heavy type with its rate, all of it, when to end, keys."""
-
-    async def ask(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        await pilot.press("f6", "m")
-        await pilot.pause()
-
-    assert dump_compare(look.app(), terminal_size=look.size, run_before=ask)

@@ -8,7 +8,6 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
-import pytest
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -16,9 +15,8 @@ from launcher.rundir import recordings_path
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedOpener
 from tests.tui.replayed import BagOpener
-from tests.tui.snapshots import Look, SnapCompare, every_look, settle
+from tests.tui.snapshots import settle
 from tests.unit.bags import write_bag, write_robot_bag
-from tests.unit.odd_bags import write_lossy_bag
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.bags.listing import RecordingsScreen
@@ -95,14 +93,6 @@ async def test_they_are_listed_with_what_is_known_of_them_the_newest_first() -> 
         assert "✗ cut.mcap is empty, nothing was written to it" in said(app)
 
 
-async def test_one_with_fewer_messages_than_it_counts_is_marked() -> None:
-    aged(write_lossy_bag(recordings_path() / "lossy"), 0)
-    async with picking() as (app, pilot):
-        await listed(app, pilot, 1)
-        assert rows(app)[1][1:3] == ["✗", "lossy"]
-        assert "✗ metadata.yaml counts 40 messages, the files hold 20" in said(app)
-
-
 async def test_enter_plays_the_chosen_one() -> None:
     some()
     async with picking() as (app, pilot):
@@ -149,60 +139,3 @@ async def test_where_there_are_none_it_says_how_to_make_one() -> None:
         assert said(app).endswith("F6 on the screen or `deck record` makes one")
         await pilot.press("enter", "escape")
         await until(lambda: isinstance(app.screen, PickerScreen), "the lessons")
-
-
-async def test_a_folder_that_cannot_be_read_is_named_with_the_reason() -> None:
-    recordings_path().write_text("a file in its place")
-    async with picking() as (app, pilot):
-        await pilot.press("shift+f6")
-        await until(lambda: "cannot be read: Not a directory" in said(app), "the reason")
-
-
-async def test_what_may_not_be_looked_at_is_listed_with_the_reason(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    folder = recordings_path()
-    (folder / "theirs").mkdir(parents=True)
-    look = Path.iterdir
-
-    def refuse(path: Path) -> Any:
-        if path.name == "theirs":
-            raise PermissionError(13, "Permission denied")
-        return look(path)
-
-    monkeypatch.setattr(Path, "iterdir", refuse)
-    async with picking() as (app, pilot):
-        await listed(app, pilot, 1)
-        assert rows(app)[1][:3] == ["▶", "✗", "theirs"]
-        assert "✗ it cannot be read: Permission denied" in said(app)
-
-
-async def test_names_cannot_control_the_terminal() -> None:
-    name = "walk\x1b[31m\u202e\nx"
-    write_bag(recordings_path() / name, seconds=1)
-    async with picking() as (app, pilot):
-        await listed(app, pilot, 1)
-        assert "walk␛[31m�␊x" in rows(app)[1]
-        assert "\x1b" not in said(app)
-        await pilot.press("enter")
-        await until(lambda: app.feed.replay is not None, "the replay")
-
-
-@every_look
-def test_the_list_looks(
-    look: Look, dump_compare: SnapCompare, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Name, end, length, messages and size; a damaged and an incomplete one marked, why below."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("DECK_RECORDINGS_DIR", "deck-recordings")
-    some()
-    aged(write_lossy_bag(recordings_path() / "lossy"), 180)
-
-    async def show(pilot: Pilot[Any]) -> None:
-        app = pilot.app
-        assert isinstance(app, DeckApp)
-        await look.settle(pilot)
-        await listed(app, pilot, 4)
-        await pilot.pause()
-
-    assert dump_compare(look.app(), terminal_size=look.size, run_before=show)

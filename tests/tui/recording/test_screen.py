@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
-from textual.pilot import Pilot
-from textual.widgets import TextArea
 
 from graph.bag.errors import not_made
 from graph.recording import recorder as recording
 from graph.recording.recorder import RecordedTopic, RecordingStatus
 from tests.tui.app_runs import opened
-from tests.tui.recorded import RecordedOpener
-from tests.tui.recorded_emergency import CHASSIS, GATE, obeyed, word
-from tests.tui.snapshots import Look, SnapCompare, one_look
 from tests.waiting import until
-from tui import clock
 from tui.app import DeckApp
 from tui.frame.title_bar import TitleBar
 
@@ -96,57 +88,6 @@ async def test_that_the_disk_will_be_full_is_told_once() -> None:
         assert not any("1:20" in words for words in told(app))
 
 
-async def stopped_and_recorded(
-    opener: RecordedOpener, app: DeckApp, pilot: Pilot[Any]
-) -> tuple[str, str]:
-    """Press the stop, which is obeyed, then record; return the title before and after."""
-    await pilot.press("space")
-    now_s = clock.now()
-    both = (word(node, True, now_s, since_s=time.time()) for node in (GATE, CHASSIS))
-    opener.graph.show(obeyed(*both, at_s=now_s))
-    await until(lambda: "nobody has confirmed" not in title(app), "that it is obeyed")
-    assert "EMERGENCY STOP" in title(app)
-    before = title(app)
-    await pilot.press("f6", "enter")
-    await until(lambda: app.recording.words, "the words of the recording")
-    await pilot.pause()
-    return before, title(app)
-
-
-async def test_beside_an_alarm_too_the_title_tells_how_much_is_recorded() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, size=(140, 40)) as (app, pilot):
-        _before, after = await stopped_and_recorded(opener, app, pilot)
-        assert "3.4 MB" in after
-        assert "STOP" in after
-        assert "7 De" in after
-
-
-async def test_what_is_recorded_takes_no_tab_away_beside_an_alarm() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, size=(90, 24)) as (app, pilot):
-        before, after = await stopped_and_recorded(opener, app, pilot)
-        tabs = "1 L 2 3 4 5 6 7 8 9"
-        assert tabs in before
-        assert tabs in after
-
-
-async def test_the_key_records_from_a_text_field_too() -> None:
-    async with opened(screen="composer") as (app, pilot):
-        assert isinstance(app.focused, TextArea)
-        await pilot.press("f6", "enter")
-        await until(lambda: "● 3.4 MB" in title(app), "how much is recorded")
-        assert app.focused.selected_text == ""
-
-
-async def test_it_ends_with_the_session() -> None:
-    async with opened() as (app, pilot):
-        await pilot.press("f6", "enter")
-        await until(lambda: app.recording.active, "the recording")
-        await app.sessions.let_go()
-        assert Recorder.made[0].stopped
-
-
 async def test_it_ends_before_the_screen_is_left() -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6", "enter")
@@ -174,20 +115,3 @@ async def test_a_folder_that_cannot_be_made_is_said() -> None:
         why = "/full cannot be created: No space left on device"
         await until(lambda: why in told(app), "the reason")
         assert not app.recording.active
-
-
-@one_look
-def test_recording_looks(look: Look, dump_compare: SnapCompare) -> None:
-    """The title tells for how long and how much; the lesson's name gives way to it."""
-
-    async def record(pilot: Pilot[Any]) -> None:
-        app = pilot.app
-        assert isinstance(app, DeckApp)
-        await look.settle(pilot)
-        await pilot.press("f6", "enter")
-        await until(lambda: app.recording.active, "the recording")
-        # The folder is named by the time.
-        app.clear_notifications()
-        await pilot.pause()
-
-    assert dump_compare(look.app(), terminal_size=look.size, run_before=record)
