@@ -9,7 +9,6 @@ import pytest
 from tests.tui.panel_stage import alone, rows
 from tests.tui.recorded import lesson_update, sample, topic
 from tests.tui.recorded_brain import BRAIN_STATE, TYPE, brain_state, no_answer_yet
-from text.i18n import set_language
 from tui.panels.brain import BrainPanel, BrainView
 
 if TYPE_CHECKING:
@@ -36,15 +35,6 @@ async def test_an_answer_is_shown_with_all_that_it_took() -> None:
     ]
 
 
-async def test_in_russian() -> None:
-    set_language("ru")
-    assert (await shown(brain_state("ответил; m-1")))[1:] == [
-        "токенов 412 + 86 · первый 0,31 с · всего 1,20 с · 0,00011",
-        "USD",
-        "запросов за минуту 3 из 20 · токенов 498 из 200000",
-    ]
-
-
 async def test_a_brain_without_a_model_follows_its_rules() -> None:
     values = [{"key": "backend", "value": "rules"}, {"key": "fault", "value": ""}]
     status = {"name": "ai_brain", "level": 1, "message": "follows its rules", "values": values}
@@ -56,11 +46,6 @@ async def test_two_nodes_stand_below_each_other() -> None:
     assert found[:2] == ["ai_brain: has answered; m-1", "vlm_agent: no answer"]
     assert sum("tokens · first" in row for row in found) == 2
     assert sum("calls a minute" in row for row in found) == 1
-
-
-async def test_another_type_is_named() -> None:
-    found = await shown(sample(BRAIN_STATE, "std_msgs/msg/String", {"data": "x"}))
-    assert "another type" in " ".join(found)
 
 
 @pytest.mark.parametrize(

@@ -41,15 +41,6 @@ async def test_a_camera_on_another_page_is_not_asked_for() -> None:
     assert CAMERA not in opener.graph.watched
 
 
-async def test_frames_measure_no_images() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (_app, pilot):
-        await pilot.press("8")
-        await settle(pilot)
-        assert (opener.graph.measured, opener.graph.measured_images) == (True, False)
-        assert opener.graph.pictures == set()
-
-
 async def test_a_compressed_picture_is_shown_with_the_size_of_the_camera() -> None:
     value = jpeg_message()
     value["format"] = "bgr8; jpeg compressed bgr8; of 1280x960"

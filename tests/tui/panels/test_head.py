@@ -6,13 +6,9 @@ import math
 
 import pytest
 
-from graph.data import Trouble
-from tests.tui.panel_stage import Stage, alone, rows
-from tests.tui.snapshots import SnapCompare
-from text.i18n import set_language
+from tests.tui.panel_stage import alone, rows
 from tui.panels.head.reading import HeadReading, head_in
-from tui.panels.head.widget import CAPTION_FROM, DRAWN_FROM, HeadView
-from tui.widgets.drawing import Line
+from tui.panels.head.widget import HeadView
 
 
 def test_radians_become_degrees_left_and_up() -> None:
@@ -25,14 +21,6 @@ def test_radians_become_degrees_left_and_up() -> None:
         "10° down",
     )
     assert HeadReading(0.2, -0.2).pan_words == "0°"
-
-
-def test_other_joints_are_no_head_and_missing_ones_no_number() -> None:
-    assert head_in({"name": ["steering_joint"], "position": [1.0]}) is None
-    assert head_in({}) is None
-    pose = head_in({"name": ["pan_joint"], "position": []})
-    assert pose is not None
-    assert (pose.pan_words, pose.tilt_words) == ("---", "---")
 
 
 @pytest.mark.parametrize(("width", "height"), [(50, 1), (40, 3), (18, 3), (30, 8), (60, 20)])
@@ -54,26 +42,6 @@ async def test_it_moves_while_the_pose_changes_and_rests_when_it_does_not() -> N
         assert "moving" in "\n".join(rows(view))
         view.show(HeadReading(10, 0))
         assert "at rest" in "\n".join(rows(view))
-
-
-async def test_an_age_that_nobody_is_told_of_is_no_reason_to_draw() -> None:
-    view = HeadView()
-    async with alone(view, 44, 10).run_test(size=(60, 30)):
-        view.show(HeadReading(10, 0))
-        view.show_trouble(None, "", 0.2)
-        drawn: list[int] = []
-
-        def note(width: int, height: int) -> list[Line]:
-            del height
-            drawn.append(width)
-            return []
-
-        view.draw = note  # type: ignore[method-assign]
-        view.show_trouble(None, "", 0.4)
-        assert not drawn
-        view.show_trouble(Trouble.QUIET, "", 5.0)
-        view.show_trouble(Trouble.QUIET, "", 6.0)
-        assert len(drawn) == 2
 
 
 @pytest.mark.parametrize(("width", "height"), [(44, 10), (30, 10), (24, 4)])
@@ -114,38 +82,3 @@ async def test_impossible_angles_and_sizes_do_no_harm(
         view.show(pose)
         view.command(pose)
         assert len(rows(view)) == size[1]
-
-
-@pytest.mark.parametrize("language", ["en", "ru"])
-async def test_the_captions_are_whole_wherever_the_views_are_drawn(language: str) -> None:
-    set_language(language)
-    view = HeadView()
-    async with alone(view, DRAWN_FROM[0], CAPTION_FROM).run_test(size=(80, 30)):
-        view.show(HeadReading(0, 0))
-        assert rows(view)[0].split()
-        assert "…" not in rows(view)[0]
-
-
-@pytest.mark.parametrize("language", ["en", "ru"])
-def test_looks(language: str, snap_compare: SnapCompare) -> None:
-    """A needle on half a circle from above and from the side, a stroke where it was told to be."""
-    set_language(language)
-    views = [HeadView() for _view in range(5)]
-
-    def fill() -> None:
-        views[0].show(HeadReading(40, 5))
-        views[0].command(HeadReading(60, 20))
-        views[0].show(HeadReading(45, 10))
-        views[1].show(HeadReading(-90, -45))
-        views[1].answer("1")
-        views[2].show(HeadReading(0, 0))
-        views[2].show_trouble(Trouble.QUIET, "", 5.0)
-        views[3].show(HeadReading(45, 10))
-        views[4].show_trouble(Trouble.NO_PUBLISHER, "Start head_controller.")
-
-    stage = Stage(
-        [(views[0], (44, 14)), (views[1], (44, 8))],
-        [(views[2], (40, 10)), (views[3], (40, 2)), (views[4], (40, 4))],
-        fill=fill,
-    )
-    assert snap_compare(stage, terminal_size=(92, 28), run_before=stage.filled)

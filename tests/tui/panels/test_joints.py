@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -15,11 +15,9 @@ from tests.tui.recorded import (
     joints,
     lesson_samples,
     lesson_update,
-    sample,
 )
 from tui.panels.head.widget import HeadView
 from tui.panels.joints import ANOTHER_S, Joints
-from tui.panels.sonar.widget import Sonar
 from tui.panels.wheels.widget import WheelsView
 
 if TYPE_CHECKING:
@@ -81,34 +79,6 @@ async def test_the_panel_says_which_joints_come_and_which_are_awaited(
         assert "have come" not in " ".join(rows(view))
 
 
-async def test_a_sonar_of_another_type_is_told_and_not_waited_for() -> None:
-    topic = "/sensor/sonar_front"
-    words = sample(topic, "std_msgs/msg/String", {"data": "1.5"})
-    samples = {**lesson_samples(), topic: (words,)}
-    opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples=samples)))
-    async with opened(opener, size=(160, 60)) as (app, pilot):
-        await pilot.pause()
-        view = app.screen.query_one("#front", Sonar)
-        told = " ".join(" ".join(rows(view)).split())
-        assert "messages arrive, but of another type" in told
-        assert f"{topic}: std_msgs/String comes; expected: std_msgs/Float32" in told
-        # A look at which nothing has come changes nothing.
-        opener.graph.show(lesson_update(samples={}))
-        await pilot.pause()
-        await pilot.pause()
-        assert "of another type" in " ".join(rows(view))
-        opener.graph.show(lesson_update())
-        await pilot.pause()
-        await pilot.pause()
-        assert "1.84" in " ".join(rows(view)) or "FREE" in " ".join(rows(view))
-
-
-def test_a_joint_state_of_another_type_is_told() -> None:
-    told = heard((sample(TOPIC, "std_msgs/msg/String", {"data": "x"}), 5.0)).placeholder
-    assert told is not None
-    assert told.detail == f"{TOPIC}: std_msgs/String comes; expected: sensor_msgs/JointState"
-
-
 def test_values_give_way_once_nothing_but_other_joints_comes() -> None:
     assert heard((READ, 5.0)).placeholder is None
     assert heard((READ, 5.0), (OTHER, 5.0 + ANOTHER_S / 2)).placeholder is None
@@ -116,11 +86,3 @@ def test_values_give_way_once_nothing_but_other_joints_comes() -> None:
     assert told is not None
     assert "left_wheel" in told.detail
     assert heard((OTHER, 5.0), (READ, 5.1)).placeholder is None
-
-
-@pytest.mark.parametrize("names", [None, 7, "text", ["\x1b[31mred", "[b]bold[/b]"]])
-def test_hostile_names_do_no_harm(names: Any) -> None:
-    bad = replace(OTHER, value={"name": names})
-    told = heard((bad, 5.0)).placeholder
-    assert told is not None
-    assert "\x1b" not in told.detail

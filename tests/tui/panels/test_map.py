@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import Any
 
@@ -12,21 +11,15 @@ from textual.app import App, ComposeResult
 from graph.data import GraphUpdate, Trouble
 from robot.motion.odometry import Pose
 from tests.tui.panel_stage import rows
-from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_map import (
-    MAP_SESSION,
     NOBODY,
     map_update,
     odometry,
     reading,
-    room,
     stamped,
 )
-from tests.tui.snapshots import Look, SnapCompare, both_languages, one_look
 from tui.panels.map.panel import MapPanel
 from tui.panels.map.widget import RoomMap
-from tui.panels.panel import Panel
-from tui.panels.registry import panels_for
 
 
 class Alone(App[None]):
@@ -48,34 +41,7 @@ class Alone(App[None]):
         return "\n".join(rows(self.query_one(RoomMap)))
 
 
-def opener_of(update: GraphUpdate) -> RecordedOpener:
-    """The Deck with this graph."""
-    return RecordedOpener(RecordedSession(MAP_SESSION), RecordedGraph(update))
-
-
 # ---------------------------------------------------------------- how it looks
-
-
-@both_languages
-def test_deck_with_a_map_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """Walls and boxes, the path in curves, rays that end at walls, the goal, the truth beside."""
-    app = look.app(opener=opener_of(map_update()))
-    assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
-
-
-@one_look
-def test_deck_with_a_map_without_a_room_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """A grid of metres in place of a room; an open cone ahead, a broken mark behind."""
-    update = map_update(
-        {"/map": NOBODY, "/goal_pose": NOBODY},
-        map=(),
-        goal_pose=(),
-        sonar_front=(reading("front", math.inf),),
-        sonar_rear=(reading("rear", math.nan),),
-    )
-    assert snap_compare(
-        look.app(opener=opener_of(update)), terminal_size=look.size, run_before=look.settle
-    )
 
 
 # ---------------------------------------------------------------- why it is empty
@@ -161,24 +127,6 @@ async def test_a_recording_that_is_turned_back_begins_a_new_path() -> None:
         assert "path" not in app.tell(map_update(odom=(odometry(Pose(1.0, 0.0), 2.0),)))
 
 
-async def test_a_room_in_another_frame_is_told_harmlessly() -> None:
-    app = Alone()
-    async with app.run_test(size=(100, 20)):
-        text = app.tell(map_update(map=(room("[b]\x1b]52;c;aGk=\x07"),)))
-        assert "map in frame [b]" in text
-        assert "\x1b" not in text
-
-
-@pytest.mark.parametrize("size", [(4, 3), (12, 4), (20, 5), (40, 8), (100, 20), (200, 60)])
-async def test_it_keeps_to_its_room_at_every_size(size: tuple[int, int]) -> None:
-    app = Alone()
-    async with app.run_test(size=size):
-        app.tell(map_update())
-        drawing = app.query_one(RoomMap)
-        assert all(len(row) <= drawing.size.width for row in rows(drawing))
-        assert len(drawing._lines) <= drawing.size.height
-
-
 async def test_it_is_drawn_anew_only_if_a_cell_looks_different(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -213,8 +161,3 @@ async def test_it_is_drawn_anew_only_if_a_cell_looks_different(
         app.tell(map_update(odom=(odometry(Pose(1.2, 0.2, 0.3), 50.0),), map=()))
         assert draws
         assert app.text != before
-
-
-def test_others_bring_the_map_by_their_topics() -> None:
-    assert panels_for({"/odom"}) == ("map",)
-    assert issubclass(MapPanel, Panel)

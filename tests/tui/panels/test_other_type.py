@@ -6,10 +6,8 @@ import pytest
 
 from tests.tui.app_runs import opened
 from tests.tui.panel_stage import rows
-from tests.tui.panels.test_map import Alone
 from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_samples, lesson_update, sample
 from tests.tui.recorded_lesson import TOPICS
-from tests.tui.recorded_map import map_update
 from tui.panels.camera import CameraPanel
 from tui.panels.panel import Panel
 from tui.panels.voice.panel import VoicePanel
@@ -53,27 +51,3 @@ async def test_another_type_is_told_and_not_waited_for(
         await pilot.pause()
         await pilot.pause()
         assert "std_msgs/String" not in told()
-
-
-async def test_what_the_robot_says_in_another_type_leaves_the_talk_and_stands_below_it() -> None:
-    samples = lesson_samples() | {
-        "/audio/speaker_raw": (sample("/audio/speaker_raw", STRING, {"data": "yes"}),)
-    }
-    opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples=samples)))
-    async with opened(opener, size=(160, 60)) as (app, pilot):
-        await pilot.pause()
-        told = " ".join(rows(app.screen.query_one(VoicePanel).children[0]))
-        assert "Осмотрись" in told
-        assert "/audio/speaker_raw: std_msgs/String comes" in told
-
-
-async def test_odometry_of_another_type_is_told_by_the_map() -> None:
-    app = Alone()
-    async with app.run_test(size=(100, 20)):
-        words = sample("/odom", STRING, {"data": "1.5"})
-        text = app.tell(map_update(odom=(words,), mock_pose=()))
-        assert "messages arrive, but of another type" in text
-        assert "/odom: std_msgs/String comes; expected: nav_msgs/Odometry" in text
-        text = app.tell(map_update())
-        assert "another type" not in text
-        assert "heading" in text

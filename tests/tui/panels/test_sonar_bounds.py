@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -11,7 +10,6 @@ import pytest
 from tests.tui.app_runs import opened
 from tests.tui.panel_stage import rows
 from tests.tui.recorded import (
-    TOPICS,
     RecordedGraph,
     RecordedOpener,
     lesson_samples,
@@ -38,11 +36,6 @@ def told(metres: float = 0.7, **values: str) -> GraphUpdate:
         SAFETY: (sample(SAFETY, "diagnostic_msgs/msg/DiagnosticArray", {"status": status}),),
     }
     return lesson_update(samples={**lesson_samples(), **own})
-
-
-def gone(update: GraphUpdate) -> GraphUpdate:
-    left = (replace(row, publishers=0) if row.name == SAFETY else row for row in TOPICS)
-    return replace(update, topics=tuple(left))
 
 
 async def test_the_gauge_stops_where_the_safety_node_does() -> None:
@@ -88,9 +81,3 @@ def test_at_the_critical_distance_itself_it_says_what_the_gate_does(
     bounds = bounds_of(told(critical_m="0.8", slow_m=slow_m), COURSE)
     assert zone_of(0.8, bounds) is zone
     assert "↑0.8" in "".join(ink.text for ink in scale(40, bounds))
-
-
-def test_they_stay_between_its_words_and_go_with_it() -> None:
-    own = Bounds(0.8, 1.5)
-    assert bounds_of(lesson_update(samples={}), own) == own
-    assert bounds_of(gone(told(critical_m="0.8")), own) == COURSE

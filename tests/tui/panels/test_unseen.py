@@ -5,18 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import pytest
-
-from robot.motion.odometry import Pose
 from tests.tui.app_runs import opened
 from tests.tui.panel_stage import rows
 from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_lesson import NOW_S
-from tests.tui.recorded_map import MAP_SESSION, map_update, odometry, reading
+from tests.tui.recorded_map import MAP_SESSION, map_update, reading
 from tests.tui.snapshots import settle
-from tui.panels.camera import CameraPanel
-from tui.panels.map.widget import RoomMap
-from tui.panels.panel import Panel
 from tui.panels.sonar.widget import Sonar
 
 if TYPE_CHECKING:
@@ -50,25 +44,6 @@ async def test_the_trend_of_a_sonar_has_no_gap_where_the_tab_was_another() -> No
         assert list(gauge._values)[-40:] == [0.2] * 40
 
 
-async def test_the_path_goes_on_where_the_tab_was_another() -> None:
-    opener = with_map()
-    async with opened(opener) as (app, pilot):
-        drawing = app.screen.query_one(RoomMap)
-        drawing.forget_path()
-        await pilot.press("2")
-        await settle(pilot)
-        drawn: list[object] = []
-        drawing.settle = lambda: drawn.append(1)  # type: ignore[method-assign]
-        for step in range(11):
-            one = odometry(Pose(0.1 * step, 0.0, 0.0), at_s=100.0 + step)
-            opener.graph.show(said(one))
-            await pilot.pause()
-        await settle(pilot)
-        assert drawing._trail.length_m == pytest.approx(1.0)
-        assert len(drawing._trail.pieces) == 1
-        assert drawn == []
-
-
 async def test_only_what_has_a_history_is_asked_for_while_unseen() -> None:
     opener = with_map()
     async with opened(opener) as (_app, pilot):
@@ -78,7 +53,3 @@ async def test_only_what_has_a_history_is_asked_for_while_unseen() -> None:
         assert opener.graph.watched >= KEPT
         assert "/map" not in opener.graph.watched
         assert "/odom" not in opener.graph.followed
-
-
-def test_a_panel_without_a_history_keeps_nothing() -> None:
-    assert CameraPanel().kept() == Panel().kept() == set()

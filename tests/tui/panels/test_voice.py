@@ -12,10 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graph.data import Sample, TopicRow, Trouble
-from tests.tui.panel_stage import Stage, alone, rows
+from tests.tui.panel_stage import alone, rows
 from tests.tui.recorded import NOW_S, lesson_update, sample, topic
-from tests.tui.snapshots import SnapCompare
-from text.i18n import set_language
 from tui.panels.voice.panel import VoicePanel
 from tui.panels.voice.reading import heard
 from tui.panels.voice.widget import VoiceView, level_line
@@ -44,17 +42,6 @@ def test_sound_is_told_by_length_and_loudness() -> None:
     assert heard(tone(1.0, 0.5) + b"\x7f").seconds == pytest.approx(1.0)
 
 
-def test_a_few_odd_bytes_are_shown_as_such() -> None:
-    assert heard(b"\xff\xfe\x00").words == "3 bytes, not text: ff fe 00"
-    assert heard(b"").words == "(an empty message)"
-    assert heard(b"\x1b]52;c;AAAA\x07 harmless text that is long enough").words.startswith("␛]52")
-
-
-def test_long_text_is_cut_even_in_the_middle_of_a_letter() -> None:
-    assert len(heard("ж".encode() * 1_000_000).words) <= 2_000
-    assert heard(b"a" + "ж".encode() * 1_000_000).words.startswith("aжж")
-
-
 @given(st.binary(max_size=400))
 def test_whatever_comes_can_be_shown(data: bytes) -> None:
     words = heard(data).words
@@ -74,16 +61,6 @@ async def test_the_newest_is_at_the_bottom_and_long_talk_drops_the_oldest() -> N
         assert "word 295" in shown[0]
 
 
-async def test_one_line_tells_who_and_how_it_begins() -> None:
-    view = VoiceView()
-    async with alone(view, 30, 2).run_test(size=(60, 20)):
-        view.hear("robot", b"I look round and drive on.", NOW_S)
-        view.show_level(-30.0)
-        talk, level = rows(view)
-        assert talk == "◂ robot I look round and driv…"
-        assert "-30 dB" in level
-
-
 async def test_a_stream_of_sound_is_one_entry_that_grows() -> None:
     view = VoiceView()
     async with alone(view, 70, 5).run_test(size=(80, 20)):
@@ -94,39 +71,6 @@ async def test_a_stream_of_sound_is_one_entry_that_grows() -> None:
         assert len(shown) == 2
         assert "2.0 s" in shown[0]
         assert "0.1 s" in shown[1]
-
-
-async def test_silence_says_why() -> None:
-    view = VoiceView()
-    async with alone(view, 50, 5).run_test(size=(60, 20)):
-        assert "waiting for the first message" in "\n".join(rows(view))
-        view.hear("human", b"hello", NOW_S)
-        assert "hello" in "\n".join(rows(view))
-        view.clear()
-        assert "waiting" in "\n".join(rows(view))
-
-
-@pytest.mark.parametrize("language", ["en", "ru"])
-def test_looks(language: str, dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Human and robot by name, sign and colour; text folded; sound as a line of levels."""
-    import time
-
-    monkeypatch.setenv("TZ", "UTC")
-    time.tzset()
-    set_language(language)
-    views = [VoiceView() for _view in range(3)]
-
-    def fill() -> None:
-        for view in views[:2]:
-            view.hear("human", b"VOICE_COMMAND: Look around and tell me what you see!", NOW_S)
-            view.hear("robot", "Еду вперёд и осматриваюсь".encode(), NOW_S + 2)
-            view.hear("human", b"\xff\xfe\x00\x01", NOW_S + 3)
-            view.hear("human", b"\x1b[31mred\x1b[0m [red]x[/red] and more text", NOW_S + 4)
-            view.hear("human", tone(0.5, 0.3), NOW_S + 5)
-            view.hear("human", tone(0.5, 0.01), NOW_S + 5.5)
-
-    stage = Stage([(views[0], (60, 10))], [(views[1], (28, 10)), (views[2], (28, 3))], fill=fill)
-    assert dump_compare(stage, terminal_size=(94, 18), run_before=stage.filled)
 
 
 @pytest.mark.parametrize(
@@ -144,13 +88,6 @@ def test_the_level_is_a_bar_and_a_number(dbfs: float | None, width: int, shown: 
     line = level_line(dbfs, width)
     assert "".join(ink.text for ink in line) == shown
     assert sum(len(ink.text) for ink in line) <= width
-
-
-@pytest.mark.parametrize(
-    ("dbfs", "look"), [(-70, "muted"), (-30, "good"), (-10, "warn"), (-1, "bad")]
-)
-def test_a_level_is_faint_good_loud_or_cut_off(dbfs: float, look: str) -> None:
-    assert level_line(dbfs, 40)[-1].look == look
 
 
 def fed(*rows: TopicRow, samples: tuple[Sample, ...] = ()) -> GraphUpdate:
@@ -197,22 +134,3 @@ async def test_the_microphone_is_told_by_its_level_or_by_its_absence() -> None:
         assert "no microphone" not in bare, "the course's own tells no level"
         assert "no microphone" in shown()
         assert "hello" in shown()
-
-
-@pytest.mark.parametrize("language", ["en", "ru"])
-def test_levels_look(language: str, dump_compare: SnapCompare) -> None:
-    """Faint grey, speech green, loud yellow, cut off red; none in words; narrow ones a number."""
-    set_language(language)
-    states = (-58.0, -24.0, -9.0, -2.0, None)
-    wide, narrow = ([VoiceView() for _state in states] for _width in range(2))
-
-    def fill() -> None:
-        for views in (wide, narrow):
-            for dbfs, view in zip(states, views, strict=True):
-                view.show_level(dbfs, missing=dbfs is None)
-                view.hear("human", b"Look!", NOW_S)
-
-    stage = Stage(
-        [(view, (44, 2)) for view in wide], [(view, (18, 2)) for view in narrow], fill=fill
-    )
-    assert dump_compare(stage, terminal_size=(70, 21), run_before=stage.filled)

@@ -10,10 +10,8 @@ import pytest
 
 from graph.data import Trouble
 from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
-from tests.tui.panel_stage import Stage, alone, rows
-from tests.tui.snapshots import SnapCompare
-from text.i18n import set_language
-from tui.panels.dots import Dots, rectangle
+from tests.tui.panel_stage import alone, rows
+from tui.panels.dots import rectangle
 from tui.panels.wheels.chassis import speed_bar
 from tui.panels.wheels.reading import WheelsReading, wheels_in
 from tui.panels.wheels.widget import WheelsView
@@ -76,15 +74,6 @@ async def test_an_angle_that_no_wheel_can_have_is_named(width: int, height: int)
                 assert f"out of range: {words} rad" in shown
 
 
-async def test_speeds_that_no_wheel_can_have_are_told_shortly() -> None:
-    view = WheelsView()
-    async with alone(view, 44, 14).run_test(size=(100, 40)):
-        view.show(WheelsReading(1e308, -1.7e308, 0.5))
-        shown = "\n".join(rows(view))
-        assert "1e308" in shown
-        assert "-1.7e308" in shown
-
-
 @pytest.mark.parametrize(
     ("speed", "steering", "words"),
     [
@@ -131,13 +120,6 @@ def test_the_front_wheels_turn_to_the_side_that_is_steered_to() -> None:
     assert front[0] < 10.0
 
 
-def test_dots_outside_the_grid_are_left_out() -> None:
-    dots = Dots(2, 1)
-    dots.line((-5.0, -5.0), (50.0, 50.0))
-    dots.fill(rectangle((0.0, 0.0), 100.0, 100.0, 1.0))
-    assert [ink.text for ink in dots.lines()[0]] == ["⣿", "⣿"]
-
-
 async def test_old_speeds_are_greyed_with_their_age() -> None:
     view = WheelsView()
     async with alone(view, 44, 14).run_test(size=(60, 30)):
@@ -146,28 +128,3 @@ async def test_old_speeds_are_greyed_with_their_age() -> None:
         assert "no data for 5 s" in rows(view)[-1]
         looks = {ink.look for line in view._lines for ink in line if ink.text.strip()}
         assert looks == {"muted", "alert"}
-
-
-@pytest.mark.parametrize("language", ["en", "ru"])
-def test_looks(language: str, snap_compare: SnapCompare) -> None:
-    """Wheels turned as steered, a longer bar for the faster wheel, downwards when backwards."""
-    set_language(language)
-    views = [WheelsView() for _view in range(8)]
-
-    def fill() -> None:
-        for view, (speed, steering) in zip(
-            views,
-            ((0.3, 0.5), (0.3, -0.5), (-0.3, 0.0), (0.0, 0.2), (0.3, 0.5), (0.3, 0.5), (0.5, 0.0)),
-            strict=False,
-        ):
-            view.show(turning(speed, steering))
-        views[3].show_trouble(Trouble.QUIET, "", 5.0)
-        views[7].show_trouble(Trouble.NO_PUBLISHER, "Start electronic_differential.")
-
-    stage = Stage(
-        [(views[0], (46, 14)), (views[1], (46, 10)), (views[4], (46, 1))],
-        [(views[2], (50, 16)), (views[5], (50, 5)), (views[6], (50, 3))],
-        [(views[3], (36, 9)), (views[7], (36, 4))],
-        fill=fill,
-    )
-    assert snap_compare(stage, terminal_size=(140, 32), run_before=stage.filled)

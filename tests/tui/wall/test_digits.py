@@ -41,13 +41,3 @@ def test_no_two_signs_look_alike(rows: int) -> None:
     size = size_for(("0",), 200, rows)
     assert size is not None
     assert len({tuple(digit_lines(sign, size)) for sign in SIGNS}) == len(SIGNS)
-
-
-def test_large_strokes_are_thick() -> None:
-    size = size_for(("0.30",), 77, 14)
-    assert size is not None
-    assert size.thick >= 4
-
-
-def test_what_has_other_signs_is_not_for_them() -> None:
-    assert size_for(("12 V",), 200, 50) is None

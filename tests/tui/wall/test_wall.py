@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Static
 
-from graph.data import GraphUpdate, Sample, Trouble
+from graph.data import GraphUpdate, Trouble
 from robot.topics import BATTERY, ODOMETRY, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
-from tests.tui.app_runs import LESSON_9, opened
+from tests.tui.app_runs import opened
 from tests.tui.recorded import (
-    SESSION,
-    TOPICS,
     RecordedOpener,
-    RecordedSession,
     lesson_update,
     sample,
     topic,
 )
 from tests.tui.recorded_emergency import held
-from tests.tui.snapshots import Look, SnapCompare, every_look, one_look
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
@@ -119,55 +113,11 @@ def test_the_speed_is_that_of_the_odometry(value: dict[str, Any], shown: tuple[s
     assert numbers({ODOMETRY: value}) == [WallNumber("speed, m/s", *shown)]
 
 
-@pytest.mark.parametrize(
-    ("value", "shown"),
-    [
-        ({"percentage": 0.15, "voltage": 10.2}, ("battery, %", "15", "10.2 V", "bad")),
-        ({"percentage": 1.0, "voltage": math.nan}, ("battery, %", "100", "", "good")),
-        ({"percentage": math.nan, "voltage": 11.84}, ("battery, V", "11.8")),
-        ({"percentage": 87.0, "voltage": 11.84}, ("battery, V", "11.8")),
-        ({}, ("battery, V", "---")),
-    ],
-)
-def test_a_battery_without_a_charge_shows_its_voltage(
-    value: dict[str, Any], shown: tuple[str, ...]
-) -> None:
-    assert numbers({BATTERY: value}) == [WallNumber(*shown)]
-
-
 def test_what_is_not_current_is_grey_and_says_since_when() -> None:
     more = {"trouble": Trouble.QUIET, "age_s": 7.0}
     (shown,) = numbers({SONAR_FRONT: {"data": 1.0}}, **more)
     assert (shown.value, shown.look) == ("1.00", "muted")
     assert "7" in shown.note
-
-
-def test_a_value_stays_until_the_next_message() -> None:
-    reader = WallReader()
-    first = reader.numbers(graph({SONAR_FRONT: {"data": 1.0}}), COURSE)
-    quiet = replace(graph({SONAR_FRONT: {"data": 1.0}}), samples={})
-    assert reader.numbers(quiet, COURSE) == first
-
-
-def test_the_word_of_the_stop_has_large_letters_in_both_languages() -> None:
-    for word in ("STOP", "СТОП"):
-        lines = big_word(word).splitlines()
-        assert len(lines) == 5
-        assert len({len(line) for line in lines}) == 1
-    assert big_word("HALT!") == "HALT!"
-
-
-@pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)])
-async def test_four_numbers_are_as_large_as_each_other(size: tuple[int, int]) -> None:
-    opener = RecordedOpener()
-    values = {SONAR_FRONT: {"data": 0.62}, SONAR_REAR: {"data": 2.08}}
-    opener.graph.update = graph({**values, ODOMETRY: moving(0.25), BATTERY: HALF_FULL})
-    async with opened(opener, screen="wall", size=size) as (app, pilot):
-        await until(lambda: len(on_wall(app)) == 4, "the numbers")
-        await pilot.pause()
-        heights = {len(str(one.render()).splitlines()) for one in app.screen.query(BigNumber)}
-        assert len(heights) == 1
-        assert heights.pop() >= 5
 
 
 async def test_a_key_shows_it_and_escape_goes_back() -> None:
@@ -181,20 +131,6 @@ async def test_a_key_shows_it_and_escape_goes_back() -> None:
         assert state(app) == "● The gate lets the wheels turn"
         await pilot.press("escape")
         await until(lambda: isinstance(app.screen, LessonDeck), "the Deck")
-
-
-async def test_it_can_be_what_the_screen_begins_with() -> None:
-    async with opened(screen="", order=LESSON_9._replace(wall=True)) as (app, _pilot):
-        assert isinstance(app.screen, WallScreen)
-
-
-async def test_words_are_heard_only_while_it_is_in_front() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, screen="wall") as (app, pilot):
-        await until(lambda: "/audio/mic_raw" in opener.graph.followed, "the words")
-        await pilot.press("2")
-        await until(lambda: not isinstance(app.screen, WallScreen), "another screen")
-        await until(lambda: "/audio/mic_raw" not in opener.graph.followed, "silence")
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)])
@@ -219,58 +155,3 @@ async def test_it_says_why_the_gate_holds() -> None:
         opener.graph.show(held(b"\x02", "obstacle\x1b[31m at 0.31 m"))
         await until(lambda: "obstacle" in state(app), "the reason")
         assert state(app).startswith("⚠ The gate holds the wheels: obstacle␛[31m at 0.31 m")
-
-
-async def test_the_session_decides_what_there_is() -> None:
-    rows = tuple(row for row in TOPICS if row.name == SONAR_FRONT)
-    session = RecordedSession(replace(SESSION, panels=("sonar",)))
-    opener = RecordedOpener(session)
-    opener.graph.update = replace(lesson_update(topics=rows))
-    async with opened(opener, screen="wall") as (app, _pilot):
-        await until(lambda: len(on_wall(app)) == 1, "the distance")
-        assert not app.screen.query_one(CameraPanel).display
-        assert not app.screen.query_one("#wall-said").display
-        assert state(app) == ""
-
-
-async def test_with_nothing_to_show_it_says_so() -> None:
-    opener = RecordedOpener(RecordedSession(replace(SESSION, panels=())))
-    opener.graph.update = lesson_update(topics=(), samples={})
-    async with opened(opener, screen="wall") as (app, pilot):
-        await pilot.pause()
-        none = app.screen.query_one("#wall-none", Static)
-        await until(lambda: none.region.height, "the words")
-        assert "Nothing that the wall could show" in str(none.content)
-
-
-async def test_any_values_leave_the_wall_standing() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, screen="wall") as (app, _pilot):
-        for metres in (1e308, -1.0, "\x1b]0;x\x07", [1], {"a": 1}):
-            value = Sample(SONAR_FRONT, "any/msg/Any", 1.0, 0.0, 8, {"data": metres})
-            opener.graph.show(lesson_update(samples={SONAR_FRONT: (value,)}))
-        await until(lambda: on_wall(app)[0][:2] == ("ahead, m", "---"), "what is no distance")
-
-
-def test_the_wall_looks(snap_compare: SnapCompare) -> None:
-    """The picture as large as it gets, numbers on the right, the gate and the words below."""
-    look = Look((120, 40), "en")
-    assert snap_compare(look.app("wall"), terminal_size=look.size, run_before=look.settle)
-
-
-@every_look
-def test_the_wall_looks_in_every_size(look: Look, dump_compare: SnapCompare) -> None:
-    """At 80x24 numbers below the picture, else beside it; nothing is cut."""
-    assert dump_compare(look.app("wall"), terminal_size=look.size, run_before=look.settle)
-
-
-@one_look
-def test_the_stop_looks(look: Look, dump_compare: SnapCompare) -> None:
-    """Large letters in white on red; the words of the voice give way to the picture."""
-
-    async def stop(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        await pilot.press("space")
-        await pilot.pause()
-
-    assert dump_compare(look.app("wall"), terminal_size=look.size, run_before=stop)
