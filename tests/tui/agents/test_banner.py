@@ -7,15 +7,12 @@ from textual.widgets import TextArea
 
 from launcher.consent import Agent, Agents, Approval, Question
 from launcher.events import AgentsEvent
-from tests.hostile_text import EVIL
 from tests.tui.app_runs import opened
-from tests.tui.recorded import NOW_S, RecordedOpener, RecordedSession
-from tests.tui.snapshots import Look, SnapCompare, both_languages
+from tests.tui.recorded import NOW_S, RecordedOpener
 from tests.waiting import until
 from text.sentences import say
 from tui.app import DeckApp
 from tui.frame.agent_banner import AgentBanner
-from tui.frame.key_bar import KeyBar
 
 LINES = (
     say(
@@ -46,22 +43,6 @@ def banner(app: DeckApp) -> str:
 async def read(app: DeckApp) -> None:
     """Wait until the question may be answered."""
     await until(lambda: app.agents.was_read, "a question that was read")
-
-
-@both_languages
-def test_a_question(look: Look, dump_compare: SnapCompare) -> None:
-    """Who asks, how far it would go, what the gate would do, why, and three keys."""
-    opener = RecordedOpener()
-    opener.link.say(asks())
-    assert dump_compare(look.app(opener=opener), terminal_size=look.size, run_before=look.settle)
-
-
-@both_languages
-def test_an_agent_that_asks_nobody(look: Look, dump_compare: SnapCompare) -> None:
-    """It stands below the title as long as the agent is there, and once as a notification."""
-    opener = RecordedOpener()
-    opener.link.say(AgentsEvent(Agents((Agent("claude", Approval.ALWAYS),))))
-    assert dump_compare(look.app(opener=opener), terminal_size=look.size, run_before=look.settle)
 
 
 async def test_the_banner_is_on_every_screen_and_goes_with_the_question() -> None:
@@ -147,36 +128,3 @@ async def test_the_next_question_has_to_be_read_anew() -> None:
         await pilot.press("shift+f4")
         await pilot.pause()
         assert opener.link.asked == []
-
-
-async def test_an_allowance_is_shown_and_ended_by_a_key() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        opener.link.say(AgentsEvent(Agents((Agent("claude", Approval.ASK, NOW_S + 300),))))
-        shown = await until(lambda: banner(app), "the banner")
-        assert "may drive until" in shown
-        await pilot.press("shift+f9")
-        await until(lambda: opener.link.asked == [("end_consent",)], "its end")
-
-
-async def test_hostile_names_and_reasons_stay_in_their_line() -> None:
-    opener = RecordedOpener(RecordedSession())
-    lines = (say("it says: {reason}", reason=EVIL), "x" * 4000)
-    question = Question(1, EVIL, lines, NOW_S)
-    async with opened(opener, size=(80, 24)) as (app, _pilot):
-        opener.link.say(AgentsEvent(Agents((CLAUDE,), (question,))))
-        shown = await until(lambda: banner(app), "the banner")
-        assert all(line.isprintable() for line in shown.splitlines())
-        assert len(shown.splitlines()) == 4
-        shows = app.screen.query_one(AgentBanner)
-        await until(lambda: shows.size.height == 4, "its place on the screen")
-        assert "STOP" in str(app.screen.query_one(KeyBar).render())
-
-
-async def test_it_may_be_shown_before_it_is_mounted() -> None:
-    """On a busy machine a screen is shown before its parts are."""
-    async with opened(RecordedOpener()) as (app, _pilot):
-        early = AgentBanner()
-        early._attach(app.screen)  # the state of one that is not mounted yet
-        early.show(app)
-        assert not early.display

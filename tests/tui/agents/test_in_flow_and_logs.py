@@ -7,10 +7,8 @@ from launcher.status import LogLine, Severity
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, RecordedOpener
 from tests.waiting import until
-from text.i18n import set_language
 from text.sentences import say
 from tui.flow.screen import FlowScreen
-from tui.logs.screen import LogsScreen
 
 DOES = say("agent “{agent}” does {id}: {words}", agent="claude", id="p1", words="drives")
 LOOKS = say(
@@ -42,19 +40,3 @@ async def test_what_an_agent_does_begins_a_chain() -> None:
             lambda: [one for one in screen.chains if one.first.lane.value == "agent"], "a chain"
         )
         assert [one.first.text for one in chains] == ["agent “claude” does p1: drives"]
-
-
-async def test_lines_about_agents_are_translated() -> None:
-    set_language("ru")
-    opener = RecordedOpener()
-    async with opened(opener, "logs") as (app, pilot):
-        assert isinstance(app.screen, LogsScreen)
-        opener.link.say(said_by_agents())
-        await until(lambda: "«claude» выполняет p1" in shown(app), "the line")
-        await pilot.pause()
-
-
-def shown(app: object) -> str:
-    """Return the text on the screen."""
-    strips = app.screen._compositor.render_strips()  # type: ignore[attr-defined]
-    return "\n".join(strip.text for strip in strips)

@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
-from textual.events import Key
 from textual.widgets import Input
 
-from launcher.events import LogEvent
 from launcher.status import NodeState, Severity
 from tests.tui.app_runs import opened
 from tests.tui.lesson_openers import llm
 from tests.tui.recorded import (
     SESSION,
-    TOPICS,
-    RecordedGraph,
     RecordedOpener,
-    lesson_update,
-    line,
-    topic,
 )
 from tests.tui.snapshots import settle
-from tests.waiting import until
-from text.i18n import set_language
 from text.sentences import say
 from tui.app import DeckApp
-from tui.deck.command_line import CommandLine
 from tui.deck.nodes_table import NodesTable
 from tui.deck.screen import LessonDeck
 from tui.frame import title
@@ -38,11 +26,8 @@ from tui.panels.head.panel import HeadPanel
 from tui.panels.llm import LlmPanel
 from tui.panels.panel_grid import PanelGrid, heights, in_rows, paged
 from tui.panels.sonar.panel import SonarPanel
-from tui.panels.sonar.widget import Sonar, SonarView
 from tui.panels.voice.panel import VoicePanel
 from tui.panels.wheels.panel import WheelsPanel
-from tui.panels.wheels.widget import WheelsView
-from tui.widgets.image_view import ImageView
 from tui.widgets.node_words import duration
 
 
@@ -98,18 +83,6 @@ async def test_what_is_done_already_is_not_offered(state: NodeState, keys: str) 
         assert shown.startswith(f"{keys}  u My own  m Mute")
 
 
-async def test_a_node_is_chosen_by_a_click_and_stopped_by_a_click() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        await pilot.click(NodesTable, offset=(8, 4))
-        assert deck_of(app).chosen_node == "head_controller"
-        keys = app.screen.query_one("KeyBar")
-        at = str(keys.render()).index("x Stop")
-        await pilot.click("KeyBar", offset=(at + 2, 0))
-        await pilot.pause()
-        assert opener.link.asked == [("stop", "head_controller")]
-
-
 async def test_a_node_is_muted_heard_alone_and_heard_again() -> None:
     async with opened() as (app, pilot):
         deck = deck_of(app)
@@ -155,87 +128,6 @@ async def test_a_node_that_runs_but_is_not_ready_looks_like_none_that_is_well() 
         assert "● 8/8" in title.states(app)[0]
 
 
-@pytest.mark.parametrize(
-    ("state", "sign"),
-    [
-        (NodeState.WAITING, "◔"),
-        (NodeState.STARTING, "◔"),
-        (NodeState.BACKOFF, "◔"),
-        (NodeState.STOPPING, "○"),
-        (NodeState.EXITED, "○"),
-        (NodeState.FAILED, "○"),
-    ],
-)
-async def test_the_title_says_starting_only_while_a_node_is_to_come(
-    state: NodeState, sign: str
-) -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        assert "● 8/8" in title.states(app)[0]
-        opener.link.set_state("camera", state)
-        await pilot.pause()
-        await pilot.pause()
-        assert f"{sign} 7/8" in title.states(app)[0]
-
-
-async def test_hostile_log_lines_and_names_are_shown_harmlessly() -> None:
-    bad = "\x1b]52;c;aGk=\x07[red]no markup[/red]\x00\u202egnp"
-    opener = RecordedOpener()
-    async with opened(opener) as (app, _pilot):
-        opener.link.say(LogEvent((line("[b]evil[/b]", 1, "x" * 1_000_000), line("camera", 9, bad))))
-
-        def seen() -> str:
-            strips = app.screen._compositor.render_strips()
-            return "\n".join(strip.text for strip in strips)
-
-        await until(lambda: "[red]no markup[/red]" in seen(), "the line, its markup as it is")
-        screen = seen()
-        assert "\x1b" not in screen
-        assert "\u202e" not in screen
-
-
-async def test_panels_show_what_their_topics_say() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        await pilot.pause()
-        gauge = app.screen.query_one(SonarPanel).query_one(SonarView)
-        assert gauge.query_one("#front", Sonar).has_value
-        assert app.screen.query_one(CameraPanel).query_one(ImageView).has_picture
-        wheels = app.screen.query_one(WheelsPanel).query_one(WheelsView)
-        assert "left wheel slower" in "\n".join(
-            wheels.render_line(y).text for y in range(wheels.size.height)
-        )
-
-
-async def test_without_a_differential_the_wheels_show_what_drive_would_do() -> None:
-    rows = (topic("/drive", "ackermann_msgs/msg/AckermannDriveStamped", 1.0),)
-    opener = RecordedOpener(graph=RecordedGraph(lesson_update(topics=rows)))
-    async with opened(opener) as (app, pilot):
-        await pilot.pause()
-        wheels = app.screen.query_one(WheelsPanel)
-        assert "← /drive" in str(wheels.border_title)
-        drawn = wheels.query_one(WheelsView)
-        text = "\n".join(drawn.render_line(y).text for y in range(drawn.size.height))
-        assert "0.25 m/s" in text
-        assert "0.35 m/s" in text
-
-
-async def test_the_rear_sonar_comes_with_its_publisher_and_stays_without_it() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        gauge = app.screen.query_one(SonarView)
-        assert not gauge.has_class("-both")
-        rear = topic("/sensor/sonar_rear", "std_msgs/msg/Float32", 1.0)
-        opener.graph.show(lesson_update(topics=(*TOPICS, rear)))
-        await pilot.pause()
-        await pilot.pause()
-        assert gauge.has_class("-both")
-        opener.graph.show(lesson_update(topics=(*TOPICS, replace(rear, publishers=0))))
-        await pilot.pause()
-        await pilot.pause()
-        assert gauge.has_class("-both")
-
-
 async def test_the_trail_of_a_json_shows_without_the_composer() -> None:
     async with opened(llm()) as (app, pilot):
         await pilot.pause()
@@ -269,16 +161,6 @@ async def test_a_command_is_written_and_published() -> None:
         assert not isinstance(app.focused, Input)
 
 
-async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_field() -> None:
-    async with opened() as (app, pilot):
-        for key in "cleft":
-            app.post_message(Key(key, key))
-        await pilot.pause()
-        assert app.screen.query_one(CommandLine).field.value == "left"
-        await pilot.press("c", "с", "x")
-        assert app.screen.query_one(CommandLine).field.value == "leftcсx"
-
-
 async def test_on_a_small_terminal_the_panels_come_page_by_page() -> None:
     async with opened(size=(80, 24)) as (app, pilot):
         grid = app.screen.query_one(PanelGrid)
@@ -296,32 +178,6 @@ async def test_on_a_small_terminal_the_panels_come_page_by_page() -> None:
         assert shown() == first
 
 
-@pytest.mark.parametrize(
-    ("size", "words"),
-    [
-        ((80, 24), "─Сонар · стр. 1/2 (v — дальше)─"),
-        ((120, 18), "─ Сонар · страница 1 из 2 (v — дальше) ─"),
-    ],
-)
-async def test_the_title_that_tells_of_more_pages_is_whole(
-    size: tuple[int, int], words: str
-) -> None:
-    set_language("ru")
-    async with opened(size=size) as (app, _pilot):
-        first = app.screen.query_one(SonarPanel)
-        upper = app.screen._compositor.render_strips()[first.region.y].text
-        assert words in upper
-
-
-async def test_no_column_of_the_nodes_is_cut_beside_the_panels() -> None:
-    set_language("ru")
-    async with opened(size=(120, 40)) as (app, _pilot):
-        table = app.screen.query_one(NodesTable)
-        assert table.render_line(0).text.rstrip().endswith(" Память")
-        assert "● готов " in table.render_line(1).text
-        assert table.render_line(1).text.rstrip().endswith(" 17 МБ")
-
-
 @pytest.mark.parametrize("width", [30, 52, 79, 80, 120])
 @pytest.mark.parametrize("height", [1, 6, 13, 22, 38, 60])
 def test_every_panel_has_a_place_on_one_page_and_pages_are_filled(width: int, height: int) -> None:
@@ -337,21 +193,6 @@ def test_every_panel_has_a_place_on_one_page_and_pages_are_filled(width: int, he
         assert sum(lines) == height or len(page) == 1
 
 
-@pytest.mark.parametrize("first", [(60, 20), (80, 24), (120, 40)])
-async def test_panels_of_a_window_that_grew_lie_as_in_one_that_was_large(
-    first: tuple[int, int],
-) -> None:
-    def places(app: DeckApp) -> list[object]:
-        return [panel.region for panel in app.screen.query_one(PanelGrid).panels]
-
-    async with opened(size=(200, 60)) as (app, _pilot):
-        large = places(app)
-    async with opened(size=first) as (app, pilot):
-        await pilot.resize_terminal(200, 60)
-        await pilot.pause()
-        assert places(app) == large
-
-
 async def test_any_size_is_survived() -> None:
     async with opened() as (app, pilot):
         for size in ((40, 10), (20, 5), (3, 2), (59, 60), (300, 8)):
@@ -359,12 +200,6 @@ async def test_any_size_is_survived() -> None:
                 await pilot.resize_terminal(columns, rows)
                 await pilot.pause()
             assert "sonar_front" in app.screen.query_one(NodesTable).render_line(1).text
-
-
-async def test_a_terminal_too_small_for_panels_says_so() -> None:
-    async with opened(size=(50, 30)) as (app, _pilot):
-        assert app.screen.query_one("#small").display
-        assert not app.screen.query_one(PanelGrid).display
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_inner import managed_update
 from tests.tui.recorded_nodes import NODE_ROWS
-from tests.tui.snapshots import Look, SnapCompare, both_languages, settle
+from tests.tui.snapshots import settle
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 
@@ -23,14 +23,6 @@ def states(app: DeckApp) -> dict[str, str]:
     assert isinstance(app.screen, LessonDeck)
     rows = app.screen.table._rows
     return {row.cells[0].text: " ".join(row.cells[1].text.split()) for row in rows}
-
-
-@both_languages
-def test_deck_with_lifecycles(look: Look, dump_compare: SnapCompare) -> None:
-    """Camera inactive, sonar active, in place of ready; the columns stand where they stood."""
-    opener = RecordedOpener(graph=RecordedGraph(update=managed_update()))
-    app = look.app(opener=opener)
-    assert dump_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
 async def test_a_state_is_shown_in_place_of_ready_and_follows_the_node() -> None:

@@ -5,19 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
-from textual.pilot import Pilot
 
-from course.folder.folder import new_folder
-from course.lessons.catalog import SHIPPED
-from course.lessons.lesson import LessonFolder
 from launcher.profile.text import SHIPPED as PROFILES
 from launcher.status import HALTED, STUCK, NodeFault, NodeState, NodeStatus
 from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession
-from tests.tui.snapshots import Look, SnapCompare, both_languages
 from tests.waiting import until
 from text.sentences import say
 from tui.app import DeckApp
@@ -79,53 +73,19 @@ async def test_decks_node_is_exchanged_for_the_file_of_the_lessons_folder_which_
         assert opener.link.asked[-1] == ("exchange", "sonar_front", "")
 
 
-async def test_ones_own_profile_can_have_decks_node_for_a_while(course: Path) -> None:
-    made = new_folder(LessonFolder(SHIPPED / LESSON))
-    file = str(course / LESSON / "mock_sonar.py")
-    opener = lesson_opener(made.path / "lesson.yaml", file)
-    async with opened(opener) as (_app, pilot):
-        await pilot.press("u")
-        await until(asked(opener), "the exchange")
-        assert opener.link.asked == [("exchange", "sonar_front", "nodes.mock_sonar")]
-
-
-async def test_of_several_files_one_is_chosen(course: Path) -> None:
-    new_folder(LessonFolder(SHIPPED / LESSON))
-    (course / "mine").mkdir()
-    (course / "mine" / "other.py").write_text("pass\n")
-    (course / "mine" / "lesson.yaml").write_text("nodes: {sonar_front: {run: ./other.py}}\n")
-    opener = lesson_opener(PROFILES / f"{LESSON}.yaml")
-    async with opened(opener) as (app, pilot):
-        await pilot.press("u")
-        await until(lambda: isinstance(app.screen, ChoiceScreen), "the question")
-        await pilot.press("down", "enter")
-        await until(asked(opener), "the exchange")
-        assert opener.link.asked[0][2] == str(course / "mine" / "other.py")
-
-
-@both_languages
-def test_a_mistake_in_ones_own_file_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """Place and exception in the row of the node, the line and what it means below the table."""
+async def test_a_mistake_in_ones_own_file_stands_at_its_node_with_place_line_and_mend() -> None:
     file = f"/home/eve/deck-course/{LESSON}/mock_sonar.py"
-    fault = NodeFault(
-        "crash",
-        file,
-        31,
-        0,
-        f"        {MISTAKE}",
-        "AssertionError: The 'data' field must be of type 'float'",
-        say("The field {field} is a float: write {value}.0, not {value}.", field="data", value="1"),
+    words = "AssertionError: The 'data' field must be of type 'float'"
+    mend = say(
+        "The field {field} is a float: write {value}.0, not {value}.", field="data", value="1"
     )
+    fault = NodeFault("crash", file, 31, 0, f"        {MISTAKE}", words, mend)
     opener = lesson_opener(PROFILES / f"{LESSON}.yaml", file, fault)
-
-    async def settle(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        assert isinstance(pilot.app, DeckApp)
-        said = shown(pilot.app)
-        assert "mock_sonar.py:31" in said
-        assert MISTAKE in said
-
-    assert snap_compare(look.app("deck", opener), terminal_size=look.size, run_before=settle)
+    async with opened(opener, size=(80, 24)) as (app, _pilot):
+        await until(lambda: MISTAKE in shown(app), "the line")
+        told = " ".join(shown(app).split())
+        assert "mock_sonar.py:31" in told
+        assert "write 1.0, not 1." in told
 
 
 @pytest.mark.parametrize(("kind", "word"), [(STUCK, "stuck"), (HALTED, "halted")])

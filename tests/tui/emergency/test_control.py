@@ -29,7 +29,7 @@ from tests.tui.recorded import (
     lesson_update,
     sample,
 )
-from tests.tui.recorded_emergency import GATE, gate_says, held, obeyed, said, word
+from tests.tui.recorded_emergency import GATE, held, obeyed, said, word
 from tests.tui.snapshots import settle
 from text.i18n import set_language
 from tui.deck.command_line import CommandLine
@@ -55,12 +55,6 @@ async def test_space_stops_at_once_on_every_screen(screen: str) -> None:
         assert title.styles.background == Color.parse("#b00020")
 
 
-async def test_the_publisher_is_made_before_it_is_needed() -> None:
-    opener = RecordedOpener()
-    async with opened(opener):
-        assert opener.graph.prepared == [(EMERGENCY_STOP, TOPIC_TYPE, True)]
-
-
 async def test_the_stop_stays_until_it_is_released() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
@@ -71,13 +65,6 @@ async def test_the_stop_stays_until_it_is_released() -> None:
         assert opener.graph.published[-1] == GO
         await pilot.pause()
         assert "EMERGENCY" not in app.screen.query_one(TitleBar).text
-
-
-async def test_the_release_key_does_nothing_while_nothing_is_stopped() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (_app, pilot):
-        await pilot.press("ctrl+r")
-        assert opener.graph.published == []
 
 
 async def test_in_a_text_field_space_is_a_blank_and_ctrl_x_stops() -> None:
@@ -160,18 +147,6 @@ async def test_a_release_is_repeated_with_its_time_to_a_node_that_has_not_heard(
         assert len(set(link.said_ns)) == 1
 
 
-async def test_the_release_of_another_is_told() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        opener.graph.show(obeyed(word(GATE, True, NOW_S), at_s=NOW_S))
-        await settle(pilot)
-        assert "EMERGENCY STOP" in app.screen.query_one(TitleBar).text
-        opener.graph.show(obeyed(word(GATE, False, NOW_S + 5), at_s=NOW_S + 5))
-        await settle(pilot)
-        assert "EMERGENCY STOP" not in app.screen.query_one(TitleBar).text
-        assert ["released elsewhere" in told.message for told in app._notifications] == [True]
-
-
 async def test_where_ros_cannot_be_reached_the_nodes_are_stopped_instead() -> None:
     opener = RecordedOpener()
     opener.graph.publish_error = RuntimeError("no rclpy")
@@ -227,17 +202,6 @@ async def test_a_release_without_a_stop_publishes_nothing_and_says_so() -> None:
         ]
 
 
-async def test_a_stop_whose_publisher_has_gone_can_be_released() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        opener.graph.show(gate_says("emergency_stop", NOW_S))
-        await settle(pilot)
-        assert "■ EMERGENCY STOP · ^r releases" in app.screen.query_one(TitleBar).text
-        assert "^r Release" in str(app.screen.query_one(KeyBar).render())
-        await pilot.press("ctrl+r")
-        assert opener.graph.published == [GO]
-
-
 async def test_the_safety_nodes_words_stand_in_the_title() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
@@ -245,31 +209,6 @@ async def test_the_safety_nodes_words_stand_in_the_title() -> None:
         await pilot.pause()
         await pilot.pause()
         assert "⚠ Front 0.38 m" in title.states(app)[0]
-
-
-async def test_long_words_of_the_safety_node_leave_the_tabs_their_names() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, size=(80, 24)) as (app, pilot):
-        opener.graph.show(
-            held(b"\x01", "front 0.38 m, and the left wheel has told nothing for 2 s")
-        )
-        await settle(pilot)
-        line = app.screen.query_one(TitleBar).text
-        for name in (
-            "1 Deck",
-            "L Le",
-            "2 To",
-            "3 Co",
-            "4 Lo",
-            "5 Gr",
-            "6 Fl",
-            "7 De",
-            "8 Fr",
-            "9 Sp",
-        ):
-            assert name in line
-        assert "⚠ Front 0.38 m" in line
-        assert line.rstrip().endswith("…")
 
 
 @pytest.mark.parametrize(
@@ -335,16 +274,6 @@ async def test_the_stop_waits_neither_for_the_event_loop_nor_for_keys() -> None:
         assert not app.emergency.state.engaged
         await pilot.pause()
         assert "■ EMERGENCY STOP" in app.screen.query_one(TitleBar).text
-
-
-async def test_a_stop_that_nobody_hears_stops_the_nodes_whichever_thread_it_came_from() -> None:
-    deaf = tuple(row for row in TOPICS if row.name != EMERGENCY_STOP)
-    opener = RecordedOpener(graph=RecordedGraph(lesson_update(topics=deaf)))
-    async with opened(opener) as (app, pilot):
-        await asyncio.to_thread(app.stop_wheels)
-        await pilot.pause()
-        assert ("stop",) in opener.link.asked
-        assert app.emergency.state.fallback
 
 
 async def test_a_space_is_a_letter_in_a_text_field_and_stops_nothing_without_a_session() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 from textual.widgets import Static
@@ -11,13 +11,10 @@ from textual.widgets import Static
 from course.judging import ValuesDrawn
 from tests.tui.app_runs import opened
 from tests.tui.lesson.test_lesson import PASSED, SEED, SEEN, own_opener, text
-from tests.tui.snapshots import Look, SnapCompare
 from tests.waiting import until
 from tui.lesson.column import LessonColumn
 
 if TYPE_CHECKING:
-    from textual.pilot import Pilot
-
     from tui.app import DeckApp
 
 
@@ -74,25 +71,3 @@ async def test_where_there_is_no_room_it_is_not_shown_until_there_is() -> None:
         await until(lambda: app.screen.query(LessonColumn), "the column")
         await pilot.resize_terminal(80, 24)
         await until(lambda: not app.screen.query_one(LessonColumn).display, "no room for it")
-
-
-@pytest.mark.parametrize(
-    "look",
-    [
-        pytest.param(Look((120, 40), "ru"), id="120x40-ru"),
-        pytest.param(Look((200, 60), "en"), id="200x60-en"),
-    ],
-)
-def test_it_looks(look: Look, dump_compare: SnapCompare) -> None:
-    opener = own_opener(kind="crash")
-
-    async def judge(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        await pilot.press("shift+f2")
-        await until(lambda: opener.judged.asked, "the first step to be judged")
-        opener.judged.say(SEEN)
-        app: Any = pilot.app
-        await until(lambda: "→" in beside(app, "checks"), "the result")
-        await pilot.pause()
-
-    assert dump_compare(look.app("deck", opener), terminal_size=look.size, run_before=judge)

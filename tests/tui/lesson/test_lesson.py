@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shlex
-import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -28,13 +25,11 @@ from launcher.status import NodeFault, NodeState, NodeStatus
 from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession
 from tests.tui.replayed import replayed
-from tests.tui.snapshots import Look, SnapCompare, both_languages
 from tests.unit.bags import write_robot_bag
 from tests.waiting import until
 from text.i18n import set_language
 from text.sentences import say
 from tui.app import DeckApp
-from tui.lesson import words
 from tui.session.ports import SessionLink
 from tui.session.requests import OpenRequest, WholeGrade
 from tui.session.watching import watched
@@ -112,50 +107,6 @@ def seen(app: DeckApp) -> str:
     return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
 
 
-@both_languages
-def test_a_step_that_is_not_right_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """Text, the check with what was seen and where to look, file and fault; not yet passed."""
-    opener = own_opener(kind="crash")
-
-    async def judge(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        await until(lambda: opener.judged.asked, "the first step to be judged")
-        opener.judged.say(ValuesDrawn(SEED))
-        opener.judged.say(SEEN)
-        assert isinstance(pilot.app, DeckApp)
-        app = pilot.app
-        await until(lambda: "→" in text(app, "checks"), "the result")
-        await pilot.pause()
-
-    assert snap_compare(look.app("lesson", opener), terminal_size=look.size, run_before=judge)
-
-
-@both_languages
-def test_a_tick_that_has_faded_looks(
-    look: Look, snap_compare: SnapCompare, course: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The first step was right at 12:03, with another file; it is no tick, and gives no points."""
-    now = SimpleNamespace(
-        localtime=lambda at_s=AT_12_45: time.localtime(at_s), strftime=time.strftime
-    )
-    monkeypatch.setattr(words, "time", now)
-    step = {"passed": True, "points": 2, "files": "0123456789abcdef", "at": AT_12_03}
-    (course / "progress.json").write_text(json.dumps({"lessons": {LESSON: {"topic": step}}}))
-    opener = own_opener(kind="crash")
-
-    async def judge(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        await until(lambda: opener.judged.asked == ["topic"], "the first step to be judged")
-        opener.judged.say(ValuesDrawn(SEED))
-        opener.judged.say(SEEN)
-        assert isinstance(pilot.app, DeckApp)
-        app = pilot.app
-        await until(lambda: "→" in text(app, "checks"), "the result")
-        await pilot.pause()
-
-    assert snap_compare(look.app("lesson", opener), terminal_size=look.size, run_before=judge)
-
-
 async def test_at_80x24_a_task_is_seen_whole_above_its_check_however_far_one_reads() -> None:
     set_language("ru")
     opener = replace(own_opener(), task=LessonFolder(SHIPPED / LONG_TASK))
@@ -204,26 +155,6 @@ async def test_a_passed_step_stays_until_a_key_goes_on_and_is_noted() -> None:
         await until(lambda: opener.judged.asked == ["topic", "rate"], "the next step judged")
         assert text(app, "head").startswith("2/")
     assert opener.judged.closed
-
-
-async def test_a_step_that_waits_names_the_steps_it_waits_for_as_they_are_numbered() -> None:
-    opener = own_opener()
-    async with learning(opener) as (app, pilot):
-        await pilot.press("n")
-        await until(lambda: opener.judged.asked == ["topic", "rate"], "the next step judged")
-        opener.judged.say(StepResult("rate", State.WAITS, 2, (), say("waits for: topic")))
-        await until(lambda: "waits for" in text(app, "checks"), "what it waits for")
-        assert text(app, "checks") == "waits for step 1: A publisher"
-
-
-async def test_after_the_last_step_the_list_of_lessons_is_named() -> None:
-    opener = own_opener()
-    async with learning(opener) as (app, pilot):
-        await pilot.press("n", "n", "n", "n")
-        await until(lambda: "ends" in opener.judged.asked, "the last step judged")
-        opener.judged.say(replace(PASSED, id="ends"))
-        await until(lambda: "the last step" in text(app, "checks"), "the tick")
-        assert "f8 opens the list of lessons" in text(app, "checks")
 
 
 async def test_the_next_time_it_goes_on_where_the_learner_left_off(course: Path) -> None:
@@ -340,20 +271,6 @@ async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(
         assert app.focused is app.screen.query_one("#lesson-side")
         step = load_progress().step(LESSON, "topic")
         assert (step.hints, step.solution, step.passed) == (2, True, False)
-
-
-async def test_at_80x24_the_solution_has_the_screen_until_the_text_is_wanted_again(
-    course: Path,
-) -> None:
-    file = course / "mock_sonar.py"
-    file.write_text("mine = 1\n")
-    async with opened(own_opener(str(file)), "lesson", (80, 24)) as (app, pilot):
-        await until(lambda: "Your task" in seen(app), "the lesson")
-        await pilot.press("T", "T", "T")
-        await until(lambda: "- mine = 1" in seen(app), "the difference")
-        assert "class MockSonar(Node):" in seen(app)
-        await pilot.press("v")
-        await until(lambda: "Your task" in seen(app), "the text again")
 
 
 async def test_what_starts_ones_own_node_is_copied_for_a_shell(course: Path) -> None:

@@ -18,7 +18,7 @@ from launcher.errors import DomainTakenError, ProfileError, ProfileProblem
 from launcher.status import Who
 from tests.tui.app_runs import opened
 from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedOpener
-from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
+from tests.tui.snapshots import settle
 from tests.waiting import until
 from text.sentences import say
 from tui.app import DeckApp
@@ -55,21 +55,6 @@ def about(screen: Screen[Any]) -> str:
     return str(screen.query_one("#about-text", Static).render())
 
 
-@every_look
-def test_picker_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """Lessons with their numbers, the first chosen and described, the broken profile marked ✗."""
-    assert snap_compare(look.app("picker"), terminal_size=look.size, run_before=look.settle)
-
-
-@one_look
-def test_picker_with_a_session_in_the_background_looks(
-    look: Look, dump_compare: SnapCompare
-) -> None:
-    """What runs in the background stands above the lessons, is chosen, and is told apart."""
-    opener = RecordedOpener(sessions=[RUNNING])
-    assert dump_compare(look.app("picker", opener), terminal_size=look.size, run_before=look.settle)
-
-
 async def test_enter_starts_the_first_lesson_for_a_newcomer() -> None:
     opener = RecordedOpener()
     async with opened(opener, order=PICK) as (app, pilot):
@@ -103,42 +88,9 @@ async def test_the_whole_list_is_seen_at_80x24_whichever_lesson_is_chosen(last: 
         assert "Look at what runs" in shown(app)
 
 
-@pytest.mark.parametrize(("last", "top"), [("", "Look at what runs"), ("29", "14 ")])
-async def test_a_list_longer_than_the_screen_opens_with_all_above_that_there_is_room_for(
-    last: str, top: str
-) -> None:
-    many = [
-        LESSONS[0]._replace(name=f"{at:02}", lesson=f"{at:02}", path=Path(f"{at:02}.yaml"))
-        for at in range(31)
-    ]
-    app = DeckApp(RecordedOpener(known=many), PICK, "deck")
-    app.sessions.last_lesson = last
-    async with app.run_test(size=(80, 24)) as pilot:
-        await settle(pilot)
-        assert top in shown(app).splitlines()[1]
-
-
-async def test_the_first_lesson_scrolls_to_the_heading_above_it() -> None:
-    async with opened(size=(80, 12), order=PICK) as (app, pilot):
-        await pilot.press("end", "home")
-        await settle(pilot)
-        assert "Look at what runs" in shown(app)
-
-
 def shown(app: DeckApp) -> str:
     """Return what is on the screen."""
     return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
-
-
-async def test_another_lesson_is_chosen_by_keys_and_told_about() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, order=PICK) as (app, pilot):
-        await pilot.press("home", "down")
-        await pilot.pause()
-        assert "Starts 1 node: hello_node" in about(app.screen)
-        await pilot.press("enter")
-        await pilot.pause()
-        assert opener.orders[0].profile == Path("profiles/01-hello.yaml")
 
 
 async def test_one_click_chooses_a_lesson_and_two_open_it() -> None:
@@ -216,14 +168,6 @@ async def test_the_list_is_there_and_can_be_used_before_the_steps_have_been_read
         assert opener.orders == [PICK._replace(profile=OWN)]
 
 
-async def test_decks_own_nodes_can_be_started_where_there_are_files_of_ones_own() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, order=PICK) as (_app, pilot):
-        await pilot.press("home", "down", "down", "u")
-        await settle(pilot)
-        assert opener.orders == [PICK._replace(profile=LESSONS[1].path)]
-
-
 async def test_a_key_makes_the_folder_of_a_lesson_and_starts_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -269,21 +213,6 @@ async def test_a_domain_that_is_taken_is_told_before_and_another_is_offered() ->
         assert app.feed.session is SESSION
 
 
-async def test_it_may_be_started_beside_the_other() -> None:
-    opener = RecordedOpener(refusal=taken(can_share=True))
-    async with opened(opener, order=PICK) as (app, pilot):
-        await pilot.press("enter")
-        await settle(pilot)
-        opener.refusal = None
-        await pilot.press("s")
-        await settle(pilot)
-        assert [(order.domain, order.beside) for order in opener.orders] == [
-            (42, False),
-            (42, True),
-        ]
-        assert app.feed.session is SESSION
-
-
 async def test_it_may_not_where_both_have_the_same_nodes_and_need_not_be_started() -> None:
     opener = RecordedOpener(refusal=taken(can_share=False))
     async with opened(opener, order=PICK) as (app, pilot):
@@ -309,13 +238,6 @@ async def test_one_that_was_named_and_is_not_to_start_ends_with_words() -> None:
         assert "`--domain 43` is free" in app.sessions.parting_words
 
 
-@one_look
-def test_domain_taken_looks(look: Look, dump_compare: SnapCompare) -> None:
-    """A dialog that names the session there and a free domain; three keys answer it."""
-    opener = RecordedOpener(refusal=taken(can_share=True))
-    assert dump_compare(look.app("deck", opener), terminal_size=look.size, run_before=look.settle)
-
-
 @pytest.mark.parametrize("language", ["en", "ru"])
 async def test_a_lesson_that_cannot_be_opened_says_why_and_the_picker_is_back(
     language: str,
@@ -333,10 +255,3 @@ async def test_a_lesson_that_cannot_be_opened_says_why_and_the_picker_is_back(
         await pilot.press("escape")
         await pilot.pause()
         assert isinstance(app.screen, PickerScreen)
-
-
-async def test_all_words_change_with_the_language() -> None:
-    async with opened(order=PICK) as (app, pilot):
-        await pilot.press("f9")
-        await pilot.pause()
-        assert "Запускает 1 узел" in about(app.screen)

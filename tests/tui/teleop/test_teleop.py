@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, cast
 
 import pytest
@@ -16,33 +15,30 @@ from graph.data import GraphUpdate
 from launcher.events import ClosedEvent
 from robot.safety.gate_report import gate_in
 from robot.topics import DRIVE, DRIVE_TELEOP, SAFETY_STATE
-from tests.tui.app_runs import LESSON_9, opened
+from tests.tui.app_runs import opened
 from tests.tui.recorded import (
     NOW_S,
     TOPICS,
     RecordedGraph,
     RecordedOpener,
-    RecordedSession,
     lesson_samples,
     lesson_update,
     sample,
     topic,
 )
 from tests.tui.recorded_emergency import GATE, obeyed, word
-from tests.tui.snapshots import Look, SnapCompare, every_look
 from tests.waiting import until
 from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.emergency.gate import gate_words
-from tui.teleop.actions import OpenTeleop
 from tui.teleop.keys import FIRST_HOLD_S, Move
 from tui.teleop.route import DRIVE_TYPE
 from tui.teleop.widget import TeleopPanel
 from tui.terminal.stall_detector import DRAIN_S
 
 if TYPE_CHECKING:
-    from graph.replay.replay import Replay
+    pass
 
 STARTED_S = 1.0
 """Long before any key is pressed: a key that is stamped later counts as pressed now."""
@@ -274,26 +270,6 @@ async def test_while_stopped_the_keys_ask_for_nothing() -> None:
         assert len(opener.graph.held) == 1
 
 
-async def test_what_cannot_be_published_is_told() -> None:
-    opener = opener_of(gated())
-    opener.graph.publish_error = RuntimeError("/drive_teleop carries \x1b[31mother")
-    async with driving(opener) as (_app, pilot, panel):
-        await pilot.press("up")
-        await pilot.pause()
-        await pilot.pause()
-        assert "/drive_teleop carries ␛[31mother" in text_of(panel)
-
-
-async def test_it_is_offered_only_where_there_is_a_robot() -> None:
-    app = DeckApp(RecordedOpener(), LESSON_9)
-    screen = cast("LessonDeck", SimpleNamespace(feed=app.feed))
-    assert not OpenTeleop.possible(screen)
-    app.feed.link = RecordedSession()
-    assert OpenTeleop.possible(screen)
-    app.feed.replay = cast("Replay", object())
-    assert not OpenTeleop.possible(screen)
-
-
 @pytest.mark.parametrize(
     ("values", "words"),
     [
@@ -323,28 +299,7 @@ def test_the_gate_is_told_in_the_screens_words(values: dict[str, str], words: st
     assert gate_words(gate) == words
 
 
-@pytest.mark.parametrize(
-    "value",
-    [{}, {"status": None}, {"status": [None]}, {"status": [{"name": "other"}]}],
-)
-def test_what_is_no_word_of_the_gate_is_passed_over(value: dict[str, Any]) -> None:
-    assert gate_in(value) is None
-
-
 SLOWED = safety(front_m="0.700", allowed="0.40", source="/drive_teleop")
-
-
-@every_look
-def test_driving_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """Asked 0.20 m/s in a left curve, 0.08 allowed: slowed to 40 %, said in words; limits below."""
-
-    async def drive_on(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        await pilot.press("t", "up", "left")
-        await pilot.pause()
-
-    app = look.app(opener=opener_of(gated(SLOWED)))
-    assert snap_compare(app, terminal_size=look.size, run_before=drive_on)
 
 
 async def test_during_a_cut_the_bar_shows_no_old_values_and_says_that_nothing_comes() -> None:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
-from textual.pilot import Pilot
 
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedOpener
-from tests.tui.snapshots import Look, SnapCompare, both_languages, settle
+from tests.tui.snapshots import settle
 from text.i18n import LANGUAGES, set_language
 from tui.app import DeckApp
 from tui.picker.screen import PickerScreen
@@ -93,18 +90,3 @@ async def test_every_page_fits_80x24(language: str) -> None:
             assert scroll.max_scroll_y == 0, shown(app)
             await pilot.press("n")
             await pilot.pause()
-
-
-@both_languages
-def test_the_third_page_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """A box over the list: title, page number, sentences, keys with what they do."""
-
-    async def turn(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        assert isinstance(pilot.app, DeckApp)
-        pilot.app.show_tour()
-        await pilot.pause()
-        await pilot.press("enter", "enter")
-        await pilot.pause()
-
-    assert snap_compare(look.app("picker"), terminal_size=look.size, run_before=turn)

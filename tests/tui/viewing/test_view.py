@@ -8,7 +8,6 @@ import pytest
 from textual.pilot import Pilot
 
 from tests.tui.app_runs import opened
-from tests.tui.snapshots import Look, SnapCompare, one_look
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.viewing import view as viewing
@@ -103,13 +102,6 @@ async def test_it_ends_by_a_key_and_can_be_opened_again(starter: Starter) -> Non
         assert len(starter.made) == 2
 
 
-async def test_it_ends_with_the_session(starter: Starter) -> None:
-    async with opened() as (app, pilot):
-        await open_view(app, pilot)
-        await pilot.press("escape", "f8")
-        await until(lambda: starter.made[0].ended, "its end")
-
-
 async def test_what_is_missing_is_said_and_the_next_key_tries_again(starter: Starter) -> None:
     starter.refusal = "Rerun is not installed; to install it: make view"
     async with opened() as (app, pilot):
@@ -130,22 +122,3 @@ async def test_a_viewer_that_broke_is_told_of(starter: Starter) -> None:
             lambda: any("ended with code 1" in one.message for one in app._notifications),
             "the words",
         )
-
-
-@one_look
-@pytest.mark.parametrize("where", ["window", "page", "ssh"])
-def test_look(look: Look, dump_compare: SnapCompare, starter: Starter, where: str) -> None:
-    """The dialog: a window, a page of this machine, and a page behind SSH with its command."""
-    starter.where = {
-        "window": OpenedView(""),
-        "page": PAGE,
-        "ssh": OpenedView(PAGE.url, PAGE.ports, TUNNEL),
-    }[where]
-
-    async def show(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        assert isinstance(pilot.app, DeckApp)
-        await open_view(pilot.app, pilot)
-        pilot.app.clear_notifications()
-
-    assert dump_compare(look.app(), terminal_size=look.size, run_before=show)
