@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 from contextlib import AbstractAsyncContextManager
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from textual.widgets import Static
 
 from graph.data import Sample
-from robot.frames.lines import FrameLine
-from robot.frames.protocols import FrameKind
-from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession, sample
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_devices import (
     AT_S,
-    STATUSES,
-    foreign,
-    frames,
     of_chassis,
     of_sonar,
-    reported,
     status,
     update,
     with_drivers,
@@ -30,13 +23,9 @@ from tests.waiting import until
 from tui import clock
 from tui.devices import words as devices_words
 from tui.devices.diagnostics import DiagnosticsView, StatusFacts
-from tui.devices.frame_rows import KEPT
 from tui.devices.screen import DevicesScreen
 from tui.frame.key_bar import KeyBar
-from tui.log_view.ring import SLACK
 from tui.widgets.tab_line import TabLine
-
-ESCAPE = "\x1b[31m[bold red]\x00\u202e"
 
 
 class DevicesStage(ScreenStage[DevicesScreen]):
@@ -186,30 +175,6 @@ async def test_why_there_is_no_driver(monkeypatch: pytest.MonkeyPatch) -> None:
         assert "chassis, sonar_front have not said anything" in at.empty()
 
 
-async def test_what_others_put_into_it_does_no_harm() -> None:
-    async with stage() as at:
-        bad = FrameLine(AT_S, "in", FrameKind.FRAME, ESCAPE.encode(), ESCAPE)
-        await at.hear(
-            status(ESCAPE, 7, ESCAPE, port=ESCAPE, errors="nan", bytes_in_per_s="x" * 9999),
-            foreign("", "x"),
-            sample("/diagnostics", "other/msg/Type", {"status": 5}),
-            sample("/diagnostics", "other/msg/Type", {"status": [{"name": "x"}, None]}),
-            frames("chassis", [bad]),
-            replace(of_sonar(1.0), topic="/chassis/frames", value={"data": "{}\nno json"}),
-        )
-        assert at.lines()[-1].startswith("␛[31m[bold red]␀")
-        assert any("␛[31m[bold red]␀" in row for row in at.drivers())
-        assert len(at.drivers()) == len(STATUSES) + 2
-        await at.press("end", "w", "b", "v", "b", "b")
-        at.screen.table.choose("chassis")
-        await at.pilot.pause()
-        many = [FrameLine(AT_S, "in", FrameKind.FRAME, b"x" * 9, "x") for _ in range(200)]
-        for _batch in range(20):
-            at.graph.show(update(frames("chassis", many)))
-            await at.pilot.pause()
-        assert KEPT <= len(at.lines()) <= KEPT * SLACK
-
-
 async def test_the_second_tab_has_what_everybody_says_the_worst_on_top() -> None:
     async with stage() as at:
         await at.press("right")
@@ -241,19 +206,3 @@ async def test_silence_makes_stale_and_stands_in_the_history(
         facts = at.screen.query_one(StatusFacts)
         await until(lambda: len(facts._rows) > 2 and "stale" in facts._rows[1].cells[0].text, "it")
         assert "warning" in facts._rows[2].cells[0].text
-
-
-async def test_thousands_of_statuses_with_hostile_names_do_not_break_it() -> None:
-    async with stage() as at:
-        samples = [
-            reported(f"{ESCAPE}/{number}: x", 77, ESCAPE, nan="nan") for number in range(300)
-        ]
-        at.graph.show(update(*samples))
-        await at.press("right")
-        view = at.screen.query_one(DiagnosticsView)
-        await until(lambda: len(view.names._rows) > 600, "all of them")
-        assert "\x1b" not in "".join(row.cells[0].text for row in view.names._rows)
-        await at.press("down", "down", "enter")
-        assert at.screen.query_one(StatusFacts).has_focus
-        await at.press("escape")
-        assert view.names.has_focus

@@ -18,8 +18,6 @@ from tests.waiting import until
 from tui.actions import REGISTRY
 from tui.app import DeckApp
 from tui.devices.screen import DevicesScreen
-from tui.help.page import Page
-from tui.help.screen import HelpScreen
 
 MOCK = "/mock_robot"
 TROUBLES = ("devices.unplug", "devices.noise", "devices.silence", "devices.battery")
@@ -104,20 +102,3 @@ async def test_only_a_device_that_is_simulated_can_have_trouble_made() -> None:
         await settle(pilot)
         await choose(app, pilot, "chassis")
         assert possible(app) == []
-
-
-async def test_beside_a_real_robot_no_trouble_is_possible() -> None:
-    async with opened(with_drivers(), "devices") as (app, pilot):
-        await choose(app, pilot, "chassis")
-        assert possible(app) == []
-
-
-async def test_help_names_every_trouble() -> None:
-    recorded, _graph = simulation()
-    async with opened(recorded, "devices") as (app, pilot):
-        await pilot.press("f1")
-        await pilot.pause()
-        assert isinstance(app.screen, HelpScreen)
-        page = " ".join(app.screen.query_one(Page).text.split())
-        for name in TROUBLES:
-            assert REGISTRY[name].tooltip in page

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from contextlib import AbstractAsyncContextManager
-from dataclasses import replace
 from typing import Any
-
-from textual.widgets import Static
 
 from launcher.events import LogEvent
 from launcher.status import LogLine, Severity
-from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession, line
+from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_brain import brain_state, no_answer_yet
 from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines, word
 from tests.tui.recorded_flow import at as told
 from tests.tui.screen_stage import ScreenStage, on_stage
-from tui import clock
 from tui.flow.chains import Lane
 from tui.flow.reading import TOPICS
 from tui.flow.screen import FlowScreen
@@ -103,16 +99,6 @@ async def test_a_kind_can_be_hidden_and_all_shown_again() -> None:
         assert any("/audio/mic_raw" in row for row in at.rows())
 
 
-async def test_the_logs_of_other_nodes_come_when_asked() -> None:
-    async with stage() as at:
-        await at.hear(*voice(0.0))
-        at.session.say(LogEvent((line("sonar_front", 1, "Distance: 2.35 m", at_s=0.4),)))
-        await at.pilot.pause()
-        assert not any("sonar_front" in row for row in at.rows())
-        await at.press("F")
-        assert any("sonar_front" in row for row in at.rows())
-
-
 async def test_paused_it_stands_still_and_loses_nothing() -> None:
     async with stage() as at:
         await at.hear(*voice(0.0))
@@ -134,34 +120,6 @@ async def test_an_utterance_is_copied_as_text() -> None:
         assert "a person" in copied
 
 
-async def test_hostile_words_are_drawn_as_they_are() -> None:
-    async with stage() as at:
-        await at.hear(word("[b]left[/b] \x1b[31m", 9.0))
-        assert any("[b]left[/b] ␛[31m" in row for row in at.rows())
-
-
-async def test_it_speaks_another_language_at_once() -> None:
-    async with stage() as at:
-        await at.hear(*command(9.0))
-        await at.press("f9")
-        assert any("рад, влево" in row for row in at.rows())
-        await at.press("f9")
-
-
-async def test_it_says_from_when_on_it_has_collected() -> None:
-    async with stage() as at:
-        shown = str(at.screen.query_one("#flow-lanes", Static).render())
-        # By the time of what has come, which in a replay is not that of the look.
-        since = clock.time_of_day(min(one.received_s for one in BEFORE))
-        assert f"collected since {since}" in shown.replace("\N{NO-BREAK SPACE}", " ")
-        await at.hear(*voice(5.0))
-        await at.hear(*(replace(one, received_s=one.received_s - 60) for one in BEFORE))
-        earlier = clock.time_of_day(min(one.received_s for one in BEFORE) - 60)
-        assert since != earlier
-        again = str(at.screen.query_one("#flow-lanes", Static).render())
-        assert earlier in again
-
-
 async def test_a_model_s_answer_is_named_with_what_it_took() -> None:
     """Once for the chain, however often it is reported, and not by whoever looks at pictures."""
     async with stage() as at:
@@ -173,13 +131,6 @@ async def test_a_model_s_answer_is_named_with_what_it_took() -> None:
         assert not any("/brain_state" in row for row in at.rows())
         await at.press("y")
         assert took in at.app.clipboard
-
-
-async def test_what_was_answered_before_belongs_to_no_later_chain() -> None:
-    async with stage() as at:
-        await at.hear(told(brain_state(), -3.0))
-        await at.hear(*voice(0.0), told(brain_state(), 0.3))
-        assert not any("412 + 86" in row for row in at.rows())
 
 
 async def test_what_the_composer_sent_is_named_with_what_it_took() -> None:

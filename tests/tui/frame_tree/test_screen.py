@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from contextlib import AbstractAsyncContextManager
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from rosbags.rosbag2 import StoragePlugin, Writer
 from textual.widgets import Static
 
-from graph.data import EndpointInfo, TopicRow, Trouble
-from graph.frames.reading import TF_MESSAGE
-from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession
+from graph.data import TopicRow, Trouble
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_frames import (
-    FOREIGN,
     ROBOT,
     TROUBLES,
     frame,
@@ -24,17 +19,11 @@ from tests.tui.recorded_frames import (
     topics,
     with_frames,
 )
-from tests.tui.replayed import replayed
 from tests.tui.screen_stage import ScreenStage, on_stage
-from tests.unit.bags import BEGIN_NS, SECOND_NS, store
-from tests.unit.transform_messages import Sent, cdr
-from tests.waiting import until
 from tui.frame_tree.screen import FramesScreen
 
 if TYPE_CHECKING:
     from graph.data import FrameRow
-
-ESCAPE = "\x1b[31m[bold red]\x00\u202e"
 
 
 class FramesStage(ScreenStage[FramesScreen]):
@@ -107,14 +96,6 @@ async def test_enter_marks_what_the_others_are_given_in_and_takes_it_back() -> N
         assert not any("◎" in row for row in at.tree())
 
 
-async def test_a_marked_frame_that_is_heard_of_no_more_is_forgotten() -> None:
-    async with stage() as at:
-        await at.press("down", "down", "enter", "up")
-        assert "base_link in camera_link" in at.pair
-        await at.hear(ROBOT[0])
-        assert "base_link in odom" in at.pair
-
-
 async def test_the_transform_is_copied_with_what_publishes_it() -> None:
     async with stage() as at:
         await at.press("down", "down", "y")
@@ -162,27 +143,6 @@ async def test_the_filter_leaves_what_matches_and_what_is_above_it() -> None:
         assert at.screen.chosen == "head_tilt"
 
 
-async def test_the_filter_finds_what_a_node_that_has_gone_has_published() -> None:
-    async with stage(with_frames(TROUBLES)) as at:
-        await at.press("slash", *"robot_state sonar")
-        assert "sonar_front" in names(at)
-        assert "camera_link" not in names(at)
-
-
-async def test_a_filter_that_nothing_fits_says_so_and_is_kept_as_frames_come() -> None:
-    async with stage() as at:
-        await at.press("slash", *"lidar")
-        assert at.tree() == ["nothing matches the filter"]
-        assert at.pair == "no frame"
-        await at.press("enter", "enter", "y", "n")
-        await at.hear(*ROBOT, frame("base_link", "lidar_link"))
-        assert names(at) == ["odom", "base_link", "lidar_link"]
-        await at.hear()
-        await at.press("escape", "slash")
-        await at.hear(*ROBOT)
-        assert len(names(at)) == 1 + len(ROBOT)
-
-
 @pytest.mark.parametrize(
     ("heard", "cell", "line"),
     [
@@ -207,22 +167,6 @@ async def test_who_publishes_a_frame_is_named_or_who_may_do_so(
         assert at.pair.endswith(f" {line}")
 
 
-async def test_a_recording_is_said_not_to_know_the_publishers(tmp_path: Path) -> None:
-    types = store()
-    with Writer(tmp_path / "drive", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-        static = writer.add_connection("/tf_static", TF_MESSAGE, typestore=types)
-        for second in (0, 60):
-            raw = cdr(Sent("base_link", "camera_link"))
-            writer.write(static, BEGIN_NS + second * SECOND_NS, raw)
-    async with replayed(tmp_path / "drive") as (app, pilot, replay):
-        at = FramesStage(app, pilot, with_frames())
-        await at.press("8")
-        await until(lambda: any("camera_link" in row for row in at.tree()), "the frame")
-        await at.press("down")
-        assert at.pair.endswith("a recording does not tell which node published it")
-        assert app.feed.replay is replay
-
-
 async def test_n_goes_from_one_finding_to_the_next_and_shows_its_words_first() -> None:
     async with stage(with_frames(TROUBLES)) as at:
         seen = []
@@ -236,41 +180,6 @@ async def test_n_goes_from_one_finding_to_the_next_and_shows_its_words_first() -
         before = at.screen.chosen
         await at.press("N", "n")
         assert at.screen.chosen == before
-
-
-async def test_topics_tell_of_frames_that_are_elsewhere_or_unknown() -> None:
-    async with stage(with_frames(ROBOT, (*topics("camera_lnk"), FOREIGN))) as at:
-        assert "/camera/image: the header names camera_lnk" in at.findings
-        assert "frames come on /arm/tf too, which nobody here listens to" in at.findings
-        volatile = EndpointInfo("/camera", "tf2_msgs/msg/TFMessage", "reliable", "volatile")
-        rows = (replace(topics()[2], published_by=(volatile,)),)
-        await at.hear(*ROBOT, rows=rows)
-        assert "/camera: publishes /tf_static without transient_local" in at.findings
-
-
-async def test_frames_without_a_common_time_are_shown_with_a_remark() -> None:
-    old = replace(ROBOT[3], newest=replace(ROBOT[3].newest, stamp_s=NOW_S - 60.0), age_s=60.0)
-    async with stage(with_frames((ROBOT[0], old))) as at:
-        await at.press("down", "down")
-        assert "head_pan in odom x, y, z, m: 2.000 1.050 0.200" in at.pair
-        assert "the newest of each: where base_link was is known for" in at.pair
-
-
-async def test_two_trees_have_no_transform_and_nothing_to_copy() -> None:
-    async with stage(with_frames((ROBOT[0], frame("arm_base", "gripper")))) as at:
-        await at.press("enter", "down", "down", "down")
-        assert "nothing joins" in at.pair
-        await at.press("y")
-        assert at.app.clipboard == ""
-
-
-async def test_hostile_frames_draw_nothing_but_text() -> None:
-    deep = [frame(f"joint_{number}", f"joint_{number + 1}") for number in range(300)]
-    odd = frame(ESCAPE, "x" * 200, (math.inf, 0.0, 0.0), publishers=(ESCAPE,))
-    async with stage(with_frames((*deep, frame("a", "b"), frame("b", "a"), odd))) as at:
-        await at.press("end", "enter", "home", "G", "n", "alt+x", "y")
-        drawn = "".join((*at.tree(), at.pair, at.findings, at.app.clipboard))
-        assert not {"\x1b", "\x00", "\u202e"} & set(drawn)
 
 
 @pytest.mark.parametrize(
@@ -292,13 +201,3 @@ async def test_without_frames_it_says_what_is_missing(
         await at.press("y", "enter", "alt+x", "n", "Y")
         await at.hear(*ROBOT)
         assert at.row("base_link")
-
-
-async def test_the_tree_and_what_is_beside_it_can_be_enlarged() -> None:
-    async with stage() as at:
-        await at.press("z")
-        assert at.screen.maximized is at.screen.table
-        await at.press("z", "tab", "z")
-        enlarged = at.screen.maximized
-        assert enlarged is not None
-        assert enlarged.id == "frames-side"

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
 from textual.pilot import Pilot
 
 from tests.tui.recorded import RecordedOpener
-from tests.tui.recorded_space import space_update
-from tests.tui.replayed import replayed
-from tests.tui.space.stage_runs import at_work, robot_in_a_room, shown
-from tests.tui.space.test_screen import drag, show
-from tests.unit.bags import write_bag
+from tests.tui.space.stage_runs import at_work, robot_in_a_room
+from tests.tui.space.test_screen import drag
 from tui.space.screen import SpaceScreen
 from tui.space.view import SpaceView
 
@@ -74,19 +69,6 @@ async def test_a_goal_is_published_by_press_and_drag() -> None:
         assert "Published on /goal_pose" in told(pilot)
 
 
-async def test_the_arrow_is_shown_while_dragging() -> None:
-    async with at_work() as (screen, pilot):
-        await pilot.press("alt+g")
-        await pilot.mouse_down(SpaceView, offset=START)
-        await pilot.hover(SpaceView, offset=END)
-        await pilot.pause()
-        assert screen.view.aim is not None
-        assert screen.view.aim.heading_rad == pytest.approx(0.0)
-        assert "heading 0°" in banner(screen)
-        await pilot.press("escape")
-        await pilot.mouse_up(SpaceView, offset=END)
-
-
 async def test_an_initial_pose_is_published_with_the_covariance_of_rviz() -> None:
     opener = robot_in_a_room()
     async with at_work(opener) as (_screen, pilot):
@@ -125,20 +107,6 @@ async def test_nothing_is_published_unless_armed() -> None:
         await pilot.click(SpaceView, offset=START)
         await pilot.pause()
         assert goals(opener) == []
-
-
-async def test_a_stray_click_moves_the_cross_hair_and_publishes_nothing() -> None:
-    opener = robot_in_a_room()
-    async with at_work(opener) as (screen, pilot):
-        await pilot.press("alt+g")
-        await pilot.pause()
-        place = place_at(screen, START)
-        await pilot.click(SpaceView, offset=START)
-        await pilot.pause()
-        assert goals(opener) == []
-        assert screen.view.aim is not None
-        assert (screen.view.aim.x_m, screen.view.aim.y_m) == pytest.approx(place)
-        assert banner(screen).startswith("GOAL → /goal_pose")
 
 
 async def test_escape_and_another_screen_disarm() -> None:
@@ -180,54 +148,3 @@ async def test_the_emergency_stop_between_drag_and_publishing_wins() -> None:
         await pilot.pause()
         assert goals(opener) == []
         assert not screen.armed
-
-
-async def test_there_is_no_goal_in_a_recording(tmp_path: Path) -> None:
-    async with replayed(write_bag(tmp_path / "walk"), "space") as (app, pilot, _replay):
-        await pilot.press("9")
-        await pilot.pause()
-        screen = shown(app)
-        assert screen.view.recorded
-        await pilot.press("alt+g")
-        await pilot.pause()
-        assert not screen.armed
-        assert "This is a recording" in told(pilot)
-
-
-async def test_there_is_no_goal_without_a_frame() -> None:
-    empty = replace(space_update(None, ()), topics=(), samples={})
-    opener = robot_in_a_room(empty)
-    async with at_work(opener) as (screen, pilot):
-        await pilot.press("alt+g")
-        await pilot.pause()
-        assert not screen.armed
-        assert "No frame is known yet" in told(pilot)
-
-
-async def test_what_cannot_be_published_is_reported() -> None:
-    opener = robot_in_a_room()
-    opener.graph.publish_error = RuntimeError("no such type")
-    async with at_work(opener) as (screen, pilot):
-        await pilot.press("alt+g", "enter")
-        await pilot.pause()
-        await pilot.pause()
-        assert "no such type" in told(pilot)
-        assert screen.stage.sent is None
-
-
-async def test_the_goal_is_drawn_until_the_graph_shows_it() -> None:
-    opener = robot_in_a_room()
-    async with at_work(opener) as (screen, pilot):
-        await pilot.press("alt+g", "enter")
-        await pilot.pause()
-        assert screen.stage.sent is not None
-        await show(pilot, opener.graph, space_update())
-        assert screen.stage.sent is None
-
-
-async def test_from_the_side_arming_looks_from_above() -> None:
-    async with at_work() as (screen, pilot):
-        await pilot.press("alt+v", "alt+g")
-        await pilot.pause()
-        assert screen.view.camera.angle.value == "above"
-        assert screen.armed
