@@ -6,7 +6,7 @@ import random
 import string
 
 import pytest
-from textual.events import Key, MouseEvent
+from textual.events import Key
 from textual.message import Message
 
 from tui.terminal.alt_keys import ESC, AltKeyParser
@@ -44,12 +44,6 @@ def test_escape_alone_is_escape_and_a_bare_letter_is_none_of_it(
     monkeypatch.setattr("textual._parser.get_time", lambda: float("inf"))
     assert names(list(parser.tick())) == ["escape"]
     assert names(list(parser.feed("v"))) == ["v"]
-
-
-def test_the_mouse_is_told_where_it_is() -> None:
-    (moved,) = AltKeyParser().feed("\x1b[<35;10;4M")
-    assert isinstance(moved, MouseEvent)
-    assert (moved.x, moved.y) == (9, 3)
 
 
 @pytest.mark.parametrize(

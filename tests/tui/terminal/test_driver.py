@@ -142,20 +142,6 @@ def test_no_thread_spins_at_the_end_of_input(stuck: Callable[[str], Stuck]) -> N
     assert app.process.poll() is None
 
 
-def test_the_end_of_a_line_is_not_the_end_of_the_terminal(stuck: Callable[[str], Stuck]) -> None:
-    app = stuck("rest")
-    ours = termios.tcgetattr(app.program)
-    theirs = termios.tcgetattr(app.program)
-    theirs[3] |= termios.ICANON
-    theirs[6][termios.VEOF] = b"\x04"
-    termios.tcsetattr(app.program, termios.TCSANOW, theirs)
-    app.type(b"\x04")
-    wait_until(lambda: not select.select([app.program], [], [], 0)[0], "the end read")
-    termios.tcsetattr(app.program, termios.TCSANOW, ours)
-    app.type(b"k")
-    app.wait_for("key k")
-
-
 def test_it_survives_a_storm_of_signals_while_it_draws_on_a_stalled_terminal(
     stuck: Callable[[str], Stuck],
 ) -> None:

@@ -119,30 +119,7 @@ def test_a_paste_that_is_slow_may_end_late_without_a_stop() -> None:
     assert typist.type(b"d" + END) == 0
 
 
-def test_a_paste_that_ends_takes_its_doubt_with_it() -> None:
-    typist = Typist()
-    assert typist.type(PASTE + b"a b") == 0
-    assert not typist.wait(0.5 * UNFINISHED_S)
-    assert typist.type(b"c" + END) == 0
-    assert not typist.wait()
-
-
-def test_pieces_end_with_their_key_and_are_the_whole() -> None:
-    pieces = list(Typist().scan.cut(b"ab cd\x18e"))
-    assert pieces == [(b"ab ", True), (b"cd\x18", True), (b"e", False)]
-
-
 def test_another_key_of_the_users_own() -> None:
     typist = Typist("f12")
     assert typist.type(b"a b\x18") == 0
     assert typist.type(b"\x1b[24~") == 1
-
-
-def test_how_long_a_paste_has_been_silent_is_known() -> None:
-    typist = Typist()
-    typist.type(PASTE + b"x")
-    typist.wait(2.0)
-    assert typist.scan.pasting_s == 2.0
-    typist.scan.end_paste()
-    assert typist.scan.pasting_s == 0.0
-    assert typist.type(SPACE) == 1

@@ -41,12 +41,6 @@ def read_all(fd: int, until: str) -> str:
     return text
 
 
-def test_what_is_written_arrives(line: tuple[int, int]) -> None:
-    own, program = line
-    Terminal(program, lambda: None).write("Путь свободен")
-    assert "Путь свободен" in read_all(own, "свободен")
-
-
 def test_a_stalled_terminal_never_makes_the_writer_wait(line: tuple[int, int]) -> None:
     own, program = line
     caught_up = threading.Event()
@@ -80,16 +74,6 @@ def test_a_stalled_terminal_never_makes_the_writer_wait(line: tuple[int, int]) -
     finally:
         reading.set()
         reader.join(10)
-
-
-def test_more_than_may_wait_at_once_stalls_for_a_moment_only(line: tuple[int, int]) -> None:
-    own, program = line
-    caught_up = threading.Event()
-    terminal = Terminal(program, caught_up.set)
-    terminal.write("x" * (2 * MOST_WAITING))
-    assert caught_up.wait(20), "nobody was told that the terminal takes again"
-    terminal.write("on we go")
-    assert "on we go" in read_all(own, "on we go")
 
 
 def test_it_is_behind_until_the_terminal_has_taken_all(line: tuple[int, int]) -> None:
@@ -153,18 +137,6 @@ def test_the_descriptors_are_given_back_and_an_empty_file_is_removed(tmp_path: P
     assert [os.fstat(fd).st_ino for fd in (1, 2)] == before
     assert not path.exists()
     assert sys.__stderr__ is not None
-
-
-def test_a_file_of_that_name_is_somebodys_and_stays(tmp_path: Path) -> None:
-    path = tmp_path / "screen.log"
-    path.write_text("mine")
-    (tmp_path / "screen-2.log").symlink_to(tmp_path / "elsewhere")
-    with StrayOutput(path) as stray:
-        os.write(2, b"output\n")
-    assert path.read_text() == "mine"
-    assert not (tmp_path / "elsewhere").exists()
-    assert stray.path == tmp_path / "screen-3.log"
-    assert stray.path.read_text() == "output\n"
 
 
 def test_a_flood_past_the_screen_neither_fills_the_disk_nor_memory(tmp_path: Path) -> None:

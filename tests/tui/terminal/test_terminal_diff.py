@@ -72,14 +72,6 @@ def test_a_terminal_shows_the_same_as_without_sparing(seed: int) -> None:
         assert spared.shows_after(diff.changes(frame)) == plain.shows_after(frame)
 
 
-def test_a_frame_that_changes_nothing_sends_nothing() -> None:
-    diff = TerminalDiff()
-    diff.forget(WIDTH, HEIGHT)
-    frame = frame_of([(0, 0, STYLES[1], "Distance 1.29 m")])
-    assert "Distance" in diff.changes(frame)
-    assert diff.changes(frame) == ""
-
-
 def test_of_a_line_that_changes_only_the_new_cells_are_sent() -> None:
     diff = TerminalDiff()
     diff.forget(WIDTH, HEIGHT)
@@ -96,10 +88,3 @@ def test_after_the_other_screen_everything_is_sent_anew() -> None:
     diff.changes(frame)
     diff.changes("\x1b[?1049h")
     assert "Distance" in diff.changes(frame)
-
-
-def test_modes_and_clipboard_pass_unchanged() -> None:
-    diff = TerminalDiff()
-    diff.forget(WIDTH, HEIGHT)
-    for sequence in ("\x1b[?2026h", "\x1b[?1000h", "\x1b]52;c;0JTQtQ==\a", "\x1b[>13u"):
-        assert diff.changes(sequence).endswith(sequence)

@@ -55,20 +55,6 @@ def test_each_policy_has_its_own_words(
     assert misfit_words(values) == APART + why + way_out
 
 
-def test_further_pairs_are_counted() -> None:
-    one = facts(policy="durability", offered="volatile", requested="transient_local")
-    assert misfit_words({**one, "more": "2"}).endswith("ask for volatile. … and 2 more pairs")
-    assert misfit_words(one).endswith("ask for volatile.")
-
-
-def test_hostile_names_are_shown_harmlessly() -> None:
-    words = misfit_words(
-        facts(policy="reliability", offered="best_effort", requested="reliable")
-        | {"publisher": "/\x1b[31m{x}[b]"}
-    )
-    assert "␛[31m{x}[b]" in words
-
-
 def test_every_policy_that_is_found_is_told_in_russian_too() -> None:
     offer = EndpointInfo("/p", "t", "best_effort", "volatile", liveliness="automatic")
     asked = EndpointInfo(
