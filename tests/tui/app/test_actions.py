@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 import string
-from typing import Any
 
-import pytest
 from textual._ansi_sequences import ANSI_SEQUENCES_KEYS
-from textual.binding import Binding
-from textual.pilot import Pilot
 
 from launcher.status import NodeState
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedOpener
-from tests.tui.snapshots import Look, SnapCompare, one_look
-from text.i18n import N_
-from tui.actions import REGISTRY, Action, bindings
+from tui.actions import REGISTRY
 from tui.app import DeckApp
 from tui.frame.key_bar import KeyBar
 from tui.help.page import Page
 from tui.help.screen import HelpScreen
-from tui.lifecycle.stopping import StoppingScreen
 from tui.screens import every_action
 from tui.teleop.actions import MoveAction
 
@@ -36,79 +29,12 @@ def help_text(app: DeckApp) -> str:
     return " ".join(app.screen.query_one(Page).text.split())
 
 
-@one_look
-def test_help_looks(look: Look, dump_compare: SnapCompare) -> None:
-    """What the Deck shows, its keys, the keys of every screen; each with what it does."""
-
-    async def ask(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        await pilot.press("f1")
-
-    assert dump_compare(look.app(), terminal_size=look.size, run_before=ask)
-
-
-async def test_keys_keep_their_order_whatever_was_imported_first(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    modules = list(dict.fromkeys(action.__module__ for action in REGISTRY.values()))
-    turned = {
-        name: action
-        for module in reversed(modules)
-        for name, action in REGISTRY.items()
-        if action.__module__ == module
-    }
-    async with opened() as (app, _pilot):
-        shown = footer(app)
-        assert "Restart" in shown
-        assert "Drive" in shown
-        monkeypatch.setattr("tui.frame.key_bar.REGISTRY", turned)
-        assert footer(app) == shown
-
-
 def test_every_action_has_its_own_id_a_title_and_a_sentence() -> None:
     for name in every_action():
         action = REGISTRY[name]
         assert action.id == name
         assert action.title
         assert action.tooltip.endswith("."), name
-
-
-def test_two_actions_cannot_have_one_id() -> None:
-    with pytest.raises(TypeError, match=r"app\.quit"):
-        type("Again", (Action,), {"id": "app.quit", "__module__": __name__})
-
-
-def test_a_binding_carries_all_that_the_action_says() -> None:
-    class Dance(Action[DeckApp]):
-        id = "test.dance"
-        key = "d,D"
-        title = N_("Quit")
-        tooltip = N_("Every topic with its rates; the selected one live.")
-        footer = True
-
-    try:
-        (binding,) = bindings(Dance)
-    finally:
-        del REGISTRY["test.dance"]
-    assert isinstance(binding, Binding)
-    assert (binding.key.split(",")[:2], binding.id, binding.show) == (
-        ["d", "D"],
-        "test.dance",
-        True,
-    )
-    assert binding.action == "act('test.dance')"
-
-
-def test_no_key_of_a_screen_hides_one_that_works_everywhere() -> None:
-    everywhere = {
-        key
-        for name in every_action()
-        if name.split(".")[0] in {"app", "emergency", "screen", "session"}
-        for key in REGISTRY[name].key.split(",")
-    }
-    for name in every_action():
-        if name.split(".")[0] not in {"app", "emergency", "screen", "session", "stopping", "help"}:
-            assert everywhere.isdisjoint(REGISTRY[name].key.split(",")), name
 
 
 def test_terminals_can_send_every_key() -> None:
@@ -200,26 +126,6 @@ async def test_help_lists_every_key_of_the_screen_and_closes_again() -> None:
         await pilot.press("escape")
         await pilot.pause()
         assert app.screen is deck
-
-
-async def test_help_changes_its_language_while_it_is_open() -> None:
-    async with opened() as (app, pilot):
-        await pilot.press("f1", "f9")
-        await pilot.pause()
-        await pilot.pause()
-        assert "Перезапустить выбранный узел." in help_text(app)
-
-
-async def test_help_does_not_cover_the_dialog_that_goes_by_itself() -> None:
-    opener = RecordedOpener()
-    opener.link.hold_shutdown = True
-    async with opened(opener) as (app, pilot):
-        await pilot.press("q")
-        await pilot.pause()
-        await pilot.press("f1")
-        await pilot.pause()
-        assert isinstance(app.screen, StoppingScreen)
-        await pilot.press("q")
 
 
 async def test_a_keymap_changes_key_footer_and_help() -> None:

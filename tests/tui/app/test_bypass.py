@@ -11,7 +11,7 @@ from textual.color import Color
 from graph.data import NAMELESS, EndpointInfo, GraphUpdate
 from launcher.status import NodeState, NodeStatus
 from tests.tui.app_runs import opened
-from tests.tui.recorded import NODES, TOPICS, RecordedGraph, RecordedOpener, lesson_update, topic
+from tests.tui.recorded import NODES, TOPICS, RecordedOpener, lesson_update, topic
 from tests.tui.snapshots import settle
 from tui.frame.title_bar import TitleBar
 from tui.session.bypass import BypassDetector
@@ -149,27 +149,3 @@ async def test_it_stands_in_the_title_in_red(size: tuple[int, int], screen: str)
         opener.graph.show(graph(wheel_commands=(DIFFERENTIAL,)))
         await settle(pilot)
         assert "/evil" not in bar.text
-
-
-async def test_another_session_begins_without_the_bypass_of_the_one_before() -> None:
-    opener = RecordedOpener(sessions=[])
-    async with opened(opener) as (app, pilot):
-        opener.graph.show(graph(wheel_commands=(DIFFERENTIAL, "/evil")))
-        await settle(pilot)
-        assert app.bypass.now
-        await pilot.press("f8")
-        await settle(pilot)
-        opener.graph = RecordedGraph()
-        app.sessions.open(app.sessions.request)
-        await settle(pilot)
-        assert not app.bypass.now
-
-
-async def test_a_name_that_would_write_the_terminal_is_harmless() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, size=(120, 40)) as (app, pilot):
-        opener.graph.show(graph(drive_safe=(GATE, "/e\x1b]52;c;eA==\x07vil")))
-        await settle(pilot)
-        text = app.screen.query_one(TitleBar).text
-        assert "vil" in text
-        assert "\x1b" not in text

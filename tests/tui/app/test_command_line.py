@@ -7,8 +7,6 @@ from textual import on
 from textual.app import App, ComposeResult
 from textual.widgets import Static
 
-from tests.tui.panel_stage import Stage
-from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
 from tui.deck.command_line import CommandLine, WordSuggester
 
@@ -116,32 +114,3 @@ async def test_up_and_down_recall_and_keep_the_draft() -> None:
             await pilot.press(key)
             values.append(app.line.field.value)
         assert values == ["back", "left", "left", "back", "ri", "ri"]
-
-
-async def test_of_hostile_text_what_is_seen_is_what_is_sent() -> None:
-    app = LineApp()
-    async with app.run_test() as pilot:
-        app.line.show_listeners(1)
-        app.line.field.value = "[red]x\x1b[31m"
-        await pilot.pause()
-        assert "“[red]x␛[31m”" in app.remark
-        await pilot.press("enter")
-        assert app.sent == ["[red]x␛[31m"]
-
-
-@pytest.mark.parametrize("language", ["en", "ru"])
-def test_looks(language: str, dump_compare: SnapCompare) -> None:
-    """An empty line with its words, nobody listening, a known word, an unknown one in warning."""
-    set_language(language)
-    lines = [CommandLine() for _line in range(4)]
-
-    def fill() -> None:
-        for line in lines[1:]:
-            line.show_listeners(1)
-        lines[0].show_listeners(0)
-        lines[2].field.value = "налево"
-        lines[3].field.value = "прыжок"
-        lines[3].screen.set_focus(None)
-
-    stage = Stage([(line, (56, 2)) for line in lines], fill=fill)
-    assert dump_compare(stage, terminal_size=(60, 18), run_before=stage.filled)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
 import pytest
-from textual.app import App
-from textual.message_pump import MessagePump
 from textual.pilot import Pilot
 from textual.screen import Screen
 from textual.widget import Widget
@@ -29,7 +26,6 @@ from tui.app import DeckApp
 from tui.deck.command_line import CommandLine
 from tui.deck.screen import LessonDeck
 from tui.dialogs.safe import Plainly, SafeScreen
-from tui.faults import COMPOSING, LAYING_OUT, MOST_UNDRAWN
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
 from tui.isolation import isolating
@@ -39,7 +35,6 @@ from tui.panels.sonar.widget import Sonar
 from tui.panels.wheels.panel import WheelsPanel
 from tui.panels.wheels.widget import WheelsView
 from tui.topics.screen import TopicsScreen
-from tui.topics.table.table import TopicsTable
 
 
 @dataclass
@@ -123,18 +118,6 @@ async def test_a_panel_that_cannot_show_says_so_until_it_can() -> None:
         assert "29° left" in shown(wheels.query_one(WheelsView))
 
 
-async def test_a_drawing_that_fails_says_so_in_its_place_until_it_can_be_drawn() -> None:
-    async with isolated() as deck:
-        drawing = deck.app.screen.query_one(WheelsView)
-        with broken(WheelsView, "draw"):
-            drawing.redraw()
-            await deck.pilot.pause()
-            assert f"Wheels {FAULT}" in flat(shown(drawing))
-        drawing.redraw()
-        await deck.pilot.pause()
-        assert "has failed" not in shown(drawing)
-
-
 @pytest.mark.parametrize(
     ("part", "method"), [(Sonar, "render_line"), (TitleBar, "render"), (KeyBar, "render")]
 )
@@ -200,18 +183,6 @@ async def test_a_key_whose_action_fails_is_told_and_the_next_key_works() -> None
         assert any(FAULT in words for words in toasts)
 
 
-async def test_a_panel_that_cannot_be_laid_out_says_so_and_its_screen_stays() -> None:
-    async with isolated() as deck:
-        wheels = deck.app.screen.query_one(WheelsPanel)
-        with broken(WheelsView, "_get_box_model"):
-            wheels.query_one(WheelsView).refresh(layout=True)
-            await until(lambda: f"Wheels {FAULT}" in flat(shown(wheels)), "the fault in its place")
-            assert await deck.stops()
-        await deck.look()
-        await until(lambda: "29° left" in shown(wheels.query_one(WheelsView)), "the wheels")
-        assert isinstance(deck.app.screen, LessonDeck)
-
-
 async def test_a_screen_that_cannot_be_laid_out_gives_way_to_one_that_can() -> None:
     async with isolated() as deck:
         with broken(LessonDeck, "arrange"):
@@ -231,17 +202,6 @@ async def test_a_screen_that_cannot_be_laid_out_gives_way_to_one_that_can() -> N
         await until(lambda: deck.app.screen.query(Panel), "its panels")
 
 
-async def test_a_screen_that_cannot_be_made_gives_way_to_one_that_can() -> None:
-    async with isolated() as deck:
-        with broken(TopicsScreen, "compose_body"):
-            await deck.pilot.press("f3")
-            await until(lambda: isinstance(deck.app.screen, SafeScreen), "the plain screen")
-            assert await deck.stops()
-        await deck.pilot.press("f3")
-        await until(lambda: isinstance(deck.app.screen, TopicsScreen), "the topics")
-        await until(lambda: deck.app.screen.query(TopicsTable), "the table")
-
-
 async def test_when_nothing_can_be_drawn_the_nodes_are_stopped_the_normal_way() -> None:
     session = RecordedSession()
     app = DeckApp(RecordedOpener(session), LESSON_9, journal=lambda *_: None)
@@ -256,15 +216,6 @@ async def test_when_nothing_can_be_drawn_the_nodes_are_stopped_the_normal_way() 
             assert "cannot draw its screen" in app.sessions.parting_words
 
 
-async def test_a_screen_below_that_cannot_be_drawn_either_does_not_keep_the_one_in_front() -> None:
-    async with isolated() as deck:
-        below, front = deck.app.screen_stack[-2:]
-        with broken(Screen, "arrange"):
-            for screen in [front, below, below] * MOST_UNDRAWN:
-                screen._refresh_layout(deck.app.size)
-        await until(lambda: isinstance(deck.app.screen, SafeScreen), "the plain screen")
-
-
 async def test_a_fault_of_the_emergency_stop_does_not_keep_the_panels_waiting() -> None:
     async with isolated() as deck:
         with broken(type(deck.app.emergency), "see"):
@@ -276,49 +227,3 @@ async def test_a_fault_of_the_emergency_stop_does_not_keep_the_panels_waiting() 
             await deck.pilot.pause()
             assert "29° right" in shown(deck.app.screen.query_one(HeadView))
         assert "Deck has failed" in deck.journal[0][0]
-
-
-async def test_a_fault_that_cannot_be_told_ends_nothing() -> None:
-    class MuteError(Exception):
-        """One that has no words, and no way to say so."""
-
-        def __str__(self) -> str:
-            raise ZeroDivisionError
-
-    def fail() -> None:
-        raise MuteError
-
-    async with isolated() as deck:
-        deck.app.screen.call_later(fail)
-        deck.app.call_later(fail)
-        await deck.pilot.pause(0.05)
-        assert await deck.stops()
-
-
-async def test_without_isolation_a_fault_makes_a_test_red() -> None:
-    app = DeckApp(RecordedOpener(), LESSON_9)
-    with pytest.raises(ZeroDivisionError):  # noqa: PT012 - it is raised when the app has gone
-        async with app.run_test(size=(120, 40)) as pilot:
-            await settle(pilot)
-            with broken(WheelsView, "draw"):
-                app.screen.query_one(WheelsView).redraw()
-                await pilot.pause()
-
-
-async def test_different_faults_are_told_but_not_for_ever() -> None:
-    async with isolated() as deck:
-        for number in range(200):
-            code = compile("\n" * number + "1 / 0", "made.py", "exec")
-            try:
-                exec(code, {})
-            except ZeroDivisionError as error:
-                deck.app.faults.caught(error)
-        assert len(deck.journal) == 64
-
-
-def test_textual_still_has_what_the_isolation_holds_on_to() -> None:
-    assert asyncio.iscoroutinefunction(MessagePump._dispatch_message)
-    assert callable(Widget.render_lines)
-    assert callable(App._handle_exception)
-    assert all(hasattr(Screen, name) for name in LAYING_OUT)
-    assert all(hasattr(Widget, name) for name in COMPOSING)

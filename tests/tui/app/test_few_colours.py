@@ -61,11 +61,3 @@ async def test_good_bad_and_plain_words_have_colours_of_their_own(
 
             assert words[0] in {2, 10}, theme
             assert words[2] in {1, 9}, theme
-
-
-async def test_a_terminal_of_more_colours_keeps_those_of_the_theme(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setenv("TERM", "xterm-256color")
-    async with opened() as (app, _pilot):
-        assert app.theme_variables["text-success"] == "#8AD4A1"

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import gettext
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from tests.unit.scripts_of_setup import load
-from text.i18n import _, detect, language, localized, ngettext, pick, set_language
+from text.i18n import detect, localized, ngettext, pick, set_language
 from text.sentences import say
 
 catalogues = load("catalogues")
@@ -34,14 +32,6 @@ def test_the_nearest_wish_for_a_language_counts(
     option: str | None, environ: dict[str, str], settled: str, spoken: str
 ) -> None:
     assert detect(option, environ, settled) == spoken
-
-
-def test_the_language_can_be_switched_while_running() -> None:
-    assert _("Quit") == "Quit"
-    set_language("ru")
-    assert (language(), _("Quit")) == ("ru", "Выход")
-    set_language("en")
-    assert _("Quit") == "Quit"
 
 
 def test_russian_counts_by_its_own_rules() -> None:
@@ -83,21 +73,6 @@ def test_everything_said_is_translated_and_nothing_else() -> None:
     assert catalogues.wrong("ru") == []
 
 
-def test_the_compiled_catalogue_says_what_the_edited_one_says() -> None:
-    with (catalogues.LOCALE / "ru" / "LC_MESSAGES" / "deck.mo").open("rb") as file:
-        compiled = gettext.GNUTranslations(file)
-    for entry in catalogues.translated("ru"):
-        if not entry.id:
-            continue
-        if entry.pluralizable:
-            forms = tuple(
-                compiled.ngettext(entry.id[0], entry.id[1], number) for number in (1, 2, 5)
-            )
-            assert forms == tuple(entry.string)
-        else:
-            assert compiled.gettext(entry.id) == entry.string
-
-
 def test_a_catalogue_is_compiled_when_its_source_has_changed(tmp_path: Path) -> None:
     folder = tmp_path / "ru" / "LC_MESSAGES"
     folder.mkdir(parents=True)
@@ -113,15 +88,6 @@ def test_a_catalogue_is_compiled_when_its_source_has_changed(tmp_path: Path) -> 
     assert sorted(folder.iterdir()) == [made, source]
 
 
-def test_the_same_source_makes_the_same_file(tmp_path: Path) -> None:
-    folder = tmp_path / "ru" / "LC_MESSAGES"
-    folder.mkdir(parents=True)
-    kept = catalogues.LOCALE / "ru" / "LC_MESSAGES" / "deck.po"
-    (folder / "deck.po").write_bytes(kept.read_bytes())
-    catalogues.compile_stale(tmp_path)
-    assert (folder / "deck.mo").read_bytes() == kept.with_suffix(".mo").read_bytes()
-
-
 def test_translations_fill_in_the_same_values() -> None:
     def fields(text: str) -> set[str]:
         return {part.split("}")[0].split(":")[0].split("!")[0] for part in text.split("{")[1:]}
@@ -132,10 +98,3 @@ def test_translations_fill_in_the_same_values() -> None:
         if entry.id:
             for text in texts:
                 assert fields(text) <= fields(ids[0]) | fields(ids[-1]), entry.id
-
-
-def test_asking_for_words_costs_no_heavy_import() -> None:
-    heavy = ("textual", "rich", "numpy", "pydantic", "babel", "yaml", "rclpy")
-    code = f"import sys, text.i18n; print([m for m in {heavy} if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"

@@ -6,7 +6,6 @@ import asyncio
 import gc
 from collections import Counter
 from typing import TYPE_CHECKING, Any
-from weakref import ref
 
 import pytest
 from textual.css.styles import RenderStyles, StylesBase
@@ -16,18 +15,10 @@ from textual.signal import Signal
 from textual.strip import Strip
 from textual.timer import Timer
 
-import tui.live
-from tests.tui.app_runs import LESSON_9, opened
+from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedOpener
-from tests.waiting import until
-from tui.app import DeckApp
-from tui.live import RealTerminal
-from tui.settings import Settings
-from tui.terminal.stray_output import StrayOutput
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from textual.pilot import Pilot
 
 pytestmark = pytest.mark.nightly
@@ -44,32 +35,6 @@ async def test_changing_tabs_leaves_nothing_behind() -> None:
         before = living()
         await change_tabs(pilot, opener, rounds=2)
         assert living() - before == Counter()
-
-
-class Circle:
-    """Holds itself."""
-
-    def __init__(self) -> None:
-        self.itself = self
-
-
-async def test_what_only_holds_itself_is_collected_soon(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.setattr(tui.live, "COLLECTED_EVERY_S", 0.05)
-    frozen = gc.get_freeze_count()
-    with StrayOutput(tmp_path / "stray.log") as stray:
-        terminal = RealTerminal(stray, Settings(tour="seen"))
-        app = DeckApp(RecordedOpener(), LESSON_9, "deck", environment=terminal)
-        async with app.run_test():
-            # What exists when the first session is shown is never collected.
-            await until(lambda: gc.get_freeze_count() > frozen, "the end of the start")
-            gc.disable()
-            try:
-                gone = ref(Circle())
-                await until(lambda: gone() is None, "an end of the circle")
-            finally:
-                gc.enable()
 
 
 async def change_tabs(pilot: Pilot[Any], opener: RecordedOpener, rounds: int) -> None:

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
 from textual.pilot import Pilot
 
 from graph.data import GraphUpdate, NodeRow, Sample
-from launcher.status import NodeState
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NODES, NOW_S, RecordedOpener, lesson_update, sample
-from tests.tui.snapshots import Look, SnapCompare, one_look, settle
-from text.i18n import set_language
+from tests.tui.snapshots import settle
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.frame import title
@@ -130,19 +127,6 @@ async def test_what_it_says_on_rosout_is_in_the_log_and_decks_own_are_not_double
         assert "/rosout" not in opener.graph.followed
 
 
-async def test_its_log_is_muted_and_heard_alone_like_any() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        await show(opener, pilot, graph("/my_node", samples=(said("I am awake"),)))
-        assert isinstance(app.screen, LessonDeck)
-        await pilot.press("end", "o")
-        await pilot.pause()
-        assert {entry.text for entry in app.screen.pane.view.index.shown} == {"I am awake"}
-        await pilot.press("o", "m")
-        await pilot.pause()
-        assert rows_of(app)[-1][0] == "my_node ⊘"
-
-
 def outside(*rows: NodeRow) -> tuple[str, ...]:
     """Who is outside beside the nodes of lesson 9."""
     found = Outside()
@@ -167,77 +151,3 @@ def test_a_process_that_deck_has_started_is_its_own_under_any_name(
     assert outside(NodeRow("/far", processes=(10,))) == ("far",)
     # The name of a node may be known a little before its process.
     assert outside(NodeRow("/camera", processes=(STARTED_HERE,)), NodeRow("/new")) == ()
-
-
-def test_of_two_by_one_name_it_is_heard_only_when_it_is_alone(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("launcher.processes.table.process_numbers", lambda: [8])
-    monkeypatch.setattr("launcher.processes.table.read_marks", lambda _pid: {})
-    here = Outside()
-    here.see(lesson_update(nodes=(NodeRow("/camera", processes=(8,)),)), NODES, "run")
-    assert here.lines((said("whose?", "camera"),), NODES) == ()
-    stopped = {**NODES, "camera": replace(NODES["camera"], state=NodeState.EXITED)}
-    (line,) = here.lines((said("mine", "camera", at_s=1),), stopped)
-    assert (line.node, line.text) == ("/camera", "mine")
-
-
-async def test_one_in_place_of_a_node_that_was_stopped_is_not_told_to_be_decks(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("launcher.processes.table.process_numbers", lambda: [8])
-    monkeypatch.setattr("launcher.processes.table.read_marks", lambda _pid: {})
-    opener = RecordedOpener()
-    async with opened(opener, "graph") as (app, pilot):
-        opener.link.set_state("camera", NodeState.EXITED, pid=None)
-        await show(opener, pilot, lesson_update(nodes=(NodeRow("/camera", processes=(8,)),)))
-        await pilot.press("home")
-        await settle(pilot)
-        shown = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
-        assert "not started by Deck" in shown
-        await pilot.press("1")
-        await settle(pilot)
-        assert rows_of(app)[-1][:2] == ["/camera", "◇ outside"]
-
-
-async def test_a_name_that_would_write_the_terminal_is_harmless() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        await show(opener, pilot, graph("/e\x1b]52;c;eA==\x07vil"))
-        (name,) = (row[0] for row in rows_of(app) if "vil" in row[0])
-        assert "\x1b" not in name
-
-
-async def test_another_session_begins_without_those_of_the_one_before() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        await show(opener, pilot, graph("/my_node"))
-        await pilot.press("f8")
-        await settle(pilot)
-        assert app.feed.outside.now == ()
-
-
-async def test_russian() -> None:
-    set_language("ru")
-    opener = RecordedOpener()
-    async with opened(opener, size=(80, 24)) as (app, pilot):
-        await show(opener, pilot, graph("/my_node"))
-        assert rows_of(app)[-1][:2] == ["my_node", "◇ извне"]
-        await pilot.press("end", "x")
-        await pilot.pause()
-        (told,) = (one.message for one in app._notifications)
-        assert told.startswith("my_node запущен не из Deck")
-
-
-@one_look
-def test_a_node_started_by_hand(look: Look, dump_compare: SnapCompare) -> None:
-    """Below Deck's own, chosen: `outside` and dashes; its line in the log; no key to stop it."""
-    opener = RecordedOpener()
-    app = look.app("deck", opener)
-
-    async def by_hand(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        await show(opener, pilot, graph("/my_node", samples=(said("I am awake"),)))
-        await pilot.press("end")
-
-    assert dump_compare(app, terminal_size=look.size, run_before=by_hand)

@@ -15,14 +15,9 @@ from tests.tui.recorded import RecordedOpener
 from tests.waiting import until
 from tui.actions import REGISTRY
 from tui.app import DeckApp
-from tui.composer.screen import ComposerScreen
-from tui.composer.templates import TemplatesDialog
-from tui.devices.screen import DevicesScreen
 from tui.palette import PLACES, entries
 from tui.screens import SCREENS
 from tui.session.requests import OpenRequest
-from tui.teleop.widget import TeleopPanel
-from tui.topics.screen import TopicsScreen
 
 
 def found(app: DeckApp) -> list[str]:
@@ -76,13 +71,6 @@ async def test_it_finds_an_action_by_name_and_does_it() -> None:
         assert opener.link.asked == [("restart", "camera")]
 
 
-async def test_it_says_when_nothing_is_called_that() -> None:
-    async with opened() as (app, pilot):
-        app.speak("ru")
-        lines = await look_for(app, pilot, "zzqq", "Ничего")
-        assert lines == ["Ничего не найдено."]
-
-
 async def test_before_anything_is_typed_it_offers_only_what_is_possible_here() -> None:
     async with opened() as (app, _pilot):
         offered = {entry.title for entry in entries(app, app.screen) if entry.offered}
@@ -109,14 +97,6 @@ async def test_an_action_of_another_screen_is_found_in_either_language_with_its_
         assert title in [line.splitlines()[0] for line in lines]
 
 
-async def test_what_only_looks_is_done_where_it_is() -> None:
-    async with opened() as (app, pilot):
-        await look_for(app, pilot, "templates", "Composer › Templates")
-        await take(app, pilot, "Composer › Templates")
-        await until(lambda: isinstance(app.screen, TemplatesDialog), "the templates")
-        assert isinstance(app.feed.front, ComposerScreen)
-
-
 async def test_what_acts_is_only_gone_to_and_its_key_is_told() -> None:
     opener = RecordedOpener()
     async with opened(opener, "topics") as (app, pilot):
@@ -127,14 +107,6 @@ async def test_what_acts_is_only_gone_to_and_its_key_is_told() -> None:
         assert opener.link.asked == []
 
 
-async def test_what_is_impossible_where_it_is_is_told_there() -> None:
-    async with opened() as (app, pilot):
-        await look_for(app, pilot, "plot", "Topics › Clear plot")
-        await take(app, pilot, "Topics › Clear plot")
-        await told(app, "Clear plot is here, not possible now.")
-        assert isinstance(app.screen, TopicsScreen)
-
-
 async def test_what_is_impossible_here_is_found_too() -> None:
     async with opened() as (app, pilot):
         await look_for(app, pilot, "release", "Release (not possible now)")
@@ -142,33 +114,11 @@ async def test_what_is_impossible_here_is_found_too() -> None:
         await told(app, "Release the emergency stop: nodes may")
 
 
-async def test_the_keys_of_a_panel_lead_to_what_opens_it() -> None:
-    async with opened(screen="logs") as (app, pilot):
-        await look_for(app, pilot, "sharper", "Deck › Drive › Sharper")
-        await take(app, pilot, "Deck › Drive › Sharper")
-        await until(lambda: app.screen.query(TeleopPanel), "the panel that drives")
-        await told(app, "Sharper is here: ].")
-
-
-async def test_a_word_of_the_sentence_is_enough() -> None:
-    async with opened() as (app, pilot):
-        await look_for(app, pilot, "clipboard", "Devices › Copy")
-        await take(app, pilot, "Devices › Copy")
-        await until(lambda: isinstance(app.screen, DevicesScreen), "the devices")
-
-
 async def test_beside_the_list_of_lessons_it_says_that_a_lesson_comes_first() -> None:
     async with opened(order=OpenRequest()) as (app, pilot):
         await look_for(app, pilot, "plot", "Topics › Plot")
         await take(app, pilot, "Topics › Plot")
         await told(app, "Plot is on the screen Topics: open a lesson first.")
-
-
-async def test_the_keys_of_a_recording_are_left_out_beside_a_robot() -> None:
-    async with opened() as (app, _pilot):
-        titles = [entry.title for entry in entries(app, app.screen)]
-        assert "Release (not possible now)" in titles
-        assert "Loop (not possible now)" not in titles
 
 
 def test_every_action_of_every_screen_has_its_place() -> None:

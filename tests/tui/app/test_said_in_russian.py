@@ -8,19 +8,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from graph.data import ParameterRow, Trouble
+from graph.data import ParameterRow
 from graph.messages.types import UnknownTypeError, load_message
 from graph.observer.requests import ObserverError
-from graph.pictures.images import to_rgb
-from graph.pictures.pixels import ImageError
 from graph.replay.replay import refused
-from tests.tui.app_runs import opened
-from tests.tui.recorded import lesson_update, topic
+from tests.tui.recorded import topic
 from text.i18n import localized, set_language
-from tui.deck.screen import LessonDeck
 from tui.graph.parameter_dialog import ParameterDialog
 from tui.graph.parameter_words import allowed_words
-from tui.panels.panel import trouble_of
 from tui.topics.table.columns import state_text
 from tui.yaml_form.words import reason_words
 
@@ -47,16 +42,6 @@ def test_what_a_recording_refuses() -> None:
     assert reason_words(error) == "это запись: принять сообщение некому"
 
 
-async def test_a_command_that_a_recording_refuses_is_told_in_russian() -> None:
-    async with opened() as (app, pilot):
-        set_language("ru")
-        assert isinstance(app.screen, LessonDeck)
-        app.screen._tell_if_lost(refused())
-        await pilot.pause()
-        (told,) = [one.message for one in app._notifications]
-        assert told == "это запись: принять сообщение некому"
-
-
 @pytest.mark.parametrize(
     "name", ["std_msgs", "std_msgs/msg/Strin", "no_such_msgs/msg/Any", "std_msgs/srv/Any"]
 )
@@ -67,23 +52,10 @@ def test_a_type_that_is_not_there(name: str) -> None:
     assert not latin(reason_words(found.value))
 
 
-def test_a_picture_that_cannot_be_shown() -> None:
-    with pytest.raises(ImageError) as found:
-        to_rgb({"width": 0, "height": 1, "step": 0, "encoding": "rgb8", "data": b""})
-    assert localized(found.value.words) == "изображение пустое: 0 × 1"
-
-
 def test_peers_that_disagree_about_a_type() -> None:
     facts = {"types": "a/msg/A, b/msg/B", "shown": "a/msg/A"}
     row = replace(topic("/x", "a/msg/A", 1.0), detail="peers disagree", facts=facts)
     assert state_text(row) == "! типы разные"
-
-
-def test_a_panel_whose_type_is_not_installed() -> None:
-    facts = {"type": "a/msg/A", "package": "a", "reason": "package a is not installed"}
-    row = topic("/x", "a/msg/A", None, trouble=Trouble.UNKNOWN_TYPE, detail="no", facts=facts)
-    _trouble, words, _age = trouble_of(lesson_update(topics=(row,)), "/x")
-    assert words.startswith("/x: a/msg/A: установите пакет a или подключите (source)")
 
 
 def test_what_a_parameter_is_for() -> None:

@@ -11,15 +11,12 @@ from typing import TYPE_CHECKING, Any
 from weakref import ref
 
 import pytest
-from textual.events import Key, Paste
-from textual.strip import Strip
 from textual.widget import Widget
 
-from graph.data import GraphUpdate, Sample
 from launcher.client import client
 from launcher.errors import ProfileError, ProfileProblem, SessionError
-from launcher.events import ClosedEvent, LogEvent, StraysEvent
-from launcher.status import NodeState, Severity, Stray, Who
+from launcher.events import ClosedEvent, StraysEvent
+from launcher.status import NodeState, Stray, Who
 from tests.dying_supervisor import DyingSupervisor
 from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
@@ -49,7 +46,6 @@ from tui.panels.head.widget import HeadView
 from tui.panels.wheels.widget import WheelsView
 from tui.picker.screen import PickerScreen
 from tui.session.history import LogHistory
-from tui.session.inbox import GraphInbox
 from tui.session.ports import SessionLink
 from tui.session.requests import OpenRequest
 from tui.topics.screen import TopicsScreen
@@ -81,25 +77,6 @@ ATTACH = OpenRequest(attach="09-brain")
 STRAY = Stray(4711, NOW_S - 600, "camera", "python -m nodes.mock_camera", "20251231-1")
 
 
-def update_of(number: int) -> GraphUpdate:
-    """An update with one sample of its own."""
-    one = Sample("/a", "std_msgs/msg/Int32", NOW_S, 0.0, 4, {"data": number})
-    return GraphUpdate(time_s=float(number), samples={"/a": (one,)})
-
-
-def test_updates_that_wait_are_merged_and_no_sample_is_lost() -> None:
-    wakes: list[int] = []
-    inbox = GraphInbox(lambda: wakes.append(1))
-    for number in range(5):
-        inbox.put(update_of(number))
-    taken = inbox.take()
-    assert taken is not None
-    assert taken.time_s == 4.0
-    assert [sample.value["data"] for sample in taken.samples["/a"]] == [0, 1, 2, 3, 4]
-    assert wakes == [1]
-    assert inbox.take() is None
-
-
 async def tour(pilot: Pilot[Any]) -> list[ref[Widget]]:
     """Look at every screen of the session; return all that they are made of."""
     seen = []
@@ -119,23 +96,11 @@ async def close(app: DeckApp, pilot: Pilot[Any]) -> None:
     gc.collect()
 
 
-def lines_in_memory() -> int:
-    return sum(isinstance(thing, Strip) for thing in gc.get_objects())
-
-
 async def test_the_screens_of_a_session_that_is_closed_are_not_kept_in_memory() -> None:
     async with opened() as (app, pilot):
         seen = await tour(pilot)
         await close(app, pilot)
         assert [repr(widget()) for widget in seen if widget() is not None] == []
-        before = lines_in_memory()
-        app.sessions.open(LESSON_9)
-        await settle(pilot)
-        await tour(pilot)
-        drawn = lines_in_memory() - before
-        await close(app, pilot)
-        # Caches of Textual that have their bounds may still grow.
-        assert lines_in_memory() - before < drawn / 2
 
 
 async def test_one_that_is_opened_while_another_is_closed_waits_for_that() -> None:
@@ -162,65 +127,12 @@ async def test_the_lesson_that_was_started_is_remembered_one_attached_to_is_not(
         assert around.kept.get("lesson") == lesson
 
 
-async def test_a_lesson_is_started_before_its_screen_is_drawn() -> None:
-    class Watched(RecordedOpener):
-        async def open(self, order: OpenRequest) -> SessionLink:
-            panels.append(len(app.screen.query(NodesTable)))
-            return await super().open(order)
-
-    panels: list[int] = []
-    async with opened(Watched(), order=OpenRequest()) as (app, pilot):
-        app.sessions.open(LESSON_9)
-        await settle(pilot)
-        assert isinstance(app.screen, LessonDeck)
-        assert panels == [0]
-
-
-def test_a_flood_of_updates_is_bounded_while_the_app_is_busy() -> None:
-    inbox = GraphInbox(lambda: None)
-
-    def flood() -> None:
-        for n in range(500):
-            inbox.put(update_of(n))
-
-    threads = [threading.Thread(target=flood) for _thread in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    taken = inbox.take()
-    assert taken is not None
-    assert len(taken.samples["/a"]) <= 256
-
-
 def test_the_history_of_the_log_is_bounded_in_lines_and_in_characters() -> None:
     history = LogHistory(lines=10, characters=100)
     history.add(line("camera", n, "x") for n in range(50))
     assert [one.seq for one in history.all()] == list(range(40, 50))
     history.add([line("camera", 51, "y" * 95)])
     assert sum(len(one.text) for one in history.all()) <= 100
-
-
-async def test_a_screen_opened_late_knows_the_log_and_the_nodes_from_the_beginning() -> None:
-    async with opened() as (app, pilot):
-        await pilot.press("4")
-        await pilot.pause()
-        await pilot.pause()
-        assert isinstance(app.screen, LogsScreen)
-        entries = app.screen.pane.view.ring.entries
-        assert [entry.text for entry in entries] == [one.text for one in LINES]
-
-
-async def test_a_screen_in_the_background_misses_no_line() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        await pilot.press("4", "1")
-        opener.link.say(LogEvent((line("camera", 4, "while away", Severity.WARN),)))
-        await pilot.pause()
-        await pilot.press("4")
-        await pilot.pause()
-        assert isinstance(app.screen, LogsScreen)
-        assert app.screen.pane.view.ring.entries[-1].text == "while away"
 
 
 @pytest.mark.parametrize(
@@ -290,14 +202,6 @@ async def test_what_is_left_running_is_named_with_what_ends_it() -> None:
             "left running: 09-brain in domain 42; `deck down 09-brain` ends it"
         )
         assert app.return_code == 0
-
-
-async def test_ones_own_session_is_quit_and_cannot_be_ended_as_anothers() -> None:
-    async with opened() as (app, pilot):
-        assert "q Quit" in footer(app)
-        await pilot.press("shift+f8")
-        await pilot.pause()
-        assert isinstance(app.screen, LessonDeck)
 
 
 async def test_what_another_screen_has_started_is_ended_only_if_asked_and_says_whose() -> None:
@@ -458,22 +362,6 @@ async def test_what_an_earlier_run_left_behind_is_offered_for_stopping() -> None
         assert opener.link.asked == [("stop_strays", "camera")]
 
 
-async def test_what_is_left_behind_may_be_let_be_and_is_asked_about_once() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        opener.link.say(StraysEvent((STRAY,)))
-        await pilot.pause()
-        await pilot.pause()
-        asking = app.screen
-        assert isinstance(asking, StraysScreen)
-        await pilot.press("escape")
-        opener.link.say(StraysEvent((STRAY,)))
-        await pilot.pause()
-        await pilot.pause()
-        assert not isinstance(app.screen, StraysScreen)
-        assert opener.link.asked == []
-
-
 async def test_a_graph_that_cannot_be_observed_says_so_and_the_rest_works() -> None:
     opener = RecordedOpener(
         graph=RecordedGraph(lesson_update(error="ROS cannot be used: no rclpy"))
@@ -484,11 +372,3 @@ async def test_a_graph_that_cannot_be_observed_says_so_and_the_rest_works() -> N
         await pilot.press("x")
         await pilot.pause()
         assert opener.link.asked == [("stop", "sonar_front")]
-
-
-@pytest.mark.parametrize("event", [Key("a", "a"), Paste("abc")])
-async def test_what_is_typed_when_there_is_no_screen_ends_nothing(event: Key | Paste) -> None:
-    """Typed before the first screen has come, or after the last one has gone."""
-    app = DeckApp(RecordedOpener(), LESSON_9, "deck")
-    assert not app.screen_stack
-    await app.on_event(event)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import errno
-import json
-import os
 from pathlib import Path
 
 import pytest
 
-from text.i18n import set_language
 from tui.screens import every_action
 from tui.settings import Settings, SettingsError, load, save
 
@@ -67,37 +63,12 @@ def test_a_broken_file_is_refused_with_place_and_mend(
     assert words in str(refused.value)
 
 
-def test_a_file_that_is_no_text_is_refused_with_a_mend(tmp_path: Path) -> None:
-    path = tmp_path / "settings.json"
-    path.write_bytes(b"\xff\xfe{}")
-    with pytest.raises(SettingsError) as refused:
-        read(path)
-    assert str(refused.value) == f"{path}: is not UTF-8: byte 0xff (save the file as UTF-8)"
-
-
 def test_a_folder_in_its_place_is_refused_with_a_mend(tmp_path: Path) -> None:
     path = tmp_path / "settings.json"
     path.mkdir()
     with pytest.raises(SettingsError) as refused:
         read(path)
     assert str(refused.value) == f"{path}: expected a file, found a directory (remove or rename it)"
-
-
-def test_a_file_that_cannot_be_read_is_refused_with_the_reason(tmp_path: Path) -> None:
-    path = tmp_path / "settings.json"
-    path.symlink_to(path)
-    with pytest.raises(SettingsError) as refused:
-        read(path)
-    reason = os.strerror(errno.ELOOP)
-    assert str(refused.value) == f"{path}: cannot be read: {reason}"
-
-
-def test_the_refusal_speaks_the_language(tmp_path: Path) -> None:
-    path = tmp_path / "settings.json"
-    path.write_text(json.dumps({"colour": "red"}))
-    set_language("ru")
-    with pytest.raises(SettingsError, match="неизвестная настройка 'colour'"):
-        read(path)
 
 
 def test_a_disk_that_refuses_is_told_and_no_more(tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
@@ -21,12 +20,10 @@ from tests.tui.recorded import (
     sample,
 )
 from tests.tui.recorded_lesson import topic
-from tests.tui.snapshots import Look, SnapCompare, one_look, settle
+from tests.tui.snapshots import Look, settle
 from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
-from tui.frame import title
-from tui.frame.title_bar import TitleBar
 from tui.session.ports import SessionLink
 from tui.session.requests import OpenRequest, WatchRequest
 from tui.session.watching import WATCH, watched
@@ -99,28 +96,6 @@ async def test_it_says_that_deck_has_started_nothing_and_who_runs() -> None:
         assert "8 nodes run here: ai_brain" in words_of(pilot)
 
 
-async def test_title_and_words_count_the_same_nodes_whenever_they_come() -> None:
-    async with watching(NOTHING) as (pilot, graph):
-
-        def counts() -> tuple[str, str]:
-            """In the title, and beside it."""
-            counted = re.search(r"(\d+) nodes?", title.states(deck_of(pilot).deck)[0])
-            shown = "".join(deck_of(pilot).query_one(TitleBar).render_line(0).text)
-            assert counted is not None
-            assert counted[0] in shown
-            told = re.search(r"(\d+ nodes?) run", words_of(pilot))
-            return counted[0], told[1] if told else ""
-
-        graph.show(lesson_update(nodes=tuple(NodeRow(f"/{name}") for name in ("a", "b"))))
-        await settle(pilot)
-        assert counts() == ("2 nodes", "2 nodes")
-        # Another Deck, and a tool: no list shows them without being asked.
-        names = ("/a", "/b", "/c", "/_deck_observer_7", "/_ros2cli_12")
-        graph.show(lesson_update(nodes=tuple(map(NodeRow, names))))
-        await settle(pilot)
-        assert counts() == ("3 nodes", "3 nodes")
-
-
 async def test_an_empty_domain_says_so() -> None:
     async with watching(NOTHING) as (pilot, _graph):
         assert "Start a node with ROS_DOMAIN_ID=42" in words_of(pilot)
@@ -173,15 +148,6 @@ async def test_the_emergency_stop_is_published_as_always() -> None:
         ]
 
 
-async def test_the_emergency_stop_does_not_claim_to_stop_the_nodes_of_others() -> None:
-    async with watching(NOTHING) as (pilot, _graph):
-        await pilot.press("space")
-        for _round in range(5):
-            await pilot.pause()
-        fallback = pilot.app.emergency.state.fallback  # type: ignore[attr-defined]
-        assert "started no node" in fallback
-
-
 async def test_the_picker_s_first_row_looks_at_the_domain() -> None:
     opener = opener_of(robot())
     app = DeckApp(opener, OpenRequest())
@@ -192,36 +158,6 @@ async def test_the_picker_s_first_row_looks_at_the_domain() -> None:
         assert opener.orders[0].watch == WatchRequest(42)
         assert app.feed.session is not None
         assert app.feed.session.run_id == WATCH
-
-
-@one_look
-def test_a_robot_of_others(look: Look, dump_compare: SnapCompare) -> None:
-    """Who runs, the panels for what is there, and the log as /rosout tells it."""
-    app = app_of(look, opener_of(robot()))
-    assert dump_compare(app, terminal_size=look.size, run_before=look.settle)
-
-
-@one_look
-def test_nobody_there(look: Look, dump_compare: SnapCompare) -> None:
-    """An empty domain: says so in words."""
-    app = app_of(look, opener_of(NOTHING))
-    assert dump_compare(app, terminal_size=look.size, run_before=look.settle)
-
-
-def test_a_node_s_name_is_harmless() -> None:
-    from tui.deck.watched import Watched
-
-    words = Watched(42).words(lesson_update(nodes=(NodeRow("/a\x1b[31m"),)))
-    assert "a␛[31m" in words
-
-
-def test_it_does_not_send_to_where_it_looks_already() -> None:
-    from tui.deck.watched import Watched
-
-    near, far = Watched(42), Watched(42, beyond=True)
-    assert "--discovery subnet" in near.words(NOTHING)
-    assert "on another machine" in far.words(NOTHING)
-    assert "--discovery" not in far.words(NOTHING)
 
 
 def test_who_was_there_and_is_not_seen_any_more_is_not_told_as_never_come() -> None:
@@ -236,10 +172,3 @@ def test_who_was_there_and_is_not_seen_any_more_is_not_told_as_never_come() -> N
     later = lesson_update(nodes=(), time_s=NOW_S + 90)
     assert far.words(later) == far.words(gone)
     assert "1 node runs here" in far.words(lesson_update(nodes=(NodeRow("/a"),)))
-
-
-def test_a_name_that_is_too_long_for_the_line_is_seen_to_be_cut() -> None:
-    from tui.deck.watched import Watched
-
-    words = Watched(42).words(lesson_update(nodes=(NodeRow("/" + "a" * 80), NodeRow("/b"))))
-    assert words.endswith(f" {'a' * 59}…, b")
