@@ -10,10 +10,8 @@ os.environ.update(
 os.environ.pop("NO_COLOR", None)
 
 from collections.abc import Iterator
-from functools import partial
 
 import pytest
-from syrupy.assertion import SnapshotAssertion
 from textual.app import App
 from textual.css.model import RuleSet
 from textual.css.stylesheet import Stylesheet
@@ -21,8 +19,6 @@ from textual.css.types import CSSLocation
 from textual.screen import Screen
 
 from tests.tui.recorded import NOW_S
-from tests.tui.snapshots import SnapCompare
-from tests.tui.text_dump import TextDumpExtension, compare_dump
 from text.i18n import set_language
 from tui import clock
 
@@ -104,9 +100,3 @@ def _still(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     set_language("en")
     yield
     set_language("en")
-
-
-@pytest.fixture
-def dump_compare(snapshot: SnapshotAssertion) -> SnapCompare:
-    """Compare as `snap_compare` does, with a text dump in place of an SVG."""
-    return partial(compare_dump, snapshot.use_extension(TextDumpExtension))

@@ -98,19 +98,6 @@ STATUSES = (
 )
 
 
-def reported(name: str, level: int = 0, message: str = "", **values: str) -> Sample:
-    """What anybody says of one thing, a driver or not."""
-    return _array(name, level, message, values)
-
-
-AGGREGATED = (
-    reported("/sensors/imu: data", 0, "calibrated", temperature="31"),
-    reported("/sensors/lidar", 1, "12 % of the points are missing", rate="9.8", missing="12"),
-    reported("localization: amcl", 0, "converged"),
-)
-"""What an aggregator and a node of another make say."""
-
-
 def frames(name: str, lines: Iterable[FrameLine]) -> Sample:
     """A batch of frames of a driver."""
     return sample(f"/{name}/frames", _STRING, {"data": encode(list(lines))})

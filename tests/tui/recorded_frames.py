@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from graph.data import EndpointInfo, FrameRow, GraphUpdate, TopicRow
+from graph.data import FrameRow, GraphUpdate, TopicRow
 from space.buffer import Stamped
 from space.transform import Transform
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession, lesson_update
@@ -90,12 +90,3 @@ def with_frames(
     """A session in which these frames come."""
     graph = RecordedGraph(frames_update(frames, rows))
     return RecordedOpener(RecordedSession(lines=()), graph)
-
-
-FOREIGN = replace(
-    topics()[1],
-    name="/arm/tf",
-    subscribers=0,
-    published_by=(EndpointInfo("/arm/state", _TF, "reliable", "volatile"),),
-)
-"""Frames on a topic to which nobody listens."""

@@ -1,26 +1,16 @@
-"""Snapshots of a screen at three terminal sizes and in both languages.
+"""A screen at a size of the terminal and in a language, and when it is all there.
 
-::
-
-    @every_look
-    def test_logs(look: Look, snap_compare: SnapCompare) -> None:
-        '''Newest lines at the bottom, warnings marked by a word and a colour.'''
-        assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=look.settle)
-
-`snap_compare` keeps an SVG, for the main state of a screen and for what is drawn; `dump_compare`
-(`tests.tui.text_dump`) is called in the same way and keeps text and styles, for all else.
-The recorded session and graph are those of `tests.tui.recorded`; the clock stands still
-(`frozen_clock` in conftest), nothing blinks, nothing is animated.
+The recorded session and graph are those of `tests.tui.recorded`; the clock stands still, nothing
+blinks, nothing is animated.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import pytest
 from textual.pilot import Pilot
 
 from tests.tui.recorded import RecordedOpener
@@ -33,8 +23,6 @@ from tui.session.requests import OpenRequest
 from tui.widgets.rows import Rows
 
 SnapCompare = Callable[..., bool]
-SIZES = ((80, 24), (120, 40), (200, 60))
-LANGUAGES = ("en", "ru")
 
 
 @dataclass(frozen=True)
@@ -44,16 +32,17 @@ class Look:
     size: tuple[int, int]
     language: str
 
+    def __str__(self) -> str:
+        return f"{self.size[0]}x{self.size[1]}-{self.language}"
+
     def app(self, screen: str = "deck", opener: RecordedOpener | None = None) -> DeckApp:
         """Return an app with the recorded lesson 9 opened, that will show `screen`."""
         set_language(self.language)
         order = OpenRequest() if screen == "picker" else OpenRequest(Path("profiles/09-brain.yaml"))
         return DeckApp(opener or RecordedOpener(), order, screen)
 
-    @staticmethod
-    async def settle(pilot: Pilot[Any]) -> None:
-        """Wait until what was recorded is on the screen."""
-        await settle(pilot)
+
+NARROW, WIDE = Look((80, 24), "en"), Look((120, 40), "ru")
 
 
 async def settle(pilot: Pilot[Any]) -> None:
@@ -71,20 +60,3 @@ def _asks(app: DeckApp) -> bool:
     if isinstance(app.screen, PickerScreen):
         return any(rows.chosen for rows in app.screen.query(Rows))
     return isinstance(app.screen, Dialog)
-
-
-def _looks(chosen: Sequence[tuple[tuple[int, int], str]]) -> pytest.MarkDecorator:
-    return pytest.mark.parametrize(
-        "look",
-        [
-            pytest.param(Look(size, language), id=f"{size[0]}x{size[1]}-{language}")
-            for size, language in chosen
-        ],
-    )
-
-
-every_look = _looks([(size, language) for size in SIZES for language in LANGUAGES])
-both_languages = _looks(list(zip(SIZES[:2], LANGUAGES, strict=True)))
-"""For a state of a screen of which `every_look` is shown already: narrow and in Russian."""
-one_look = _looks([(SIZES[0], LANGUAGES[0])])
-"""For a secondary state, as a dialog, an error or a filter: narrow and in English."""
