@@ -9,6 +9,7 @@ os.environ.update(
 )
 os.environ.pop("NO_COLOR", None)
 
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -95,8 +96,11 @@ def _still(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Stop cursors and clocks, speak English, and set the language back afterwards."""
     monkeypatch.setattr(clock, "now", lambda: NOW_S + 17.0)
     monkeypatch.setenv("TZ", "UTC")
+    time.tzset()
     # Textual may have been imported before the lines above were read.
     monkeypatch.setenv("COLORTERM", "truecolor")
     set_language("en")
     yield
     set_language("en")
+    monkeypatch.undo()
+    time.tzset()

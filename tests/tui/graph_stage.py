@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
-from typing import TYPE_CHECKING
 
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_nodes import graph_update
 from tests.tui.screen_stage import HOME, ScreenStage, on_stage
-from tests.tui.snapshots import Look
+from tests.tui.snapshots import Look, seen
 from tests.waiting import until
 from tui.graph.screen import GraphScreen
-
-if TYPE_CHECKING:
-    pass
 
 
 class GraphStage(ScreenStage[GraphScreen]):
@@ -23,19 +19,15 @@ class GraphStage(ScreenStage[GraphScreen]):
     name, kind = "graph", GraphScreen
 
     async def choose(self, name: str) -> None:
-        """Choose a name in the list."""
         self.screen.names.choose(f"{self.screen.history.kind.value}|{name}")
         await self.pilot.pause()
         await self.pilot.pause()
         assert self.screen.names.chosen_name == name
 
     def seen(self) -> str:
-        """All that is on the terminal."""
-        strips = self.app.screen._compositor.render_strips()
-        return "\n".join(strip.text for strip in strips)
+        return seen(self.app)
 
     async def wait(self, told: Callable[[], object]) -> None:
-        """Wait until this is so."""
         await until(told, lambda: f"what was awaited; on the terminal:\n{self.seen()}")
 
     async def wait_for(self, words: str) -> None:

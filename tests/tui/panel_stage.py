@@ -29,7 +29,6 @@ class Stage(App[None]):
         self._fill = fill
 
     def compose(self) -> ComposeResult:
-        """Put the panels up."""
         for column in self._placed:
             with Vertical():
                 for panel, (width, height) in column:
@@ -45,11 +44,20 @@ class Stage(App[None]):
         await pilot.pause()
 
 
+class Bare(App[None]):
+    """Nothing but this widget."""
+
+    def __init__(self, widget: Widget) -> None:
+        super().__init__()
+        self._widget = widget
+
+    def compose(self) -> ComposeResult:
+        yield self._widget
+
+
 def rows(panel: Widget) -> list[str]:
-    """What a panel shows, row by row."""
     return [panel.render_line(y).text.rstrip() for y in range(panel.size.height)]
 
 
 def alone(panel: Widget, width: int = 40, height: int = 12) -> Stage:
-    """One panel of this size."""
     return Stage([(panel, (width, height))])

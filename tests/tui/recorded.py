@@ -10,8 +10,12 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
+from course.judging import JudgeEvent
+from course.lessons.lesson import LessonFolder
+from graph.replay.replay import Replay
 from launcher.consent import Agents, ConsentAnswer
 from launcher.events import (
     AgentsEvent,
@@ -40,13 +44,6 @@ from tests.tui.recorded_lesson import (
 )
 from tui.session.ports import SessionLink
 from tui.session.requests import Lesson, OpenRequest, WholeGrade
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.judging import JudgeEvent
-    from course.lessons.lesson import LessonFolder
-    from graph.replay.replay import Replay
 
 __all__ = [
     "LESSONS",
@@ -77,7 +74,6 @@ class RecordedSession:
         nodes: Mapping[str, NodeStatus] = NODES,
         lines: Iterable[LogLine] = LINES,
     ) -> None:
-        """Begin with `lines` in the queue."""
         self.session = session
         self.own = session.foreground
         """Set it: another screen's session in the foreground."""
@@ -99,7 +95,6 @@ class RecordedSession:
             self._queue.put_nowait(LogEvent(before))
 
     def say(self, event: Event) -> None:
-        """Let the session say this."""
         if isinstance(event, StatusEvent):
             self.nodes.update({node.name: node for node in event.nodes})
         if isinstance(event, StraysEvent):
@@ -111,12 +106,10 @@ class RecordedSession:
         self._queue.put_nowait(event)
 
     def emergency_stop(self, engaged: bool, said_ns: int) -> None:
-        """Note it."""
         self.stops.append(engaged)
         self.said_ns.append(said_ns)
 
     def set_state(self, name: str, state: NodeState, **more: Any) -> None:
-        """Change one node."""
         self.say(StatusEvent((replace(self.nodes[name], state=state, **more),)))
 
     async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
@@ -174,14 +167,12 @@ class RecordedJudge:
         self._queue: asyncio.Queue[JudgeEvent] = asyncio.Queue()
 
     def say(self, event: JudgeEvent) -> None:
-        """Let the judge say this."""
         self._queue.put_nowait(event)
 
     def judge(self, step: str) -> None:
         self.asked.append(step)
 
     async def events(self) -> AsyncIterator[JudgeEvent]:
-        """Yield what was said."""
         while True:
             yield await self._queue.get()
 

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from graph.data import Sample
 from tests.tui.recorded import sample
-
-if TYPE_CHECKING:
-    from graph.data import Sample
 
 BRAIN_STATE, TYPE = "/brain_state", "diagnostic_msgs/msg/DiagnosticArray"
 BUDGET = {

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from graph.data import GraphUpdate, Sample
 from launcher.status import NodeState, NodeStatus
 from robot.frames.batches import Chunk, FrameBatcher
-from robot.frames.lines import encode
+from robot.frames.lines import FrameLine, encode
 from robot.frames.pico import PicoReader
 from robot.frames.tof import TofReader
 from robot.wire import pico as wire_pico
@@ -18,11 +19,6 @@ from robot.wire.tfluna import TofFrame
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_lesson import TOPICS, lesson_update, sample, topic
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from robot.frames.lines import FrameLine
-
 AT_S = NOW_S + 17.0
 """The moment at which the clock of the tests stands."""
 _ARRAY, _STRING = "diagnostic_msgs/msg/DiagnosticArray", "std_msgs/msg/String"
@@ -31,7 +27,6 @@ PORTS = {"chassis": "pico", "sonar_front": "tof_front", "sonar_rear": "tof_rear"
 
 
 def status(name: str, level: int = 0, message: str = "", **values: object) -> Sample:
-    """What one driver says now."""
     told = {
         "port": f"{_FOLDER}/{PORTS.get(name, name)}",
         "connected": "true",
@@ -99,7 +94,6 @@ STATUSES = (
 
 
 def frames(name: str, lines: Iterable[FrameLine]) -> Sample:
-    """A batch of frames of a driver."""
     return sample(f"/{name}/frames", _STRING, {"data": encode(list(lines))})
 
 
@@ -118,7 +112,6 @@ def of_chassis(count: int = 8, language: str = "en") -> Sample:
 
 
 def of_sonar(*metres: float, language: str = "en") -> Sample:
-    """Frames of the sonar in front."""
     chunks = [
         Chunk(AT_S + at / 100, "in", wire_tfluna.encode(TofFrame(round(one * 100), 1000, 30.0)))
         for at, one in enumerate(metres)
@@ -139,7 +132,6 @@ def update(*samples: Sample, publishers: tuple[str, ...] = tuple(PORTS)) -> Grap
 
 
 def with_drivers(*samples: Sample) -> RecordedOpener:
-    """Drivers at work, that have said this."""
     session = RecordedSession(nodes=_nodes(), lines=())
     return RecordedOpener(session, RecordedGraph(update(*(samples or STATUSES))))
 

@@ -50,7 +50,6 @@ def word(
 
 
 def obeyed(*words: Sample, at_s: float, **more: Any) -> GraphUpdate:
-    """The graph with what nodes say."""
     nodes = (NodeRow(GATE), NodeRow(CHASSIS))
     samples = {EMERGENCY_STATE: words, **more.pop("samples", {})}
     return lesson_update(samples=samples, nodes=nodes, time_s=at_s, **more)

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from graph.data import EndpointInfo, GraphUpdate, Sample, TopicRow
+from launcher.status import LogLine
 from tests.tui.recorded import NOW_S, joints, lesson_update, line, sample
 from tests.tui.recorded_lesson import TOPICS
-
-if TYPE_CHECKING:
-    from launcher.status import LogLine
 
 _STRING, _BYTES = "std_msgs/msg/String", "std_msgs/msg/ByteMultiArray"
 _DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
@@ -76,18 +74,13 @@ def at(one: Sample, at_s: float) -> Sample:
 
 
 def update(*samples: Sample) -> GraphUpdate:
-    """An update with these samples."""
     grouped: dict[str, tuple[Sample, ...]] = {}
     for one in samples:
         grouped[one.topic] = (*grouped.get(one.topic, ()), one)
     return lesson_update(topics=topics(), samples=grouped)
 
 
-BEFORE = (
-    drive("/drive_safe", 0.0, 0.0, -1.0),
-    wheels(0.0, 0.0, -1.0),
-    head(0.0, -1.0),
-)
+BEFORE = (drive("/drive_safe", 0.0, 0.0, -1.0), wheels(0.0, 0.0, -1.0), head(0.0, -1.0))
 """What the repeating topics say while nothing happens."""
 PHRASE = "VOICE_COMMAND: осмотрись и расскажи, что там"
 
@@ -111,7 +104,6 @@ def voice(t: float) -> tuple[Sample, ...]:
 
 
 def voice_lines(t: float, seq: int = 1) -> tuple[LogLine, ...]:
-    """What the nodes write meanwhile."""
     return (
         line("ai_brain", seq, "Слышу: «осмотрись и расскажи, что там»", at_s=t + 0.0012),
         line("ai_brain", seq + 1, "Думаю: голос, кадр и 2.40 м впереди", at_s=t + 0.0021),
@@ -124,7 +116,6 @@ def voice_lines(t: float, seq: int = 1) -> tuple[LogLine, ...]:
 
 
 def command(t: float) -> tuple[Sample, ...]:
-    """A person types a word."""
     return (
         word("налево", t),
         drive("/drive", 0.3, 0.5, t + 0.0021),

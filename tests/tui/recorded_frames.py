@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from graph.data import FrameRow, GraphUpdate, TopicRow
 from space.buffer import Stamped
 from space.transform import Transform
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession, lesson_update
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 _TF = "tf2_msgs/msg/TFMessage"
 
@@ -80,13 +78,11 @@ def topics(image_frame: str = "camera_link") -> tuple[TopicRow, ...]:
 def frames_update(
     frames: Sequence[FrameRow] = ROBOT, rows: Sequence[TopicRow] = topics()
 ) -> GraphUpdate:
-    """An update with these frames."""
     return replace(lesson_update(topics=tuple(rows), samples={}), frames=tuple(frames))
 
 
 def with_frames(
     frames: Sequence[FrameRow] = ROBOT, rows: Sequence[TopicRow] = topics()
 ) -> RecordedOpener:
-    """A session in which these frames come."""
     graph = RecordedGraph(frames_update(frames, rows))
     return RecordedOpener(RecordedSession(lines=()), graph)

@@ -31,6 +31,16 @@ PARAMETERS: tuple[ParameterRow, ...] = (
 """Of every node of which a test says nothing else."""
 
 
+def done(result: Any, error: Exception | None = None) -> Future[Any]:
+    """Return a future of which this has come already."""
+    future: Future[Any] = Future()
+    if error is None:
+        future.set_result(result)
+    else:
+        future.set_exception(error)
+    return future
+
+
 @dataclass
 class RecordedGraph:
     """A graph that shows what it is told to, and notes what is asked of it."""
@@ -132,33 +142,23 @@ class RecordedGraph:
         self, topic: str, type_name: str, *, latched: bool = False
     ) -> Future[None]:
         self.prepared.append((topic, type_name, latched))
-        future: Future[None] = Future()
-        future.set_result(None)
-        return future
+        return done(None)
 
     def publish(
         self, topic: str, type_name: str, value: Mapping[str, Any], *, latched: bool = False
     ) -> Future[int]:
         self.published.append((topic, type_name, value, latched))
-        future: Future[int] = Future()
-        if self.publish_error is None:
-            future.set_result(1)
-        else:
-            future.set_exception(self.publish_error)
-        return future
+        return done(1, self.publish_error)
 
     def call(
         self, service: str, type_name: str, request: Mapping[str, Any], timeout_s: float = 5.0
     ) -> Future[CallResult]:
         self.waited_s.append(timeout_s)
         self.called.append((service, type_name, request))
-        future: Future[CallResult] = Future()
         if self.hold_calls:
-            self.waiting.append(future)
-        else:
-            done = CallResult(service, True, {"sum": 1}, "", 0.012)
-            future.set_result(self.answers.get(service, done))
-        return future
+            self.waiting.append(Future())
+            return self.waiting[-1]
+        return done(self.answers.get(service, CallResult(service, True, {"sum": 1}, "", 0.012)))
 
     def start_publishing(
         self, topic: str, type_name: str, value: Mapping[str, Any], hz: float
@@ -167,34 +167,28 @@ class RecordedGraph:
         number = len(self.repeated)
         if self.publish_error is None:
             one = Publication(number, topic, type_name, hz, 0, 1)
-            self._change(lambda now: replace(now, publications=(*now.publications, one)))
-        return self._numbered(number)
+            self._change(publications=(*self._now.publications, one))
+        return done(number, self.publish_error)
 
     def stop_publishing(self, number: int) -> None:
         self.stopped_publications.append(number)
-        self._change(
-            lambda now: replace(
-                now, publications=tuple(one for one in now.publications if one.number != number)
-            )
-        )
+        kept = [one for one in self._now.publications if one.number != number]
+        self._change(publications=tuple(kept))
 
     def stop_publishing_all(self) -> None:
         self.stopped_all += 1
         if self.update is not None and self.update.publications:
-            self._change(lambda now: replace(now, publications=()))
+            self._change(publications=())
 
     def stop_commanding(self) -> None:
         self.commands_nothing = True
 
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
-        self.prepared.append((topic, type_name, False))
-        future: Future[None] = Future()
-        future.set_result(None)
-        return future
+        return self.prepare_publisher(topic, type_name)
 
     def hold(self, topic: str, type_name: str, command: HeldCommand) -> Future[int]:
         self.held.append((topic, type_name, command))
-        return self._numbered(1)
+        return done(1, self.publish_error)
 
     def let_go(self, topic: str) -> None:
         self.let_go_of.append(topic)
@@ -202,11 +196,10 @@ class RecordedGraph:
     def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
         del timeout_s
         self.asked_parameters.append(node)
-        future: Future[ParametersResult] = Future()
-        future.set_result(
-            self.node_parameters.get(node, ParametersResult(node, PARAMETERS, "", 0.01))
-        )
-        return future
+        return done(self._known(node))
+
+    def _known(self, node: str) -> ParametersResult:
+        return self.node_parameters.get(node, ParametersResult(node, PARAMETERS, "", 0.01))
 
     def set_parameters(
         self, node: str, values: Mapping[str, Any], timeout_s: float = 5.0
@@ -214,53 +207,35 @@ class RecordedGraph:
         del timeout_s
         self.set_to.append((node, values))
         refused = {name: why for name, why in self.refusals.items() if name in values}
-        known = self.node_parameters.get(node, ParametersResult(node, PARAMETERS, "", 0.01))
-        taken = tuple(
-            replace(row, value=values[row.name])
-            if row.name in values and row.name not in refused
-            else row
-            for row in known.parameters
-        )
-        self.node_parameters[node] = replace(known, parameters=taken)
-        future: Future[SetResult] = Future()
-        future.set_result(SetResult(node, refused, "", 0.01))
-        return future
+        known = self._known(node)
+        taken = {name: value for name, value in values.items() if name not in refused}
+        rows = tuple(replace(row, value=taken.get(row.name, row.value)) for row in known.parameters)
+        self.node_parameters[node] = replace(known, parameters=rows)
+        return done(SetResult(node, refused, "", 0.01))
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Any]) -> Future[int]:
         self.sent_goals.append((action, type_name, goal))
         number = len(self.sent_goals)
         if self.publish_error is None:
             one = Goal(number, action, type_name, GoalStatus.SENDING, goal)
-            self._change(lambda now: replace(now, goals=(*now.goals, one)))
-        return self._numbered(number)
+            self._change(goals=(*self._now.goals, one))
+        return done(number, self.publish_error)
 
     def cancel_goal(self, number: int) -> None:
         self.canceled_goals.append(number)
 
     def forget_goal(self, number: int) -> None:
         self.forgotten_goals.append(number)
-        self._change(
-            lambda now: replace(now, goals=tuple(one for one in now.goals if one.number != number))
-        )
+        self._change(goals=tuple(one for one in self._now.goals if one.number != number))
 
     def change_goal(self, number: int, **more: Any) -> None:
         """Let a goal that was sent be otherwise: its status, feedback, result."""
-        self._change(
-            lambda now: replace(
-                now,
-                goals=tuple(
-                    replace(one, **more) if one.number == number else one for one in now.goals
-                ),
-            )
-        )
+        goals = (replace(one, **more) if one.number == number else one for one in self._now.goals)
+        self._change(goals=tuple(goals))
 
-    def _change(self, change: Callable[[GraphUpdate], GraphUpdate]) -> None:
-        self.show(change(self.update or GraphUpdate(NOW_S)))
+    @property
+    def _now(self) -> GraphUpdate:
+        return self.update or GraphUpdate(NOW_S)
 
-    def _numbered(self, number: int) -> Future[int]:
-        future: Future[int] = Future()
-        if self.publish_error is None:
-            future.set_result(number)
-        else:
-            future.set_exception(self.publish_error)
-        return future
+    def _change(self, **more: Any) -> None:
+        self.show(replace(self._now, **more))

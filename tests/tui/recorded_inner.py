@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from graph.data import GraphUpdate, NodeRow
 from graph.inner_states import (
@@ -15,9 +16,6 @@ from graph.inner_states import (
     TransitionResult,
 )
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 T = TypeVar("T")
 

@@ -7,9 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from graph.data import GraphUpdate, NodeRow, Sample, ServiceRow, TopicRow, Trouble
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity
-from tests.tui.recorded_image import colour_bars
 from tui.session.requests import Lesson, Score, Task
 
 NOW_S = 1_767_225_600.0
@@ -19,10 +20,7 @@ SESSION = SessionInfo(
     run_id="20260101-000000-1",
     profile="profiles/09-brain.yaml",
     name="09-brain",
-    title={
-        "en": "One screen instead of five terminals",
-        "ru": "Один экран вместо пяти терминалов",
-    },
+    title={"en": "One screen instead of five terminals", "ru": "Один экран вместо пяти терминалов"},
     lesson="9",
     domain=42,
     panels=("sonar", "wheels", "camera", "head", "voice"),
@@ -30,21 +28,14 @@ SESSION = SessionInfo(
     log_dir="/var/log/deck/20260101-000000-1",
 )
 
-_COMMANDS = {
-    "sonar_front": "nodes.mock_sonar",
-    "camera": "nodes.mock_camera",
-    "audio": "nodes.mock_audio",
-    "head_controller": "nodes.head_controller",
-    "ai_driver": "nodes.ai_driver",
-    "safety_stop": "nodes.safety_stop",
-    "electronic_differential": "nodes.electronic_differential",
-    "ai_brain": "nodes.ai_brain",
-}
+_MOCKED = {"sonar_front": "mock_sonar", "camera": "mock_camera", "audio": "mock_audio"}
+_OTHERS = ("head_controller", "ai_driver", "safety_stop", "electronic_differential", "ai_brain")
+_COMMANDS = _MOCKED | {name: name for name in _OTHERS}
 
 NODES: dict[str, NodeStatus] = {
     name: NodeStatus(
         name=name,
-        command=command,
+        command=f"nodes.{command}",
         state=NodeState.READY,
         pid=4200 + index,
         uptime_s=83.0 + index / 10,
@@ -116,68 +107,45 @@ TOPICS: tuple[TopicRow, ...] = (
     topic("/camera/color/image_raw", _IMAGE, 10.0, 921_664, subscribers=1),
     topic("/drive", _DRIVE, 0.1, 60, age_s=6.0),
     topic("/drive_safe", _DRIVE, 10.0, 60),
-    topic(
-        "/emergency_stop",
-        "std_msgs/msg/Bool",
-        None,
-        publishers=0,
-        subscribers=2,
-        trouble=Trouble.NO_PUBLISHER,
-    ),
+    topic("/emergency_stop", "std_msgs/msg/Bool", None, publishers=0, subscribers=2,
+          trouble=Trouble.NO_PUBLISHER),
     topic("/head_state", _JOINTS, 10.0, 120),
     topic("/parameter_events", "rcl_interfaces/msg/ParameterEvent", None, publishers=9),
     topic("/rosout", "rcl_interfaces/msg/Log", 2.4, 180, publishers=9),
     topic("/safety_state", "diagnostic_msgs/msg/DiagnosticArray", 1.0, 120),
     topic("/sensor/sonar_front", _FLOAT, 1.0, 8, subscribers=2),
     topic("/wheel_commands", _JOINTS, 10.0, 160),
-)
+)  # fmt: skip
 
 
 def sample(name: str, type_name: str, value: Mapping[str, Any], size: int = 12) -> Sample:
-    """One message that has just come."""
     return Sample(name, type_name, NOW_S, 0.0, size, value)
 
 
+def header(frame: str = "") -> dict[str, Any]:
+    return {"stamp": {"sec": int(NOW_S), "nanosec": 0}, "frame_id": frame}
+
+
 def joints(name: str, **values: tuple[float, float]) -> Sample:
-    """A JointState: joint to (position, velocity)."""
-    return sample(
-        name,
-        _JOINTS,
-        {
-            "header": {"stamp": {"sec": int(NOW_S), "nanosec": 0}, "frame_id": ""},
-            "name": list(values),
-            "position": [position for position, _velocity in values.values()],
-            "velocity": [velocity for _position, velocity in values.values()],
-            "effort": [],
-        },
-        160,
-    )
+    positions, velocities = ([pair[at] for pair in values.values()] for at in (0, 1))
+    state = {"name": list(values), "position": positions, "velocity": velocities, "effort": []}
+    return sample(name, _JOINTS, {"header": header(), **state}, 160)
 
 
 def lesson_samples() -> dict[str, tuple[Sample, ...]]:
     """The newest message of every topic of lesson 9: turning left at 0.3 m/s, head at 45°."""
-    radius = 0.033
-    drive = {
-        "header": {"stamp": {"sec": int(NOW_S), "nanosec": 0}, "frame_id": "base_link"},
-        "drive": {
-            "steering_angle": 0.5,
-            "steering_angle_velocity": 0.0,
-            "speed": 0.3,
-            "acceleration": 0.0,
-            "jerk": 0.0,
-        },
-    }
-    image = {
-        "header": {"stamp": {"sec": int(NOW_S), "nanosec": 0}, "frame_id": "camera_link"},
-        "height": 480,
-        "width": 640,
-        "encoding": "bgr8",
-        "is_bigendian": 0,
-        "step": 1920,
-        "data": colour_bars(),
-    }
+    asked = {
+        "steering_angle": 0.5, "steering_angle_velocity": 0.0, "speed": 0.3,
+        "acceleration": 0.0, "jerk": 0.0,
+    }  # fmt: skip
+    drive = {"header": header("base_link"), "drive": asked}
+    size = {"height": 480, "width": 640, "encoding": "bgr8", "is_bigendian": 0, "step": 1920}
+    image = {"header": header("camera_link"), **size, "data": colour_bars()}
     voice = "Осмотрись и расскажи, что видишь".encode()
     answer = "Еду вперёд и осматриваюсь".encode()
+    layout: dict[str, Any] = {"dim": [], "data_offset": 0}
+    status = {"level": b"\x00", "name": "safety_stop", "message": "", "values": []}
+    free = {"header": header(), "status": [status]}
     newest = (
         sample("/sensor/sonar_front", _FLOAT, {"data": 1.84}, 8),
         sample("/ai_command", _STRING, {"data": "налево"}),
@@ -185,41 +153,25 @@ def lesson_samples() -> dict[str, tuple[Sample, ...]]:
         sample("/drive_safe", _DRIVE, drive, 60),
         joints(
             "/wheel_commands",
-            rear_left_wheel_joint=(0.0, 0.2508 / radius),
-            rear_right_wheel_joint=(0.0, 0.3492 / radius),
+            rear_left_wheel_joint=(0.0, 0.2508 / 0.033),
+            rear_right_wheel_joint=(0.0, 0.3492 / 0.033),
             steering_joint=(0.5, 0.0),
         ),
         joints("/head_state", pan_joint=(0.7854, 0.0), tilt_joint=(0.1745, 0.0)),
-        sample("/audio/mic_raw", _BYTES, {"layout": {"dim": [], "data_offset": 0}, "data": voice}),
-        sample(
-            "/audio/speaker_raw", _BYTES, {"layout": {"dim": [], "data_offset": 0}, "data": answer}
-        ),
+        sample("/audio/mic_raw", _BYTES, {"layout": layout, "data": voice}),
+        sample("/audio/speaker_raw", _BYTES, {"layout": layout, "data": answer}),
         sample("/camera/color/image_raw", _IMAGE, image, 921_664),
-        sample(
-            "/safety_state",
-            "diagnostic_msgs/msg/DiagnosticArray",
-            {
-                "header": {"stamp": {"sec": int(NOW_S), "nanosec": 0}, "frame_id": ""},
-                "status": [{"level": b"\x00", "name": "safety_stop", "message": "", "values": []}],
-            },
-        ),
+        sample("/safety_state", "diagnostic_msgs/msg/DiagnosticArray", free),
     )
     return {one.topic: (one,) for one in newest}
 
 
 def lesson_update(**more: Any) -> GraphUpdate:
     """The graph of lesson 9 with a sample of every topic."""
-    update = GraphUpdate(
-        time_s=NOW_S,
-        topics=TOPICS,
-        samples=lesson_samples(),
-        nodes=tuple(NodeRow(f"/{name}") for name in sorted(NODES)),
-        services=(
-            ServiceRow(
-                "/set_head_position", ("example_interfaces/srv/AddTwoInts",), ("/head_controller",)
-            ),
-        ),
-    )
+    add = "example_interfaces/srv/AddTwoInts"
+    nodes = tuple(NodeRow(f"/{name}") for name in sorted(NODES))
+    services = (ServiceRow("/set_head_position", (add,), ("/head_controller",)),)
+    update = GraphUpdate(NOW_S, TOPICS, lesson_samples(), nodes=nodes, services=services)
     return replace(update, **more)
 
 
@@ -269,3 +221,15 @@ LESSONS = [
         error="profiles/my-robot.yaml:7:5: nodes.sonar.rum: unknown key (did you mean `run`?)",
     ),
 ]
+
+
+_BARS = ((192, 192, 192), (0, 192, 192), (192, 192, 0), (0, 192, 0), (192, 0, 192), (0, 0, 192))
+
+
+def colour_bars(width: int = 640, height: int = 480) -> bytes:
+    """Return a bgr8 picture, row after row: six bars, below them a ramp from black to white."""
+    picture = np.zeros((height, width, 3), np.uint8)
+    columns = np.arange(width) * len(_BARS) // width
+    picture[: height * 3 // 4] = np.array(_BARS, np.uint8)[columns]
+    picture[height * 3 // 4 :] = np.linspace(0, 255, width).astype(np.uint8)[:, None]
+    return picture.tobytes()

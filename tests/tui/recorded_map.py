@@ -51,18 +51,15 @@ def odometry(pose: Pose, at_s: float = 0.0, frame: str = "odom") -> Sample:
 
 
 def stamped(name: str, pose: Pose, frame: str = "odom") -> Sample:
-    """A PoseStamped on a topic."""
     return sample(name, POSE, pose_value(pose, frame))
 
 
 def reading(place: str, metres: float) -> Sample:
-    """One of a sonar."""
     return sample(f"/sensor/sonar_{place}", FLOAT, {"data": metres}, 8)
 
 
 @lru_cache
 def room(frame: str = "odom") -> Sample:
-    """The room of the simulated robot."""
     grid = grid_of(World().room)
     origin = pose_value(Pose(grid.x_m, grid.y_m))["pose"]
     rows, columns = grid.cells.shape

@@ -70,7 +70,6 @@ def flat(pose: Pose, z_m: float = 0.0) -> Transform:
 
 
 def frame_row(parent: str, child: str, at: Transform, *, static: bool = True) -> FrameRow:
-    """A frame as the updates have it."""
     return FrameRow(Stamped(parent, child, 10.0, at, static), 1, None if static else 20.0)
 
 

@@ -54,10 +54,7 @@ class BagOpener(LiveOpener):
 
 @asynccontextmanager
 async def replayed(
-    bag: Path,
-    screen: str = "deck",
-    size: tuple[int, int] = (120, 40),
-    **settings: Any,
+    bag: Path, screen: str = "deck", size: tuple[int, int] = (120, 40), **settings: Any
 ) -> AsyncIterator[tuple[DeckApp, Pilot[Any], Replay]]:
     """Run the app until the bag is on the screen."""
     opener = BagOpener(**settings)

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
+from textual.pilot import Pilot
 from textual.screen import Screen
 
+from graph.data import GraphUpdate
 from tests.tui.recorded import RecordedOpener
 from tests.tui.snapshots import Look, settle
-
-if TYPE_CHECKING:
-    from textual.pilot import Pilot
-
-    from graph.data import GraphUpdate
-    from tui.app import DeckApp
+from tui.app import DeckApp
 
 HOME = Look((120, 40), "en")
 S = TypeVar("S", bound=Screen[Any])
@@ -35,7 +32,6 @@ class ScreenStage(Generic[S]):
 
     @property
     def screen(self) -> S:
-        """The screen, in front or not."""
         found = self.app.get_screen(self.name)
         assert isinstance(found, self.kind)
         return found
@@ -57,7 +53,6 @@ class ScreenStage(Generic[S]):
 async def on_stage(
     stage: type[T], opener: RecordedOpener | None = None, look: Look = HOME
 ) -> AsyncIterator[T]:
-    """Open the stage's screen."""
     opener = opener or RecordedOpener()
     app = look.app(stage.name, opener)
     async with app.run_test(size=look.size) as pilot:

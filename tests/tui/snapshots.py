@@ -6,11 +6,13 @@ blinks, nothing is animated.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from textual.app import App
 from textual.pilot import Pilot
 
 from tests.tui.recorded import RecordedOpener
@@ -60,3 +62,25 @@ def _asks(app: DeckApp) -> bool:
     if isinstance(app.screen, PickerScreen):
         return any(rows.chosen for rows in app.screen.query(Rows))
     return isinstance(app.screen, Dialog)
+
+
+LESSON_9 = OpenRequest(Path("profiles/09-brain.yaml"))
+
+
+@asynccontextmanager
+async def opened(
+    opener: RecordedOpener | None = None,
+    screen: str = "deck",
+    size: tuple[int, int] = (120, 40),
+    order: OpenRequest = LESSON_9,
+) -> AsyncIterator[tuple[DeckApp, Pilot[Any]]]:
+    """Run the app until the recorded session, or the picker, is on the screen."""
+    app = DeckApp(opener or RecordedOpener(), order, screen)
+    async with app.run_test(size=size) as pilot:
+        await settle(pilot)
+        yield app, pilot
+
+
+def seen(app: App[Any]) -> str:
+    """Return all that is on the screen."""
+    return "\n".join(strip.text for strip in app.screen._compositor.render_strips())

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -36,7 +35,7 @@ from tests.tui.recorded_frames import with_frames
 from tests.tui.recorded_map import MAP_SESSION, map_update
 from tests.tui.recorded_nodes import graph_update
 from tests.tui.replayed import BagOpener
-from tests.tui.snapshots import NARROW, WIDE, Look, SnapCompare, settle
+from tests.tui.snapshots import NARROW, WIDE, Look, SnapCompare, seen, settle
 from tests.tui.space.stage_runs import robot_in_a_room
 from tests.tui.teleop.test_teleop import SLOWED, gated, opener_of
 from tests.tui.topics_stage import CAMERA, depth_message, with_camera
@@ -235,23 +234,14 @@ PARTS: dict[str, Scene] = {
 }
 
 
-def seen(app: DeckApp) -> str:
-    """All that is on the screen."""
-    return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
-
-
 @pytest.fixture(autouse=True)
-def _everywhere_the_same(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
-    """Times of day of the recording, folders of nobody, no budget that goes by the clock."""
+def _everywhere_the_same(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Folders of nobody, a clock that stands, and no budget that goes by another."""
     for name in ("DECK_COURSE", "XDG_STATE_HOME", "XDG_CACHE_HOME"):
         monkeypatch.setenv(name, str(tmp_path))
     monkeypatch.setattr(devices_words, "_lessons_with_drivers", lambda: ("robot",))
+    monkeypatch.setattr(clock, "steady", lambda: 1.0)
     monkeypatch.setattr(ComposerScreen, "_show_budget", lambda _screen: None)
-    monkeypatch.setenv("TZ", "UTC")
-    time.tzset()
-    yield
-    monkeypatch.undo()
-    time.tzset()
 
 
 def staged(scene: Scene, look: Look) -> tuple[DeckApp, Callable[[Pilot[Any]], Awaitable[None]]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import AbstractAsyncContextManager
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import cv2
 import numpy as np
@@ -12,15 +12,12 @@ from textual.widgets import Static
 
 from graph.data import GraphUpdate, TopicRow
 from tests.tui.recorded import TOPICS, lesson_update, sample
-from tests.tui.recorded_image import colour_bars
+from tests.tui.recorded_lesson import colour_bars
 from tests.tui.screen_stage import HOME, ScreenStage, on_stage
 from tests.tui.snapshots import Look
 from tests.waiting import until
 from tui.topics.detail import TopicHead
 from tui.topics.screen import TopicsScreen
-
-if TYPE_CHECKING:
-    pass
 
 SONAR, CAMERA = "/sensor/sonar_front", "/camera/color/image_raw"
 
@@ -48,14 +45,12 @@ class TopicsStage(ScreenStage[TopicsScreen]):
         await self.pilot.pause()
 
     async def decoded(self) -> None:
-        """Wait until no picture is being decoded."""
         under_way = [worker for worker in self.app.workers if worker.group == "pictures"]
         if under_way:
             await self.app.workers.wait_for_complete(under_way)
         await self.pilot.pause()
 
     def head(self) -> str:
-        """The lines above the message."""
         return self.screen.query_one(TopicHead).render().plain
 
     def count(self) -> str:

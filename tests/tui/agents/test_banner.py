@@ -6,31 +6,21 @@ import pytest
 from textual.widgets import TextArea
 
 from launcher.consent import Agent, Agents, Approval, Question
-from launcher.events import AgentsEvent
-from tests.tui.app_runs import opened
+from launcher.events import AgentsEvent, LogEvent
+from launcher.status import LogLine, Severity
 from tests.tui.recorded import NOW_S, RecordedOpener
+from tests.tui.snapshots import opened
 from tests.waiting import until
 from text.sentences import say
 from tui.app import DeckApp
+from tui.flow.screen import FlowScreen
 from tui.frame.agent_banner import AgentBanner
 
-LINES = (
-    say(
-        "drives at {speed:g} m/s, steering {steering:g} rad, for {seconds:g} s: "
-        "{metres:.2f} m at most",
-        speed=0.2,
-        steering=-0.1,
-        seconds=2,
-        metres=0.4,
-    ),
-    say("the gate would let it: free for {metres:.2f} m", metres=1.75),
-    say("it says: {reason}", reason="to see what is behind the box"),
-)
+LINES = (say("it says: {reason}", reason="to see what is behind the box"),)
 CLAUDE = Agent("claude", Approval.ASK)
 
 
 def asks(number: int = 1, lines: tuple[str, ...] = LINES) -> AgentsEvent:
-    """An agent asks."""
     return AgentsEvent(Agents((CLAUDE,), (Question(number, "claude", lines, NOW_S + 30),)))
 
 
@@ -41,7 +31,6 @@ def banner(app: DeckApp) -> str:
 
 
 async def read(app: DeckApp) -> None:
-    """Wait until the question may be answered."""
     await until(lambda: app.agents.was_read, "a question that was read")
 
 
@@ -73,16 +62,6 @@ async def test_keys_answer_once_the_question_was_read(key: str, answer: str) -> 
         await pilot.press(key)
         await until(lambda: opener.link.asked, "an answer")
         assert opener.link.asked == [("answer", "7", answer)]
-
-
-async def test_a_refusal_needs_no_care() -> None:
-    opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        opener.link.say(asks())
-        await until(lambda: banner(app), "the banner")
-        await pilot.press("shift+f9")
-        await until(lambda: opener.link.asked, "a refusal")
-        assert opener.link.asked == [("answer", "1", "refuse")]
 
 
 async def test_the_emergency_stop_refuses() -> None:
@@ -118,13 +97,14 @@ async def test_a_question_that_is_covered_is_not_answered() -> None:
         assert opener.link.asked == []
 
 
-async def test_the_next_question_has_to_be_read_anew() -> None:
+async def test_what_an_agent_does_begins_a_chain() -> None:
     opener = RecordedOpener()
-    async with opened(opener) as (app, pilot):
-        opener.link.say(asks(1))
-        await read(app)
-        opener.link.say(asks(2))
-        await until(lambda: not app.agents.was_read, "another question")
-        await pilot.press("shift+f4")
-        await pilot.pause()
-        assert opener.link.asked == []
+    async with opened(opener, "flow") as (app, _pilot):
+        screen = app.screen
+        assert isinstance(screen, FlowScreen)
+        does = say("agent “{agent}” does {id}: {words}", agent="claude", id="p1", words="drives")
+        opener.link.say(LogEvent((LogLine("agent", 1, NOW_S, Severity.WARN, does, "", "agent"),)))
+        chains = await until(
+            lambda: [one for one in screen.chains if one.first.lane.value == "agent"], "a chain"
+        )
+        assert [one.first.text for one in chains] == ["agent “claude” does p1: drives"]

@@ -2,39 +2,37 @@
 
 from __future__ import annotations
 
-import string
+from importlib import import_module
+from typing import Any
 
+import pytest
 from textual._ansi_sequences import ANSI_SEQUENCES_KEYS
+from textual.command import CommandPalette
+from textual.pilot import Pilot
+from textual.widgets import OptionList
 
 from launcher.status import NodeState
-from tests.tui.app_runs import opened
+from tests.tui import topics_stage
 from tests.tui.recorded import RecordedOpener
+from tests.tui.snapshots import opened, seen, settle
+from tests.waiting import until
 from tui.actions import REGISTRY
 from tui.app import DeckApp
 from tui.frame.key_bar import KeyBar
 from tui.help.page import Page
 from tui.help.screen import HelpScreen
-from tui.screens import every_action
+from tui.palette import PLACES
+from tui.screens import SCREENS, every_action
 from tui.teleop.actions import MoveAction
 
 
 def footer(app: DeckApp) -> str:
-    """Return the keys that are shown."""
     return str(app.screen.query_one(KeyBar).render())
 
 
 def help_text(app: DeckApp) -> str:
-    """Return the whole help page."""
     assert isinstance(app.screen, HelpScreen)
     return " ".join(app.screen.query_one(Page).text.split())
-
-
-def test_every_action_has_its_own_id_a_title_and_a_sentence() -> None:
-    for name in every_action():
-        action = REGISTRY[name]
-        assert action.id == name
-        assert action.title
-        assert action.tooltip.endswith("."), name
 
 
 def test_terminals_can_send_every_key() -> None:
@@ -46,8 +44,6 @@ def test_terminals_can_send_every_key() -> None:
             assert key != "shift+f3", name
 
 
-CURSOR = frozenset("hjklgG")
-"""Letters that move the cursor in lists and trees, beside the arrow keys."""
 DIALOGS = frozenset({"enter", "escape"})
 """Enter takes what a dialog offers, Escape leaves it: what that is, stands beside the key."""
 
@@ -71,10 +67,6 @@ def test_a_key_means_one_thing_on_every_screen() -> None:
     assert doubled.keys() <= DIALOGS, doubled
 
 
-def test_no_action_takes_a_letter_that_moves_the_cursor() -> None:
-    assert CURSOR.isdisjoint(keys_of_every_screen())
-
-
 def test_a_russian_letter_means_what_the_key_that_it_stands_on_does() -> None:
     table = keys_of_every_screen()
     on_a_key = str.maketrans("фисвуапршолдьтщзйкыегмцчня", "abcdefghijklmnopqrstuvwxyz")
@@ -83,14 +75,6 @@ def test_a_russian_letter_means_what_the_key_that_it_stands_on_does() -> None:
         if len(key) == 1 and latin != key.lower():
             latin = latin.upper() if key.isupper() else latin
             assert meanings == table[latin], (key, latin)
-
-
-def test_letters_work_on_a_russian_keyboard_too() -> None:
-    for name in every_action():
-        keys = REGISTRY[name].key.split(",")
-        letters = [key for key in keys if key in string.ascii_letters]
-        if letters:
-            assert any("Ѐ" <= key <= "ӿ" for key in keys), name
 
 
 async def test_the_footer_shows_what_can_be_done_now() -> None:
@@ -107,22 +91,15 @@ async def test_the_footer_shows_what_can_be_done_now() -> None:
         assert "Restart" not in footer(app)
 
 
-async def test_the_footer_keeps_the_stop_on_the_narrowest_terminal() -> None:
-    async with opened(size=(40, 12)) as (app, _pilot):
-        assert "space STOP" in footer(app)
-        assert "q Quit" in footer(app)
-
-
 async def test_help_lists_every_key_of_the_screen_and_closes_again() -> None:
     async with opened() as (app, pilot):
         deck = app.screen
         await pilot.press("f1")
         await pilot.pause()
         page = help_text(app)
-        for action in (*map(REGISTRY.get, ("node.restart", "log.only", "emergency.release")),):
-            assert action is not None
-            assert action.title in page
-            assert action.tooltip in page
+        for name in ("node.restart", "log.only", "emergency.release"):
+            assert REGISTRY[name].title in page
+            assert REGISTRY[name].tooltip in page
         await pilot.press("escape")
         await pilot.pause()
         assert app.screen is deck
@@ -141,25 +118,99 @@ async def test_a_keymap_changes_key_footer_and_help() -> None:
         assert "f7" in help_text(app)
 
 
-async def test_themes_are_gone_through_by_a_key() -> None:
-    async with opened() as (app, pilot):
-        seen = [app.theme]
-        for _press in range(3):
-            await pilot.press("f10")
-            await pilot.pause()
-            seen.append(app.theme)
-        assert seen == ["textual-dark", "textual-light", "high-contrast", "textual-dark"]
-
-
 async def test_language_is_switched_by_a_key_and_everything_visible_changes() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
         opener.link.set_state("camera", NodeState.FAILED)
         await pilot.press("f9")
-        await pilot.pause()
-        await pilot.pause()
-        screen = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
+        await settle(pilot)
+        screen = seen(app)
         for words in ("Пульт", "Узел", "✗ сбой", "Сонар", "Колёса", "5 Граф", "пробел СТОП"):
             assert words in screen
         for words in ("failed", "Sonar", "domain", "STOP"):
             assert words not in screen
+
+
+async def test_a_topic_is_echoed() -> None:
+    async with topics_stage.opened() as stage:
+        await stage.choose(topics_stage.SONAR)
+        await stage.pilot.press("Y")
+        await stage.pilot.pause()
+        assert stage.app.clipboard == f"ros2 topic echo {topics_stage.SONAR}"
+
+
+def found(app: DeckApp) -> list[str]:
+    """Return what the palette lists now: name and sentence of each, the likeliest first."""
+    if not isinstance(app.screen, CommandPalette):
+        return []
+    return [str(option.prompt) for option in app.screen.query_one(OptionList).options]
+
+
+def is_searched(app: DeckApp) -> bool:
+    """Whether the palette has found all that it will find for what is typed."""
+    return all(worker.is_finished for worker in app.workers if worker.node is app.screen)
+
+
+async def look_for(app: DeckApp, pilot: Pilot[Any], words: str, expected: str) -> list[str]:
+    """Type words into the palette, wait until something expected is listed; return the list."""
+
+    def listed() -> bool:
+        return is_searched(app) and any(expected in line for line in found(app))
+
+    await pilot.press("ctrl+p")
+    await until(lambda: is_searched(app) and found(app), "what is offered at first")
+    await pilot.press(*words)
+    await until(listed, lambda: f"{expected!r} in the palette, but {found(app)}")
+    return found(app)
+
+
+async def take(app: DeckApp, pilot: Pilot[Any], name: str) -> None:
+    place = next(i for i, line in enumerate(found(app)) if line.splitlines()[0] == name)
+    await pilot.press(*["down"] * place, "enter")
+    await until(lambda: not isinstance(app.screen, CommandPalette), "the palette gone")
+
+
+async def test_it_finds_an_action_by_name_and_does_it() -> None:
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        await pilot.press("down")
+        await look_for(app, pilot, "restart", "Restart all")
+        await take(app, pilot, "Restart")
+        await until(lambda: opener.link.asked, "what is asked of the nodes")
+        assert opener.link.asked == [("restart", "camera")]
+
+
+@pytest.mark.parametrize(
+    ("language", "typed", "title"),
+    [("ru", "plot", "Топики › График (Plot)"), ("en", "plot", "Topics › Plot")],
+)
+async def test_an_action_of_another_screen_is_found_in_either_language_with_its_place(
+    language: str, typed: str, title: str
+) -> None:
+    async with opened() as (app, pilot):
+        app.speak(language)
+        lines = await look_for(app, pilot, typed, title)
+        assert title in [line.splitlines()[0] for line in lines]
+
+
+async def test_what_acts_is_only_gone_to_and_its_key_is_told() -> None:
+    opener = RecordedOpener()
+    async with opened(opener, "topics") as (app, pilot):
+        await look_for(app, pilot, "restart", "Deck › Restart all")
+        await take(app, pilot, "Deck › Restart all")
+        told = "Restart all is here: R."
+        await until(lambda: told in [note.message for note in app._notifications], "where it is")
+        assert app.screen is app.get_screen("deck")
+        assert opener.link.asked == []
+
+
+def test_every_action_of_every_screen_has_its_place() -> None:
+    for name, (module, made) in SCREENS.items():
+        screen = getattr(import_module(module), made)
+        # What every screen inherits is offered on each of them.
+        own = vars(screen).get("BINDINGS", ())
+        bound = {each.id for each in own if each.id in REGISTRY}
+        placed = {
+            action.id for place in PLACES if place.show.screen == name for action in place.actions
+        }
+        assert name == "picker" or bound <= placed, name

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from textual.color import Color
 
 from graph.data import NAMELESS, EndpointInfo, GraphUpdate
-from launcher.status import NodeState, NodeStatus
-from tests.tui.app_runs import opened
+from launcher.status import NodeStatus
 from tests.tui.recorded import NODES, TOPICS, RecordedOpener, lesson_update, topic
-from tests.tui.snapshots import settle
+from tests.tui.snapshots import opened, settle
 from tui.frame.title_bar import TitleBar
 from tui.session.bypass import BypassDetector
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 DRIVE, JOINTS = "ackermann_msgs/msg/AckermannDriveStamped", "sensor_msgs/msg/JointState"
 KINDS = {"/drive_safe": DRIVE, "/wheel_commands": JOINTS}
@@ -30,21 +27,11 @@ def graph(
     """The lesson's graph with these publishers, by topic without its slash."""
     changed = {f"/{name}": nodes for name, nodes in by.items()}
     others = [row for row in TOPICS if row.name not in changed]
-    mine = [
-        topic(
-            name,
-            kinds.get(name, JOINTS),
-            10.0,
-            60,
-            publishers=len(nodes),
-            published_by=tuple(
-                EndpointInfo(node, kinds.get(name, JOINTS), "reliable", "volatile")
-                for node in nodes
-            ),
-        )
-        for name, nodes in changed.items()
-    ]
-    update = lesson_update(topics=tuple(sorted([*others, *mine], key=lambda row: row.name)))
+    for name, nodes in changed.items():
+        kind = kinds.get(name, JOINTS)
+        ends = tuple(EndpointInfo(node, kind, "reliable", "volatile") for node in nodes)
+        others.append(topic(name, kind, 10.0, 60, publishers=len(nodes), published_by=ends))
+    update = lesson_update(topics=tuple(sorted(others, key=lambda row: row.name)))
     return replace(update, time_s=update.time_s + at_s)
 
 
@@ -113,14 +100,6 @@ def test_without_a_gate_of_its_own_it_takes_two() -> None:
         ]
 
 
-def test_what_a_crash_has_left_in_the_tables_bypasses_nothing() -> None:
-    node = NODES["electronic_differential"]
-    update = graph(wheel_commands=(DIFFERENTIAL,) * 2)
-    for restarts, uptime_s, count in ((1, 3.0, 0), (1, 30.0, 1), (0, 3.0, 1)):
-        now = replace(node, state=NodeState.READY, restarts=restarts, uptime_s=uptime_s)
-        assert len(named(update, {**NODES, node.name: now})) == count
-
-
 def test_a_name_is_waited_for() -> None:
     bypass, by = BypassDetector(), (GATE, f"/{NAMELESS}")
     assert not bypass.see(graph(drive_safe=by), NODES)
@@ -131,11 +110,9 @@ def test_a_name_is_waited_for() -> None:
     assert bypass.words() == ()
 
 
-@pytest.mark.parametrize("size", [(80, 24), (120, 40)])
-@pytest.mark.parametrize("screen", ["deck", "logs"])
-async def test_it_stands_in_the_title_in_red(size: tuple[int, int], screen: str) -> None:
+async def test_it_stands_in_the_title_in_red() -> None:
     opener = RecordedOpener()
-    async with opened(opener, screen, size) as (app, pilot):
+    async with opened(opener, size=(80, 24)) as (app, pilot):
         opener.graph.show(graph(wheel_commands=(DIFFERENTIAL, "/evil")))
         await settle(pilot)
         bar = app.screen.query_one(TitleBar)

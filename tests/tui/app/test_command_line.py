@@ -19,7 +19,6 @@ class LineApp(App[None]):
         self.sent: list[str] = []
 
     def compose(self) -> ComposeResult:
-        """The line."""
         yield CommandLine()
 
     @on(CommandLine.CommandSent)
@@ -28,12 +27,10 @@ class LineApp(App[None]):
 
     @property
     def line(self) -> CommandLine:
-        """The line."""
         return self.query_one(CommandLine)
 
     @property
     def remark(self) -> str:
-        """What stands below the line."""
         return str(self.line.query_one(Static).content)
 
 
@@ -47,14 +44,6 @@ async def test_enter_sends_the_word_and_empties_the_line() -> None:
         assert app.sent == ["left"]
 
 
-async def test_a_known_word_says_what_it_will_do() -> None:
-    app = LineApp()
-    async with app.run_test() as pilot:
-        app.line.show_listeners(1)
-        await pilot.press(*"Налево")
-        assert app.remark == "0.3 m/s, steering 0.5 rad"
-
-
 async def test_an_unknown_word_is_warned_of_and_sent_all_the_same() -> None:
     app = LineApp()
     async with app.run_test() as pilot:
@@ -63,15 +52,6 @@ async def test_an_unknown_word_is_warned_of_and_sent_all_the_same() -> None:
         assert "unknown word “прыжок”" in app.remark
         await pilot.press("enter")
         assert app.sent == ["прыжок"]
-
-
-async def test_it_says_when_nobody_listens() -> None:
-    app = LineApp()
-    async with app.run_test():
-        app.line.show_listeners(0)
-        assert "nobody listens to /ai_command" in app.remark
-        app.line.show_listeners(2)
-        assert "nobody" not in app.remark
 
 
 @pytest.mark.parametrize(
@@ -91,16 +71,6 @@ async def test_words_of_both_languages_are_completed(
 ) -> None:
     set_language(language)
     assert await WordSuggester().get_suggestion(start) == whole
-
-
-async def test_the_right_arrow_takes_the_suggestion() -> None:
-    app = LineApp()
-    async with app.run_test() as pilot:
-        await pilot.press("f")
-        await app.workers.wait_for_complete()
-        await pilot.pause()
-        await pilot.press("right", "enter")
-        assert app.sent == ["forward"]
 
 
 async def test_up_and_down_recall_and_keep_the_draft() -> None:

@@ -16,9 +16,8 @@ from textual.events import Paste
 
 from graph.data import Trouble
 from tests.hostile_text import EVIL, harm_in, harm_on_screen, poisoned
-from tests.tui.app_runs import LESSON_9
 from tests.tui.recorded import TOPICS, RecordedGraph, RecordedOpener, lesson_samples, lesson_update
-from tests.tui.snapshots import settle
+from tests.tui.snapshots import LESSON_9, settle
 from tui.app import DeckApp
 from tui.terminal.harmless import Harmless
 
@@ -32,7 +31,6 @@ class Writing(HeadlessDriver):
 
     @property
     def is_headless(self) -> bool:
-        """Have everything written."""
         return False
 
     def write(self, data: str) -> None:

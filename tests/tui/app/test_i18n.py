@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from graph.data import ParameterRow
+from graph.messages.types import UnknownTypeError, load_message
 from tests.unit.scripts_of_setup import load
 from text.i18n import detect, localized, ngettext, pick, set_language
-from text.sentences import say
+from tui.graph.parameter_words import allowed_words
+from tui.yaml_form.words import reason_words
 
 catalogues = load("catalogues")
 
@@ -20,9 +23,7 @@ catalogues = load("catalogues")
         ("ru", {"DECK_LANG": "en", "LANG": "en_US.UTF-8"}, "en", "ru"),
         (None, {"DECK_LANG": "ru", "LANG": "en_US.UTF-8"}, "en", "ru"),
         (None, {"LANG": "en_US.UTF-8"}, "ru", "ru"),
-        (None, {"LC_ALL": "ru_RU.UTF-8", "LANG": "en_US.UTF-8"}, "", "ru"),
         (None, {"LC_MESSAGES": "ru_RU", "LANG": "en_US.UTF-8"}, "", "ru"),
-        (None, {"LANG": "ru-RU"}, "", "ru"),
         (None, {"LANG": "C.UTF-8"}, "", "en"),
         (None, {"LANG": "de_DE.UTF-8"}, "", "en"),
         (None, {}, "", "en"),
@@ -46,19 +47,6 @@ def test_russian_counts_by_its_own_rules() -> None:
         "Запускает 11 узлов",
         "Запускает 21 узел",
     ]
-
-
-def test_an_unknown_language_is_refused_by_name() -> None:
-    with pytest.raises(ValueError, match=r"'fr'.*en or ru"):
-        set_language("fr")
-
-
-def test_a_sentence_of_the_launcher_is_translated_where_it_is_shown() -> None:
-    words = say("domain {domain}", domain=42)
-    assert localized(words) == "domain 42"
-    set_language("ru")
-    assert localized(words) == "домен 42"
-    assert localized("a plain text") == "a plain text"
 
 
 def test_a_title_is_picked_in_the_language_spoken_else_in_english_else_in_any() -> None:
@@ -98,3 +86,33 @@ def test_translations_fill_in_the_same_values() -> None:
         if entry.id:
             for text in texts:
                 assert fields(text) <= fields(ids[0]) | fields(ids[-1]), entry.id
+
+
+@pytest.mark.parametrize(
+    "name", ["std_msgs", "std_msgs/msg/Strin", "no_such_msgs/msg/Any", "std_msgs/srv/Any"]
+)
+def test_a_type_that_is_not_there(name: str) -> None:
+    set_language("ru")
+    with pytest.raises(UnknownTypeError) as found:
+        load_message(name)
+    for words in (localized(found.value.reason), reason_words(found.value)):
+        assert any("а" <= char <= "я" for char in words.lower())
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        (ParameterRow("a", "double", 1.0, "", "0.1 .. 60 s", False, 0.1, 60.0), "0.1…60 с"),
+        (
+            ParameterRow("a", "integer", 1, "", "0 .. 9 rad/s", True, 0, 9),
+            "только чтение, 0…9 рад/с",
+        ),
+        (ParameterRow("a", "double", 1.0, "", "0 .. 1 furlong", False, 0.0, 1.0), "0…1 furlong"),
+        (ParameterRow("a", "double", 1.0, "", "0 .. 2 s", False, 0.0, 1.0), "0…1, 0 .. 2 s"),
+        (ParameterRow("a", "string", "", "", "text, may be empty"), "строка, может быть пустой"),
+        (ParameterRow("a", "string", "", "", "as you like"), "as you like"),
+    ],
+)
+def test_what_a_parameter_may_be(row: ParameterRow, words: str) -> None:
+    set_language("ru")
+    assert allowed_words(row) == words

@@ -8,9 +8,8 @@ import pytest
 from textual.pilot import Pilot
 
 from graph.data import GraphUpdate, NodeRow, Sample
-from tests.tui.app_runs import opened
 from tests.tui.recorded import NODES, NOW_S, RecordedOpener, lesson_update, sample
-from tests.tui.snapshots import settle
+from tests.tui.snapshots import opened, settle
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.frame import title
@@ -44,7 +43,6 @@ def rows_of(app: DeckApp) -> list[list[str]]:
 
 
 def offered(app: DeckApp) -> set[str]:
-    """The keys in the footer."""
     bar = app.screen.query_one(KeyBar)
     return {key.title for key in bar.keys()}  # noqa: SIM118 - no mapping
 
@@ -54,10 +52,9 @@ async def show(opener: RecordedOpener, pilot: Pilot[Any], update: GraphUpdate) -
     await settle(pilot)
 
 
-@pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)])
-async def test_it_stands_below_decks_own_until_it_leaves_the_graph(size: tuple[int, int]) -> None:
+async def test_it_stands_below_decks_own_until_it_leaves_the_graph() -> None:
     opener = RecordedOpener()
-    async with opened(opener, size=size) as (app, pilot):
+    async with opened(opener, size=(80, 24)) as (app, pilot):
         own = rows_of(app)
         await show(opener, pilot, graph("/my_node", "/arm/driver", *HELPERS))
         shown = rows_of(app)

@@ -16,10 +16,6 @@ def read(path: Path) -> Settings:
     return load(path, THEMES, every_action)
 
 
-def test_without_a_file_nothing_is_settled(tmp_path: Path) -> None:
-    assert read(tmp_path / "settings.json") == Settings()
-
-
 def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
     path = tmp_path / "deck" / "settings.json"
     left_out = "sensor_msgs/msg/Image,sensor_msgs/msg/PointCloud2"
@@ -69,9 +65,3 @@ def test_a_folder_in_its_place_is_refused_with_a_mend(tmp_path: Path) -> None:
     with pytest.raises(SettingsError) as refused:
         read(path)
     assert str(refused.value) == f"{path}: expected a file, found a directory (remove or rename it)"
-
-
-def test_a_disk_that_refuses_is_told_and_no_more(tmp_path: Path) -> None:
-    (tmp_path / "deck").write_text("a file in the way")
-    with pytest.raises(SettingsError, match="deck"):
-        save(tmp_path / "deck" / "settings.json", Settings("textual-light"))

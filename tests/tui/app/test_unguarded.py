@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 
 from launcher.events import UnguardedEvent
-from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedOpener
 from tests.tui.recorded_emergency import held
-from tests.tui.snapshots import settle
+from tests.tui.snapshots import opened, settle
 from text.i18n import set_language
 from tui.frame.title_bar import TitleBar
 

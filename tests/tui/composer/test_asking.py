@@ -3,38 +3,172 @@
 from __future__ import annotations
 
 import json
+import threading
+from collections.abc import Iterator
+from contextlib import AbstractAsyncContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from textual.widgets import OptionList
+from textual.widgets import OptionList, Static
 
-from tests.model_server import KEY, Exchange, ModelServer
-from tests.tui.composer.asking import (
-    FAST,
-    GOOD,
-    Answers,
-    InPieces,
-    answered,
-    ask,
-    composer,
-    is_asking,
-    is_auto,
-    sent,
-    set_up,
-    shown,
-    status,
-    verdict,
-)
+from brain.settings import settings_path
+from graph.data import Sample
+from robot.topics import LLM_RAW_JSON, LLM_RESULT, SAFETY_STATE, SONAR_FRONT
+from tests.model_server import KEY, Exchange, ModelServer, obeys
+from tests.tui.composer.test_composer import PARSER, ComposerStage
+from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.recorded_lesson import SESSION
+from tests.tui.screen_stage import on_stage
+from tests.tui.snapshots import Look, seen
 from tests.waiting import until
-from text.run_path import MODEL_USAGE
+from tui import clock
+from tui.composer.compare import ComparedAnswer, CompareDialog
+from tui.composer.json_editor import JsonEditor
 from tui.composer.prompt_dialog import PromptDialog
+from tui.composer.senses import RobotSenses
 
 if TYPE_CHECKING:
     from tests.model_server import Script
 
-pytestmark = [pytest.mark.usefixtures("own_folders"), pytest.mark.nightly]
+pytestmark = pytest.mark.nightly
+DRIVE = {"action": "drive", "speed": 0.2, "steering": 0.0}
+GOOD = json.dumps({"thought": "I roll closer.", "commands": [DRIVE]})
+FAST = json.dumps({"thought": "I hurry.", "commands": [{**DRIVE, "speed": 5}]})
+WORDS = "roll closer"
+
+
+def _closes(exchange: Exchange) -> None:
+    exchange.begins()
+    exchange.piece({"content": GOOD[:30]})
+    raise OSError
+
+
+async def opened_comparison(stage: ComposerStage) -> CompareDialog:
+    await stage.pilot.press("alt+q")
+    stage.screen.line.field.value = WORDS
+    await stage.pilot.press("alt+c")
+    await stage.pilot.pause()
+    dialog = stage.app.screen
+    assert isinstance(dialog, CompareDialog)
+    both = dialog.query(ComparedAnswer)
+    await until(lambda: all(one.state.whole for one in both), "both answers")
+    await stage.pilot.pause()
+    return dialog
+
+
+class Answers:
+    """A server that obeys, and answers questions one after the other; the last one again."""
+
+    def __init__(self, *answers: str | Script) -> None:
+        self.left = list(answers)
+
+    def __call__(self, exchange: Exchange) -> None:
+        if "deck-" in json.dumps(exchange.request):
+            obeys("")(exchange)
+            return
+        answer = self.left.pop(0) if len(self.left) > 1 else self.left[0]
+        if isinstance(answer, str):
+            exchange.says(answer, usage=(412, 86))
+        else:
+            answer(exchange)
+
+
+class InPieces:
+    """An answer of which each piece waits for the test."""
+
+    def __init__(self, *pieces: str) -> None:
+        self._pieces = pieces
+        self._gates = [threading.Event() for _ in pieces]
+        self._given = 0
+        self.hung_up = threading.Event()
+
+    def give(self) -> None:
+        self._gates[self._given].set()
+        self._given += 1
+
+    def __call__(self, exchange: Exchange) -> None:
+        exchange.begins()
+        for gate, piece in zip(self._gates, self._pieces, strict=True):
+            self._wait(gate, exchange)
+            exchange.piece({"content": piece})
+        exchange.ends(usage=(412, 86))
+
+    def _wait(self, gate: threading.Event, exchange: Exchange) -> None:
+        try:
+            while not gate.wait(0.02):
+                # A comment, which says nothing: it fails once the other end has hung up.
+                exchange.bytes(b": \n\n")
+        except OSError:
+            self.hung_up.set()
+            raise
+
+
+def set_up(url: str, **more: str) -> None:
+    fields = {"base_url": url, "model": "m-1", "key_env": "THE_KEY", **more}
+    settings_path().parent.mkdir(parents=True, exist_ok=True)
+    text = "".join(f"{name}: {value}\n" for name, value in fields.items())
+    settings_path().write_text(text, encoding="utf-8")
+
+
+def composer(size: tuple[int, int] = (120, 40)) -> AbstractAsyncContextManager[ComposerStage]:
+    """Open the Composer over a recorded lesson 9."""
+    topics = (*lesson_update().topics, PARSER)
+    graph = RecordedGraph(update=lesson_update(topics=topics))
+    return on_stage(ComposerStage, RecordedOpener(graph=graph), Look(size, "en"))
+
+
+async def ask(stage: ComposerStage, words: str = WORDS) -> None:
+    """Say it in the line, and press Enter."""
+    await stage.pilot.press("alt+q")
+    stage.screen.line.field.value = words
+    await stage.pilot.press("enter")
+    await stage.pilot.pause()
+
+
+async def answered(stage: ComposerStage) -> None:
+    """Wait until nothing is under way any more."""
+    await until(lambda: not stage.screen.is_asking, "the end of the question")
+    await stage.pilot.pause()
+
+
+def verdict(stage: ComposerStage) -> str:
+    """The line that says how the JSON stands."""
+    return str(stage.screen.verdict.query_one(Static).content)
+
+
+def status(stage: ComposerStage) -> str:
+    return str(stage.screen.query_one("#ask-status", Static).content)
+
+
+def sent(stage: ComposerStage) -> list[object]:
+    return [value["data"] for topic, _, value, _ in stage.graph.published if topic == LLM_RAW_JSON]
+
+
+@pytest.fixture(autouse=True)
+def own_folders(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("THE_KEY", KEY)
+    (tmp_path / "run" / SESSION.run_id).mkdir(parents=True)
+
+
+@pytest.fixture
+def server() -> Iterator[ModelServer]:
+    """A model that gives one good answer, again and again."""
+    with ModelServer(Answers(GOOD)) as server:
+        yield server
+
+
+FAULTS: dict[str, tuple[Script, str, str]] = {
+    "key": (lambda one: one.fails(401), "does not take the key (401)", "key_env or key_file"),
+    "model": (lambda one: one.fails(404), "does not know the model m-1", "base_url and model"),
+    "busy": (lambda one: one.fails(429), "too many requests", ""),
+    "server": (lambda one: one.fails(503), "the server failed (503)", ""),
+    "cut": (_closes, "connection was lost in the middle", ""),
+    "empty": (lambda one: one.says(""), "the answer is empty", ""),
+    "html": (lambda one: one.fails(200, "<p>", "text/html"), "not the address of a model", "/v1"),
+}
 
 
 async def test_an_answer_waits_in_the_editor_to_be_sent(server: ModelServer) -> None:
@@ -100,38 +234,6 @@ async def test_a_refused_answer_is_repaired_in_sight(server: ModelServer) -> Non
         assert status(stage).startswith("m-1: 824 + 172 tokens")
 
 
-async def test_two_invalid_answers_are_shown_and_not_sent(server: ModelServer) -> None:
-    """The second one stands there with its problems; AUTO is over."""
-    server.script = Answers(FAST)
-    set_up(server.url)
-    async with composer() as stage:
-        await stage.pilot.press("alt+a")
-        await ask(stage)
-        await answered(stage)
-        assert stage.screen.editor.text == FAST
-        assert verdict(stage) == "✗ 1 problem"
-        assert "nor is the second" in stage.screen.line.note
-        assert not is_auto(stage)
-        assert sent(stage) == []
-
-
-def _closes(exchange: Exchange) -> None:
-    exchange.begins()
-    exchange.piece({"content": GOOD[:30]})
-    raise OSError
-
-
-FAULTS: dict[str, tuple[Script, str, str]] = {
-    "key": (lambda one: one.fails(401), "does not take the key (401)", "key_env or key_file"),
-    "model": (lambda one: one.fails(404), "does not know the model m-1", "base_url and model"),
-    "busy": (lambda one: one.fails(429), "too many requests", ""),
-    "server": (lambda one: one.fails(503), "the server failed (503)", ""),
-    "cut": (_closes, "connection was lost in the middle", ""),
-    "empty": (lambda one: one.says(""), "the answer is empty", ""),
-    "html": (lambda one: one.fails(200, "<p>", "text/html"), "not the address of a model", "/v1"),
-}
-
-
 @pytest.mark.parametrize("kind", FAULTS)
 async def test_each_failure_has_its_own_words_that_stay(kind: str, server: ModelServer) -> None:
     """The editor has its text again, AUTO is over, and nothing was sent."""
@@ -144,35 +246,16 @@ async def test_each_failure_has_its_own_words_that_stay(kind: str, server: Model
         await stage.write(before)
         server.script = Answers(script)
         await stage.pilot.press("alt+a")
-        assert is_auto(stage)
         await ask(stage)
         await answered(stage)
         assert words in stage.screen.line.note
         assert mend in stage.screen.line.note
         assert stage.screen.editor.text == before
         assert not stage.screen.editor.read_only
-        assert not is_auto(stage)
+        assert not stage.screen.is_auto
         assert sent(stage) == []
         await stage.hear()
         assert words in stage.screen.line.note
-
-
-async def test_the_budget_is_shared_with_the_nodes_and_kept(
-    server: ModelServer, tmp_path: Path
-) -> None:
-    """What a node has noted in the run's folder counts here, and the other way round."""
-    set_up(server.url, budget="{tokens_per_session: 1000}")
-    ledger = tmp_path / "run" / SESSION.run_id / MODEL_USAGE
-    spent = {"ended_s": 1.0, "who": "ai_brain", "input_tokens": 300, "output_tokens": 60}
-    ledger.write_text(json.dumps(spent) + "\n", encoding="utf-8")
-    async with composer() as stage:
-        assert status(stage).endswith("360 of 1000 tokens")
-        await ask(stage)
-        await answered(stage)
-        assert '"who": "composer"' in ledger.read_text(encoding="utf-8")
-        await ask(stage)
-        await answered(stage)
-        assert "the budget of 1000 tokens a session is used up" in stage.screen.line.note
 
 
 async def test_escape_hangs_up_and_brings_the_text_back(server: ModelServer) -> None:
@@ -187,7 +270,7 @@ async def test_escape_hangs_up_and_brings_the_text_back(server: ModelServer) -> 
         await until(lambda: stage.screen.editor.text == GOOD[:19], "the first piece")
         await stage.pilot.press("escape")
         await stage.pilot.pause()
-        assert not is_asking(stage)
+        assert not stage.screen.is_asking
         assert stage.screen.editor.text == before
         await until(answer.hung_up.is_set, "the end of the connection")
 
@@ -195,14 +278,14 @@ async def test_escape_hangs_up_and_brings_the_text_back(server: ModelServer) -> 
 async def test_auto_sends_a_valid_answer_by_itself(server: ModelServer) -> None:
     set_up(server.url)
     async with composer() as stage:
-        assert "AUTO" not in shown(stage)
+        assert "AUTO" not in seen(stage.app)
         await stage.pilot.press("alt+a")
         await stage.pilot.pause()
-        assert " AUTO " in shown(stage)
+        assert " AUTO " in seen(stage.app)
         await ask(stage)
         await answered(stage)
         assert sent(stage) == [GOOD]
-        assert is_auto(stage)
+        assert stage.screen.is_auto
         await stage.pilot.press("alt+a")
         await ask(stage)
         await answered(stage)
@@ -221,16 +304,16 @@ async def test_the_emergency_stop_ends_auto_while_the_answer_comes(server: Model
         await until(lambda: stage.screen.editor.text == GOOD[:19], "the first piece")
         await stage.pilot.press("ctrl+x")
         await stage.pilot.pause()
-        assert not is_auto(stage)
+        assert not stage.screen.is_auto
         assert "the emergency stop has ended it" in stage.screen.line.note
         await stage.pilot.press("alt+a")
-        assert not is_auto(stage)
+        assert not stage.screen.is_auto
         await stage.pilot.press("ctrl+r")
         answer.give()
         await answered(stage)
         assert stage.screen.editor.text == GOOD
         assert sent(stage) == []
-        assert not is_auto(stage)
+        assert not stage.screen.is_auto
 
 
 async def test_the_prompt_that_went_out_can_be_looked_at(server: ModelServer) -> None:
@@ -240,7 +323,7 @@ async def test_the_prompt_that_went_out_can_be_looked_at(server: ModelServer) ->
     async with composer() as stage:
         await stage.pilot.press("alt+p")
         await stage.pilot.pause()
-        assert "Nothing has been asked" in shown(stage)
+        assert "Nothing has been asked" in seen(stage.app)
         await stage.pilot.press("escape")
         await ask(stage, f"roll closer {KEY}")
         await answered(stage)
@@ -265,8 +348,42 @@ async def test_no_model_is_set_up() -> None:
         assert "docs/models.md" in stage.screen.line.field.placeholder
         await ask(stage)
         assert "no language model is set up — docs/models.md" in stage.screen.line.note
-        assert not is_asking(stage)
+        assert not stage.screen.is_asking
         await stage.write(GOOD)
         await stage.pilot.press("ctrl+s")
         await stage.pilot.pause()
         assert sent(stage) == [GOOD]
+
+
+async def test_two_models_are_compared_and_one_answer_is_taken(server: ModelServer) -> None:
+    other = GOOD.replace("closer", "nearer")
+
+    def by_model(exchange: Exchange) -> None:
+        exchange.says(other if exchange.request["model"] == "m-2" else GOOD, usage=(412, 86))
+
+    server.script = Answers(by_model)
+    set_up(server.url, compare_with="m-2")
+    async with composer() as stage:
+        dialog = await opened_comparison(stage)
+        assert [one.text for one in dialog.query(JsonEditor)] == [GOOD, other]
+        await stage.pilot.press("tab", "enter")
+        await stage.pilot.pause()
+        assert stage.screen.editor.text == other
+        assert sent(stage) == []
+
+
+def test_the_model_is_told_what_the_screen_sees() -> None:
+    """Distance, the gate's sentence, and what became of the last commands."""
+    refused = {"data": '{"event": "refused", "problems": []}'}
+    gate = {"status": [{"name": "safety_stop", "message": "forward is blocked", "values": []}]}
+    senses = RobotSenses()
+    for topic, kind, value in (
+        (SONAR_FRONT, "std_msgs/msg/Float32", {"data": 1.25}),
+        (SAFETY_STATE, "diagnostic_msgs/msg/DiagnosticArray", gate),
+        (LLM_RESULT, "std_msgs/msg/String", refused),
+    ):
+        senses.see({topic: (Sample(topic, kind, clock.now(), 0.0, 100, value),)})
+    situation = senses.situation("go on")
+    assert (situation.heard, situation.front_m) == ("go on", 1.25)
+    assert situation.gate == "forward is blocked"
+    assert situation.refused

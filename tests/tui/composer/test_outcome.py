@@ -11,7 +11,6 @@ import pytest
 from graph.data import Sample
 from robot.commands.schema import parse_llm
 from tests.tui.recorded import NOW_S, joints, sample
-from text.i18n import set_language
 from tui.outcome.trail import OutcomeTrail
 from tui.outcome.view import delay_text
 
@@ -38,9 +37,7 @@ def drive(topic: str, speed: float, steering: float) -> Sample:
 
 def wheels(left: float, right: float) -> Sample:
     return joints(
-        "/wheel_commands",
-        rear_left_wheel_joint=(0.0, left),
-        rear_right_wheel_joint=(0.0, right),
+        "/wheel_commands", rear_left_wheel_joint=(0.0, left), rear_right_wheel_joint=(0.0, right)
     )
 
 
@@ -103,30 +100,12 @@ def test_a_refusal_names_every_place_and_nothing_is_awaited() -> None:
     ]
 
 
-def test_a_refusal_is_said_in_the_language_of_the_screen() -> None:
-    set_language("ru")
-    trail = OutcomeTrail(SENT_S, ("llm_parser",), None, {})
-    problem = {
-        "field": "commands[0].speed", "line": 4, "column": 33, "message": "must be a number",
-        "code": "number", "args": {},
-    }  # fmt: skip
-    trail.see({"/llm_result": [at(0.01, result(event="refused", problems=[problem]))]})
-    assert told(trail)[1][2].startswith("строка 4, столбец 33: commands[0].speed: ")
-    assert "must" not in told(trail)[1][2]
-
-
 def test_silence_is_awaited_for_three_seconds_and_then_told() -> None:
     trail = begun()
     assert told(trail, 2.9) == [("·", "/llm_result", "waiting for an answer")]
     mark, _topic, text = told(trail, 3.0)[0]
     assert mark == "✗"
     assert text == "no answer within 3 s: is llm_parser running? Listening: llm_parser"
-
-
-def test_nobody_who_listens_is_told_at_once() -> None:
-    assert told(begun(listeners=()), 0.0) == [
-        ("✗", "/llm_result", "nobody listens to /llm_raw_json: is llm_parser running?")
-    ]
 
 
 def test_what_safety_holds_back_is_told_with_its_reason() -> None:

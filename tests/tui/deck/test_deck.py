@@ -2,107 +2,74 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
+from rich.color import ColorSystem
 from textual.widgets import Input
 
-from launcher.status import NodeState, Severity
-from tests.tui.app_runs import opened
-from tests.tui.lesson_openers import llm
-from tests.tui.recorded import (
-    SESSION,
-    RecordedOpener,
-)
-from tests.tui.snapshots import settle
+from graph.inner_states import LifecycleRow
+from launcher.status import NodeState
+from tests.tui.recorded import RecordedGraph, RecordedOpener
+from tests.tui.recorded_inner import managed_update
+from tests.tui.snapshots import opened, settle
 from text.sentences import say
 from tui.app import DeckApp
 from tui.deck.nodes_table import NodesTable
 from tui.deck.screen import LessonDeck
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
-from tui.frame.title_bar import TitleBar
-from tui.outcome.view import Outcome
 from tui.panels.camera import CameraPanel
 from tui.panels.head.panel import HeadPanel
-from tui.panels.llm import LlmPanel
 from tui.panels.panel_grid import PanelGrid, heights, in_rows, paged
 from tui.panels.sonar.panel import SonarPanel
 from tui.panels.voice.panel import VoicePanel
 from tui.panels.wheels.panel import WheelsPanel
-from tui.widgets.node_words import duration
-
-
-def deck_of(app: DeckApp) -> LessonDeck:
-    """Return the screen."""
-    assert isinstance(app.screen, LessonDeck)
-    return app.screen
+from tui.themes import CYCLE
 
 
 async def test_a_node_and_all_nodes_are_started_stopped_restarted() -> None:
     opener = RecordedOpener()
-    asked: list[tuple[str, ...]] = []
     async with opened(opener) as (_app, pilot):
         await pilot.press("down")
-        for key, verb in (("x", "stop"), ("r", "restart"), ("ч", "stop")):
-            asked.append((verb, "camera"))
+        for key, *what in (
+            ("x", "stop", "camera"),
+            ("r", "restart", "camera"),
+            ("ч", "stop", "camera"),
+            ("s", "start", "camera"),
+            ("S", "start"),
+            ("X", "stop"),
+            ("R", "restart"),
+        ):
+            if key == "s":
+                opener.link.set_state("camera", NodeState.EXITED)
+                await pilot.pause()
             await pilot.press(key)
             await pilot.pause()
-            assert opener.link.asked == asked
-        opener.link.set_state("camera", NodeState.EXITED)
-        await pilot.pause()
-        asked.append(("start", "camera"))
-        await pilot.press("s")
-        await pilot.pause()
-        assert opener.link.asked == asked
-        for key, verb in (("S", "start"), ("X", "stop"), ("R", "restart")):
-            asked.append((verb,))
-            await pilot.press(key)
-            await pilot.pause()
-            assert opener.link.asked == asked
+            assert opener.link.asked.pop() == tuple(what)
+            assert not opener.link.asked
 
 
-@pytest.mark.parametrize(
-    ("state", "keys"),
-    [
-        (NodeState.WAITING, "s Start  x Stop  r Restart"),
-        (NodeState.STARTING, "x Stop  r Restart"),
-        (NodeState.READY, "x Stop  r Restart"),
-        (NodeState.RUNNING, "x Stop  r Restart"),
-        (NodeState.STOPPING, "s Start  x Stop  r Restart"),
-        (NodeState.BACKOFF, "s Start  x Stop  r Restart"),
-        (NodeState.EXITED, "s Start  r Restart"),
-        (NodeState.FAILED, "s Start  r Restart"),
-    ],
-)
-async def test_what_is_done_already_is_not_offered(state: NodeState, keys: str) -> None:
+async def test_what_is_done_already_is_not_offered() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
-        opener.link.set_state("sonar_front", state)
-        await pilot.pause()
-        await pilot.pause()
-        shown = str(app.screen.query_one(KeyBar).render()).strip()
-        assert shown.startswith(f"{keys}  u My own  m Mute")
-
-
-async def test_a_node_is_muted_heard_alone_and_heard_again() -> None:
-    async with opened() as (app, pilot):
-        deck = deck_of(app)
-        await pilot.press("m")
-        assert deck.log_filter.muted == {"sonar_front"}
-        await pilot.press("down", "o")
-        assert deck.log_filter.only == "camera"
-        shown = {entry.node for entry in deck.pane.view.index.shown}
-        assert shown == {"camera"}
-        await pilot.press("F", "F", "a")
-        assert deck.log_filter.muted == frozenset()
-        assert deck.log_filter.minimum is Severity.DEBUG
+        for state, keys in (
+            (NodeState.WAITING, "s Start  x Stop  r Restart"),
+            (NodeState.READY, "x Stop  r Restart"),
+            (NodeState.BACKOFF, "s Start  x Stop  r Restart"),
+            (NodeState.FAILED, "s Start  r Restart"),
+        ):
+            opener.link.set_state("sonar_front", state)
+            await settle(pilot)
+            shown = str(app.screen.query_one(KeyBar).render()).strip()
+            assert shown.startswith(f"{keys}  u My own  m Mute")
 
 
 async def test_a_node_that_dies_is_shown_by_word_and_sign() -> None:
     opener = RecordedOpener()
     async with opened(opener, size=(200, 60)) as (app, pilot):
         opener.link.set_state("camera", NodeState.BACKOFF, signal="SIGKILL", restarts=1, pid=None)
-        await pilot.pause()
-        await pilot.pause()
+        await settle(pilot)
         table = app.screen.query_one(NodesTable)
         row = table.render_line(2).text
         assert "↻ restarts" in row
@@ -115,25 +82,15 @@ async def test_a_node_that_runs_but_is_not_ready_looks_like_none_that_is_well() 
     late = say("not ready within {seconds:g} s: {why}", seconds=10.0, why="nobody publishes /x")
     async with opened(opener, size=(200, 60)) as (app, pilot):
         opener.link.set_state("camera", NodeState.RUNNING, detail=late)
-        await pilot.pause()
-        await pilot.pause()
+        await settle(pilot)
         row = app.screen.query_one(NodesTable).render_line(2).text
         assert "◔ running" in row
         assert "not ready within 10 s" in row
         assert "○ 7/8" in title.states(app)[0]
         opener.link.set_state("camera", NodeState.RUNNING, detail="")
-        await pilot.pause()
-        await pilot.pause()
+        await settle(pilot)
         assert "● running" in app.screen.query_one(NodesTable).render_line(2).text
         assert "● 8/8" in title.states(app)[0]
-
-
-async def test_the_trail_of_a_json_shows_without_the_composer() -> None:
-    async with opened(llm()) as (app, pilot):
-        await pilot.pause()
-        trail = app.screen.query_one(LlmPanel).query_one(Outcome)
-        assert any("Turn and look" in entry.text for entry in trail.entries)
-        assert ("set_head_position", "✓") in {(entry.topic, entry.mark) for entry in trail.entries}
 
 
 async def test_only_what_is_shown_is_asked_for() -> None:
@@ -141,8 +98,6 @@ async def test_only_what_is_shown_is_asked_for() -> None:
     async with opened(opener) as (_app, pilot):
         assert opener.graph.pictures == {"/camera/color/image_raw"}
         assert {"/audio/mic_raw", "/emergency_stop", "/safety_state"} <= opener.graph.followed
-        before = opener.graph.measured
-        assert not before
         await pilot.press("2")
         await pilot.pause()
         assert opener.graph.measured
@@ -202,18 +157,52 @@ async def test_any_size_is_survived() -> None:
             assert "sonar_front" in app.screen.query_one(NodesTable).render_line(1).text
 
 
-@pytest.mark.parametrize(
-    ("seconds", "words"),
-    [(None, ""), (0, "0s"), (59.9, "59s"), (83, "1m23"), (3660, "1h01"), (90_000, "1d01")],
-)
-def test_a_time_is_told_in_its_two_greatest_units(seconds: float | None, words: str) -> None:
-    assert duration(seconds) == words
+def states(app: DeckApp) -> dict[str, str]:
+    """Node to what its row says of its state."""
+    assert isinstance(app.screen, LessonDeck)
+    rows = app.screen.table._rows
+    return {row.cells[0].text: " ".join(row.cells[1].text.split()) for row in rows}
 
 
-@pytest.mark.parametrize("size", [(40, 12), (80, 24), (120, 40), (200, 60)])
-async def test_the_domain_stands_in_the_title_at_every_size(size: tuple[int, int]) -> None:
-    async with opened(size=size) as (app, pilot):
-        for screen in ("deck", "topics", "logs"):
-            await app.show_screen(screen)
+async def test_a_state_is_shown_in_place_of_ready_and_follows_the_node() -> None:
+    opener = RecordedOpener(graph=RecordedGraph(update=managed_update()))
+    async with opened(opener) as (app, pilot):
+        assert states(app)["camera"] == "● inactive"
+        assert states(app)["sonar_front"] == "● active"
+        assert states(app)["safety_stop"] == "● ready"
+        errors = (LifecycleRow("/camera", "errorprocessing"),)
+        opener.graph.show(replace(managed_update(), lifecycles=errors))
+        await settle(pilot)
+        assert states(app)["camera"] == "● errorprocessing"
+        assert states(app)["sonar_front"] == "● ready"
+        opener.link.set_state("camera", NodeState.FAILED, detail="configure failed")
+        await settle(pilot)
+        assert states(app)["camera"] == "✗ failed configure failed"
+
+
+async def test_of_16_colours_good_bad_and_plain_words_have_their_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("textual.constants.COLOR_SYSTEM", "auto")
+    monkeypatch.delenv("COLORTERM", raising=False)
+    monkeypatch.setenv("TERM", "linux")
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        assert app.console.color_system == "standard"
+        opener.link.set_state("camera", NodeState.FAILED)
+        table = app.screen.query_one(NodesTable)
+        for app.theme in CYCLE:
             await settle(pilot)
-            assert f"domain {SESSION.domain}" in app.screen.query_one(TitleBar).text
+            inks = {
+                segment.text.strip(): segment.style.color.downgrade(ColorSystem.STANDARD).number
+                for y in range(table.size.height)
+                for segment in table.render_line(y)
+                if segment.style is not None and segment.style.color is not None
+            }
+            good, bad, plain = (
+                next(ink for text, ink in inks.items() if text.startswith(word))
+                for word in ("● ready", "✗ failed", "ai_brain")
+            )
+            assert good in {2, 10}, app.theme
+            assert bad in {1, 9}, app.theme
+            assert plain not in {good, bad}, app.theme

@@ -10,11 +10,10 @@ import pytest
 
 from launcher.profile.text import SHIPPED as PROFILES
 from launcher.status import HALTED, STUCK, NodeFault, NodeState, NodeStatus
-from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession
+from tests.tui.snapshots import opened, seen
 from tests.waiting import until
 from text.sentences import say
-from tui.app import DeckApp
 from tui.dialogs.choice import ChoiceScreen
 from tui.frame import title
 
@@ -46,13 +45,7 @@ def lesson_opener(profile: Path, file: str = "", fault: NodeFault | None = None)
     return RecordedOpener(link=RecordedSession(session, nodes, ()))
 
 
-def shown(app: DeckApp) -> str:
-    """What is on the screen."""
-    return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
-
-
 def asked(opener: RecordedOpener) -> Callable[[], object]:
-    """Whether an exchange was asked for."""
     return lambda: opener.link.asked or None
 
 
@@ -67,7 +60,7 @@ async def test_decks_node_is_exchanged_for_the_file_of_the_lessons_folder_which_
         assert opener.link.asked == [("exchange", "sonar_front", str(own))]
         assert own.is_file()
         opener.link.set_state("sonar_front", NodeState.READY, file=str(own))
-        await until(lambda: "sonar_front ✎" in shown(app), "the mark")
+        await until(lambda: "sonar_front ✎" in seen(app), "the mark")
         await pilot.press("u")
         await until(lambda: len(opener.link.asked) == 2, "the way back")
         assert opener.link.asked[-1] == ("exchange", "sonar_front", "")
@@ -82,8 +75,8 @@ async def test_a_mistake_in_ones_own_file_stands_at_its_node_with_place_line_and
     fault = NodeFault("crash", file, 31, 0, f"        {MISTAKE}", words, mend)
     opener = lesson_opener(PROFILES / f"{LESSON}.yaml", file, fault)
     async with opened(opener, size=(80, 24)) as (app, _pilot):
-        await until(lambda: MISTAKE in shown(app), "the line")
-        told = " ".join(shown(app).split())
+        await until(lambda: MISTAKE in seen(app), "the line")
+        told = " ".join(seen(app).split())
         assert "mock_sonar.py:31" in told
         assert "write 1.0, not 1." in told
 
@@ -92,9 +85,9 @@ async def test_a_mistake_in_ones_own_file_stands_at_its_node_with_place_line_and
 async def test_a_node_that_is_not_at_work_is_not_counted_as_ready(kind: str, word: str) -> None:
     opener = lesson_opener(PROFILES / f"{LESSON}.yaml", fault=NodeFault(kind, exception="since"))
     async with opened(opener) as (app, _pilot):
-        await until(lambda: f"✗ {word}" in shown(app), "its state")
+        await until(lambda: f"✗ {word}" in seen(app), "its state")
         assert "○ 1/2" in title.states(app)[0]
-        assert "● ready" in shown(app), "the other one is"
+        assert "● ready" in seen(app), "the other one is"
 
 
 async def test_which_editor_is_asked_once_and_kept(
@@ -108,7 +101,7 @@ async def test_which_editor_is_asked_once_and_kept(
     async with opened(opener) as (app, pilot):
         await pilot.press("e")
         await until(lambda: isinstance(app.screen, ChoiceScreen), "the question")
-        assert "micro" in shown(app)
+        assert "micro" in seen(app)
         await pilot.press("down", "enter")
         await until(lambda: app.editor == "vim", "the answer")
         await until(lambda: not isinstance(app.screen, ChoiceScreen), "the Deck again")

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from contextlib import AbstractAsyncContextManager
-from pathlib import Path
+from dataclasses import replace
+from typing import Any
 
 import pytest
+from textual.pilot import Pilot
 from textual.widgets import Static
 
-from graph.data import Sample
-from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
+from graph.data import NodeRow, ParameterRow, ParametersResult, Sample
+from launcher.status import NodeState, NodeStatus
+from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_devices import (
     AT_S,
+    STATUSES,
     of_chassis,
     of_sonar,
     status,
@@ -19,13 +23,13 @@ from tests.tui.recorded_devices import (
     with_drivers,
 )
 from tests.tui.screen_stage import ScreenStage, on_stage
+from tests.tui.snapshots import opened, settle
 from tests.waiting import until
 from tui import clock
-from tui.devices import words as devices_words
-from tui.devices.diagnostics import DiagnosticsView, StatusFacts
+from tui.actions import REGISTRY
+from tui.app import DeckApp
+from tui.devices.diagnostics import DiagnosticsView
 from tui.devices.screen import DevicesScreen
-from tui.frame.key_bar import KeyBar
-from tui.widgets.tab_line import TabLine
 
 
 class DevicesStage(ScreenStage[DevicesScreen]):
@@ -43,14 +47,10 @@ class DevicesStage(ScreenStage[DevicesScreen]):
         return [row for y in range(1, height) if (row := table.render_line(y).text.strip())]
 
     def lines(self) -> list[str]:
-        """The frames that the filter lets through."""
         return [entry.text for entry in self.screen.pane.view.index.shown]
 
     def whole(self) -> str:
         return str(self.screen.query_one("#devices-chosen", Static).render())
-
-    def empty(self) -> str:
-        return str(self.screen.query_one("#devices-empty", Static).render())
 
 
 def stage(of: RecordedOpener | None = None) -> AbstractAsyncContextManager[DevicesStage]:
@@ -110,40 +110,6 @@ async def test_frames_both_ways_with_noise_and_a_bad_one() -> None:
         assert {entry.node for entry in at.screen.pane.view.index.shown} == {"← вх", "→ исх"}
 
 
-async def test_filter_pause_and_clear() -> None:
-    async with stage() as at:
-        await at.hear(of_chassis())
-        await at.press("b")
-        assert not any("drive" in line for line in at.lines())
-        await at.press("и")
-        assert all("drive" in line for line in at.lines())
-        await at.press("b", "а")
-        assert [line[:2] for line in at.lines()] == ["~ ", "✗ "]
-        await at.press("f", "p")
-        await at.hear(of_chassis())
-        assert not at.screen.pane.view.following
-        assert at.screen.pane.view.fresh == 17
-        assert "Resume" in at.screen.query_one(KeyBar).render().plain
-        await at.press("з", "в")
-        assert at.lines() == []
-
-
-async def test_lines_are_copied_and_written_to_a_file(tmp_path: Path) -> None:
-    async with stage() as at:
-        await at.hear(of_sonar(1.23), of_chassis(1))
-        await at.press("tab", "up", "y")
-        assert "wheels left 3.10" in at.app.clipboard
-        assert "← in" in at.app.clipboard
-        await at.press("W")
-        field = at.screen.pane.prompt.query_one("Input")
-        field.value = str(tmp_path / "frames.log")  # type: ignore[attr-defined]
-        await at.press("enter")
-        await until(lambda: not at.screen.pane.prompt.kind, "the file written")
-        assert "drive left 3.20" in (tmp_path / "frames.log").read_text()
-        await at.press("escape")
-        assert at.screen.table.has_focus
-
-
 async def test_why_nothing_comes_from_a_driver(monkeypatch: pytest.MonkeyPatch) -> None:
     async with stage() as at:
         view = at.screen.pane.view
@@ -163,18 +129,6 @@ async def test_why_nothing_comes_from_a_driver(monkeypatch: pytest.MonkeyPatch) 
         assert "▲ warning" in at.drivers()[0], "nobody listened in between"
 
 
-async def test_why_there_is_no_driver(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(devices_words, "_lessons_with_drivers", lambda: ("robot",))
-    lesson = RecordedOpener(RecordedSession(lines=()), RecordedGraph(update(publishers=())))
-    async with stage(lesson) as at:
-        await until(lambda: "Drivers run in: robot." in at.empty(), "the lesson with drivers")
-        assert "No driver says anything on /diagnostics." in at.empty()
-    starting = with_drivers()
-    starting.graph.update = update(publishers=())
-    async with stage(starting) as at:
-        assert "chassis, sonar_front have not said anything" in at.empty()
-
-
 async def test_the_second_tab_has_what_everybody_says_the_worst_on_top() -> None:
     async with stage() as at:
         await at.press("right")
@@ -191,18 +145,75 @@ async def test_the_second_tab_has_what_everybody_says_the_worst_on_top() -> None
         assert any("frames" in topic for topic in at.graph.followed)
 
 
-async def test_silence_makes_stale_and_stands_in_the_history(
-    monkeypatch: pytest.MonkeyPatch,
+MOCK = "/mock_robot"
+TROUBLES = ("devices.unplug", "devices.noise", "devices.silence", "devices.battery")
+
+
+def simulation(*samples: Any) -> tuple[RecordedOpener, RecordedGraph]:
+    """Drivers at the lines of a simulated robot, whose node has its parameters."""
+    drivers = with_drivers()
+    graph = RecordedGraph(with_robot(*(samples or STATUSES)))
+    lines = [ParameterRow(name, "string", "fine") for name in ("pico", "tof_front", "tof_rear")]
+    rows = (*lines, ParameterRow("battery", "double", 7.4))
+    graph.node_parameters[MOCK] = ParametersResult(MOCK, rows)
+    robot = NodeStatus("mock_robot", "nodes.mock_robot", NodeState.READY, pid=4199)
+    link: Any = drivers.link
+    link.nodes["mock_robot"] = robot
+    return RecordedOpener(link, graph), graph
+
+
+def with_robot(*samples: Any) -> Any:
+    now = update(*samples)
+    return replace(now, nodes=(*now.nodes, NodeRow(MOCK)))
+
+
+def possible(app: DeckApp) -> list[str]:
+    return [name for name in TROUBLES if REGISTRY[name].possible(app.screen)]
+
+
+async def choose(app: DeckApp, pilot: Pilot[Any], name: str) -> None:
+    assert isinstance(app.screen, DevicesScreen)
+    app.screen.table.choose(name)
+    await pilot.pause()
+
+
+def told(app: DeckApp) -> list[str]:
+    return [note.message for note in app._notifications]
+
+
+@pytest.mark.parametrize(
+    ("key", "driver", "parameter", "wrong", "fine", "over"),
+    [
+        ("U", "sonar_front", "tof_front", "unplugged", "fine", "tof_front: the cable is plugged"),
+        ("Z", "chassis", "pico", "noise", "fine", "pico: the noise is gone"),
+        ("B", "chassis", "battery", 5.8, 7.4, "The battery has 7.4 V"),
+    ],
+)
+async def test_a_key_makes_the_trouble_and_mends_it(
+    key: str, driver: str, parameter: str, wrong: str | float, fine: str | float, over: str
 ) -> None:
-    async with stage() as at:
-        await at.press("right")
-        view = at.screen.query_one(DiagnosticsView)
-        view.names.choose("chassis")
-        later_s = clock.now() + 6.0
-        monkeypatch.setattr(clock, "now", lambda: later_s)
-        await until(
-            lambda: "▲" not in str(at.screen.query_one(TabLine).render()), "the tab is calm"
-        )
-        facts = at.screen.query_one(StatusFacts)
-        await until(lambda: len(facts._rows) > 2 and "stale" in facts._rows[1].cells[0].text, "it")
-        assert "warning" in facts._rows[2].cells[0].text
+    """Mended is told of this trouble only: a low battery does not mend a pulled cable."""
+    recorded, graph = simulation()
+    async with opened(recorded, "devices") as (app, pilot):
+        await choose(app, pilot, driver)
+        await pilot.press(key)
+        await until(lambda: len(told(app)) == 1, "the word of the trouble")
+        await pilot.press(key)
+        await until(lambda: len(told(app)) == 2, "the word that it is mended")
+        assert graph.set_to == [(MOCK, {parameter: wrong}), (MOCK, {parameter: fine})]
+        assert told(app)[1].startswith(over)
+
+
+async def test_only_a_device_that_is_simulated_can_have_trouble_made() -> None:
+    recorded, graph = simulation()
+    async with opened(recorded, "devices") as (app, pilot):
+        await choose(app, pilot, "chassis")
+        assert possible(app) == list(TROUBLES)
+        await choose(app, pilot, "sonar_front")
+        assert "devices.battery" not in possible(app)
+        await choose(app, pilot, "imu: data")
+        assert possible(app) == []
+        graph.show(with_robot(status("chassis", port="/dev/pico")))
+        await settle(pilot)
+        await choose(app, pilot, "chassis")
+        assert possible(app) == []

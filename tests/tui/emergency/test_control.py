@@ -19,7 +19,6 @@ from launcher.status import NodeState
 from robot.safety.stop_file import BY_SCREEN, StopFile
 from robot.safety.stop_record import Stop
 from robot.topics import EMERGENCY_STOP, SAFETY_STATE
-from tests.tui.app_runs import opened
 from tests.tui.recorded import (
     NOW_S,
     TOPICS,
@@ -30,7 +29,7 @@ from tests.tui.recorded import (
     sample,
 )
 from tests.tui.recorded_emergency import GATE, held, obeyed, said, word
-from tests.tui.snapshots import settle
+from tests.tui.snapshots import opened, settle
 from text.i18n import set_language
 from tui.deck.command_line import CommandLine
 from tui.emergency import control
@@ -183,8 +182,7 @@ async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> No
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
         opener.graph.show(said(True, NOW_S + 1))
-        await pilot.pause()
-        await pilot.pause()
+        await settle(pilot)
         assert "by another" in app.screen.query_one(TitleBar).text
         await pilot.press("ctrl+r")
         assert opener.graph.published[-1] == GO
@@ -206,8 +204,7 @@ async def test_the_safety_nodes_words_stand_in_the_title() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
         opener.graph.show(held(b"\x01", "front 0.38 m"))
-        await pilot.pause()
-        await pilot.pause()
+        await settle(pilot)
         assert "⚠ Front 0.38 m" in title.states(app)[0]
 
 
@@ -257,8 +254,7 @@ async def test_another_session_begins_without_the_stop_of_the_one_before() -> No
         await pilot.press("space", "f8")
         await pilot.pause()
         app.sessions.open(app.sessions.request)
-        await pilot.pause()
-        await pilot.pause()
+        await settle(pilot)
         assert not app.emergency.state.engaged
 
 

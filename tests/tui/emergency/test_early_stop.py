@@ -13,7 +13,6 @@ from textual.pilot import Pilot
 from launcher.errors import UsageError
 from launcher.status import NodeState
 from robot.topics import EMERGENCY_STOP
-from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
     NODES,
     NOW_S,
@@ -24,7 +23,7 @@ from tests.tui.recorded import (
     lesson_update,
 )
 from tests.tui.recorded_emergency import GATE, obeyed, word
-from tests.tui.snapshots import settle
+from tests.tui.snapshots import LESSON_9, opened, settle
 from tests.waiting import until
 from text.i18n import set_language
 from tui.app import DeckApp

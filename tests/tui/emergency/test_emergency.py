@@ -12,7 +12,7 @@ from graph.data import GraphUpdate, Sample
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
 from tests.tui.recorded import NOW_S, lesson_update
 from tests.tui.recorded_emergency import CHASSIS, GATE, gate_says, held, obeyed, said, word
-from tui.emergency.state import TOPIC_TYPE, Emergency, listeners
+from tui.emergency.state import TOPIC_TYPE, Emergency
 from tui.emergency.words import stop_words
 
 NOTHING = Emergency()
@@ -199,12 +199,6 @@ def test_what_a_stop_has_ended_is_forgotten_with_it() -> None:
     assert state.ended == ("hello",)
     assert not state.seen(said(False, NOW_S + 2)).ended
     assert not state.released(NOW_S + 2).ended
-
-
-def test_listeners_are_those_that_the_graph_knows() -> None:
-    assert listeners(None) == 0
-    assert listeners(lesson_update(topics=())) == 0
-    assert listeners(lesson_update()) == 2
 
 
 def test_a_stop_pressed_while_the_link_is_down_is_not_told_as_obeyed() -> None:

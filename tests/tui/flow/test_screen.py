@@ -6,17 +6,13 @@ from contextlib import AbstractAsyncContextManager
 from typing import Any
 
 from launcher.events import LogEvent
-from launcher.status import LogLine, Severity
-from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession
-from tests.tui.recorded_brain import brain_state, no_answer_yet
-from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines, word
-from tests.tui.recorded_flow import at as told
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
+from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines
 from tests.tui.screen_stage import ScreenStage, on_stage
 from tui.flow.chains import Lane
 from tui.flow.reading import TOPICS
 from tui.flow.screen import FlowScreen
 from tui.flow.view import FlowView
-from tui.outcome.model_usage import COMPOSER, UsageFigures, noted
 
 
 class FlowStage(ScreenStage[FlowScreen]):
@@ -58,7 +54,7 @@ async def test_messages_and_log_lines_meet_in_one_chain() -> None:
         rows = at.rows()
         assert "13 steps in 1012 ms" in rows[0]
         assert [row.split()[2] for row in rows[2:6]] == [
-            *("/audio/mic_raw", "ai_brain", "ai_brain", "ai_brain"),
+            *("/audio/mic_raw", "ai_brain", "ai_brain", "ai_brain")
         ]
 
 
@@ -108,43 +104,3 @@ async def test_paused_it_stands_still_and_loses_nothing() -> None:
         assert "+1" in str(at.screen.query_one("#flow-lanes").render())
         await at.press("p")
         assert len(at.screen.chains) == 2
-
-
-async def test_an_utterance_is_copied_as_text() -> None:
-    async with stage() as at:
-        await at.hear(*command(9.0))
-        await at.press("y")
-        copied = at.app.clipboard
-        assert "“налево” · 4 steps in 5.2 ms" in copied
-        assert "2.1 ms  /drive" in copied
-        assert "a person" in copied
-
-
-async def test_a_model_s_answer_is_named_with_what_it_took() -> None:
-    """Once for the chain, however often it is reported, and not by whoever looks at pictures."""
-    async with stage() as at:
-        await at.hear(told(no_answer_yet(), -3.0))
-        await at.hear(*voice(0.0), told(brain_state(), 0.3))
-        await at.hear(told(brain_state(), 1.3), told(brain_state(node="vlm_agent", model="v"), 1.4))
-        took = "m-1: 412 + 86 tokens · first 0.31 s · all 1.20 s · 0.00011 USD"
-        assert at.rows()[1] == took
-        assert not any("/brain_state" in row for row in at.rows())
-        await at.press("y")
-        assert took in at.app.clipboard
-
-
-async def test_what_the_composer_sent_is_named_with_what_it_took() -> None:
-    async with stage() as at:
-        await at.hear(told(word("{}", 0.0, "/llm_raw_json"), 0.0))
-        usage = UsageFigures("m-2", 100, 20, 0.5, 1.0, 0.5, "EUR")
-        noted_at_s = NOW_S + 0.001
-        at.session.say(
-            LogEvent(
-                (LogLine(COMPOSER, 1, noted_at_s, Severity.INFO, noted(usage), source="deck"),)
-            )
-        )
-        for _round in range(3):
-            await at.pilot.pause()
-        rows = at.rows()
-        assert rows[1] == "m-2: 100 + 20 tokens · first 0.50 s · all 1.00 s · 0.50 EUR"
-        assert any(row.split()[2:3] == [COMPOSER] for row in rows)

@@ -4,26 +4,15 @@ from __future__ import annotations
 
 from contextlib import AbstractAsyncContextManager
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
 
 import pytest
 from textual.widgets import Static
 
-from graph.data import TopicRow, Trouble
+from graph.data import FrameRow, TopicRow, Trouble
 from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
-from tests.tui.recorded_frames import (
-    ROBOT,
-    TROUBLES,
-    frame,
-    frames_update,
-    topics,
-    with_frames,
-)
+from tests.tui.recorded_frames import ROBOT, TROUBLES, frame, frames_update, topics, with_frames
 from tests.tui.screen_stage import ScreenStage, on_stage
 from tui.frame_tree.screen import FramesScreen
-
-if TYPE_CHECKING:
-    from graph.data import FrameRow
 
 
 class FramesStage(ScreenStage[FramesScreen]):
@@ -118,53 +107,6 @@ async def test_what_is_silent_is_said_to_be_so_and_recovers() -> None:
         await at.hear(*ROBOT)
         assert "50 Hz < 1 s chassis" in at.row("base_link")
         assert at.findings == "✓ nothing is wrong with the frames"
-
-
-def names(at: FramesStage) -> list[str]:
-    """The frames of the tree that is shown."""
-    return [row.lstrip("▶ └├│").split()[0] for row in at.tree()]
-
-
-async def test_the_filter_leaves_what_matches_and_what_is_above_it() -> None:
-    async with stage() as at:
-        whole = names(at)
-        await at.press("slash", *"HEAD_t")
-        assert names(at) == ["odom", "base_link", "head_pan", "head_tilt"]
-        assert at.tree()[1].startswith("└ base_link")
-        assert at.tree()[2].startswith("└ head_pan")
-        await at.press("enter", "end")
-        assert at.screen.chosen == "head_tilt"
-        assert at.pair.startswith("head_tilt in odom")
-        # By who publishes it.
-        await at.press("slash", *" head")
-        assert at.screen.filter.value == "HEAD_t head"
-        await at.press("escape")
-        assert names(at) == whole
-        assert at.screen.chosen == "head_tilt"
-
-
-@pytest.mark.parametrize(
-    ("heard", "cell", "line"),
-    [
-        ({"publishers": ("/arm",)}, "arm", "published by /arm"),
-        ({"publishers": ("/arm", "/hand")}, "arm +1", "published by /arm, /hand"),
-        (
-            {"publishers": ("/arm", "/hand"), "certain": False},
-            "arm? +1",
-            "published by one of /arm, /hand",
-        ),
-        ({"publishers": ("/arm", "/arm")}, "arm ×2", "published by /arm (2 of this name)"),
-        ({"publishers": (), "gone": "/arm"}, "gone", "published by /arm, which has gone"),
-        ({"publishers": ()}, "gone", "published by nobody"),
-    ],
-)
-async def test_who_publishes_a_frame_is_named_or_who_may_do_so(
-    heard: dict[str, Any], cell: str, line: str
-) -> None:
-    async with stage(with_frames((frame("odom", "base_link", **heard),))) as at:
-        await at.press("down")
-        assert at.row("base_link").endswith(f"50 Hz < 1 s {cell}")
-        assert at.pair.endswith(f" {line}")
 
 
 async def test_n_goes_from_one_finding_to_the_next_and_shows_its_words_first() -> None:

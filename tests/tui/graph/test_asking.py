@@ -13,7 +13,6 @@ from textual.widgets import Input
 from graph.data import CallResult, GoalStatus, SeenGoal
 from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
-from tui.frame.key_bar import KeyBar
 from tui.graph.places import GraphKind, GraphPlace
 
 pytestmark = pytest.mark.nightly
@@ -58,29 +57,6 @@ async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: G
     assert service.graph.called == [(SERVICE, ADD, {"a": 30, "b": -10})]
     await service.wait_for("sum: 1")
     assert "a 30, b -10 → sum 1" in service.seen()
-
-
-async def test_tab_leads_into_the_form_where_digits_and_enter_stay() -> None:
-    async with opened() as stage:
-        await stage.screen.go(GraphPlace(GraphKind.SERVICE, SERVICE))
-        await stage.wait_for("✓ valid ")
-        assert "tab Fill in" in footer(stage)
-        await stage.press("tab")
-        pane = stage.screen.ask_pane
-        assert pane is not None
-        assert stage.screen.focused is pane.form.editor
-        assert "Fill in" not in footer(stage)
-        await stage.press(*"1234567", "enter", "8")
-        assert pane.form.text.startswith("1234567\n8")
-        assert stage.app.screen is stage.screen
-        assert stage.screen.history.here == GraphPlace(GraphKind.SERVICE, SERVICE)
-        await stage.press("escape")
-        assert stage.screen.is_in_list
-
-
-def footer(stage: GraphStage) -> str:
-    """Return the keys that are shown."""
-    return str(stage.screen.query_one(KeyBar).render())
 
 
 async def test_a_wrong_request_is_not_sent(service: GraphStage) -> None:
@@ -142,15 +118,6 @@ async def test_a_call_that_fails_says_why(service: GraphStage) -> None:
     await service.wait_for("the call failed")
     assert why in service.seen()
     assert "No response · 5000.0 ms" in service.seen()
-
-
-async def test_what_was_typed_is_there_when_one_comes_back(service: GraphStage) -> None:
-    fill(service, "a: 5\nb: 6\n")
-    await service.press("escape", "a")
-    await service.choose("/camera/set_parameters")
-    await service.wait_for("valid rcl_interfaces/srv/SetParameters")
-    await service.choose(SERVICE)
-    await service.wait_for("a: 5")
 
 
 async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: GraphStage) -> None:
@@ -228,22 +195,3 @@ async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: G
     action.screen.names.focus()
     await action.press("d")
     assert action.graph.forgotten_goals == []
-
-
-async def test_all_types_that_are_installed_can_be_looked_into(service: GraphStage) -> None:
-    await service.press("escape", "right", "right")
-    assert service.screen.history.kind is GraphKind.TYPE
-    assert "geometry_msgs/msg/Twist" not in service.seen()
-    await service.press("a")
-    twist = "geometry_msgs/msg/Twist"
-    await service.wait(
-        lambda: twist in [one.name for one in service.screen.index.listed[GraphKind.TYPE]]
-    )
-    await service.choose("geometry_msgs/msg/Twist")
-    await service.wait_for("geometry_msgs/Vector3")
-    await service.press("enter", "right")
-    await service.wait_for("float64 = 0.0")
-    await service.press("enter")
-    assert service.screen.history.here == GraphPlace(GraphKind.TYPE, "geometry_msgs/msg/Vector3")
-    await service.press("escape")
-    assert service.screen.history.here == GraphPlace(GraphKind.TYPE, "geometry_msgs/msg/Twist")

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator
-from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from textual.app import App, ComposeResult
+from textual.events import Paste
 from textual.widgets import Input
 
-from graph.data import GraphUpdate, ParametersResult, Sample
+from graph.data import GraphUpdate, Sample
+from tests.hostile_text import EVIL
 from tests.tui.graph_stage import GraphStage, opened
-from tests.tui.snapshots import settle
-from tui.graph.parameter_dialog import ParameterDialog
+from text.plain import is_plain, plain
+from text.yaml_scalars import in_quotes, unquoted
+from tui.graph.parameter_words import meant
+from tui.graph.parameter_words import typed as as_typed
 from tui.graph.parameters import PARAMETER_EVENTS
+from tui.widgets.field import Field
 
 NODE = "/sonar_front"
 
@@ -53,7 +60,6 @@ async def test_another_value_is_set_and_read_back(stage: GraphStage) -> None:
 
 
 def shown(stage: GraphStage) -> GraphUpdate:
-    """The graph as it is now."""
     assert stage.graph.update is not None
     return stage.graph.update
 
@@ -88,30 +94,6 @@ async def test_a_refusal_keeps_the_dialog_open_and_says_why(stage: GraphStage) -
     assert stage.app.screen is stage.screen
 
 
-async def test_what_can_only_be_read_is_not_offered_for_change(stage: GraphStage) -> None:
-    await stage.press("E", "enter")
-    assert isinstance(stage.app.screen, ParameterDialog)
-    assert stage.app.screen.query_one(Input).disabled
-    assert "It can only be read" in stage.seen()
-    await stage.press("escape")
-    await stage.wait(lambda: stage.app.screen is stage.screen)
-
-
-async def test_an_answer_that_comes_late_is_not_taken_for_another_node(
-    stage: GraphStage, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    future: Future[ParametersResult] = Future()
-    monkeypatch.setattr(stage.graph, "parameters", lambda _node: future)
-    await stage.press("E", "E")
-    monkeypatch.undo()
-    await stage.choose("/camera")
-    await stage.press("E")
-    await stage.wait_for("5 parameters")
-    future.set_result(ParametersResult(NODE, (), "too late"))
-    await settle(stage.pilot)
-    assert "too late" not in stage.seen()
-
-
 async def test_they_are_saved_and_loaded_as_yaml(stage: GraphStage, tmp_path: Path) -> None:
     path = tmp_path / "sonar.yaml"
     await stage.press("E", "W")
@@ -128,20 +110,6 @@ async def test_they_are_saved_and_loaded_as_yaml(stage: GraphStage, tmp_path: Pa
     assert "frame_id" not in values
 
 
-async def test_a_file_that_is_there_is_written_over_only_when_enter_is_pressed_again(
-    stage: GraphStage, tmp_path: Path
-) -> None:
-    path = tmp_path / "notes.yaml"
-    path.write_text("precious")
-    await stage.press("E", "W")
-    await typed(stage, str(path))
-    await stage.wait_for("Enter again to overwrite it")
-    assert path.read_text() == "precious"
-    await stage.press("enter")
-    await stage.wait(lambda: stage.app.screen is stage.screen)
-    assert "rate: 1.0" in path.read_text()
-
-
 async def test_a_file_that_is_wrong_is_told_with_its_line(
     stage: GraphStage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -154,3 +122,29 @@ async def test_a_file_that_is_wrong_is_told_with_its_line(
     await typed(stage, "none.yaml")
     await stage.wait_for("No such file")
     assert stage.graph.set_to == []
+
+
+class FieldApp(App[None]):
+    """One field."""
+
+    def compose(self) -> ComposeResult:
+        yield Field(EVIL)
+
+
+async def test_what_is_pasted_is_made_visible_and_that_is_the_value() -> None:
+    app = FieldApp()
+    async with app.run_test() as pilot:
+        field = app.query_one(Field)
+        assert field.value == plain(EVIL)
+        field.clear()
+        field.post_message(Paste("/dri\u200bve\x1b]52;c;QQ==\x07\u202e"))
+        await pilot.pause()
+        assert field.value == "/dri\ufffdve␛]52;c;QQ==␇\ufffd"
+        assert field.cursor_position == len(field.value)
+
+
+@given(st.text(st.characters(exclude_categories=["Cs"]), max_size=80))
+def test_a_text_typed_as_it_is_shown_is_that_text(text: str) -> None:
+    assert is_plain(as_typed(text))
+    assert meant(as_typed(text)) == text
+    assert unquoted(in_quotes(text)) == text

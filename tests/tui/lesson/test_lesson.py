@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shlex
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
@@ -18,29 +17,23 @@ from course.judge.kinds import expected
 from course.judging import ValuesDrawn
 from course.lessons.catalog import SHIPPED
 from course.lessons.lesson import LessonFolder
-from course.progress.files import state_of
-from course.progress.progress import load_progress, noted
+from course.progress.progress import load_progress
 from course.results import CheckResult, State, StepResult
 from launcher.status import NodeFault, NodeState, NodeStatus
-from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession
-from tests.tui.replayed import replayed
-from tests.unit.bags import write_robot_bag
+from tests.tui.snapshots import opened, seen
 from tests.waiting import until
 from text.i18n import set_language
 from text.sentences import say
 from tui.app import DeckApp
-from tui.session.ports import SessionLink
-from tui.session.requests import OpenRequest, WholeGrade
-from tui.session.watching import watched
+from tui.lesson.column import LessonColumn
+from tui.session.requests import WholeGrade
 
 LESSON = "02-sonar-safety"
 LONG_TASK = "03-head-service"
 WORD = re.compile(r"[^\W\d_]{4,}|/\w+")
 """What can be found again however it is wrapped."""
 SEED = 4711
-AT_12_03, AT_12_45 = 1767268980, 1767271500
-"""Unix times of one day, in UTC."""
 SEEN = StepResult(
     "topic",
     State.FAILED,
@@ -59,18 +52,8 @@ PASSED = StepResult("topic", State.PASSED, 2, (CheckResult(State.PASSED, "/senso
 
 @pytest.fixture(autouse=True)
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A course folder of the test's own."""
     monkeypatch.setenv("DECK_COURSE", str(tmp_path))
     return tmp_path
-
-
-class Watching(RecordedOpener):
-    """A robot that somebody else has started."""
-
-    async def open(self, order: OpenRequest) -> SessionLink:
-        """Watch it."""
-        await super().open(order)
-        return watched(42)
 
 
 def own_opener(
@@ -91,7 +74,6 @@ def own_opener(
 
 @asynccontextmanager
 async def learning(opener: RecordedOpener) -> AsyncIterator[tuple[DeckApp, Pilot[Any]]]:
-    """Open the lesson, until it is shown."""
     async with opened(opener, "lesson") as (app, pilot):
         await until(lambda: opener.judged.asked, "the first step to be judged")
         yield app, pilot
@@ -100,11 +82,6 @@ async def learning(opener: RecordedOpener) -> AsyncIterator[tuple[DeckApp, Pilot
 def text(app: DeckApp, name: str) -> str:
     """What stands in a part of the screen."""
     return str(app.screen.query_one(f"#lesson-{name}", Static).content)
-
-
-def seen(app: DeckApp) -> str:
-    """All that the screen shows."""
-    return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
 
 
 async def test_at_80x24_a_task_is_seen_whole_above_its_check_however_far_one_reads() -> None:
@@ -117,24 +94,12 @@ async def test_at_80x24_a_task_is_seen_whole_above_its_check_however_far_one_rea
         told = WORD.findall(opener.task.texts("ru").task(step))
         opener.judged.say(replace(SEEN, id=step))
         await until(lambda: "→" in text(app, "checks"), "the result")
-        for keys in ((), ("end",)):
-            await pilot.press(*keys)
-            await pilot.pause()
-            shown = seen(app)
-            words = WORD.findall(shown)
-            assert told
-            assert [word for word in told if word not in words] == []
-            assert "✗ /sensor/sonar_front" in shown
-
-
-async def test_a_recording_and_a_watched_robot_are_not_called_profiles(tmp_path: Path) -> None:
-    async with replayed(write_robot_bag(tmp_path / "drive"), "lesson") as (app, _pilot, _replay):
-        await until(lambda: "A recording is played" in text(app, "none"), "why there is no lesson")
-        assert "f8 opens the list" in text(app, "none")
-    async with opened(Watching(), "lesson") as (app, _pilot):
-        await until(lambda: "only watches" in text(app, "none"), "why there is no lesson")
-    async with opened(RecordedOpener(), "lesson") as (app, _pilot):
-        await until(lambda: "has no steps" in text(app, "none"), "why there is no lesson")
+        await pilot.press("end")
+        await pilot.pause()
+        words = WORD.findall(seen(app))
+        assert told
+        assert [word for word in told if word not in words] == []
+        assert "✗ /sensor/sonar_front" in seen(app)
 
 
 async def test_a_passed_step_stays_until_a_key_goes_on_and_is_noted() -> None:
@@ -214,44 +179,6 @@ async def test_a_lesson_ends_with_its_grade_and_what_fails_there_loses_its_tick(
         assert "ends" not in load_progress().passed(LESSON)
 
 
-async def test_a_lesson_that_is_opened_again_has_its_grade_and_another_file_has_none(
-    course: Path,
-) -> None:
-    file = course / "mock_sonar.py"
-    file.write_text("right = 1\n")
-    lesson = LessonFolder(SHIPPED / LESSON)
-    files = state_of([str(file)])
-    for step in lesson.steps:
-        noted(LESSON, step.id, {"passed": True, "points": step.points, "files": files, "at": 1})
-    # It was closed before it was graded.
-    opener = own_opener(str(file))
-    async with opened(opener, "lesson") as (app, _pilot):
-        await until(lambda: "10 of 10" in text(app, "checks"), "the grade")
-    assert opener.graded == [course]
-    again = own_opener(str(file))
-    async with opened(again, "lesson") as (app, _pilot):
-        await until(lambda: "10 of 10" in text(app, "checks"), "the grade of before")
-        file.write_text("other = 1\n")
-        again.link.set_state("sonar_front", NodeState.READY, pid=9)
-        await until(lambda: "10 of 10" not in text(app, "checks"), "no grade")
-    assert again.graded == []
-
-
-async def test_a_node_that_has_crashed_holds_no_tick(course: Path) -> None:
-    file = course / "mock_sonar.py"
-    file.write_text("right = 1\n")
-    opener = own_opener(str(file))
-    async with learning(opener) as (app, _pilot):
-        opener.judged.say(PASSED)
-        await until(lambda: text(app, "overview").startswith("[✓]"), "the tick")
-        opener.link.set_state("sonar_front", NodeState.FAILED)
-        await until(lambda: text(app, "overview").startswith("[○]"), "the tick to fade")
-        opener.link.set_state("sonar_front", NodeState.READY)
-        await until(lambda: text(app, "overview").startswith("[✓]"), "the tick again")
-        opener.link.set_state("sonar_front", NodeState.BACKOFF)
-        await until(lambda: text(app, "overview").startswith("[○]"), "the tick to fade again")
-
-
 async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(
     course: Path,
 ) -> None:
@@ -273,14 +200,6 @@ async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(
         assert (step.hints, step.solution, step.passed) == (2, True, False)
 
 
-async def test_what_starts_ones_own_node_is_copied_for_a_shell(course: Path) -> None:
-    async with learning(own_opener(str(course / "mock_sonar.py"))) as (app, pilot):
-        await pilot.press("Y")
-        await until(lambda: "python3" in app.clipboard, "the command line")
-        file = shlex.quote(f"{course}/mock_sonar.py")
-        assert app.clipboard.startswith(f"python3 {file} --ros-args")
-
-
 async def test_decks_own_nodes_are_not_judged_and_a_folder_is_offered(course: Path) -> None:
     opener = own_opener(file="")
     async with opened(opener, "lesson") as (app, pilot):
@@ -290,3 +209,25 @@ async def test_decks_own_nodes_are_not_judged_and_a_folder_is_offered(course: Pa
         await until(lambda: len(opener.orders) == 2, "the folder to be opened")
     assert opener.orders[-1].profile == course / LESSON / "lesson.yaml"
     assert (course / LESSON / "mock_sonar.py").is_file()
+
+
+def beside(app: DeckApp, part: str) -> str:
+    """What stands in a part of the column."""
+    found = app.screen.query_one(LessonColumn).query_one(f".{part}", Static)
+    return str(found.content)
+
+
+async def test_a_key_brings_the_lesson_and_its_ticks_and_takes_it_away() -> None:
+    opener = own_opener()
+    async with opened(opener, "deck") as (app, pilot):
+        assert not app.screen.query(LessonColumn)
+        await pilot.press("shift+f2")
+        await until(lambda: opener.judged.asked == ["topic"], "the first step to be judged")
+        opener.judged.say(ValuesDrawn(SEED))
+        opener.judged.say(SEEN)
+        await until(lambda: "nobody publishes" in beside(app, "checks"), "what was seen")
+        assert beside(app, "head").startswith("1/")
+        opener.judged.say(PASSED)
+        await until(lambda: "L, then Enter" in beside(app, "checks"), "the tick")
+        await pilot.press("shift+f2")
+        await until(lambda: not app.screen.query(LessonColumn), "the Deck without it")

@@ -3,26 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from textual.app import App, ComposeResult
+from textual.pilot import Pilot
 
 from launcher.status import LogLine, Severity
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
-
-if TYPE_CHECKING:
-    from textual.pilot import Pilot
-
-HOSTILE = (
-    "\x1b[31mred\x1b[0m \x1b]52;c;cm0gLXJm\x07",
-    "[red]markup[/red] [@click=app.quit]quit[/]",
-    "nul \x00, bell \x07, c1 \x9b31m, \udcff half",
-    "right to left \u202egnp.exe\u202c",
-    "ｗｉｄｅ 你好 e\u0301 \U0001f9e0 \U0001f399\ufe0f \U0001f469\u200d\U0001f680" * 4,
-    "x" * 1_000_000,
-    "",
-)
 
 
 class LogApp(App[None]):
@@ -33,11 +20,9 @@ class LogApp(App[None]):
         self.pane = LogPane(LogView(period_s=period_s, file_of=lambda node: f"/logs/{node}.log"))
 
     def compose(self) -> ComposeResult:
-        """The log fills the screen."""
         yield self.pane
 
     def on_mount(self) -> None:
-        """Keys go to the lines."""
         self.pane.view.focus()
 
 

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from collections import Counter
+from pathlib import Path
 
-import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from rich.cells import cell_len
+from textual.app import App
+from textual.pilot import Pilot
 
-from launcher.status import Severity
-from tests.tui.logs.bare_log import HOSTILE, LogApp, line, lines, rows, shown, texts
+from launcher.status import LogLine, Severity
+from tests.tui.logs.bare_log import LogApp, line, lines, rows, shown, texts
 from tui.log_view.bar import LogBar
 from tui.log_view.filter import LogFilter
+from tui.log_view.index import folded, folded_rows
+from tui.log_view.prompt import LogPrompt
+from tui.log_view.ring import LineRing
 from tui.log_view.view import LogView
-
-if TYPE_CHECKING:
-    pass
 
 
 async def test_scrolling_up_pauses_counts_what_is_new_and_end_follows() -> None:
@@ -140,30 +145,89 @@ async def test_long_lines_are_folded_or_shifted() -> None:
         assert "word0 word1" in rows(view)[0]
 
 
-@pytest.mark.parametrize("size", [(1, 1), (5, 3), (20, 2), (300, 100)])
-async def test_it_fits_any_terminal(size: tuple[int, int]) -> None:
-    async with LogApp().run_test(size=size) as pilot:
-        view = await shown(pilot, [line(seq, text) for seq, text in enumerate(HOSTILE, 1)])
-        await pilot.press("up", "up", "shift+up", "home", "end")
-        await pilot.resize_terminal(80, 24)
-        await pilot.pause()
-        assert any("markup" in row for row in (view.row_text(e) for e in view.index.shown))
+async def answer(pilot: Pilot[None], path: Path) -> None:
+    app = pilot.app
+    assert isinstance(app, LogApp)
+    field = app.pane.prompt.query_one("Input")
+    field.value = str(path)  # type: ignore[attr-defined]
+    await pilot.press("enter")
+    await app.workers.wait_for_complete()
+    await pilot.pause()
 
 
-async def test_a_flood_measures_and_draws_next_to_nothing() -> None:
-    """Ten thousand lines in twenty batches cost no layout and at most one drawing a batch."""
-    async with LogApp().run_test(size=(80, 24)) as pilot:
-        view = await shown(pilot, lines(1, 100))
-        layouts = []
+def remark(app: App[None]) -> str:
+    return str(app.query_one(LogPrompt).query_one("#remark").render())
+
+
+async def test_lines_are_written_to_a_file_and_never_over_one_unasked(tmp_path: Path) -> None:
+    async with LogApp().run_test(size=(80, 12)) as pilot:
+        await shown(pilot, lines(1, 100))
         app = pilot.app
-        refresh_layout = app.screen._refresh_layout
+        assert isinstance(app, LogApp)
+        app.pane.save_folder = str(tmp_path)
+        app.pane.save()
+        await pilot.pause()
+        proposed = app.pane.prompt.query_one("Input").value  # type: ignore[attr-defined]
+        assert Path(proposed).parent == tmp_path
+        path = tmp_path / "new" / "my.log"
+        await answer(pilot, path)
+        assert len(path.read_text(encoding="utf-8").splitlines()) == 100
+        path.write_text("mine", encoding="utf-8")
+        app.pane.save()
+        await answer(pilot, path)
+        assert path.read_text(encoding="utf-8") == "mine"
+        assert "Enter again to overwrite" in remark(app)
+        await answer(pilot, path)
+        assert path.read_text(encoding="utf-8").endswith("line 100\n")
+        assert app.pane.view.has_focus
 
-        def note(*args: Any) -> None:
-            layouts.append(1)
-            refresh_layout(*args)
 
-        app.screen._refresh_layout = note  # type: ignore[method-assign, assignment]
-        for batch in range(20):
-            await shown(pilot, lines(101 + batch * 500, 500))
-        assert not layouts
-        assert texts(view)[-1] == "line 10100"
+ALPHABET = st.sampled_from("ab ё—\u0301你🧠\ufe0f\u200d🎙")
+
+
+@example("\u200daaa🧠🧠🧠", 8)
+@example("\u200d\u200d" + "a" * 10 + "🧠", 8)
+@given(st.text(ALPHABET, max_size=60), st.integers(8, 20))
+def test_folding_keeps_every_character_and_no_row_is_too_wide(text: str, width: int) -> None:
+    pieces = folded(text, width)
+    assert "".join(pieces) == text
+    assert all(cell_len(piece.removesuffix(" ")) <= width for piece in pieces)
+    assert folded_rows(text, width) == len(pieces)
+
+
+def said(node: str, seq: int, text: str = "hello", severity: Severity = Severity.INFO) -> LogLine:
+    return LogLine(node, seq, 1_700_000_000.0 + seq, severity, text)
+
+
+def filled(ring: LineRing, node: str, first: int, count: int, text: str = "hello") -> None:
+    ring.append([said(node, seq, text) for seq in range(first, first + count)], {})
+    if ring.full:
+        ring.trim()
+
+
+def test_a_flood_of_one_node_leaves_the_lines_of_the_others() -> None:
+    ring = LineRing(max_lines=1000)
+    filled(ring, "quiet", 1, 50)
+    for batch in range(40):
+        filled(ring, "noisy", 1 + batch * 500, 500)
+    kept = Counter(entry.node for entry in ring.entries)
+    assert kept["quiet"] == 50
+    assert len(ring.entries) <= 1250
+    assert ring.entries[-1].text == "hello"
+
+
+def test_what_somebody_reads_is_not_dropped_and_the_gap_behind_it_is_marked() -> None:
+    ring = LineRing(max_lines=100)
+    filled(ring, "noisy", 1, 100)
+    read = list(ring.entries)
+    ring.hold()
+    for batch in range(10):
+        filled(ring, "noisy", 101 + batch * 100, 100)
+    assert ring.entries[:100] == read
+    assert len(ring.entries) <= 100 + 126
+    mark = ring.entries[100]
+    assert mark.skipped == 1000 - (len(ring.entries) - 101)
+    ring.release()
+    ring.trim()
+    assert len(ring.entries) == 100
+    assert ring.entries[-1].id == 1099

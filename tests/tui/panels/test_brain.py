@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
+from graph.data import Sample
 from tests.tui.panel_stage import alone, rows
 from tests.tui.recorded import lesson_update, sample, topic
 from tests.tui.recorded_brain import BRAIN_STATE, TYPE, brain_state, no_answer_yet
 from tui.panels.brain import BrainPanel, BrainView
 
-if TYPE_CHECKING:
-    from graph.data import Sample
-
 
 async def shown(*came: Sample, width: int = 60, height: int = 6) -> list[str]:
-    """What the panel shows after these reports."""
     panel = BrainPanel()
     app = alone(panel, width, height)
     async with app.run_test(size=(width + 4, height + 4)) as pilot:
@@ -39,13 +36,6 @@ async def test_a_brain_without_a_model_follows_its_rules() -> None:
     values = [{"key": "backend", "value": "rules"}, {"key": "fault", "value": ""}]
     status = {"name": "ai_brain", "level": 1, "message": "follows its rules", "values": values}
     assert await shown(sample(BRAIN_STATE, TYPE, {"status": [status]})) == ["follows its rules"]
-
-
-async def test_two_nodes_stand_below_each_other() -> None:
-    found = await shown(brain_state(), brain_state("no answer", 2, "vlm_agent", model="v-1"))
-    assert found[:2] == ["ai_brain: has answered; m-1", "vlm_agent: no answer"]
-    assert sum("tokens · first" in row for row in found) == 2
-    assert sum("calls a minute" in row for row in found) == 1
 
 
 @pytest.mark.parametrize(

@@ -3,61 +3,42 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Any
 
 import pytest
 
-from tests.tui.app_runs import opened
+from graph.data import GraphUpdate, Sample, Trouble
+from robot.topics import CAMERA
 from tests.tui.panel_stage import rows
 from tests.tui.recorded import (
     RecordedGraph,
     RecordedOpener,
+    RecordedSession,
     joints,
     lesson_samples,
     lesson_update,
+    sample,
 )
+from tests.tui.recorded_lesson import NOW_S, TOPICS
+from tests.tui.recorded_map import MAP_SESSION, map_update, reading
+from tests.tui.snapshots import opened, settle
+from tests.waiting import until
+from tui.panels.camera import CameraPanel
 from tui.panels.head.widget import HeadView
-from tui.panels.joints import ANOTHER_S, Joints
+from tui.panels.sonar.widget import Sonar
 from tui.panels.wheels.widget import WheelsView
-
-if TYPE_CHECKING:
-    from graph.data import Sample
-    from tui.widgets.drawing import Drawing
+from tui.widgets.drawing import Drawing
+from tui.widgets.image_view import ImageView
 
 TOPIC = "/wheel_commands"
-AWAITED = ("rear_left_wheel_joint", "rear_right_wheel_joint")
 OTHER = joints(TOPIC, left_wheel=(0.0, 1.0), right_wheel=(0.0, 1.0))
-READ = joints(TOPIC, rear_left_wheel_joint=(0.0, 1.0))
-
-
-def heard(*samples: tuple[Sample, float]) -> Joints:
-    known = Joints(TOPIC, AWAITED)
-    for one, at_s in samples:
-        known.hear(replace(one, received_s=at_s), read=one is READ)
-    return known
 
 
 @pytest.mark.parametrize(
     ("kind", "other", "came", "awaited"),
     [
-        (
-            WheelsView,
-            OTHER,
-            "/wheel_commands: received left_wheel, right_wheel",
-            "expected: rear_left_wheel_joint, rear_right_wheel_joint",
-        ),
-        (
-            HeadView,
-            joints("/head_state", yaw=(0.1, 0.0), pitch=(0.2, 0.0)),
-            "/head_state: received yaw, pitch",
-            "expected: pan_joint, tilt_joint",
-        ),
-        (
-            HeadView,
-            joints("/head_state"),
-            "/head_state: received no joint names",
-            "expected: pan_joint, tilt_joint",
-        ),
+        (WheelsView, OTHER, "left_wheel, right_wheel", "rear_left_wheel_joint, rear_right_wheel"),
+        (HeadView, joints("/head_state"), "no joint names", "pan_joint, tilt_joint"),
     ],
 )
 async def test_the_panel_says_which_joints_come_and_which_are_awaited(
@@ -67,22 +48,96 @@ async def test_the_panel_says_which_joints_come_and_which_are_awaited(
     opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples=samples)))
     async with opened(opener, size=(160, 60)) as (app, pilot):
         await pilot.pause()
-        view = app.screen.query_one(kind)
-        words = " ".join(" ".join(rows(view)).split())
-        assert "messages arrive, but with other joint names" in words
-        assert came in words
-        assert awaited in words
+        words = " ".join(" ".join(rows(app.screen.query_one(kind))).split())
+        assert f"{other.topic}: received {came}" in words
+        assert f"expected: {awaited}" in words
         assert "waiting for the first message" not in words
+
+
+STRING = "std_msgs/msg/String"
+
+
+async def test_another_type_is_told_and_not_waited_for() -> None:
+    topic = "/camera/color/image_raw"
+    words = sample(topic, STRING, {"data": "1.5"})
+    opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples={topic: (words,)})))
+    async with opened(opener, size=(160, 60)) as (app, pilot):
+        widget = app.screen.query_one(CameraPanel).children[0]
+
+        async def told() -> str:
+            await settle(pilot)
+            return " ".join(" ".join(rows(widget)).split())
+
+        assert f"{topic}: std_msgs/String comes; expected: sensor_msgs/Image" in await told()
+        # A look at which nothing has come changes nothing.
+        opener.graph.show(lesson_update(samples={}))
+        assert "of another type" in await told()
         opener.graph.show(lesson_update())
-        await pilot.pause()
-        await pilot.pause()
-        assert "have come" not in " ".join(rows(view))
+        assert "std_msgs/String" not in await told()
 
 
-def test_values_give_way_once_nothing_but_other_joints_comes() -> None:
-    assert heard((READ, 5.0)).placeholder is None
-    assert heard((READ, 5.0), (OTHER, 5.0 + ANOTHER_S / 2)).placeholder is None
-    told = heard((READ, 5.0), (OTHER, 5.0 + ANOTHER_S)).placeholder
-    assert told is not None
-    assert "left_wheel" in told.detail
-    assert heard((OTHER, 5.0), (READ, 5.1)).placeholder is None
+def with_map() -> RecordedOpener:
+    return RecordedOpener(RecordedSession(MAP_SESSION), RecordedGraph(map_update()))
+
+
+def said(one: Sample) -> GraphUpdate:
+    return replace(map_update(), samples={one.topic: (one,)})
+
+
+async def test_the_trend_of_a_sonar_has_no_gap_where_the_tab_was_another() -> None:
+    opener = with_map()
+    async with opened(opener) as (app, pilot):
+        gauge = app.screen.query_one("#front", Sonar)
+        await pilot.press("2")
+        await settle(pilot)
+        for second in range(1, 41):
+            one = replace(reading("front", 0.2), received_s=NOW_S + second)
+            opener.graph.show(said(one))
+            await pilot.pause()
+        await pilot.press("1")
+        await settle(pilot)
+        assert "STOP" in rows(gauge)[0]
+        assert list(gauge._values)[-40:] == [0.2] * 40
+
+
+COMPRESSED = "sensor_msgs/msg/CompressedImage"
+
+
+def with_row(*samples: Sample, **changes: Any) -> RecordedGraph:
+    """The lesson with a camera whose row is changed, and of which this comes."""
+    rows = (replace(row, **changes) if row.name == CAMERA else row for row in TOPICS)
+    return RecordedGraph(
+        lesson_update(topics=tuple(rows), samples={CAMERA: samples} if samples else {})
+    )
+
+
+async def test_a_camera_on_another_page_is_not_asked_for() -> None:
+    opener = RecordedOpener()
+    async with opened(opener, size=(80, 24)) as (app, pilot):
+        panel = app.screen.query_one(CameraPanel)
+        turns = 0
+        for _ in range(app.screen.pages):  # type: ignore[attr-defined]
+            await settle(pilot)
+            assert opener.graph.pictures == ({CAMERA} if panel.display else set())
+            turns += not panel.display
+            await pilot.press("v")
+        assert turns
+    assert CAMERA not in opener.graph.watched
+
+
+async def test_a_bomb_is_refused_in_words() -> None:
+    value = {"format": "jpeg", "data": b"\xff\xd8\xff\xc0\x00\x11\x08\xff\xff\xff\xff" + bytes(9)}
+    graph = with_row(sample(CAMERA, COMPRESSED, value))
+    async with opened(RecordedOpener(graph=graph)) as (app, _pilot):
+        view = app.screen.query_one(CameraPanel).query_one(ImageView)
+        await until(lambda: view.words[0] == "this picture cannot be shown", "the refusal")
+        assert "65535 x 65535 is not decoded" in view.words[1]
+
+
+async def test_pictures_that_get_lost_are_told_from_a_silent_camera() -> None:
+    graph = with_row(trouble=Trouble.QUIET, age_s=None, facts={"raw": CAMERA})
+    async with opened(RecordedOpener(graph=graph)) as (app, pilot):
+        await settle(pilot)
+        headline, detail = app.screen.query_one(CameraPanel).query_one(ImageView).words
+        assert headline == "no whole picture comes over the network"
+        assert "or the camera is silent" in detail

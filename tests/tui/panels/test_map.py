@@ -2,32 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
-from textual.app import App, ComposeResult
 
 from graph.data import GraphUpdate, Trouble
 from robot.motion.odometry import Pose
-from tests.tui.panel_stage import rows
-from tests.tui.recorded_map import (
-    NOBODY,
-    map_update,
-    odometry,
-    reading,
-    stamped,
-)
+from tests.tui.panel_stage import Bare, rows
+from tests.tui.recorded_map import NOBODY, map_update, odometry, stamped
 from tui.panels.map.panel import MapPanel
 from tui.panels.map.widget import RoomMap
 
 
-class Alone(App[None]):
+class Alone(Bare):
     """The panel, and nothing else."""
 
-    def compose(self) -> ComposeResult:
-        """The panel."""
-        yield MapPanel()
+    def __init__(self) -> None:
+        super().__init__(MapPanel())
 
     def tell(self, *updates: GraphUpdate) -> str:
         """Show updates; return what stands on the panel then."""
@@ -37,22 +28,13 @@ class Alone(App[None]):
 
     @property
     def text(self) -> str:
-        """What stands on the panel."""
         return "\n".join(rows(self.query_one(RoomMap)))
-
-
-# ---------------------------------------------------------------- how it looks
-
-
-# ---------------------------------------------------------------- why it is empty
 
 
 @pytest.mark.parametrize(
     ("trouble", "more", "words"),
     [
         (Trouble.NO_PUBLISHER, NOBODY, ("nobody publishes this topic", "/odom", "Start chassis")),
-        (Trouble.QUIET, {"age_s": None}, ("no message has arrived yet", "/odom", "Its log says")),
-        (Trouble.UNKNOWN_TYPE, {"detail": "my/Odom"}, ("is not installed", "/odom: my/Odom")),
         (Trouble.QOS_MISMATCH, {"detail": "best effort"}, ("QoS is incompatible", "best effort")),
     ],
 )
@@ -82,9 +64,6 @@ async def test_odometry_that_falls_silent_is_greyed_with_its_age_and_not_taken_f
         assert app.query_one(MapPanel).border_title == "Map"
 
 
-# ---------------------------------------------------------------- what it shows
-
-
 async def test_without_odometry_the_truth_of_a_simulated_robot_is_shown_and_named() -> None:
     app = Alone()
     async with app.run_test(size=(100, 20)):
@@ -99,16 +78,6 @@ async def test_without_odometry_the_truth_of_a_simulated_robot_is_shown_and_name
         assert app.query_one(MapPanel).border_title == "Map"
 
 
-async def test_a_goal_goes_with_its_end_and_with_its_publisher() -> None:
-    app = Alone()
-    async with app.run_test(size=(100, 20)):
-        assert "goal 1." in app.tell(map_update())
-        over = stamped("/goal_pose", Pose(), frame="")
-        assert "goal" not in app.tell(map_update(goal_pose=(over,)))
-        assert "goal" in app.tell(map_update())
-        assert "goal" not in app.tell(map_update({"/goal_pose": NOBODY}, goal_pose=()))
-
-
 async def test_a_sonar_that_falls_silent_is_blind_and_one_that_is_gone_is_not_drawn() -> None:
     app = Alone()
     async with app.run_test(size=(100, 20)):
@@ -118,46 +87,3 @@ async def test_a_sonar_that_falls_silent_is_blind_and_one_that_is_gone_is_not_dr
         assert "? front no valid reading" in text
         assert text.count("?") == 2
         assert "front" not in app.tell(map_update({"/sensor/sonar_front": NOBODY}, sonar_front=()))
-
-
-async def test_a_recording_that_is_turned_back_begins_a_new_path() -> None:
-    app = Alone()
-    async with app.run_test(size=(100, 20)):
-        assert "path 2." in app.tell(map_update())
-        assert "path" not in app.tell(map_update(odom=(odometry(Pose(1.0, 0.0), 2.0),)))
-
-
-async def test_it_is_drawn_anew_only_if_a_cell_looks_different(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    app = Alone()
-    async with app.run_test(size=(100, 30)):
-        draws: list[int] = []
-        real = RoomMap.redraw
-
-        def counted(drawing: RoomMap) -> None:
-            draws.append(len(draws))
-            real(drawing)
-
-        monkeypatch.setattr(RoomMap, "redraw", counted)
-        here = Pose(1.0, 0.2, 0.3)
-        there = stamped("/mock/pose", here)
-        app.tell(map_update(odom=(odometry(here, 20.0),), mock_pose=(there,)))
-        draws.clear()
-        for step in range(20):
-            near = replace(here, x_m=1.0 + 1e-4 * step)
-            trembling = (reading("rear", 1.2 + 0.001 * step),)
-            app.tell(
-                map_update(
-                    odom=(odometry(near, 21.0 + step),),
-                    mock_pose=(stamped("/mock/pose", near),),
-                    sonar_rear=trembling,
-                    map=(),
-                )
-            )
-        assert len(draws) <= 2
-        before = app.text
-        draws.clear()
-        app.tell(map_update(odom=(odometry(Pose(1.2, 0.2, 0.3), 50.0),), map=()))
-        assert draws
-        assert app.text != before

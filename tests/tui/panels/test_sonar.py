@@ -7,11 +7,13 @@ from typing import Any
 
 import pytest
 
-from graph.data import Trouble
+from graph.data import GraphUpdate, Trouble
 from tests.tui.panel_stage import alone, rows
-from tui.panels.sonar.bar import bar, mark_cell, trend
-from tui.panels.sonar.widget import Sonar, SonarView
-from tui.panels.sonar.words import COURSE, Zone, zone_of
+from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_samples, lesson_update, sample
+from tests.tui.snapshots import opened, settle
+from tui.panels.sonar.bounds import bounds_of
+from tui.panels.sonar.widget import Sonar
+from tui.panels.sonar.words import COURSE, Bounds, Zone, zone_of
 
 INF, NAN = math.inf, math.nan
 
@@ -33,43 +35,20 @@ def test_a_distance_means_free_close_stop_or_blind(metres: float, zone: Zone) ->
     assert zone_of(metres) is zone
 
 
-@pytest.mark.parametrize(
-    ("metres", "words"),
-    [
-        (1.836, ("1.84 m", "FREE")),
-        (0.72, ("0.72 m", "CLOSE")),
-        (0.38, ("0.38 m", "STOP")),
-        (INF, ("nothing in range", "FREE")),
-        (-INF, ("too close to measure", "STOP")),
-        (NAN, ("no valid reading", "BLIND")),
-        (-2.0, ("impossible", "STOP")),
-    ],
-)
-@pytest.mark.parametrize("height", [1, 2, 4])
-async def test_a_small_gauge_says_number_and_word(
-    metres: float, words: tuple[str, str], height: int
-) -> None:
+async def test_a_small_gauge_says_number_and_word() -> None:
     gauge = Sonar("front")
-    async with alone(gauge, 44, height).run_test(size=(60, 20)):
-        gauge.show(metres, 0.0)
-        shown = rows(gauge)[0]
-        assert all(word in shown for word in ("front", *words))
-
-
-@pytest.mark.parametrize("width", [6, 20, 33, 80])
-def test_the_bar_is_as_long_as_the_distance_and_marks_the_threshold(width: int) -> None:
-    for metres in (0.0, 0.3, 0.5, 1.7, 3.0, 9.0, INF, NAN, -1.0):
-        assert sum(len(ink.text) for ink in bar(metres, width, COURSE)) == width
-    filled, rest = bar(0.0, width, COURSE)
-    assert filled.text == ""
-    assert rest.text[mark_cell(0.5, width)] == "│"
-    assert rest.text[mark_cell(1.0, width)] == "│"
-    assert len(bar(1.5, 30, COURSE)[0].text) == 15
-
-
-def test_the_trend_has_the_newest_at_the_right() -> None:
-    (line,) = trend([3.0, NAN, 0.0], 5, 1, COURSE)
-    assert "".join(ink.text for ink in line) == "  █?▁"
+    async with alone(gauge, 44, 1).run_test(size=(60, 20)):
+        for metres, words in (
+            (1.836, ("1.84 m", "FREE")),
+            (0.72, ("0.72 m", "CLOSE")),
+            (0.38, ("0.38 m", "STOP")),
+            (INF, ("nothing in range", "FREE")),
+            (-INF, ("too close to measure", "STOP")),
+            (NAN, ("no valid reading", "BLIND")),
+            (-2.0, ("impossible", "STOP")),
+        ):
+            gauge.show(metres, 0.0)
+            assert all(word in rows(gauge)[0] for word in ("front", *words))
 
 
 async def test_silence_is_told_with_its_length_and_old_values_are_greyed() -> None:
@@ -85,52 +64,60 @@ async def test_silence_is_told_with_its_length_and_old_values_are_greyed() -> No
         assert "STOP" in rows(gauge)[0]
 
 
-@pytest.mark.parametrize(
-    ("trouble", "words"),
-    [
-        (None, "waiting for the first message"),
-        (Trouble.NO_PUBLISHER, "nobody publishes this topic"),
-        (Trouble.QOS_MISMATCH, "QoS is incompatible"),
-        (Trouble.UNKNOWN_TYPE, "message type is not installed"),
-        (Trouble.QUIET, "there is a publisher, but no message has arrived yet"),
-    ],
-)
-async def test_an_empty_gauge_says_why(trouble: Trouble | None, words: str) -> None:
+async def test_an_empty_gauge_says_why() -> None:
     gauge = Sonar("front")
     async with alone(gauge, 50, 4).run_test(size=(60, 20)):
-        gauge.show_trouble(trouble, "[b]detail[/b]\x1b[31m")
-        shown = " ".join(" ".join(rows(gauge)).split())
-        assert words in shown
-        assert "[b]detail[/b]␛[31m" in shown
+        for trouble, words in (
+            (None, "waiting for the first message"),
+            (Trouble.NO_PUBLISHER, "nobody publishes this topic"),
+            (Trouble.QOS_MISMATCH, "QoS is incompatible"),
+            (Trouble.UNKNOWN_TYPE, "message type is not installed"),
+            (Trouble.QUIET, "there is a publisher, but no message has arrived yet"),
+        ):
+            gauge.show_trouble(trouble, "detail")
+            shown = " ".join(" ".join(rows(gauge)).split())
+            assert words in shown
+            assert "detail" in shown
 
 
-async def test_the_same_again_draws_nothing() -> None:
-    gauge = Sonar("front")
-    async with alone(gauge, 40, 4).run_test(size=(60, 20)):
-        gauge.show_trouble(None, "", 0.1)
-        for second in range(60):
-            gauge.show(1.0, float(second))
-        asked: list[Any] = []
-
-        def note(*regions: Any, **_more: Any) -> Sonar:
-            asked.extend(regions)
-            return gauge
-
-        gauge.refresh = note  # type: ignore[method-assign]
-        gauge.show(1.0, 60.0)
-        assert asked == []
-        gauge.show(1.1, 61.0)
-        assert sum(region.area for region in asked) < 40
+SAFETY, FRONT = "/safety_state", "/sensor/sonar_front"
 
 
-async def test_the_rear_gauge_comes_only_when_there_is_one() -> None:
-    view = SonarView()
-    async with alone(view, 40, 16).run_test(size=(60, 30)) as pilot:
-        view.show("front", 1.5, 0.0)
-        rear = view.query_one("#rear", Sonar)
-        assert not rear.display
-        view.set_both(True)
-        view.show("rear", 0.4, 0.0)
+def told(metres: float = 0.7, **values: str) -> GraphUpdate:
+    """The lesson with a sonar at so many metres and these values of the safety node."""
+    pairs = [{"key": key, "value": value} for key, value in {"verdict": "free", **values}.items()]
+    status = [{"level": b"\x00", "name": "safety_stop", "message": "", "values": pairs}]
+    own = {
+        FRONT: (sample(FRONT, "std_msgs/msg/Float32", {"data": metres}),),
+        SAFETY: (sample(SAFETY, "diagnostic_msgs/msg/DiagnosticArray", {"status": status}),),
+    }
+    return lesson_update(samples={**lesson_samples(), **own})
+
+
+async def test_the_gauge_stops_where_the_safety_node_does() -> None:
+    opener = RecordedOpener(graph=RecordedGraph(told(critical_m="0.8", slow_m="1.5")))
+    async with opened(opener) as (app, pilot):
         await pilot.pause()
-        assert "rear" in rows(rear)[0]
-        assert "STOP" in rows(rear)[0]
+        gauge = app.screen.query_one("#front", Sonar)
+        assert "STOP" in rows(gauge)[0]
+        # Somebody sets critical_distance while it runs.
+        opener.graph.show(told(critical_m="0.3", slow_m="1.5"))
+        await settle(pilot)
+        assert "CLOSE" in rows(gauge)[0]
+
+
+@pytest.mark.parametrize(
+    ("values", "bounds"),
+    [
+        ({"critical_m": "0.8", "slow_m": "1.5"}, Bounds(math.nextafter(0.8, 1.0), 1.5)),
+        ({"critical_m": "0.3", "slow_m": "0"}, Bounds(0.3, 1.0)),
+        ({"critical_m": "1.3", "slow_m": "0.5"}, Bounds(1.3, 1.3)),
+        ({"critical_m": "0.8"}, Bounds(0.8, 1.0)),
+        ({}, COURSE),
+        ({"critical_m": "nan", "slow_m": "1.5"}, COURSE),
+        ({"critical_m": "-1", "slow_m": "inf"}, COURSE),
+        ({"critical_m": "near"}, COURSE),
+    ],
+)
+def test_bounds_are_those_that_the_node_tells(values: dict[str, Any], bounds: Bounds) -> None:
+    assert bounds_of(told(**values), COURSE) == bounds

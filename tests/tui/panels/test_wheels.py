@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from graph.data import Trouble
 from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
 from tests.tui.panel_stage import alone, rows
-from tui.panels.dots import rectangle
-from tui.panels.wheels.chassis import speed_bar
+from tui.panels.head.reading import HeadReading, head_in
+from tui.panels.head.widget import HeadView
 from tui.panels.wheels.reading import WheelsReading, wheels_in
 from tui.panels.wheels.widget import WheelsView
 
@@ -63,17 +62,6 @@ async def test_whatever_comes_is_shown(value: dict[str, Any]) -> None:
             assert any("---" in row for row in rows(view))
 
 
-@pytest.mark.parametrize(("width", "height"), [(60, 1), (34, 5), (44, 14)])
-async def test_an_angle_that_no_wheel_can_have_is_named(width: int, height: int) -> None:
-    view = WheelsView()
-    async with alone(view, width, height).run_test(size=(100, 40)):
-        for steering, words in ((1e308, "1e308"), (-1e308, "-1e308"), (7.0, "7")):
-            view.show(WheelsReading(0.3, 0.3, steering))
-            shown = "\n".join(rows(view))
-            if height > 1:
-                assert f"out of range: {words} rad" in shown
-
-
 @pytest.mark.parametrize(
     ("speed", "steering", "words"),
     [
@@ -89,42 +77,55 @@ def test_a_word_says_which_wheel_is_slower(speed: float, steering: float, words:
     assert turning(speed, steering).words == words
 
 
-@pytest.mark.parametrize(("width", "height"), [(60, 1), (34, 5), (44, 14), (80, 30)])
+@pytest.mark.parametrize(("width", "height"), [(60, 1), (34, 5), (44, 14)])
 async def test_both_speeds_are_numbers_at_every_size(width: int, height: int) -> None:
     view = WheelsView()
     async with alone(view, width, height).run_test(size=(100, 40)):
         view.show(turning(0.3, 0.5))
         shown = "\n".join(rows(view))
         assert all(words in shown for words in ("0.25 m/s", "0.35 m/s", "left wheel slower"))
-        if height > 1:
-            assert "29° left" in shown
-            assert "R 0.46 m" in shown
 
 
-def test_the_bar_of_the_faster_wheel_is_longer_and_backwards_hangs_down() -> None:
-    def cells(speed: float) -> list[bool]:
-        return [bool(line[0].look != "muted") for line in speed_bar(speed, 0.5, 10, "accent")]
-
-    assert sum(cells(0.25)) < sum(cells(0.35))
-    assert cells(0.25)[-1]
-    assert not cells(0.25)[0]
-    assert cells(-0.25)[0]
-    assert not cells(-0.25)[-1]
-    assert sum(cells(0.5)) == 10
-    assert sum(cells(0.0)) == 0
-
-
-def test_the_front_wheels_turn_to_the_side_that_is_steered_to() -> None:
-    corners = rectangle((10.0, 10.0), 2.0, 8.0, 0.5)
-    front = min(corners, key=lambda corner: corner[1])
-    assert front[0] < 10.0
+def test_radians_become_degrees_left_and_up() -> None:
+    value = {"name": ["tilt_joint", "pan_joint"], "position": [math.pi / 18, math.pi / 4]}
+    pose = head_in(value)
+    assert pose is not None
+    assert (pose.pan_words, pose.tilt_words) == ("45° left", "10° up")
+    assert (HeadReading(-45, 0).pan_words, HeadReading(0, -10).tilt_words) == (
+        "45° right",
+        "10° down",
+    )
+    assert HeadReading(0.2, -0.2).pan_words == "0°"
 
 
-async def test_old_speeds_are_greyed_with_their_age() -> None:
-    view = WheelsView()
-    async with alone(view, 44, 14).run_test(size=(60, 30)):
-        view.show(turning(0.3, 0.5))
-        view.show_trouble(Trouble.QUIET, "", 5.0)
-        assert "no data for 5 s" in rows(view)[-1]
-        looks = {ink.look for line in view._lines for ink in line if ink.text.strip()}
-        assert looks == {"muted", "alert"}
+async def test_it_moves_while_the_pose_changes_and_rests_when_it_does_not() -> None:
+    view = HeadView()
+    async with alone(view, 44, 10).run_test(size=(60, 30)):
+        for pan, words in ((0, "at rest"), (10, "moving"), (10, "at rest")):
+            view.show(HeadReading(pan, 0))
+            assert words in "\n".join(rows(view))
+
+
+async def test_a_head_that_nobody_knows_of_does_not_move() -> None:
+    """Servos tell nothing: before the first turn, and after their cable was pulled."""
+    view = HeadView()
+    async with alone(view, 24, 4).run_test(size=(60, 30)):
+        for pan, words in (
+            (math.nan, "unknown until it turns"),
+            (10, "at rest"),
+            (math.nan, "---"),
+        ):
+            view.show(HeadReading(pan, pan))
+            assert words in "\n".join(rows(view))
+
+
+async def test_what_it_was_told_and_the_answer_are_shown_harmlessly() -> None:
+    view = HeadView()
+    async with alone(view, 60, 10).run_test(size=(80, 30)):
+        view.show(HeadReading(0, 0))
+        view.command(HeadReading(-90, 15))
+        assert "commanded: 90° right, 15° up" in "\n".join(rows(view))
+        view.answer("[red]no[/red]\x1b[31m")
+        assert "[red]no[/red]␛[31m" in "\n".join(rows(view))
+        view.command(HeadReading(0, 0))
+        assert "[red]" not in "\n".join(rows(view))

@@ -9,10 +9,10 @@ from typing import Any
 from textual.pilot import Pilot
 
 from graph.data import GraphUpdate
-from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_map import MAP_SESSION
 from tests.tui.recorded_space import space_update
+from tests.tui.snapshots import opened
 from tui.app import DeckApp
 from tui.space.screen import SpaceScreen
 

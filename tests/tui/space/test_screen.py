@@ -11,52 +11,33 @@ from textual.pilot import Pilot
 
 from graph.data import GraphUpdate
 from space.drawing.paints import Tint
-from space.transform import Transform
-from tests.tui.recorded import RecordedGraph
-from tests.tui.recorded_lesson import sample
-from tests.tui.recorded_space import STRING, frame_row, frames, marker_sample, space_update
+from tests.tui.recorded import RecordedGraph, RecordedOpener
+from tests.tui.recorded_space import SPACE_TOPICS, frames, space_update
 from tests.tui.space.stage_runs import at_work, robot_in_a_room
-from text.i18n import set_language
-from tui.dialogs.choice import ChoiceScreen
 from tui.space.rows import LayerRows
 from tui.space.screen import SpaceScreen
 from tui.space.view import SpaceView
 
-WATCHED = {
-    "/cliff",
-    "/depth/points",
-    "/goal_pose",
-    "/map",
-    "/odom",
-    "/plan",
-    "/robot_description",
-    "/scan",
-    "/sensor/sonar_front",
-    "/sensor/sonar_rear",
-}
+WATCHED = {row.name for row in SPACE_TOPICS} - {"/markers"}
 
 
 def text_of(screen: SpaceScreen) -> str:
-    """The characters of the picture."""
     view = screen.view
     return "\n".join(view.render_line(y).text for y in range(view.size.height))
 
 
 def rows_of(screen: SpaceScreen) -> str:
-    """The list of layers."""
     rows = screen.query_one(LayerRows)
     return "\n".join(rows.render_line(y).text.rstrip() for y in range(rows.size.height))
 
 
 def tints(screen: SpaceScreen) -> set[int]:
-    """The colours in the picture."""
     view = screen.view
     picture = screen.stage.picture(view.camera, *view.size, view.aim)
     return {*picture.front.ravel().tolist(), *picture.back.ravel().tolist()}
 
 
 async def show(pilot: Pilot[Any], graph: RecordedGraph, update: GraphUpdate) -> None:
-    """Let the graph say something new."""
     graph.show(update)
     await pilot.pause()
     await pilot.pause()
@@ -107,43 +88,6 @@ async def test_a_layer_that_cannot_be_read_does_not_stop_the_others() -> None:
         assert "base_link" in text_of(screen)
 
 
-LACKING = {
-    "mimic": (
-        ("continuous", "<mimic joint='elbow'/>", ""),
-        "line 2: joint j: there is no joint elbow;",
-        "строка 2: сочленение j: сочленения elbow нет;",
-    ),
-    "material": (
-        ("fixed", "", "<material name='paint'/>"),
-        "line 3: there is no material paint;",
-        "строка 3: материала paint нет;",
-    ),
-}
-"""What a robot's joint and link have, what Space says of it, and that in Russian."""
-
-
-@pytest.mark.parametrize("lang", ["en", "ru"])
-@pytest.mark.parametrize("case", LACKING)
-async def test_what_a_description_lacks_is_said_and_the_robot_is_drawn(
-    case: str, lang: str
-) -> None:
-    (kind, mimic, material), *said = LACKING[case]
-    text = f"""<robot name='r'><link name='base_link'/><link name='mast'/>
-    <joint name='j' type='{kind}'><parent link='base_link'/><child link='mast'/>{mimic}</joint>
-    <link name='ball'><visual><geometry><sphere radius='0.4'/></geometry>{material}</visual></link>
-    <joint name='k' type='fixed'><parent link='mast'/><child link='ball'/></joint></robot>"""
-    described = (sample("/robot_description", STRING, {"data": text}),)
-    joined = [frame_row("base_link", link, Transform()) for link in ("mast", "ball")]
-    update = space_update(None, (*frames(), *joined), robot_description=described)
-    set_language(lang)
-    async with at_work(robot_in_a_room(update)) as (screen, _pilot):
-        assert said[lang == "ru"] in " ".join(rows_of(screen).split())
-        layer = screen.stage.layers.get("/robot_description")
-        assert layer is not None
-        drawn = {link.frame: link.shapes for link in layer.reader.shown(0.0)}
-        assert drawn["ball"]
-
-
 async def test_arrows_zoom_and_fit_move_the_camera() -> None:
     async with at_work() as (screen, pilot):
         fitted = screen.view.camera
@@ -157,87 +101,116 @@ async def test_arrows_zoom_and_fit_move_the_camera() -> None:
         assert screen.view.camera == fitted
 
 
-async def test_a_drag_pans_and_with_shift_turns() -> None:
-    async with at_work() as (screen, pilot):
-        view = screen.view
-        await pilot.press("alt+v", "alt+v")
-        before = view.camera
-        await drag(pilot, (20, 10), (24, 10))
-        moved = view.camera
-        assert moved.target != before.target
-        assert moved.yaw_rad == before.yaw_rad
-        await drag(pilot, (20, 10), (24, 12), shift=True)
-        assert view.camera.target == moved.target
-        assert view.camera.yaw_rad < moved.yaw_rad
-
-
-async def drag(
-    pilot: Pilot[Any], start: tuple[int, int], end: tuple[int, int], *, shift: bool = False
-) -> None:
-    """Press the mouse, move it, let it go."""
-    await pilot.mouse_down(SpaceView, offset=start, shift=shift)
+async def drag(pilot: Pilot[Any], start: tuple[int, int], end: tuple[int, int]) -> None:
+    await pilot.mouse_down(SpaceView, offset=start)
     await pilot.hover(SpaceView, offset=end)
-    await pilot.mouse_up(SpaceView, offset=end, shift=shift)
+    await pilot.mouse_up(SpaceView, offset=end)
     await pilot.pause()
 
 
-async def test_the_line_below_says_where_the_pointer_is() -> None:
-    async with at_work() as (screen, pilot):
-        view = screen.view
-        await pilot.hover(SpaceView, offset=(view.size.width // 2, view.size.height // 2))
-        await pilot.pause()
-        x, y, _z = view.pointer_place or (math.nan, 0.0, 0.0)
-        assert (x, y) == pytest.approx(view.camera.target[:2], abs=4 / view.camera.dots_per_m)
-        line = str(screen.query_one("#space-status").render())
-        assert f"x {x:.2f}  y {y:.2f} m" in line
-        assert "in map" in line
+GOAL, POSE = "/goal_pose", "geometry_msgs/msg/PoseStamped"
+INITIAL, WITH_COVARIANCE = "/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped"
+START, END = (30, 12), (40, 12)
 
 
-async def test_a_frame_is_followed() -> None:
+def goals(opener: RecordedOpener) -> list[tuple[str, str, Any]]:
+    return [sent[:3] for sent in opener.graph.published if sent[0] in {GOAL, INITIAL}]
+
+
+def place_at(screen: SpaceScreen, cell: tuple[int, int]) -> tuple[float, float]:
+    """The place on the floor below the middle of a cell."""
+    view = screen.view
+    found = view.camera.floor_at(2 * cell[0] + 1, 4 * cell[1] + 2, *view.dots)
+    assert found is not None
+    return found
+
+
+def heading_of(pose: Any) -> float:
+    turn = pose["orientation"]
+    assert turn["x"] == turn["y"] == 0.0
+    return 2 * math.atan2(turn["z"], turn["w"])
+
+
+def told(pilot: Pilot[Any]) -> str:
+    return " ".join(note.message for note in pilot.app._notifications)
+
+
+async def test_a_goal_is_published_by_press_and_drag() -> None:
     opener = robot_in_a_room()
     async with at_work(opener) as (screen, pilot):
-        await pilot.press("alt+t")
+        await drag(pilot, START, END)
+        await pilot.press("enter")
+        assert goals(opener) == [], "nothing is armed"
+        await pilot.press("home", "alt+g")
         await pilot.pause()
-        assert isinstance(pilot.app.screen, ChoiceScreen)
-        await pilot.press("down", "enter")
+        place = place_at(screen, START)
+        await drag(pilot, START, (START[0], START[1] - 5))
+        ((topic, kind, message),) = goals(opener)
+        assert (topic, kind, message["header"]["frame_id"]) == (GOAL, POSE, "map")
+        found = message["pose"]["position"]
+        assert (found["x"], found["y"], found["z"]) == pytest.approx((*place, 0.0))
+        assert heading_of(message["pose"]) == pytest.approx(math.pi / 2)
+        assert not screen.armed
+        assert "Published on /goal_pose" in told(pilot)
+
+
+@pytest.mark.nightly
+async def test_an_initial_pose_is_published_with_the_covariance_of_rviz() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (_screen, pilot):
+        await pilot.press("alt+i")
         await pilot.pause()
-        assert screen.stage.follow == "base_link"
-        there = Transform((3.0, -2.0, 0.0))
-        rows = tuple(
-            frame_row("odom", "base_link", there, static=False)
-            if row.newest.child == "base_link"
-            else row
-            for row in frames()
-        )
-        late = tuple(replace(row, newest=replace(row.newest, stamp_s=11.0)) for row in rows)
-        await show(pilot, opener.graph, space_update(None, late))
-        assert screen.view.camera.target == pytest.approx((3.0, -2.0, 0.0))
-        await pilot.press("right")
-        moved = screen.view.camera.target
-        await show(pilot, opener.graph, space_update(None, late))
-        assert screen.view.camera.target == pytest.approx(moved)
-        assert "follows base_link" in str(screen.query_one("#space-status").render())
+        await drag(pilot, START, (START[0] - 8, START[1]))
+        ((topic, kind, message),) = goals(opener)
+        assert (topic, kind) == (INITIAL, WITH_COVARIANCE)
+        inner = message["pose"]
+        assert abs(heading_of(inner["pose"])) == pytest.approx(math.pi)
+        assert len(inner["covariance"]) == 36
+        assert {0, 7, 35} == {at for at, value in enumerate(inner["covariance"]) if value}
 
 
-async def test_the_fixed_frame_is_chosen() -> None:
-    async with at_work() as (screen, pilot):
-        await pilot.press("alt+r")
-        await pilot.pause()
-        await pilot.press("down", "enter")
-        await pilot.pause()
-        assert screen.stage.fixed == "base_link"
-        assert "in base_link" in str(screen.query_one("#space-status").render())
-
-
-async def test_without_frames_what_there_is_is_drawn_in_its_own_frame() -> None:
-    async with at_work(robot_in_a_room(space_update(None, ()))) as (screen, _pilot):
-        assert screen.stage.fixed == "base_link"
-        assert "nobody publishes /tf" in rows_of(screen)
-
-
-async def test_a_marker_is_followed_through_add_and_delete() -> None:
+@pytest.mark.nightly
+async def test_a_goal_is_published_by_keys_alone() -> None:
     opener = robot_in_a_room()
     async with at_work(opener) as (screen, pilot):
-        assert "charger" in text_of(screen)
-        await show(pilot, opener.graph, space_update(markers=(marker_sample(action=3),)))
-        assert "charger" not in text_of(screen)
+        x, y, _z = screen.view.camera.target
+        await pilot.press("alt+g")
+        await pilot.pause()
+        step = 2 / screen.view.camera.dots_per_m
+        await pilot.press("right", "right", "right", "down", *["ctrl+left"] * 3, "enter")
+        await pilot.pause()
+        ((_topic, _kind, message),) = goals(opener)
+        found = message["pose"]["position"]
+        assert (found["x"], found["y"]) == pytest.approx((x + 3 * step, y - step))
+        assert heading_of(message["pose"]) == pytest.approx(math.pi / 4)
+
+
+@pytest.mark.nightly
+async def test_escape_and_another_screen_disarm() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        for leave in ("escape", "5"):
+            await pilot.press("9", "alt+g")
+            await pilot.pause()
+            assert screen.armed
+            await pilot.press(leave)
+            await pilot.pause()
+            assert not screen.armed
+        assert goals(opener) == []
+
+
+async def test_the_emergency_stop_disarms_and_refuses() -> None:
+    opener = robot_in_a_room()
+    async with at_work(opener) as (screen, pilot):
+        await pilot.press("alt+g")
+        await pilot.mouse_down(SpaceView, offset=START)
+        await pilot.hover(SpaceView, offset=END)
+        await pilot.press("space")
+        await pilot.mouse_up(SpaceView, offset=END)
+        await pilot.pause()
+        assert not screen.armed
+        await pilot.press("alt+g", "enter")
+        await pilot.pause()
+        assert not screen.armed
+        assert "The emergency stop is engaged" in told(pilot)
+        assert goals(opener) == []

@@ -9,17 +9,14 @@ import os
 import sys
 import threading
 import time
-from typing import TYPE_CHECKING
 
 from textual.app import App
+from textual.events import Key
 from textual.widgets import Static
 
 from tui.terminal import hang_up
 from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.driver import DeckDriver
-
-if TYPE_CHECKING:
-    from textual.events import Key
 
 
 class StuckApp(App[int]):

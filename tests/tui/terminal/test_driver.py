@@ -47,7 +47,6 @@ class Stuck:
         self.wait_for("ready")
 
     def read(self) -> None:
-        """Take what it writes, from now on."""
         self._reading.clear()
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -59,7 +58,6 @@ class Stuck:
         wait_until(lambda: not select.select([], [self.program], [], 0)[1], "the terminal full")
 
     def type(self, data: bytes) -> None:
-        """Send these bytes as they are."""
         os.write(self.own, data)
 
     def told(self) -> list[str]:
@@ -67,7 +65,6 @@ class Stuck:
         return self._file.read_text().split("\n")[:-1] if self._file.exists() else []
 
     def wait_for(self, line: str, times: int = 1) -> None:
-        """Wait until it has been told this."""
         wait_until(lambda: self.told().count(line) >= times, lambda: f"{line}: {self.told()}")
 
     def wait_for_a_key(self) -> None:
@@ -80,7 +77,6 @@ class Stuck:
         wait_until(seen, lambda: f"a key seen: {self.told()}")
 
     def hang_up(self) -> None:
-        """Close the terminal."""
         if not self._closed:
             self._closed = True
             self._reading.set()
@@ -93,7 +89,6 @@ class Stuck:
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def close(self) -> None:
-        """End it."""
         self.process.kill()
         self.process.wait()
         self.hang_up()
@@ -140,25 +135,6 @@ def test_no_thread_spins_at_the_end_of_input(stuck: Callable[[str], Stuck]) -> N
     time.sleep(3)  # The claim is about a time.
     assert app.cpu_s() - before_s < 0.1 * (time.monotonic() - began_s)
     assert app.process.poll() is None
-
-
-def test_it_survives_a_storm_of_signals_while_it_draws_on_a_stalled_terminal(
-    stuck: Callable[[str], Stuck],
-) -> None:
-    app = stuck("draw")
-    app.stall()
-    for number in range(400):
-        app.process.send_signal(signal.SIGSTOP if number % 10 == 0 else signal.SIGCONT)
-        if number % 10 == 0:
-            app.process.send_signal(signal.SIGCONT)
-        if number % 7 == 0:
-            app.process.send_signal(signal.SIGWINCH)
-        time.sleep(0.002)  # Signals of one kind that come together are one.
-    app.process.send_signal(signal.SIGCONT)
-    app.read()
-    app.wait_for_a_key()
-    app.type(b"\x18")
-    app.wait_for("stop")
 
 
 def test_suspended_by_the_user_it_comes_back(stuck: Callable[[str], Stuck]) -> None:

@@ -1,24 +1,39 @@
-"""Typing faster than the screen draws: nothing is lost, and the stop does not wait."""
+"""What is typed without a pause after a key that moves the cursor is not lost."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import AsyncIterator, Callable, Iterator
 
 import pytest
-from textual.events import Key, Paste
-from textual.widgets import Input, Static
+from textual.events import Event, Key, Paste
+from textual.widgets import Input
 
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.snapshots import Look, settle
 from tests.waiting import DEADLINE_S, until
+from tui import clock
+from tui.app import DeckApp
 from tui.terminal import key_queue
+from tui.terminal.stall_detector import KeyStallDetector
 
-if TYPE_CHECKING:
-    from collections.abc import AsyncIterator
+STARTED_S = 1.0
 
-    from textual.events import Event
 
-    from tui.app import DeckApp
+@pytest.fixture
+def move_hand(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
+    def set_to(to_s: float) -> None:
+        monkeypatch.setattr(clock, "steady", lambda: to_s)
+
+    return set_to
+
+
+@pytest.fixture
+def detector(move_hand: Callable[[float], None]) -> Iterator[KeyStallDetector]:
+    move_hand(STARTED_S)
+    made = KeyStallDetector()
+    yield made
+    made.end()
+
 
 HOME = Look((120, 40), "en")
 NAMES = "#topics-filter, #graph-filter"
@@ -65,13 +80,3 @@ async def test_the_stop_waits_for_no_key(app: DeckApp) -> None:
     type_at_once(app, "f3", "slash", "a", "space", "b")
     await until(lambda: app.emergency.state.engaged, "the stop")
     await until_filter_is(app, "ab")
-
-
-async def test_a_key_that_never_arrives_holds_up_the_others_for_a_moment_only(
-    app: DeckApp, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    with monkeypatch.context() as patched:
-        patched.setattr(key_queue, "PATIENCE_S", 0.05)
-        app._key_queue.follow(Static())
-    type_at_once(app, "f3", "slash", *"drive")
-    await until_filter_is(app, "drive")

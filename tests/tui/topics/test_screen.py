@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
-import sys
+import threading
 from collections.abc import AsyncIterator
-from dataclasses import replace
+from typing import Any
 
-import numpy as np
 import pytest
+from textual.widgets import Static
 
 from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
+from graph.pictures.picture import Picture
+from graph.pictures.reading import read_picture
 from launcher.status import NodeState
 from tests.tui.recorded import NOW_S, RecordedSession, lesson_update, sample
 from tests.tui.snapshots import settle
-from tests.tui.topics_stage import SONAR, TopicsStage, opened, row, with_row
+from tests.tui.topics_stage import (
+    CAMERA,
+    SONAR,
+    TopicsStage,
+    jpeg_message,
+    opened,
+    row,
+    with_camera,
+    with_row,
+)
 from tests.waiting import until
 from tui.frame.key_bar import KeyBar
+from tui.widgets import newest_picture
 
 ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
 
@@ -42,24 +54,6 @@ async def test_only_the_chosen_topic_is_decoded(stage: TopicsStage) -> None:
     assert (
         "1.0 Hz · 8 B/s · age <1 s · jitter – · latency – · lost – · 8 B a message" in stage.head()
     )
-
-
-async def test_what_takes_a_message_is_offered_when_one_is_there(stage: TopicsStage) -> None:
-    def offered() -> set[str]:
-        keys = stage.screen.query_one(KeyBar).keys()
-        return {key.title for key in keys}
-
-    await stage.choose(SONAR)
-    await stage.show(lesson_update())
-    assert {"Plot field", "Copy"} <= offered()
-    await stage.choose("/drive")
-    assert {"Plot field", "Copy"}.isdisjoint(offered())
-    await stage.pilot.press("y")
-    await stage.pilot.pause()
-    assert "There is no message to copy." in [one.message for one in stage.app._notifications]
-    await stage.choose(SONAR)
-    await stage.show(lesson_update())
-    assert {"Plot field", "Copy"} <= offered()
 
 
 async def test_walking_past_topics_subscribes_none_of_them(
@@ -89,11 +83,6 @@ async def test_nobody_who_publishes_is_told(stage: TopicsStage) -> None:
     [
         (NodeState.STARTING, (ROSOUT,), ["no topics yet", "Nodes are starting."]),
         (NodeState.READY, (), ["no topics", "Nobody publishes anything, and nobody listens."]),
-        (
-            NodeState.READY,
-            (ROSOUT,),
-            ["no topics of the robot", "There are only those of ROS itself: a shows them."],
-        ),
     ],
 )
 async def test_why_there_is_no_topic_is_told(
@@ -119,21 +108,6 @@ async def test_a_qos_mismatch_names_who_and_what_to_change(stage: TopicsStage) -
     assert words.startswith("QoS is incompatible")
     assert "/brain does not hear /lidar: reliability reliable is asked for" in words
     assert "Let /lidar offer reliable, or let /brain ask for best_effort." in words
-
-
-async def test_a_package_that_can_be_had_is_told_by_its_names(stage: TopicsStage) -> None:
-    facts = {
-        "type": "nav_msgs/msg/Path", "package": "nav_msgs", "reason": "not installed",
-        "apt": "ros-jazzy-nav-msgs", "pixi": "ros-jazzy-nav-msgs",
-    }  # fmt: skip
-    await stage.choose(SONAR)
-    without = row(SONAR, trouble=Trouble.UNKNOWN_TYPE, hz=9.0, age_s=0.1, facts=facts)
-    await stage.show(with_row(without))
-    words = " ".join(stage.echo().split())
-    assert "install nav_msgs by `apt install ros-jazzy-nav-msgs` or `pixi add ros-" in words
-    assert "pip" not in words
-    await stage.show(with_row(replace(without, facts={**facts, "pip": "ros-jazzy-nav-msgs"})))
-    assert "by `pip install ros-jazzy-nav-msgs`, `apt" in " ".join(stage.echo().split())
 
 
 async def test_a_quiet_topic_keeps_its_last_message_and_says_for_how_long(
@@ -166,11 +140,10 @@ async def test_a_pause_holds_the_message_and_says_so(stage: TopicsStage) -> None
     assert "PAUSED" not in stage.head()
 
 
-@pytest.mark.parametrize("key", ["y", "н"])
-async def test_the_message_is_copied_as_yaml(stage: TopicsStage, key: str) -> None:
+async def test_the_message_is_copied_as_yaml(stage: TopicsStage) -> None:
     await stage.choose("/drive")
     await stage.show(lesson_update())
-    await stage.pilot.press(key)
+    await stage.pilot.press("н")
     assert "steering_angle: 0.5" in stage.app.clipboard
 
 
@@ -187,36 +160,104 @@ async def test_the_filter_narrows_down_as_one_types_and_escape_ends_it(stage: To
     assert len(stage.screen.table.shown) == 11
 
 
-async def test_keys_sort_turn_round_and_show_the_topics_of_ros_itself(stage: TopicsStage) -> None:
-    await stage.pilot.press("greater_than_sign", "greater_than_sign")
-    assert stage.screen.table.order.column_id == "publishers"
-    await stage.pilot.press("less_than_sign")
-    assert stage.screen.table.order.reverse
-    await stage.pilot.press("a")
-    await stage.pilot.pause()
-    assert len(stage.screen.table.shown) == 13
+def sonar(*metres: float) -> GraphUpdate:
+    """So many messages of the sonar in one update."""
+    values = tuple(sample(SONAR, "std_msgs/msg/Float32", {"data": each}) for each in metres)
+    return lesson_update(samples={SONAR: values})
 
 
-async def test_an_observer_that_cannot_work_says_why(stage: TopicsStage) -> None:
-    await stage.show(GraphUpdate(0.0, error="rclpy is missing: source ROS 2"))
-    text = stage.screen.table.render_line(1).text + stage.screen.table.render_line(2).text
-    assert "ROS cannot be observed" in text
-    assert "rclpy is missing: source ROS 2" in text
-
-
-async def test_five_megabytes_are_shown_with_few_objects_and_cut(stage: TopicsStage) -> None:
-    cloud = {
-        "height": 1, "width": 312_500, "point_step": 16, "row_step": 5_000_000,
-        "data": bytes(5_000_000), "ranges": np.zeros(1_250_000, np.float32),
-    }  # fmt: skip
+async def only_if(stage: TopicsStage, expression: str) -> None:
+    """Choose the sonar, and let only messages through for which this holds."""
     await stage.choose(SONAR)
-    said = sample(SONAR, "sensor_msgs/msg/PointCloud2", cloud, 5_000_000)
-    before = sys.getallocatedblocks()
-    stage.screen.detail.show_message(said)
-    assert sys.getallocatedblocks() - before < 5000
-    assert "(5000000 bytes)" in stage.echo()
-    assert "(1250000 items)" in stage.echo()
-    tree = stage.screen.detail.echo
-    tree.focus()
-    await stage.pilot.press("end", "enter")
-    assert "… 1249800 more items" in tree._lines[-1].text
+    await stage.pilot.press("f")
+    field = stage.screen.detail.filter.field
+    assert field.has_focus
+    field.value = expression
+    await stage.pilot.pause()
+    await stage.pilot.pause()
+
+
+def filter_line(stage: TopicsStage) -> str:
+    return str(stage.screen.query_one(".filter-told", Static).content)
+
+
+async def test_only_messages_are_shown_for_which_the_expression_holds(stage: TopicsStage) -> None:
+    await only_if(stage, "m.data > 0.5")
+    # Each message is looked at, not the newest of an update alone.
+    assert SONAR in stage.graph.followed
+    await stage.show(sonar(0.7, 0.2, 0.3))
+    assert "0.7" in stage.echo()
+    assert filter_line(stage) == "1 of 3 messages"
+    await stage.show(sonar(0.1))
+    assert "0.7" in stage.echo()
+    await stage.show(sonar(0.9))
+    assert "0.9" in stage.echo()
+    assert filter_line(stage) == "2 of 5 messages"
+
+
+async def test_an_expression_that_is_wrong_names_the_place_and_lets_nothing_through(
+    stage: TopicsStage,
+) -> None:
+    await stage.choose(SONAR)
+    await only_if(stage, "m.data > 0.5 and data")
+    told = "✗ column 18: data: the message is called m: write m.data"
+    assert filter_line(stage) == told
+    await stage.show(sonar(0.8))
+    assert filter_line(stage) == told
+    assert "the expression is wrong" in stage.echo()
+
+
+async def test_a_field_that_is_missing_is_told_once_and_counted(stage: TopicsStage) -> None:
+    await only_if(stage, "m.dat > 0.5")
+    await stage.show(sonar(0.8, 0.9))
+    await stage.show(sonar(0.8))
+    told = "0 of 3 messages · ✗ column 1: m.dat: no such field; did you mean data? (×3)"
+    assert filter_line(stage) == told
+    assert not stage.app._notifications
+
+
+async def test_an_image_is_a_picture_and_can_be_a_tree(stage: TopicsStage) -> None:
+    await stage.choose(CAMERA)
+    await stage.show(lesson_update())
+    assert stage.as_picture()
+    assert stage.screen.detail.picture.caption == "bgr8 640×480 · 10.0 Hz"
+    await stage.pilot.press("i")
+    assert not stage.as_picture()
+    assert "(921600 bytes)" in stage.echo()
+    await stage.show(lesson_update())
+    assert not stage.as_picture()
+
+
+@pytest.mark.parametrize(
+    ("encoding", "words"),
+    [("nv21", "pictures of the encoding nv21 cannot be shown"), ("32FC1", "no valid depth")],
+)
+async def test_a_picture_that_cannot_be_shown_is_told(
+    stage: TopicsStage, encoding: str, words: str
+) -> None:
+    await stage.choose(CAMERA)
+    size = {"width": 2, "height": 2, "step": 8, "is_bigendian": 0}
+    image = {**size, "encoding": encoding, "data": bytes(16)}
+    await stage.show(with_camera("sensor_msgs/msg/Image", image))
+    assert stage.screen.detail.picture.words[0] == words
+
+
+async def test_late_pictures_are_left_out_while_one_is_decoded(
+    stage: TopicsStage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    release = threading.Event()
+    seen: list[object] = []
+
+    def slow(type_name: str, value: Any, fit: Any) -> Picture:
+        seen.append(value["number"])
+        assert release.wait(30)
+        return read_picture(type_name, value, fit)
+
+    monkeypatch.setattr(newest_picture, "read_picture", slow)
+    await stage.choose(CAMERA)
+    for number in range(5):
+        value = {**jpeg_message(), "number": number}
+        await stage.show(with_camera("sensor_msgs/msg/CompressedImage", value))
+    release.set()
+    await stage.decoded()
+    assert seen == [0, 4]

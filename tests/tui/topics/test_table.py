@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import pytest
+from rich.cells import cell_len
 from textual.app import App, ComposeResult
 from textual.geometry import Region
 
-from graph.data import Trouble
+from graph.data import EndpointInfo, TopicRow, Trouble
 from tests.tui.recorded import TOPICS, topic
 from text.i18n import _, set_language
-from tui.topics.table.columns import (
-    COLUMNS,
-    age_text,
-    bandwidth_text,
-    hz_text,
-    placed,
-    state_text,
-)
+from tui.topics.endpoint_lines import endpoint_lines
+from tui.topics.table.columns import COLUMNS, age_text, bandwidth_text, hz_text, placed, state_text
 from tui.topics.table.order import TopicsOrder
 from tui.topics.table.table import TopicsTable
 
@@ -35,16 +31,13 @@ class TableApp(App[None]):
         self.chosen: list[str | None] = []
 
     def compose(self) -> ComposeResult:
-        """The table fills the screen."""
         yield TopicsTable()
 
     def on_topics_table_topic_chosen(self, message: TopicsTable.TopicChosen) -> None:
-        """Note what was chosen."""
         self.chosen.append(message.topic)
 
     @property
     def table(self) -> TopicsTable:
-        """The table."""
         return self.query_one(TopicsTable)
 
     def lines(self) -> list[str]:
@@ -74,29 +67,6 @@ def names(app: TableApp) -> list[str]:
 )
 def test_rates_have_three_figures(hz: float | None, shown: str) -> None:
     assert hz_text(hz) == shown
-
-
-@pytest.mark.parametrize(
-    ("rate", "shown"),
-    [
-        (None, "–"),
-        (0.0, "0 B/s"),
-        (999.6, "1.0 kB/s"),
-        (27_648_000.0, "27.6 MB/s"),
-        (480_000.0, "480 kB/s"),
-        (5e12, "5000 GB/s"),
-    ],
-)
-def test_bandwidths_have_their_unit(rate: float | None, shown: str) -> None:
-    assert bandwidth_text(rate) == shown
-
-
-@pytest.mark.parametrize(
-    ("age", "shown"),
-    [(None, "–"), (0.02, "<1 s"), (1.0, "1 s"), (59.9, "59 s"), (60.0, "1 min"), (7200.0, "2 h")],
-)
-def test_ages_are_whole(age: float | None, shown: str) -> None:
-    assert age_text(age) == shown
 
 
 @pytest.mark.parametrize(
@@ -142,20 +112,8 @@ def test_columns_never_overlap_and_the_name_is_always_there(width: int) -> None:
     assert ends[-1][1] <= width
 
 
-def test_a_narrow_table_gives_up_the_type_first_and_the_rate_last() -> None:
-    assert {place.column.id for place in placed(78)} == {
-        "name", "publishers", "subscribers", "hz", "bandwidth", "age", "state",
-    }  # fmt: skip
-    assert [place.column.id for place in placed(30)] == ["name", "hz"]
-    assert len(placed(118)) == len(COLUMNS) - 3
-
-
 def test_rows_are_sorted_by_any_column_and_equal_ones_by_name() -> None:
-    rows = [
-        topic("/c", FLOAT, 5.0),
-        topic("/b", FLOAT, None, age_s=None),
-        topic("/a", FLOAT, 5.01),
-    ]
+    rows = [topic("/c", FLOAT, 5.0), topic("/b", FLOAT, None, age_s=None), topic("/a", FLOAT, 5.01)]
     assert [row.name for row in TopicsOrder().arranged(rows)] == ["/a", "/b", "/c"]
     assert [row.name for row in TopicsOrder().by("hz").arranged(rows)] == ["/a", "/c", "/b"]
     assert [row.name for row in TopicsOrder().by("hz").by("hz").arranged(rows)] == [
@@ -164,22 +122,6 @@ def test_rows_are_sorted_by_any_column_and_equal_ones_by_name() -> None:
         "/c",
     ]
     assert [row.name for row in TopicsOrder().by("age").arranged(rows)] == ["/a", "/c", "/b"]
-
-
-def test_the_filter_wants_every_word_in_name_or_type() -> None:
-    found = TopicsOrder(words="SENSOR float").arranged(TOPICS)
-    assert [row.name for row in found] == ["/sensor/sonar_front"]
-    assert TopicsOrder(words="float zzz").arranged(TOPICS) == []
-
-
-def test_topics_of_ros_itself_are_shown_on_demand() -> None:
-    shown = {row.name for row in TopicsOrder().arranged(TOPICS)}
-    assert "/rosout" not in shown
-    assert "/emergency_stop" in shown
-    assert {row.name for row in TopicsOrder(housekeeping=True).arranged(TOPICS)} - shown == {
-        "/rosout",
-        "/parameter_events",
-    }
 
 
 async def test_the_first_topic_is_chosen_and_keys_choose_another() -> None:
@@ -205,18 +147,6 @@ async def test_the_chosen_topic_stays_chosen_when_rows_come_and_the_order_change
         assert app.table.chosen == "/drive"
         assert app.chosen == ["/ai_command", "/drive"]
         assert any(line.startswith("▶ /drive ") for line in app.lines())
-
-
-async def test_when_the_chosen_topic_goes_its_place_is_taken() -> None:
-    app = TableApp()
-    async with app.run_test(size=(80, 20)) as pilot:
-        app.table.show(TOPICS)
-        app.table.choose("/drive")
-        app.table.show([row for row in TOPICS if row.name != "/drive"])
-        assert app.table.chosen == "/drive_safe"
-        app.table.show([])
-        await pilot.pause()
-        assert app.chosen[-1] is None
 
 
 async def test_a_click_on_a_title_sorts_and_a_click_on_a_row_chooses() -> None:
@@ -247,3 +177,54 @@ async def test_an_update_draws_only_the_cells_whose_text_changed(
         app.table.show(faster)
         hz = next(place for place in app.table._places if place.column.id == "hz")
         assert asked == [Region(2 + hz.x, 1 + names(app).index("/drive"), hz.width, 1)]
+
+
+DOUBLE = "std_msgs/msg/Float64"
+LIDAR = EndpointInfo(
+    "/lidar", FLOAT, "best_effort", "volatile", 5, "keep_last", 0.1, 0.5, 2.0, "manual_by_topic"
+)
+BRAIN = EndpointInfo("/brain", FLOAT, "reliable", "volatile", liveliness="automatic")
+
+
+def a_row(
+    published_by: Sequence[EndpointInfo] = (), subscribed_by: Sequence[EndpointInfo] = ()
+) -> TopicRow:
+    return TopicRow(
+        "/scan",
+        (FLOAT,),
+        len(published_by),
+        len(subscribed_by),
+        published_by=tuple(published_by),
+        subscribed_by=tuple(subscribed_by),
+    )
+
+
+def text_of(row: TopicRow, width: int = 120) -> str:
+    lines = ["".join(ink.text for ink in line) for line in endpoint_lines(row, width)]
+    assert all(cell_len(line) <= width for line in lines)
+    return "\n".join(" ".join(line.split()) for line in lines)
+
+
+def test_every_policy_is_shown() -> None:
+    shown = text_of(a_row([LIDAR], [replace(BRAIN, reliability="best_effort")]))
+    assert "✓ every subscriber hears every publisher" in shown
+    assert ("/lidar best_effort volatile keep_last 5 100 ms 500 ms manual_by_topic 2.0 s") in shown
+    assert "/brain best_effort volatile – none none automatic" in shown
+    assert "“–” is unknown" in shown
+
+
+def test_a_pair_that_does_not_fit_is_marked_and_told_with_the_way_out() -> None:
+    shown = text_of(a_row([LIDAR], [BRAIN]))
+    words = "✗ /brain does not hear /lidar: reliability reliable is asked for, best_effort is"
+    assert words in shown.replace("\n", " ")
+    assert "\n✗ /lidar best_effort" in shown
+    assert "\n✗ /brain reliable" in shown
+    assert "✓" not in shown
+
+
+def test_who_disagrees_about_the_type_is_named_and_no_qos_is_held_against_it() -> None:
+    shown = text_of(a_row([LIDAR], [replace(BRAIN, type_name=DOUBLE)]))
+    assert "✗ The endpoints use different types" in shown
+    assert f"{FLOAT}: published by lidar" in shown
+    assert f"{DOUBLE}: expected by brain" in shown
+    assert "does not hear" not in shown

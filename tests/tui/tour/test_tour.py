@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedOpener
-from tests.tui.snapshots import settle
+from tests.tui.snapshots import opened, seen, settle
 from text.i18n import LANGUAGES, set_language
 from tui.app import DeckApp
 from tui.picker.screen import PickerScreen
@@ -35,13 +34,7 @@ class Environment:
 
 
 def started(environment: Environment, order: OpenRequest) -> DeckApp:
-    """An app at its start."""
     return DeckApp(RecordedOpener(), order, environment=environment)
-
-
-def shown(app: DeckApp) -> str:
-    """What is on the screen."""
-    return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
 
 
 async def test_the_first_start_shows_it_and_escape_leaves_it_for_good() -> None:
@@ -62,21 +55,10 @@ async def test_its_pages_end_at_the_list_of_lessons() -> None:
         await settle(pilot)
         assert len(PAGES) <= 5
         for number in range(1, len(PAGES) + 1):
-            assert f"{number}/{len(PAGES)}" in shown(app)
+            assert f"{number}/{len(PAGES)}" in seen(app)
             await pilot.press("enter")
             await pilot.pause()
         assert isinstance(app.screen, PickerScreen)
-
-
-async def test_a_named_lesson_and_a_later_start_are_not_in_its_way() -> None:
-    for environment, order in (
-        (Environment(due=False), OpenRequest()),
-        (Environment(due=True), OpenRequest(attach="09-brain")),
-    ):
-        app = started(environment, order)
-        async with app.run_test(size=(80, 24)) as pilot:
-            await settle(pilot)
-            assert not isinstance(app.screen, TourScreen)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -87,6 +69,6 @@ async def test_every_page_fits_80x24(language: str) -> None:
         await pilot.pause()
         for _page in PAGES:
             scroll = app.screen.query_one("#dialog-scroll")
-            assert scroll.max_scroll_y == 0, shown(app)
+            assert scroll.max_scroll_y == 0, seen(app)
             await pilot.press("n")
             await pilot.pause()

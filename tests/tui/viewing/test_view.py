@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from textual.pilot import Pilot
 
-from tests.tui.app_runs import opened
+from tests.tui.snapshots import opened
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.viewing import view as viewing
@@ -34,16 +34,15 @@ class Opened:
 
 
 class Starter:
-    """Opens what it is told to, and notes for which domain."""
+    """Opens what it is told to."""
 
     def __init__(self) -> None:
         self.where = PAGE
         self.refusal = ""
         self.made: list[Opened] = []
-        self.domains: list[int] = []
 
     async def start(self, domain: int) -> Opened:
-        self.domains.append(domain)
+        del domain
         if self.refusal:
             raise NotOpenedError(self.refusal)
         self.made.append(Opened(self.where))
@@ -64,25 +63,6 @@ async def open_view(app: DeckApp, pilot: Pilot[Any]) -> None:
     await pilot.pause()
 
 
-@pytest.mark.parametrize("screen", ["space", "frames"])
-async def test_where_things_are_placed_another_view_is_the_viewer(
-    starter: Starter, screen: str
-) -> None:
-    async with opened(screen=screen) as (app, pilot):
-        await pilot.press("v")
-        await until(lambda: isinstance(app.screen, ViewDialog), "the dialog")
-        assert len(starter.made) == 1
-
-
-async def test_the_key_opens_it_once_and_says_again_where_it_is(starter: Starter) -> None:
-    async with opened(screen="topics") as (app, pilot):
-        await open_view(app, pilot)
-        await pilot.press("escape")
-        await open_view(app, pilot)
-        assert app.feed.session is not None
-        assert starter.domains == [app.feed.session.domain]
-
-
 async def test_address_and_tunnel_are_copied(starter: Starter) -> None:
     starter.where = OpenedView(PAGE.url, PAGE.ports, TUNNEL)
     async with opened() as (app, pilot):
@@ -93,9 +73,12 @@ async def test_address_and_tunnel_are_copied(starter: Starter) -> None:
         await until(lambda: app.clipboard == f"{TUNNEL}\n{PAGE.url}", "both")
 
 
-async def test_it_ends_by_a_key_and_can_be_opened_again(starter: Starter) -> None:
+async def test_it_is_opened_once_ends_by_a_key_and_can_be_opened_again(starter: Starter) -> None:
     async with opened() as (app, pilot):
         await open_view(app, pilot)
+        await pilot.press("escape")
+        await open_view(app, pilot)
+        assert len(starter.made) == 1
         await pilot.press("x")
         await until(lambda: starter.made[0].ended, "its end")
         await open_view(app, pilot)
@@ -111,14 +94,3 @@ async def test_what_is_missing_is_said_and_the_next_key_tries_again(starter: Sta
         )
         starter.refusal = ""
         await open_view(app, pilot)
-
-
-async def test_a_viewer_that_broke_is_told_of(starter: Starter) -> None:
-    async with opened() as (app, pilot):
-        await open_view(app, pilot)
-        starter.made[0].words = "Rerun ended with code 1"
-        starter.made[0].ended = True
-        await until(
-            lambda: any("ended with code 1" in one.message for one in app._notifications),
-            "the words",
-        )

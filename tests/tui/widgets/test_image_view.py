@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -12,11 +11,8 @@ from textual.geometry import Region
 
 from tests.waiting import until
 from tui.terminal.bandwidth import Bandwidth
-from tui.widgets.half_blocks import fitting_size
+from tui.widgets.half_blocks import Pixels, fitting_size
 from tui.widgets.image_view import ImageView
-
-if TYPE_CHECKING:
-    from tui.widgets.half_blocks import Pixels
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
 
@@ -29,12 +25,10 @@ class PictureApp(App[None]):
         self.bandwidth = Bandwidth(limit)
 
     def compose(self) -> ComposeResult:
-        """The picture fills the screen."""
         yield ImageView()
 
     @property
     def view(self) -> ImageView:
-        """The picture."""
         return self.query_one(ImageView)
 
 
@@ -103,20 +97,7 @@ async def test_only_the_cells_that_changed_are_drawn(monkeypatch: pytest.MonkeyP
         assert asked == [(Region(3, 2, 1, 1),)]
 
 
-async def test_camera_noise_draws_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    app = PictureApp()
-    async with app.run_test(size=(16, 9)):
-        noise = np.random.default_rng(7)
-        picture = noise.integers(20, 230, (16, 16, 3), np.uint8)
-        app.view.show(picture)
-        asked = repaints(app.view, monkeypatch)
-        for _ in range(20):
-            app.view.show((picture + noise.integers(-3, 4, picture.shape)).astype(np.uint8))
-        assert asked == []
-
-
 def ground(view: ImageView) -> tuple[int, int, int] | None:
-    """The colour of the picture's first cell."""
     room = view.rich_style.bgcolor
     colors = [seg.style.bgcolor for seg in view.render_line(0) if seg.style is not None]
     return next(color.triplet for color in colors if color is not None and color != room)
@@ -146,19 +127,3 @@ async def test_beyond_the_limit_a_picture_waits_and_the_caption_says_how_many_ar
         assert ground(app.view) == RED
         await until(lambda: ground(app.view) == BLUE, "the newest picture")
         assert re.fullmatch(r"rgb8 · \d+\.\d of 15 Hz: limited to 40 kB/s", app.view.caption)
-
-
-async def test_words_do_not_wait_and_no_older_picture_comes_after_them() -> None:
-    app = PictureApp(1_000)
-    async with app.run_test(size=(40, 9)) as pilot:
-        app.view.show(plain_picture(16, 16, RED))
-        app.bandwidth.written(600)
-        app.view.show(plain_picture(16, 16, BLUE))
-        app.view.show_words("no publisher")
-        await until(lambda: not app.bandwidth.wait_s(), "the line free")
-        await pilot.pause()
-        assert app.view.words == ("no publisher", "")
-        assert not app.view.has_picture
-        app.bandwidth.written(10_000)
-        app.view.show(plain_picture(16, 16, BLUE))
-        assert ground(app.view) == BLUE  # The first of a stream is awaited.

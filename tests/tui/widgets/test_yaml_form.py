@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from textual.app import App, ComposeResult
+from textual.pilot import Pilot
 
 from tests.waiting import until
 from text.i18n import set_language
+from tui.widgets.qos_words import misfit_words
 from tui.yaml_form.form import YamlForm
-from tui.yaml_form.tokens import tokens
-
-if TYPE_CHECKING:
-    from textual.pilot import Pilot
 
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
 
@@ -27,15 +25,12 @@ class FormApp(App[None]):
         self.submitted: list[Any] = []
 
     def compose(self) -> ComposeResult:
-        """Nothing but the form."""
         yield self.form
 
     def on_yaml_form_submitted(self, message: YamlForm.Submitted) -> None:
-        """Note it."""
         self.submitted.append(message.value)
 
     def lines(self) -> list[str]:
-        """What stands in the editor."""
         editor = self.form.editor
         return [editor.render_line(y).text.rstrip() for y in range(editor.size.height)]
 
@@ -45,22 +40,6 @@ async def checked(pilot: Pilot[Any]) -> None:
     form = pilot.app.query_one(YamlForm)
     await until(lambda: form.text and form.text == form._checked, "a form that is checked")
     await pilot.pause()
-
-
-def kinds(line: str) -> list[tuple[str, str]]:
-    return [(line[token.start : token.end], token.kind) for token in tokens(line)]
-
-
-def test_tokens_are_told_apart() -> None:
-    assert kinds('- frame_id: "a # b"  # string') == [
-        ("-", "mark"), ("frame_id", "key"), (":", "mark"), ('"a # b"', "string"),
-        ("# string", "comment"),
-    ]  # fmt: skip
-    assert kinds("k: [1.5e3, -2, on, ~, a:b, .nan]") == [
-        ("k", "key"), (":", "mark"), ("[", "mark"), ("1.5e3", "number"), (",", "mark"),
-        ("-2", "number"), (",", "mark"), ("on", "word"), (",", "mark"), ("~", "word"),
-        (",", "mark"), ("a:b", "string"), (",", "mark"), (".nan", "number"), ("]", "mark"),
-    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -108,3 +87,38 @@ async def test_a_type_that_is_not_there_says_so() -> None:
         await until(lambda: app.form.error is not None, "the error")
         assert "package nope_msgs is not installed" in app.form.verdict
         assert app.form.value is None
+
+
+def facts(**values: str) -> dict[str, str]:
+    return {"publisher": "/lidar", "subscriber": "/brain", **values}
+
+
+APART = "/brain does not hear /lidar: "
+LIFE = "it asks for a sign of life at least every 2 s (liveliness lease duration), "
+
+
+@pytest.mark.parametrize(
+    ("policy", "offered", "requested", "why", "way_out"),
+    [
+        (
+            "liveliness", "automatic", "manual_by_topic",
+            "liveliness manual_by_topic is asked for, automatic is offered.",
+            " Let /lidar offer manual_by_topic, or let /brain ask for automatic.",
+        ),
+        (
+            "deadline", "0.5", "0.25",
+            "it asks for a message at least every 0.25 s (deadline), 0.5 s is offered.",
+            " Let /lidar offer 0.25 s or less, or let /brain ask for 0.5 s or more.",
+        ),
+        (
+            "lease", "3", "2",
+            LIFE + "3 s is offered.",
+            " Let /lidar offer 2 s or less, or let /brain ask for 3 s or more.",
+        ),
+    ],
+)  # fmt: skip
+def test_each_policy_has_its_own_words(
+    policy: str, offered: str, requested: str, why: str, way_out: str
+) -> None:
+    values = facts(policy=policy, offered=offered, requested=requested)
+    assert misfit_words(values) == APART + why + way_out
