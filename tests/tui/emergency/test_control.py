@@ -29,7 +29,7 @@ from tests.tui.recorded import (
     sample,
 )
 from tests.tui.recorded_emergency import GATE, held, obeyed, said, word
-from tests.tui.snapshots import opened, settle
+from tests.tui.snapshots import opened, seen, settle
 from text.i18n import set_language
 from tui.deck.command_line import CommandLine
 from tui.emergency import control
@@ -203,9 +203,11 @@ async def test_a_release_without_a_stop_publishes_nothing_and_says_so() -> None:
 async def test_the_safety_nodes_words_stand_in_the_title() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
+        assert "0.38 m" not in seen(app).splitlines()[0]
         opener.graph.show(held(b"\x01", "front 0.38 m"))
         await settle(pilot)
         assert "⚠ Front 0.38 m" in title.states(app)[0]
+        assert "⚠ Front 0.38 m" in seen(app).splitlines()[0], "and is drawn"
 
 
 @pytest.mark.parametrize(
