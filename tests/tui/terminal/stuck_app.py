@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import sys
 import threading
-import time
 
 from textual.app import App
 from textual.events import Key
@@ -20,7 +19,7 @@ from tui.terminal.driver import DeckDriver
 
 
 class StuckApp(App[int]):
-    """Draws all the time, or hangs once `h` is pressed."""
+    """Hangs once `h` is pressed."""
 
     terminal_fd = 1
 
@@ -33,10 +32,6 @@ class StuckApp(App[int]):
 
     def compose(self):  # type: ignore[no-untyped-def]  # noqa: ANN201
         yield Static("ready")
-
-    def on_mount(self) -> None:
-        if self._how == "draw":
-            self.set_interval(0.005, self._draw)
 
     def on_ready(self) -> None:
         self._write("ready")
@@ -65,10 +60,6 @@ class StuckApp(App[int]):
 
     def keyboard_lost(self, error: Exception) -> None:
         self._write(f"keyboard lost: {error!r}")
-
-    def _draw(self) -> None:
-        words, rows = f"{time.monotonic():.6f} " * 12, range(self.size.height)
-        self.query_one(Static).update("\n".join(f"{row} {words}" for row in rows))
 
     def _write(self, words: str) -> None:
         os.write(self._file, f"{words}\n".encode())

@@ -51,12 +51,6 @@ class Stuck:
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
-    def stall(self) -> None:
-        """Take nothing, and wait until it has noticed."""
-        self._reading.set()
-        self._reader.join()
-        wait_until(lambda: not select.select([], [self.program], [], 0)[1], "the terminal full")
-
     def type(self, data: bytes) -> None:
         os.write(self.own, data)
 
@@ -114,7 +108,7 @@ def stuck(tmp_path: Path) -> Iterator[Callable[[str], Stuck]]:
         each.close()
 
 
-@pytest.mark.parametrize("how", ["lock", "busy", "write", "rest"])
+@pytest.mark.parametrize("how", ["lock", "write", "rest"])
 def test_whatever_the_main_thread_does_it_does_not_outlive_its_terminal(
     stuck: Callable[[str], Stuck], how: str
 ) -> None:
@@ -146,8 +140,9 @@ def test_suspended_by_the_user_it_comes_back(stuck: Callable[[str], Stuck]) -> N
     app.wait_for_a_key()
 
 
-@pytest.mark.parametrize("how", ["lock", "busy", "write"])
-@pytest.mark.parametrize("key", [b" ", b"\x18", b"\x1b[32u"])
+@pytest.mark.parametrize(
+    ("how", "key"), [("lock", b" "), ("busy", b"\x18"), ("write", b"\x1b[32u")]
+)
 def test_a_stop_is_told_while_the_main_thread_hangs(
     stuck: Callable[[str], Stuck], how: str, key: bytes
 ) -> None:
@@ -177,11 +172,7 @@ def test_a_whole_paste_is_no_stop_and_a_key_that_has_stopped_is_not_told_twice(
     assert "stop" not in app.told()
     app.type(b"a b")
     app.wait_for("key b")
-    assert app.told()[-3:] == ["key a", "stop", "key b"] or app.told()[-3:] == [
-        "stop",
-        "key a",
-        "key b",
-    ]
+    assert sorted(app.told()[-3:]) == ["key a", "key b", "stop"]
     assert "key space" not in app.told()
 
 

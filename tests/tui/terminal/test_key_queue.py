@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator
 
 import pytest
 from textual.events import Event, Key, Paste
@@ -11,29 +11,8 @@ from textual.widgets import Input
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.snapshots import Look, settle
 from tests.waiting import DEADLINE_S, until
-from tui import clock
 from tui.app import DeckApp
 from tui.terminal import key_queue
-from tui.terminal.stall_detector import KeyStallDetector
-
-STARTED_S = 1.0
-
-
-@pytest.fixture
-def move_hand(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
-    def set_to(to_s: float) -> None:
-        monkeypatch.setattr(clock, "steady", lambda: to_s)
-
-    return set_to
-
-
-@pytest.fixture
-def detector(move_hand: Callable[[float], None]) -> Iterator[KeyStallDetector]:
-    move_hand(STARTED_S)
-    made = KeyStallDetector()
-    yield made
-    made.end()
-
 
 HOME = Look((120, 40), "en")
 NAMES = "#topics-filter, #graph-filter"
