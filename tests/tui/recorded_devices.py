@@ -11,11 +11,8 @@ from launcher.status import NodeState, NodeStatus
 from robot.frames.batches import Chunk, FrameBatcher
 from robot.frames.lines import FrameLine, encode
 from robot.frames.pico import PicoReader
-from robot.frames.tof import TofReader
 from robot.wire import pico as wire_pico
-from robot.wire import tfluna as wire_tfluna
 from robot.wire.pico import Drive, Telemetry
-from robot.wire.tfluna import TofFrame
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_lesson import TOPICS, lesson_update, sample, topic
 
@@ -109,14 +106,6 @@ def of_chassis(count: int = 8, language: str = "en") -> Sample:
             line = b"\xff\x00" + line.replace(b"3300", b"3301")
         chunks.append(Chunk(AT_S - 0.99 + at / 50, "in", line))
     return frames("chassis", FrameBatcher(PicoReader, language).tell(chunks, AT_S))
-
-
-def of_sonar(*metres: float, language: str = "en") -> Sample:
-    chunks = [
-        Chunk(AT_S + at / 100, "in", wire_tfluna.encode(TofFrame(round(one * 100), 1000, 30.0)))
-        for at, one in enumerate(metres)
-    ]
-    return frames("sonar_front", FrameBatcher(TofReader, language).tell(chunks, AT_S))
 
 
 def update(*samples: Sample, publishers: tuple[str, ...] = tuple(PORTS)) -> GraphUpdate:

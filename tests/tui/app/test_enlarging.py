@@ -13,9 +13,6 @@ from tests.tui.recorded_devices import with_drivers
 from tests.tui.snapshots import opened
 from tests.waiting import until
 from tui.app import DeckApp
-from tui.deck.nodes_table import NodesTable
-from tui.panels.panel import Panel
-from tui.panels.panel_grid import PanelGrid
 
 pytestmark = pytest.mark.nightly
 
@@ -28,26 +25,6 @@ def fills_the_screen(app: DeckApp) -> bool:
     """Whether the enlarged part has all lines between the title and the keys."""
     part, (width, height) = large(app), app.size
     return part is not None and part.outer_size == (width, height - 2) and part.region.y == 1
-
-
-async def test_every_panel_is_enlarged_in_turn_and_everything_comes_back() -> None:
-    async with opened(size=(80, 24)) as (app, pilot):
-        await pilot.press("tab", "z")
-        await pilot.pause()
-        seen: list[object] = []
-        while large(app) not in seen:
-            assert isinstance(large(app), Panel)
-            assert fills_the_screen(app)
-            seen.append(large(app))
-            await pilot.press("v")
-            await pilot.pause()
-        assert seen == list(app.screen.query(Panel))
-        await pilot.press("я")
-        await pilot.pause()
-        assert large(app) is None
-        assert isinstance(app.focused, PanelGrid)
-        assert app.focused.chosen is seen[0]
-        assert app.screen.query_one(NodesTable).region.height > 2
 
 
 PARTS = {

@@ -10,7 +10,7 @@ import pytest
 from graph.data import ParameterRow
 from graph.messages.types import UnknownTypeError, load_message
 from tests.unit.scripts_of_setup import load
-from text.i18n import detect, localized, ngettext, pick, set_language
+from text.i18n import detect, localized, ngettext, set_language
 from tui.graph.parameter_words import allowed_words
 from tui.yaml_form.words import reason_words
 
@@ -47,14 +47,6 @@ def test_russian_counts_by_its_own_rules() -> None:
         "Запускает 11 узлов",
         "Запускает 21 узел",
     ]
-
-
-def test_a_title_is_picked_in_the_language_spoken_else_in_english_else_in_any() -> None:
-    set_language("ru")
-    assert pick({"en": "one", "ru": "один"}) == "один"
-    assert pick({"en": "one"}) == "one"
-    assert pick({"de": "eins"}) == "eins"
-    assert pick({}) == ""
 
 
 def test_everything_said_is_translated_and_nothing_else() -> None:

@@ -57,11 +57,3 @@ def test_a_broken_file_is_refused_with_place_and_mend(
         read(path)
     assert str(path) in str(refused.value)
     assert words in str(refused.value)
-
-
-def test_a_folder_in_its_place_is_refused_with_a_mend(tmp_path: Path) -> None:
-    path = tmp_path / "settings.json"
-    path.mkdir()
-    with pytest.raises(SettingsError) as refused:
-        read(path)
-    assert str(refused.value) == f"{path}: expected a file, found a directory (remove or rename it)"

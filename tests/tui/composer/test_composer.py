@@ -128,17 +128,6 @@ async def test_a_key_walks_from_problem_to_problem(stage: ComposerStage) -> None
     assert seen == [(0, 12), (2, 12), (0, 12)]
 
 
-async def test_space_types_a_space_and_ctrl_x_stops_the_robot(stage: ComposerStage) -> None:
-    await stage.write("")
-    stage.screen.editor.focus()
-    await stage.pilot.press("a", "space", "1", "q")
-    assert stage.screen.editor.text == "a 1q"
-    await stage.pilot.press("ctrl+x")
-    await stage.pilot.pause()
-    assert stage.app.emergency.state.engaged
-    assert stage.screen.editor.text == "a 1q"
-
-
 async def test_a_template_takes_the_place_of_the_text(stage: ComposerStage) -> None:
     await stage.pilot.press("ctrl+t")
     await stage.pilot.pause()
@@ -177,15 +166,6 @@ async def test_without_a_lesson_nothing_is_sent(stage: ComposerStage) -> None:
     await stage.pilot.press("ctrl+s")
     await stage.pilot.pause()
     assert stage.graph.published == []
-
-
-def test_a_broken_history_is_as_good_as_none(tmp_path: Path) -> None:
-    path = tmp_path / "composer.json"
-    for text in ("", "{", '{"a": 1}', "[1, null]", "[" * 100_000, "\x00"):
-        path.write_text(text, encoding="utf-8")
-        assert recalled(Sent(path)) == []
-    path.write_bytes(b"\xff\xfe")
-    assert recalled(Sent(path)) == []
 
 
 async def test_a_megabyte_is_not_pasted(stage: ComposerStage) -> None:

@@ -100,14 +100,6 @@ def test_a_refusal_names_every_place_and_nothing_is_awaited() -> None:
     ]
 
 
-def test_silence_is_awaited_for_three_seconds_and_then_told() -> None:
-    trail = begun()
-    assert told(trail, 2.9) == [("·", "/llm_result", "waiting for an answer")]
-    mark, _topic, text = told(trail, 3.0)[0]
-    assert mark == "✗"
-    assert text == "no answer within 3 s: is llm_parser running? Listening: llm_parser"
-
-
 def test_what_safety_holds_back_is_told_with_its_reason() -> None:
     trail = begun({"/drive_safe": drive("/drive_safe", 0.0, 0.0)})
     trail.see(

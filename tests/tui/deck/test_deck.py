@@ -65,19 +65,7 @@ async def test_what_is_done_already_is_not_offered() -> None:
             assert shown.startswith(f"{keys}  u My own  m Mute")
 
 
-async def test_a_node_that_dies_is_shown_by_word_and_sign() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, size=(200, 60)) as (app, pilot):
-        opener.link.set_state("camera", NodeState.BACKOFF, signal="SIGKILL", restarts=1, pid=None)
-        await settle(pilot)
-        table = app.screen.query_one(NodesTable)
-        row = table.render_line(2).text
-        assert "↻ restarts" in row
-        assert "ended by SIGKILL" in row
-        assert "◔ 7/8" in title.states(app)[0]
-
-
-async def test_a_node_that_runs_but_is_not_ready_looks_like_none_that_is_well() -> None:
+async def test_a_node_that_is_not_ready_or_dies_looks_like_none_that_is_well() -> None:
     opener = RecordedOpener()
     late = say("not ready within {seconds:g} s: {why}", seconds=10.0, why="nobody publishes /x")
     async with opened(opener, size=(200, 60)) as (app, pilot):
@@ -91,6 +79,12 @@ async def test_a_node_that_runs_but_is_not_ready_looks_like_none_that_is_well() 
         await settle(pilot)
         assert "● running" in app.screen.query_one(NodesTable).render_line(2).text
         assert "● 8/8" in title.states(app)[0]
+        opener.link.set_state("camera", NodeState.BACKOFF, signal="SIGKILL", restarts=1, pid=None)
+        await settle(pilot)
+        row = app.screen.query_one(NodesTable).render_line(2).text
+        assert "↻ restarts" in row
+        assert "ended by SIGKILL" in row
+        assert "◔ 7/8" in title.states(app)[0]
 
 
 async def test_only_what_is_shown_is_asked_for() -> None:

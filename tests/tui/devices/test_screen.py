@@ -17,7 +17,6 @@ from tests.tui.recorded_devices import (
     AT_S,
     STATUSES,
     of_chassis,
-    of_sonar,
     status,
     update,
     with_drivers,
@@ -70,24 +69,6 @@ async def test_every_driver_has_a_row_though_all_speak_on_one_topic() -> None:
         await at.hear(status("sonar_rear", 0, "back again"))
         assert "back again" in at.drivers()[3]
         assert "The wheels stand" in at.drivers()[0]
-
-
-async def test_frames_are_asked_for_of_the_chosen_driver_and_only_while_shown() -> None:
-    async with stage() as at:
-        assert {"/diagnostics", "/chassis/frames"} <= at.graph.followed
-        await at.press("down", "down")
-        assert "/chassis/frames" not in at.graph.followed
-        assert "/sonar_front/frames" in at.graph.followed
-        await at.hear(of_chassis())
-        assert at.lines() == []
-        await at.hear(of_sonar(1.23))
-        assert [line.split("  ")[0] for line in at.lines()] == [
-            "distance 1.23 m, strength 1000, 30.0 °C"
-        ]
-        await at.press("1")
-        assert not {"/diagnostics", "/sonar_front/frames"} & at.graph.followed
-        await at.press("7")
-        assert {"/diagnostics", "/sonar_front/frames"} <= at.graph.followed
 
 
 async def test_frames_both_ways_with_noise_and_a_bad_one() -> None:

@@ -74,16 +74,6 @@ async def test_the_cursor_walks_and_the_whole_of_a_step_is_shown() -> None:
         assert at.screen.chosen_chain is at.screen.chains[0]
 
 
-async def test_who_looks_at_an_older_one_is_not_carried_away_by_a_newer_one() -> None:
-    async with stage() as at:
-        await at.hear(*voice(0.0))
-        await at.press("down", "down", "down")
-        chosen = at.screen.chosen_step
-        await at.hear(*command(9.0))
-        assert at.screen.chosen_step == chosen
-        assert len(at.screen.chains) == 2
-
-
 async def test_a_kind_can_be_hidden_and_all_shown_again() -> None:
     async with stage() as at:
         await at.hear(*voice(0.0))

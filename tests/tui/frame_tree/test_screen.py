@@ -47,15 +47,6 @@ def stage(of: RecordedOpener | None = None) -> AbstractAsyncContextManager[Frame
     return on_stage(FramesStage, of or with_frames())
 
 
-async def test_frames_are_asked_for_only_while_the_screen_is_in_front() -> None:
-    async with stage() as at:
-        watched = [at.graph.frames_watched]
-        for key in ("1", "8"):
-            await at.press(key)
-            watched.append(at.graph.frames_watched)
-        assert watched == [True, False, True]
-
-
 async def test_a_frame_is_given_in_its_root_and_stays_up_to_date() -> None:
     async with stage() as at:
         await at.press("down", "down")

@@ -137,19 +137,6 @@ async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: Grap
     assert "4.2 s" in action.seen()
 
 
-async def test_several_goals_are_listed_and_the_chosen_one_is_cancelled(action: GraphStage) -> None:
-    await action.press("ctrl+s", "ctrl+s")
-    await action.wait_for("#2")
-    assert "#1" in action.seen()
-    assert "f12 Cancel" in action.seen()
-    await action.press("f12")
-    assert action.graph.canceled_goals == [2]
-    action.graph.change_goal(2, status=GoalStatus.CANCELED)
-    await action.wait_for("○ canceled")
-    await action.press("f12")
-    assert action.graph.canceled_goals == [2, 1]
-
-
 async def test_a_goal_that_is_refused_says_why(action: GraphStage) -> None:
     await action.press("ctrl+s")
     await action.wait_for("#1")

@@ -19,7 +19,6 @@ from tui.log_view.filter import LogFilter
 from tui.log_view.index import folded, folded_rows
 from tui.log_view.prompt import LogPrompt
 from tui.log_view.ring import LineRing
-from tui.log_view.view import LogView
 
 
 async def test_scrolling_up_pauses_counts_what_is_new_and_end_follows() -> None:
@@ -116,17 +115,6 @@ async def test_chosen_lines_are_copied_with_date_severity_and_node() -> None:
         assert time.strptime(copied[0][:19], "%Y-%m-%d %H:%M:%S")
         app.pane.copy_all()
         assert len(app.clipboard.splitlines()) == 100
-
-
-async def test_a_click_chooses_a_line_and_shift_click_all_up_to_it() -> None:
-    async with LogApp().run_test(size=(80, 12)) as pilot:
-        view = await shown(pilot, lines(1, 5))
-        await pilot.click(LogView, offset=(5, 1))
-        assert [entry.text for entry in view.choice.entries] == ["line 2"]
-        assert not view.following
-        await pilot.click(LogView, offset=(5, 3), shift=True)
-        assert [entry.text for entry in view.choice.entries] == ["line 2", "line 3", "line 4"]
-        assert rows(view)[1].startswith("▌")
 
 
 async def test_long_lines_are_folded_or_shifted() -> None:

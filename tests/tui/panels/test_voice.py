@@ -25,11 +25,6 @@ def tone(seconds: float, amplitude: float, rate: int = 16_000) -> bytes:
     return (amplitude * 32767 * np.sin(2 * math.pi * 440 * times)).astype("<i2").tobytes()
 
 
-def test_text_is_shown_as_text() -> None:
-    assert heard(b"VOICE_COMMAND: Look around").words == "VOICE_COMMAND: Look around"
-    assert heard("Осмотрись\nи расскажи".encode()).words == "Осмотрись и расскажи"
-
-
 def test_sound_is_told_by_length_and_loudness() -> None:
     loud, quiet = heard(tone(0.5, 0.9)), heard(tone(0.5, 0.01))
     assert loud.words.startswith("PCM 0.5 s ")
@@ -43,18 +38,6 @@ def test_whatever_comes_can_be_shown(data: bytes) -> None:
     words = heard(data).words
     assert words.isprintable() or "\u200d" in words
     words.encode("utf-8")
-
-
-async def test_the_newest_is_at_the_bottom_and_long_talk_drops_the_oldest() -> None:
-    view = VoiceView()
-    async with alone(view, 50, 5).run_test(size=(60, 20)):
-        for number in range(300):
-            view.hear("human" if number % 2 else "robot", f"word {number}".encode(), NOW_S)
-        shown = rows(view)
-        assert "word 299" in shown[-1]
-        assert "human" in shown[-1]
-        assert "robot" in shown[-2]
-        assert "word 295" in shown[0]
 
 
 @pytest.mark.parametrize(

@@ -120,21 +120,6 @@ async def test_a_domain_that_is_taken_is_told_before_and_another_is_offered() ->
         assert app.feed.session is SESSION
 
 
-async def test_it_may_not_where_both_have_the_same_nodes_and_need_not_be_started() -> None:
-    opener = RecordedOpener(refusal=taken(can_share=False))
-    async with opened(opener, order=PICK) as (app, pilot):
-        await pilot.press("enter")
-        await settle(pilot)
-        await pilot.press("s")
-        await settle(pilot)
-        assert isinstance(app.screen, DomainTakenScreen)
-        assert "one domain is not enough" in str(app.screen.words())
-        assert len(opener.orders) == 1
-        await pilot.press("escape")
-        await settle(pilot)
-        assert isinstance(app.screen, PickerScreen)
-
-
 async def test_a_lesson_that_cannot_be_opened_says_why_and_the_picker_is_back() -> None:
     problem = ProfileProblem("a.yaml", 3, 5, "nodes.x", say("unknown key"))
     opener = RecordedOpener(refusal=ProfileError([problem]))

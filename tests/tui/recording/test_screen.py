@@ -143,19 +143,6 @@ async def test_pictures_are_left_out_by_choice_and_the_choice_is_kept() -> None:
         assert app.screen.left_out == {IMAGE}
 
 
-async def test_a_limit_ends_the_recording_by_itself() -> None:
-    async with opened() as (app, pilot):
-        await pilot.press("f6", "tab", *"5 min", "enter")
-        await until(lambda: app.recording.active, "the recording")
-        (recorder,) = Recorder.made
-        recorder.status = replace(recorder.status, seconds=299.0)
-        await until(lambda: any("4:59" in text for text in app.recording.words), "the length")
-        assert app.recording.active
-        recorder.status = replace(recorder.status, seconds=300.2)
-        await until(lambda: recorder.stopped, "its end")
-        await until(lambda: "The recording ends as it was asked to." in told(app), "the reason")
-
-
 async def test_a_limit_that_cannot_be_read_is_said_before_anything_is_recorded() -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6", "tab", *"soon", "enter")

@@ -139,26 +139,3 @@ async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(
     assert not screen.plot.fields
     assert screen.plotting.place is PlotPlace.NONE
     assert "/drive" not in graph.followed
-
-
-async def test_the_plot_goes_beside_alone_and_away(stage: Any) -> None:
-    screen, pilot, _graph = stage
-    await pilot.press("enter", "down", "down", "V", "v")
-    await pilot.pause()
-    assert screen.plotting.covers_all
-    assert not screen.table.display
-    await pilot.press("A", "p")
-    assert "Plot · 60 s" in screen.plot.render_line(0).text
-    assert screen.plot.paused
-    await pilot.press("escape")
-    await pilot.pause()
-    assert screen.plotting.place is PlotPlace.BESIDE
-    assert screen.table.has_focus
-    await pilot.press("p")
-    assert not screen.plot.paused
-    await pilot.press("v", "v")
-    await pilot.pause()
-    assert not screen.plot.display
-    assert screen.plot.fields
-    await pilot.press("D")
-    assert not screen.plot.fields

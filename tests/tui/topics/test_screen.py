@@ -14,7 +14,6 @@ from graph.pictures.picture import Picture
 from graph.pictures.reading import read_picture
 from launcher.status import NodeState
 from tests.tui.recorded import NOW_S, RecordedSession, lesson_update, sample
-from tests.tui.snapshots import settle
 from tests.tui.topics_stage import (
     CAMERA,
     SONAR,
@@ -36,14 +35,6 @@ ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
 async def stage() -> AsyncIterator[TopicsStage]:
     async with opened() as stage:
         yield stage
-
-
-async def test_all_rates_are_measured_while_the_screen_is_in_front(stage: TopicsStage) -> None:
-    assert stage.measures()
-    await stage.pilot.press("4")
-    await settle(stage.pilot)
-    assert not stage.measures()
-    assert stage.graph.watched == set()
 
 
 async def test_only_the_chosen_topic_is_decoded(stage: TopicsStage) -> None:
@@ -71,11 +62,6 @@ async def test_walking_past_topics_subscribes_none_of_them(
     await stage.pilot.press("down")
     await until(lambda: asked, "the last topic asked for")
     assert asked == [{"/drive"}]
-
-
-async def test_nobody_who_publishes_is_told(stage: TopicsStage) -> None:
-    await stage.choose("/emergency_stop")
-    assert stage.echo().startswith("nobody publishes this topic\nStart the node")
 
 
 @pytest.mark.parametrize(
@@ -205,15 +191,6 @@ async def test_an_expression_that_is_wrong_names_the_place_and_lets_nothing_thro
     await stage.show(sonar(0.8))
     assert filter_line(stage) == told
     assert "the expression is wrong" in stage.echo()
-
-
-async def test_a_field_that_is_missing_is_told_once_and_counted(stage: TopicsStage) -> None:
-    await only_if(stage, "m.dat > 0.5")
-    await stage.show(sonar(0.8, 0.9))
-    await stage.show(sonar(0.8))
-    told = "0 of 3 messages · ✗ column 1: m.dat: no such field; did you mean data? (×3)"
-    assert filter_line(stage) == told
-    assert not stage.app._notifications
 
 
 async def test_an_image_is_a_picture_and_can_be_a_tree(stage: TopicsStage) -> None:

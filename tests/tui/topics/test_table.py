@@ -17,19 +17,11 @@ from tests.tui.recorded import TOPICS, topic
 from tests.tui.snapshots import seen
 from text.i18n import _, set_language
 from tui.topics.endpoint_lines import endpoint_lines
-from tui.topics.table.columns import COLUMNS, age_text, bandwidth_text, hz_text, placed, state_text
+from tui.topics.table.columns import COLUMNS, age_text, bandwidth_text, placed, state_text
 from tui.topics.table.order import TopicsOrder
 from tui.topics.table.table import TopicsTable
 
 FLOAT = "std_msgs/msg/Float32"
-
-
-@pytest.mark.parametrize(
-    ("hz", "shown"),
-    [(None, "–"), (0.0, "0.0"), (0.1, "0.10"), (9.96, "10.0"), (29.97, "30.0"), (1234.5, "1234")],
-)
-def test_rates_have_three_figures(hz: float | None, shown: str) -> None:
-    assert hz_text(hz) == shown
 
 
 @pytest.mark.parametrize(

@@ -49,18 +49,6 @@ async def test_the_first_start_shows_it_and_escape_leaves_it_for_good() -> None:
         assert isinstance(app.screen, PickerScreen)
 
 
-async def test_its_pages_end_at_the_list_of_lessons() -> None:
-    app = started(Environment(due=True), OpenRequest())
-    async with app.run_test(size=(80, 24)) as pilot:
-        await settle(pilot)
-        assert len(PAGES) <= 5
-        for number in range(1, len(PAGES) + 1):
-            assert f"{number}/{len(PAGES)}" in seen(app)
-            await pilot.press("enter")
-            await pilot.pause()
-        assert isinstance(app.screen, PickerScreen)
-
-
 @pytest.mark.parametrize("language", LANGUAGES)
 async def test_every_page_fits_80x24(language: str) -> None:
     async with opened(order=OpenRequest(), size=(80, 24)) as (app, pilot):

@@ -8,10 +8,9 @@ from typing import Any
 import pytest
 from textual.widgets import Static
 
-from graph.data import GraphUpdate, Trouble
+from graph.data import GraphUpdate
 from robot.topics import BATTERY, ODOMETRY, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
-from tests.tui.recorded import RecordedOpener, lesson_update, sample, topic
-from tests.tui.recorded_emergency import held
+from tests.tui.recorded import lesson_update, sample, topic
 from tests.tui.snapshots import opened
 from tests.waiting import until
 from tui.app import DeckApp
@@ -87,13 +86,6 @@ def test_what_is_no_distance_is_said_in_words(metres: object, shown: tuple[str, 
     assert numbers({SONAR_FRONT: {"data": metres}}) == [WallNumber("ahead, m", *shown)]
 
 
-def test_what_is_not_current_is_grey_and_says_since_when() -> None:
-    more = {"trouble": Trouble.QUIET, "age_s": 7.0}
-    (shown,) = numbers({SONAR_FRONT: {"data": 1.0}}, **more)
-    assert (shown.value, shown.look) == ("1.00", "muted")
-    assert "7" in shown.note
-
-
 async def test_a_key_shows_it_and_escape_goes_back() -> None:
     async with opened() as (app, pilot):
         await pilot.press("0")
@@ -119,11 +111,3 @@ async def test_the_stop_is_in_large_letters_and_the_title_stays() -> None:
         assert app.screen.query_one(CameraPanel).region.height > 2
         await pilot.press("ctrl+r")
         await until(lambda: not state(app).startswith(big_word("STOP")), "the release")
-
-
-async def test_it_says_why_the_gate_holds() -> None:
-    opener = RecordedOpener()
-    async with opened(opener, screen="wall") as (app, _pilot):
-        opener.graph.show(held(b"\x02", "obstacle\x1b[31m at 0.31 m"))
-        await until(lambda: "obstacle" in state(app), "the reason")
-        assert state(app).startswith("⚠ The gate holds the wheels: obstacle␛[31m at 0.31 m")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 import pytest
 from textual.app import App, ComposeResult
@@ -114,16 +112,3 @@ async def test_of_those_that_come_while_the_line_is_busy_the_newest_alone_is_sho
         app.bandwidth.behind = False
         await until(lambda: ground(app.view) == BLUE, "the newest picture")
         assert " of 15 Hz: the terminal is slow" in app.view.caption
-
-
-async def test_beyond_the_limit_a_picture_waits_and_the_caption_says_how_many_are_shown() -> None:
-    app = PictureApp(40_000)
-    async with app.run_test(size=(60, 9)):
-        app.view.show(plain_picture(16, 16, RED), "rgb8", hz="15")
-        assert app.view.caption == "rgb8 · 15 Hz"
-        app.bandwidth.written(30_000)
-        app.view.show(plain_picture(16, 16, (0, 255, 0)), "rgb8", hz="15")
-        app.view.show(plain_picture(16, 16, BLUE), "rgb8", hz="15")
-        assert ground(app.view) == RED
-        await until(lambda: ground(app.view) == BLUE, "the newest picture")
-        assert re.fullmatch(r"rgb8 · \d+\.\d of 15 Hz: limited to 40 kB/s", app.view.caption)
