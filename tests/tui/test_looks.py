@@ -20,8 +20,8 @@ from tests.tui.composer.test_composer import PARSER
 from tests.tui.composer.test_outcome import drive, head, result, wheels
 from tests.tui.lesson.test_lesson import SEED, SEEN, own_opener
 from tests.tui.panel_stage import Placed, Stage
+from tests.tui.panels.test_drawings import turning
 from tests.tui.panels.test_voice import tone
-from tests.tui.panels.test_wheels import turning
 from tests.tui.recorded import (
     NOW_S,
     RecordedGraph,

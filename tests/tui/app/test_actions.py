@@ -1,4 +1,4 @@
-"""One class per action: keys, footer, palette, help and keymap all come from it."""
+"""One class per action: keys, footer, palette, help and keymap come from it."""
 
 from __future__ import annotations
 
@@ -199,7 +199,8 @@ async def test_what_acts_is_only_gone_to_and_its_key_is_told() -> None:
         await look_for(app, pilot, "restart", "Deck › Restart all")
         await take(app, pilot, "Deck › Restart all")
         told = "Restart all is here: R."
-        await until(lambda: told in [note.message for note in app._notifications], "where it is")
+        notes = app._notifications
+        await until(lambda: any(told in note.message for note in notes), "where it is")
         assert app.screen is app.get_screen("deck")
         assert opener.link.asked == []
 

@@ -1,4 +1,4 @@
-"""The Deck: nodes and what can be done to them, panels by the profile, the log."""
+"""The Deck: nodes, their states and what can be done to them; panels page by page."""
 
 from __future__ import annotations
 

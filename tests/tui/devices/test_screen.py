@@ -1,4 +1,4 @@
-"""What the Devices screen does: it hears every driver, shows frames, filters, pauses, copies."""
+"""The Devices screen: every driver, its frames, why nothing comes; and trouble of a simulation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the Flow screen does: it follows, walks, hides, pauses, copies, and keeps what it has."""
+"""What the Flow screen does: it follows, walks, hides, pauses, and keeps what it has."""
 
 from __future__ import annotations
 

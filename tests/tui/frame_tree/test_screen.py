@@ -1,4 +1,4 @@
-"""What the Frames screen does: it follows the frames, relates them, copies, goes to findings."""
+"""What the Frames screen does: it relates frames, copies, and goes to findings."""
 
 from __future__ import annotations
 

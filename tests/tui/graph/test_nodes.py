@@ -1,4 +1,4 @@
-"""The screen of the graph: nodes, links between them, and what is said where nothing is."""
+"""The graph: nodes and their inner states, links between them, and what is found wrong."""
 
 from __future__ import annotations
 

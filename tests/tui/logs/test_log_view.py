@@ -1,4 +1,4 @@
-"""The log view under hands: following, pausing, choosing, searching, copying."""
+"""The log view under hands, its lines in a file, and what it keeps of a flood."""
 
 from __future__ import annotations
 

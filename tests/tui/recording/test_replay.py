@@ -1,4 +1,4 @@
-"""A recording on the screen: its bar, its keys, its panels, and what it refuses."""
+"""A recording on the screen: its keys, what it refuses, and the list that it is chosen from."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Space screen: what is subscribed to, camera by keys and mouse, layers, frames."""
+"""The Space screen: what is subscribed to, its camera, and goals, published never by accident."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The plot: numbers of any field, gaps, round axes, bounded memory, and what stands on screen."""
+"""The plot: numbers of any field, gaps, and what stands on screen."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The screen of topics: what it asks of the graph, and what it shows in every case."""
+"""The screen of topics: what it asks of the graph, what it shows, filters and draws as pictures."""
 
 from __future__ import annotations
 

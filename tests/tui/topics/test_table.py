@@ -1,4 +1,4 @@
-"""The table of topics: its figures in words, its order, its choice, and what an update draws."""
+"""The table of topics and its endpoints: figures in words, order, choice, what an update draws."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tour of the first start: five pages above the list of lessons, left at once by Escape."""
+"""The tour of the first start: pages above the list of lessons, left at once by Escape."""
 
 from __future__ import annotations
 

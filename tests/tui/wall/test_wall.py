@@ -1,4 +1,4 @@
-"""The wall: numbers that are published, large; the gate, the stop, the picture, the words."""
+"""The wall: numbers that are published, large; the stop, the picture, the words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The camera picture in half-blocks: its shape, its words when there is none, and what it costs."""
+"""The camera picture in half-blocks: its shape, and what is sent of it over a slow line."""
 
 from __future__ import annotations
 

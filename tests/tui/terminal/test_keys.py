@@ -1,4 +1,4 @@
-"""What the terminal sends as keys: Alt, other layouts, other protocols, and nothing of the kind."""
+"""What the terminal sends as keys, and the emergency stop among it, whatever else has come."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The wheels from above: which is slower is seen by bars, numbers and a word."""
+"""Wheels and head: which wheel is slower, where the head looks, in numbers and a word."""
 
 from __future__ import annotations
 

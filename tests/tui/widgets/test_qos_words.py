@@ -1,4 +1,4 @@
-"""The form of YAML: its colours, its verdict, and what it hands over."""
+"""What keeps two endpoints apart, in sentences; and a form whose type is not there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wheels and head whose messages are about other joints: which come, and which are awaited."""
+"""What panels say where other messages come than they read, and what they ask for unseen."""
 
 from __future__ import annotations
 
