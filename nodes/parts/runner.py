@@ -38,11 +38,14 @@ DDS_GRACE_S = 3.0
 """How long the middleware may take to close a node."""
 USAGE = 2
 """Exit code for invalid arguments and parameters."""
+LONGEST = 80
+"""Characters of an argument that an error repeats."""
 
 _FAILED = "{problem}"
 _NO_ARGUMENTS = N_(
     "does not know {extra}: parameters are given as --ros-args -p name:=value (see --help)"
 )
+_NO_UTF_8 = N_("this argument is not UTF-8 text, which ROS takes: {word}")
 
 
 def run(node_type: type[LessonNode], args: list[str] | None = None) -> int:
@@ -69,6 +72,10 @@ def run(node_type: type[LessonNode], args: list[str] | None = None) -> int:
 
 
 def _live(node_type: type[LessonNode], arguments: list[str], ending: Ending) -> int:
+    for word in arguments:
+        # What is no UTF-8 has come as surrogates, which rcl cannot be given.
+        if not word.isascii() and word.encode(errors="ignore").decode() != word:
+            raise NodeUsageError(_NO_UTF_8, word=_shortened(word))
     try:
         rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
@@ -96,6 +103,11 @@ def _live(node_type: type[LessonNode], arguments: list[str], ending: Ending) -> 
     executor.shutdown()
     node.destroy_node()  # type: ignore[no-untyped-call]
     return 0
+
+
+def _shortened(word: str) -> str:
+    """Return the begin of an argument, which may be a whole description of a robot."""
+    return word if len(word) <= LONGEST else f"{word[: LONGEST - 1]}…"
 
 
 def _give_dds_time() -> None:

@@ -196,7 +196,11 @@ def test_a_bad_parameter_ends_the_start_with_one_line_and_code_2(ros_domain: int
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
-    [(("5",), "не знает 5"), (("--ros-args", "-p", "rate"), "Couldn't parse")],
+    [
+        (("5",), "не знает 5"),
+        (("--ros-args", "-p", "rate"), "Couldn't parse"),
+        (("--ros-args", "-p", "x:=\udcf0"), "этот аргумент — не текст в UTF-8"),
+    ],
 )
 def test_arguments_that_make_no_sense_end_with_code_2(
     module_domain: int, arguments: tuple[str, ...], words: str
