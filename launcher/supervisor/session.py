@@ -10,6 +10,7 @@ from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.crash import crash_of, warning_in
 from launcher.faults.ros_arguments import refused_arguments
 from launcher.faults.source import look_at, unspun
+from launcher.faults.spun_in_turn import spun_in_turn
 from launcher.faults.stuck import stuck_in
 from launcher.faults.telling import fault_in
 from launcher.logs.session_log import DECK
@@ -61,6 +62,8 @@ class Session:
         self.plan = plan
         self.log = log
         log.heard, log.told = self.heard, self._take_told
+        self._looked_at: dict[str, int] = {}
+        """The process of each learner's own node whose source was looked at once it was ready."""
         self._faults: dict[str, NodeFault] = {}
         """Node to what its latest process has told of its end."""
         self.nodes = {node.name: SupervisedNode(node, self) for node in plan.nodes}
@@ -249,6 +252,17 @@ class Session:
     def _is_watched(self) -> bool:
         return any(node.plan.conditions or node.plan.file for node in self.nodes.values())
 
+    def _tell_turns(self, name: str, pid: int) -> None:
+        """Tell a learner's own program once of a node whose turn to be spun does not come."""
+        node = self.nodes[name]
+        if not node.plan.file or self._looked_at.get(name) == pid:
+            return
+        self._looked_at[name] = pid
+        fault = spun_in_turn(node.plan.file)
+        if fault is not None:
+            self.say(name, Severity.WARN, fault.words)
+            node.warn(fault)
+
     def _tell_clashes(self, clashes: Sequence[Clash]) -> None:
         """Tell the learner's own nodes of their topics that others use with another type."""
         for name, node in self.nodes.items():
@@ -277,6 +291,7 @@ class Session:
             # It may be killed before the next measurement.
             pid, _started = self.processes[name]
             self._launcher.note_segments(name, (pid,))
+            self._tell_turns(name, pid)
         self._on_change(name)
         for other in self.nodes.values():
             if name in other.plan.needs:

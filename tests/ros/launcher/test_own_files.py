@@ -174,6 +174,7 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
     )
     write(tmp_path / "spinless.py", own(spin="pass"))
     write(tmp_path / "uncalled.py", own(call=""))
+    write(tmp_path / "turns.py", own(spin='rclpy.spin(node)\n    rclpy.spin(Node("second"))'))
     write(tmp_path / "hears.py", own(SUBSCRIPTION))
     write(tmp_path / "says.py", own(HASTY))
     client = await start(
@@ -182,10 +183,13 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
             "pool": {"run": "./pool.py"},
             "spinless": {"run": "./spinless.py"},
             "uncalled": {"exec": ["python", "uncalled.py"]},
+            "turns": {"run": "./turns.py"},
             "hears": {"run": "./hears.py"},
             "says": {"run": "./says.py"},
         }
     )
+    turns = await _fault(client, "turns")
+    assert (turns.kind, turns.source_line) == ("warning", 'rclpy.spin(Node("second"))')
     slow = await _fault(client, "slow")
     assert (slow.kind, slow.source_line) == ("warning", "time.sleep(1.0)")
     assert localized(slow.exception, "ru") == "tick не закончил и через 0.7 с"
