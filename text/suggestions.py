@@ -36,7 +36,11 @@ def no_number(value: object, shown: str) -> str:
     """Say that a number was expected; for `0,5`, that a fraction is written with a point."""
     if isinstance(value, str) and (comma := _DECIMAL_COMMA.fullmatch(value.strip())):
         return say("write a fraction with a point: {mended}", mended=".".join(comma.groups()))
+    if isinstance(value, str) and (dash := _DASH.fullmatch(value.strip())):
+        return say("write the minus as on the keyboard: {mended}", mended=f"-{dash[1]}")
     return say("expected a number, got {value}", value=shown)
 
 
+_DASH = re.compile(r"[\N{MINUS SIGN}\N{EN DASH}\N{EM DASH}] ?([0-9]+(?:\.[0-9]*)?)")
+"""What a text processor makes of a minus."""
 _DECIMAL_COMMA = re.compile(r"([-+]?[0-9]+),([0-9]+)")

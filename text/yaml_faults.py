@@ -85,6 +85,9 @@ _WORDS = {
         "a list cannot begin here: put it on a line of its own, or the '-' in quotes"
     ),
 }
+_NO_COLON_FOUND = "could not find expected ':'"
+_DASH = re.compile(r"\s*-[^\s-]")
+_NO_SPACE = N_("a space is missing after this '-', or a ':' in this line")
 _COLON = "mapping values are not allowed"
 _SECOND_COLON = N_("a second ':' in one line: put the text that holds it in quotes")
 _NO_COLON = N_(
@@ -92,38 +95,75 @@ _NO_COLON = N_(
 )
 
 
-_LIKE_SPACE = "\u00a0\u2000-\u200b\u202f\u205f\u2060\u3000\ufeff"
-_SPACE_MEANT = re.compile(
-    rf"^(?:-|[a-z][a-z0-9_]*:)?(?P<odd>[{_LIKE_SPACE}])|(?P<late>[{_LIKE_SPACE}])(?:$|#)"
-)
+_LIKE_SPACE = "\u00a0\u1680\u2000-\u200a\u202f\u205f\u3000"
+_ZERO_WIDTH = "\u00ad\u180e\u200b\u2060\ufeff"
+_INVISIBLE = "\u061c\u115f\u1160\u200c-\u200f\u202a-\u202e\u2061-\u206f\u3164"
+"""What may be meant in a text: joiners, directions, fillers."""
+_ODD = f"{_LIKE_SPACE}{_ZERO_WIDTH}"
+_SPACE_MEANT = re.compile(rf"^(?:-|[a-z][a-z0-9_]*:)?(?P<odd>[{_ODD}])|(?P<late>[{_ODD}])(?:$|#)")
 """Where only a space can be meant: at the ends, after a name's colon or a dash, before a `#`."""
-_INDENTED = re.compile(rf"^ *[{_LIKE_SPACE}]")
+_IN_NAME = re.compile(f"[{_ODD}{_INVISIBLE}]")
+_HIDDEN = re.compile(f"[{_ZERO_WIDTH}{_INVISIBLE}]")
+_NUMBER = re.compile(r"[-+.0-9][0-9.eE+-]*")
+_INDENTED = re.compile(rf"^ *[{_ODD}]")
+_WIDE = {
+    "\N{FULLWIDTH COLON}": ":",
+    "\N{FULLWIDTH COMMA}": ",",
+    "\N{FULLWIDTH LEFT CURLY BRACKET}": "{",
+    "\N{FULLWIDTH RIGHT CURLY BRACKET}": "}",
+    "\N{FULLWIDTH LEFT SQUARE BRACKET}": "[",
+    "\N{FULLWIDTH RIGHT SQUARE BRACKET}": "]",
+}
+"""What Chinese and Japanese keyboards write, and what only YAML understands."""
+_WIDE_COLON = re.compile("[A-Za-z][A-Za-z0-9_]* ?(?P<odd>\N{FULLWIDTH COLON})")
+_WIDE_MEANT = re.compile(f"(?<=[A-Za-z0-9_}}\\] ])[{''.join(_WIDE)}]")
+_QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'|(?<= )#.*")
+_BREAKS = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
+"""What ends a line in YAML 1.1."""
 
 
 def space_meant(word: str, *, is_name: bool) -> int | None:
-    """Return where a text without quotes has what only looks like a space, None if it has none.
+    """Return where a text without quotes has a character that only seems to be another, or none.
 
-    Between two words of a value it may be meant; in a name it never is.
+    None: it has none. Between two words of a value it may be meant; in a name it never is.
     """
     if is_name:
-        found = re.search(rf"[{_LIKE_SPACE}]", word)
-        return found.start() if found else None
+        found = _IN_NAME.search(word)
+        return found.start() if found else wide_colon(word)
+    hidden = _HIDDEN.search(word)
+    if hidden is not None and _NUMBER.fullmatch(_HIDDEN.sub("", word)):
+        return hidden.start()
     found = _SPACE_MEANT.search(word)
     return found.start(found.lastgroup or 0) if found else None
 
 
-def not_a_space(line: int, column: int, character: str) -> YamlError:
-    """Return that a character only looks like a space."""
-    words = say(
-        "the character U+{code} only looks like a space: write an ordinary one",
-        code=f"{ord(character):04X}",
-    )
+def wide_colon(text: str) -> int | None:
+    """Return where a name has a full-width colon behind it, None if it has none."""
+    found = _WIDE_COLON.match(text)
+    return found.start("odd") if found else None
+
+
+def not_as_it_seems(line: int, column: int, character: str) -> YamlError:
+    """Return that a character only looks like another one, or like nothing."""
+    code = f"{ord(character):04X}"
+    if character in _WIDE:
+        words = say(
+            "the character U+{code} only looks like '{sign}': write an ordinary one",
+            code=code,
+            sign=_WIDE[character],
+        )
+    elif _HIDDEN.fullmatch(character):
+        words = say("the character U+{code} is invisible: remove it", code=code)
+    else:
+        words = say(
+            "the character U+{code} only looks like a space: write an ordinary one", code=code
+        )
     return YamlError(line, column, words)
 
 
 LONGEST_VALUE = 30
 """Characters of a value that an error repeats."""
-_WITHOUT_SPACE = re.compile(r"(?P<name>[A-Za-z]\w*):(?P<value>[^/\s][^\n]*)")
+_WITHOUT_SPACE = re.compile(r"(?P<name>[A-Za-z]\w*) ?:(?P<value>[^/\s][^\n]*)")
 """A name and its value in one word; not `http://`."""
 
 
@@ -155,14 +195,11 @@ def _syntax_error(error: yaml.YAMLError, text: str) -> YamlError:
             if yaml.reader.Reader.NON_PRINTABLE.match(character):
                 return character_error(text, offset)
         return YamlError(1, 1, say("not YAML: {reason}", reason=str(error)))
-    lines = text.split("\n")
+    lines = _BREAKS.split(text)
     content = lines[mark.line] if mark.line < len(lines) else ""
-    indent = content[: len(content) - len(content.lstrip())]
-    if "\t" in indent:
-        tab = say("this line is indented with a tab: use spaces, not tabs")
-        return YamlError(mark.line + 1, indent.index("\t") + 1, tab)
-    if odd := _INDENTED.match(content):
-        return not_a_space(mark.line + 1, odd.end(), content[odd.end() - 1])
+    seen = _unseen(mark.line + 1, content) or _hidden_break(text[: mark.index + 1])
+    if seen is not None:
+        return seen
     found = error.problem or str(error)
     meant = _meant(found, _BEGUN_BEFORE)
     if meant and error.context_mark:
@@ -170,9 +207,37 @@ def _syntax_error(error: yaml.YAMLError, text: str) -> YamlError:
     place = _within(mark.line, mark.column, lines)
     if found.startswith(_COLON):
         meant = _SECOND_COLON if ":" in content[: mark.column] else _NO_COLON
+    elif found.startswith(_NO_COLON_FOUND) and _DASH.match(lines[place[0] - 1]):
+        meant = _NO_SPACE
     meant = meant or _meant(found, _WORDS)
     reason = ", ".join(words for words in (error.problem, error.context) if words)
     return YamlError(*place, say(meant) if meant else say("not YAML: {reason}", reason=reason))
+
+
+def _unseen(line: int, content: str) -> YamlError | None:
+    """Return which character of a line that cannot be read is not what it seems to be."""
+    indent = content[: len(content) - len(content.lstrip())]
+    if "\t" in indent:
+        tab = say("this line is indented with a tab: use spaces, not tabs")
+        return YamlError(line, indent.index("\t") + 1, tab)
+    if odd := _INDENTED.match(content):
+        return not_as_it_seems(line, odd.end(), content[odd.end() - 1])
+    if wide := _WIDE_MEANT.search(_QUOTED.sub(lambda found: " " * len(found[0]), content)):
+        return not_as_it_seems(line, wide.start() + 1, wide[0])
+    return None
+
+
+def _hidden_break(before: str) -> YamlError | None:
+    """Return that a line ends by a character that editors do not show as its end."""
+    content = before[before.rfind("\n") + 1 :]
+    found = re.search("[\x85\u2028\u2029]", content)
+    if found is None:
+        return None
+    words = say(
+        "the character U+{code} ends a line here: write an ordinary end of line",
+        code=f"{ord(found[0]):04X}",
+    )
+    return YamlError(len(_BREAKS.split(before[: -len(content)])), found.start() + 1, words)
 
 
 def _within(line: int, column: int, lines: list[str]) -> tuple[int, int]:

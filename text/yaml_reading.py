@@ -15,7 +15,15 @@ from typing import TYPE_CHECKING, TypeAlias
 import yaml
 
 from text.sentences import say
-from text.yaml_faults import YamlError, events, fault, not_a_space, space_meant, space_missing
+from text.yaml_faults import (
+    YamlError,
+    events,
+    fault,
+    not_as_it_seems,
+    space_meant,
+    space_missing,
+    wide_colon,
+)
 from text.yaml_scalars import meaning
 from text.yaml_tree import Branch, FilePlace, Listing, MappingEntry, Scalar, empty
 
@@ -92,6 +100,9 @@ def check_colons(tree: Tree) -> None:
 
 
 def _check_colon(text: str, place: FilePlace) -> None:
+    wide = wide_colon(text)
+    if wide is not None:
+        raise not_as_it_seems(place.line, place.column + wide, text[wide])
     words = space_missing(text)
     if words is not None:
         raise fault(place, words)
@@ -162,7 +173,7 @@ class _Builder:
         if not event.style:
             odd = space_meant(event.value, is_name=is_key)
             if odd is not None:
-                raise not_a_space(place.line, place.column + odd, event.value[odd])
+                raise not_as_it_seems(place.line, place.column + odd, event.value[odd])
         is_text = is_key or (event.style and event.tag is None) or event.tag == "!"
         value = event.value if is_text else self._value(event, place)
         scalar = Scalar(value, event.value, place)

@@ -64,7 +64,8 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
 
 def _no_fields(value: object) -> str:
     """Say that a value is not the fields of a message; of `x:0`, that a space is missing."""
-    words = space_missing(value) if isinstance(value, str) else None
+    first = value[0] if isinstance(value, list) and value else value
+    words = space_missing(first) if isinstance(first, str) else None
     return words or say("expected fields by name, got {value}", value=_shown(value))
 
 

@@ -8,7 +8,7 @@ from text.sentences import say
 from text.yaml_faults import YamlError
 from text.yaml_reading import Rules, check_colons, mapping
 from text.yaml_reading import read as read_tree
-from text.yaml_tree import empty, plain
+from text.yaml_tree import Listing, empty, plain
 
 if TYPE_CHECKING:
     from text.yaml_tree import Branch, Tree
@@ -35,6 +35,9 @@ def read_fields(text: str) -> Tree | None:
     root = read_tree(text, RULES)
     if root is not None:
         check_colons(root)
+    if isinstance(root, Listing):
+        for item in root.items:
+            check_colons(item)
     return root
 
 

@@ -207,6 +207,8 @@ def test_any_text_is_a_tree_or_an_error_with_a_place(text: str, rules: Rules) ->
     assert place[1] >= 1
 
 
+ENDS = "the character U+2028 ends a line here: write an ordinary end of line"
+WIDE = "the character U+FF1A only looks like ':': write an ordinary one"
 NBSP = "the character U+00A0 only looks like a space: write an ordinary one"
 WRONG = [
     ("[1, 2", "this list is not closed: a ',' or a ']' is missing"),
@@ -279,6 +281,18 @@ def test_what_is_nested_without_end_is_refused(opening: str, times: int) -> None
         ("linear:\n\u00a0 x: 1.0", (2, 1), NBSP),
         ("linear:\n  x: 1.0\n \u00a0y: 2.0", (3, 2), NBSP),
         ("x:\n  -\u00a0y", (2, 4), NBSP),
+        ("- x:0", (1, 3), "a space is missing after the ':': x: 0"),
+        ("data :hello", (1, 1), "a space is missing after the ':': data: hello"),
+        ("data:\n-1.0\n-2.0", (2, 1), "a space is missing after this '-', or a ':' in this line"),
+        ("x: 1\u200b", (1, 5), "the character U+200B is invisible: remove it"),
+        ("x: 1\u200e", (1, 5), "the character U+200E is invisible: remove it"),
+        ("{\ufeffx: 1}", (1, 2), "the character U+FEFF is invisible: remove it"),
+        ("\u202ax: 1", (1, 1), "the character U+202A is invisible: remove it"),
+        ("{x: 1\u2028y: 1}", (1, 6), ENDS),
+        ("a: 'b\u2028c'\nx: b\u2028c", (3, 5), ENDS),
+        ("data\uff1a hello", (1, 5), WIDE),
+        ("{x\uff1a 1.0}", (1, 3), WIDE),
+        ("{linear\uff1a{x: 1.0}}", (1, 8), WIDE),
     ],
 )
 def test_a_space_that_is_none_is_told_in_a_message(
@@ -287,6 +301,14 @@ def test_a_space_that_is_none_is_told_in_a_message(
     with pytest.raises(YamlError) as caught:
         read_message(text)
     assert ((caught.value.line, caught.value.column), caught.value.message) == (place, words)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["שלום\u200f", "👩\u200d🔧", "你好：世界", "'a\u200b'", "−5", "'x\u2028y'"],
+)
+def test_what_a_text_may_hold_is_left_as_it_is(text: str) -> None:
+    assert plain(read_message(f"data: {text}"))["data"] == text.strip("'")
 
 
 @pytest.mark.parametrize("text", ["data: a:b", "data: http://x", "data: 'x:0'", "{'x:0': 1}"])
