@@ -1,7 +1,8 @@
 """Which of several exceptions is the mistake: one may have happened while another was on its way.
 
-Python tells of the last. In a `finally` it hides the first, which nobody has taken care of; in an
-`except` it is the mistake itself, unless what it misses is what the first one kept from being made.
+Python tells of the last. In a `finally`, or at the end of a `with`, it hides the first, which
+nobody has taken care of; in an `except` it is the mistake itself, unless what it misses is what the
+first one kept from being made.
 """
 
 from __future__ import annotations
@@ -44,9 +45,14 @@ def _hidden_by(error: BaseException, folder: str) -> BaseException | None:
     return None
 
 
-def _guarding(failure: Failure, began: TraceLevel, level: TraceLevel) -> ast.Try | None:
-    """Return the innermost `try` that the first has left, and that then failed itself."""
-    found = [
+_With = (ast.With, ast.AsyncWith)
+
+
+def _guarding(
+    failure: Failure, began: TraceLevel, level: TraceLevel
+) -> ast.Try | ast.With | ast.AsyncWith | None:
+    """Return the innermost `try` or `with` that the first has left, and that then failed itself."""
+    found: list[ast.Try | ast.With | ast.AsyncWith] = [
         each
         for each in ast.walk(failure.tree)
         if isinstance(each, ast.Try)
@@ -54,6 +60,14 @@ def _guarding(failure: Failure, began: TraceLevel, level: TraceLevel) -> ast.Try
             (_is_within(each.body, began.line) and _is_within(each.handlers, level.line))
             or (_is_within(_before_the_end(each), began.line) and _is_at_the_end(each, level))
         )
+    ]
+    found += [
+        each
+        for each in ast.walk(failure.tree)
+        if isinstance(each, _With)
+        and _is_within(each.body, began.line)
+        and not _is_within(each.body, level.line)
+        and _is_within([each], level.line)
     ]
     return max(found, key=lambda each: each.lineno, default=None)
 
@@ -67,19 +81,32 @@ def _is_at_the_end(statement: ast.Try, level: TraceLevel) -> bool:
 
 
 def _follows(
-    statement: ast.Try, error: BaseException, before: BaseException, level: TraceLevel
+    statement: ast.Try | ast.With | ast.AsyncWith,
+    error: BaseException,
+    before: BaseException,
+    level: TraceLevel,
 ) -> bool:
     """Whether the second exception comes of the first one."""
-    if isinstance(error, (NameError, AttributeError)) and _missed(error) in _made(statement.body):
-        return True
-    return type(before).__name__ not in _ENDS and _is_at_the_end(statement, level)
+    if isinstance(error, (NameError, AttributeError)):
+        tree = Failure(error, level.file.rpartition("/")[0], level).tree
+        if _missed(error, tree, level.line) & _made(statement.body):
+            return True
+    ends = isinstance(statement, _With) or _is_at_the_end(statement, level)
+    return ends and type(before).__name__ not in _ENDS
 
 
-def _missed(error: BaseException) -> str:
-    """Return the name of the variable or attribute that has no value."""
+def _missed(error: NameError | AttributeError, tree: ast.Module, line: int) -> set[str]:
+    """Return the names of the variables or attributes of a line that may have no value."""
+    if isinstance(error, AttributeError) and error.obj is None:
+        # What has been None before, and should have got its value.
+        return {
+            str(getattr(each.value, "id", getattr(each.value, "attr", "")))
+            for each in ast.walk(tree)
+            if isinstance(each, ast.Attribute) and each.attr == error.name and each.lineno == line
+        }
     # That of a local variable stands in the text only.
     found = re.search(r"variable '(\w+)'", str(error))
-    return found[1] if found else str(getattr(error, "name", ""))
+    return {found[1] if found else str(error.name or "")}
 
 
 def _made(body: list[ast.stmt]) -> set[str]:

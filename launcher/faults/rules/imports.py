@@ -3,40 +3,22 @@
 from __future__ import annotations
 
 import ast
+import pkgutil
 import sys
 from collections.abc import Iterable
 
 from launcher.faults.failure import Failure
 from launcher.faults.homes import KINDS, PACKAGES, ROS1, home_of, ros1
+from launcher.faults.ros_packages import OF_ROS, OF_ROS1, apt_name
 from launcher.faults.rules.attributes import shadowing
 from text.sentences import Words, say
 from text.suggestions import near, nearest
 
-OF_ROS1 = (
-    "rospy",
-    "roslib",
-    "rosbag",
-    "tf",
-    "actionlib",
-    "roslaunch",
-    "dynamic_reconfigure",
-    "tf_conversions",
-)
-OF_ROS = (
-    "turtlesim", "nav2_msgs", "nav2_simple_commander", "control_msgs", "moveit_msgs", "moveit",
-    "tf_transformations", "launch", "launch_ros", "gazebo_msgs", "ros_gz_interfaces", "rosbag2_py",
-    "image_transport", "message_filters", "vision_msgs", "controller_manager_msgs", "map_msgs",
-    "ament_index_python", "rqt", "tf2_sensor_msgs", "laser_geometry", "geographic_msgs", "pcl_msgs",
-    "sensor_msgs_py", "actionlib_msgs", "apriltag_msgs", "can_msgs", "gps_msgs", "grid_map_msgs",
-    "image_geometry", "launch_testing", "mavros_msgs", "nmea_msgs", "octomap_msgs", "ros2cli",
-    "rosidl_runtime_py", "test_msgs", "tf2_kdl", "turtlebot3_msgs",
-)  # fmt: skip
-"""Packages of ROS that Deck does not bring."""
 OF_TUTORIALS = ("tutorial_interfaces", "more_interfaces", "custom_action_interfaces")
 """Packages of messages that the tutorials of ROS have one make."""
 OF_PYPI = {
     "serial": "pyserial", "yaml": "pyyaml", "PIL": "pillow", "sklearn": "scikit-learn",
-    "usb": "pyusb", "smbus": "smbus2", "Image": "pillow",
+    "usb": "pyusb", "smbus": "smbus2", "Image": "pillow", "RPi": "RPi.GPIO", "rospkg": "rospkg",
 }  # fmt: skip
 KNOWN = (
     "ackermann_msgs", "builtin_interfaces", "cv2", "cv_bridge", "deck_interfaces",
@@ -45,6 +27,8 @@ KNOWN = (
     "time", "visualization_msgs",
 )  # fmt: skip
 """Modules that a beginner may have meant."""
+OF_CPP = {"tf2": "tf2_ros", "rclcpp": "rclpy"}
+"""Packages for C++, and what takes their place in Python."""
 
 
 def relative(failure: Failure) -> Words | None:
@@ -88,15 +72,16 @@ def missing_messages(package: str, kind: str, names: list[str]) -> Words:
     """Say what is meant by a package of messages that is not there, or how it is to be had."""
     if package in OF_TUTORIALS:
         return _of_tutorial(package)
-    meant = "" if package in PACKAGES else _like(package, PACKAGES, 0.8)
+    of_ros = package in (*OF_ROS1, *OF_ROS)
+    meant = "" if of_ros or package in PACKAGES else _like(package, PACKAGES, 0.8)
     if meant:
         return say("There is no module {name}; did you mean {meant}?", name=package, meant=meant)
-    if package in (*OF_ROS1, *OF_ROS):
-        return missing_module(package, "")
     for name in names:
         home = home_of(name)
         if home == f"example_interfaces.{kind}":
             return say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
+    if of_ros:
+        return missing_module(package, "")
     return say(
         "The message package {name} is not here: is it spelled right? One of your own goes into"
         " interfaces/, and make setup builds it.",
@@ -132,19 +117,19 @@ def missing_module(name: str, folder: str) -> Words:
             " MyNode(Node).",
             name=first,
         )
-    if rest:
+    if rest and first not in (*OF_ROS, *OF_CPP):
         return _within(name, first, rest, folder)
     if first in OF_TUTORIALS:
         return _of_tutorial(first)
-    meant = "" if first in KNOWN else _like(first, KNOWN, 0.75)
     if first in OF_ROS:
         return say(
             "{name} is a package of ROS that Deck does not bring: with a ROS of its own,"
             " apt install"
             " ros-jazzy-{apt}.",
             name=first,
-            apt=first.replace("_", "-"),
+            apt=apt_name(first),
         )
+    meant = _meant(first)
     if meant:
         return say("There is no module {name}; did you mean {meant}?", name=first, meant=meant)
     if first in OF_PYPI:
@@ -161,6 +146,15 @@ def missing_module(name: str, folder: str) -> Words:
     )
 
 
+def _meant(name: str) -> str:
+    """Return the module that is meant by a name, empty if none is."""
+    if name in (*KNOWN, *OF_PYPI):
+        return ""
+    if name in OF_CPP:
+        return OF_CPP[name]
+    return _like(name, OF_ROS, 0.9) or _like(name, KNOWN, 0.75)
+
+
 def _within(name: str, first: str, rest: str, folder: str) -> Words:
     module = sys.modules.get(first)
     own = shadowing(module, folder) if module is not None else None
@@ -175,12 +169,18 @@ def _within(name: str, first: str, rest: str, folder: str) -> Words:
         )
     if rest in KINDS:
         return say("The package {package} has no {kind}.", package=first, kind=f".{rest}")
-    near = nearest(rest, [*KINDS, *("node", "qos", "time", "duration", "executors", "action")])
-    if near:
+    meant = next(iter(near(rest, [*KINDS, *_modules_of(first)], cutoff=0.7)), "")
+    if meant:
         return say(
-            "There is no module {name}; did you mean {meant}?", name=name, meant=f"{first}.{near}"
+            "There is no module {name}; did you mean {meant}?", name=name, meant=f"{first}.{meant}"
         )
     return say("The module {package} has no {name}.", package=first, name=rest)
+
+
+def _modules_of(package: str) -> list[str]:
+    places = getattr(sys.modules.get(package), "__path__", ())
+    found = (each.name for each in pkgutil.iter_modules(places))
+    return [name for name in found if not name.startswith("_")]
 
 
 def misplaced(failure: Failure) -> Words | None:

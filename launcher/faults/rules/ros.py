@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import gc
 
 from launcher.faults.failure import Failure, is_from, name_of, shown
 from launcher.faults.rules.own_attributes import taken_name
@@ -270,16 +271,15 @@ def looked_up(failure: Failure) -> Words | None:
 
 
 def _unheard(failure: Failure) -> Words | None:
-    """Say that nobody fills the buffer; None if somebody does."""
-    me = failure.named("self")
-    values = [*vars(me).values()] if hasattr(me, "__dict__") else []
-    values += (
-        [*failure.own.values.values(), *failure.own.frame.f_globals.values()] if failure.own else []
-    )
-    if not any(type(each).__name__ == "Buffer" for each in values):
+    """Say that nobody fills the buffer that was asked; None if somebody does."""
+    asked = (level.values.get("self") for level in failure.levels if level.is_in("tf2_ros"))
+    buffer = next((each for each in asked if type(each).__name__ == "Buffer"), None)
+    if buffer is None or buffer.all_frames_as_yaml().strip(" {}[]\n"):
         return None
-    if any(type(each).__name__ == "TransformListener" for each in values):
-        return None
+    # A node keeps the listener that it was given to, whoever has made it.
+    for each in gc.get_objects():
+        if type(each).__name__ == "TransformListener" and vars(each).get("buffer") is buffer:
+            return None
     return say(UNHEARD)
 
 

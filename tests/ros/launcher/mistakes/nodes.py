@@ -27,6 +27,15 @@ HIDDEN = {
         'rclpy.init()\n\ndef main():\n    try:\n        timer = Node("m").create_timer(None, print)\n'
         "    except Exception:\n        timer.cancel()\n\nmain()"
     ),
+    "hidden by the end of a with": script(
+        "rclpy.init()\n\nclass Port:\n    def __enter__(self):\n        return self\n\n"
+        "    def __exit__(self, *error):\n        self.socket.close()\n\n"
+        "with Port():\n    Node('my node')"
+    ),
+    "hidden by a handler that has None": script(
+        "rclpy.init()\n\ndef main():\n    node = None\n    try:\n        node = Node('my node')\n"
+        "    except Exception as error:\n        node.get_logger().error(str(error))\n\nmain()"
+    ),
     "hidden by two that clean up": script(
         "class N(Node):\n    def __init__(self):\n        super().__init__('n')\n        try:\n"
         "            self.p = self.create_publisher(Float32, '/my topic', 10)\n        finally:\n"
@@ -303,6 +312,13 @@ CLOCKS = {
 SEEN = {
     "buffer without a listener": ticking(
         'self.buffer.lookup_transform("map", "base_link", Time())', init=LISTENER
+    ),
+    "frame that nobody publishes to a listener elsewhere": script(
+        "from tf2_ros import Buffer, TransformListener\nclass Finder:\n"
+        "    def __init__(self, buffer):\n        self.buffer = buffer\n    def find(self):\n"
+        "        return self.buffer.lookup_transform('map', 'base_link', Time())\n"
+        "def main():\n    rclpy.init()\n    buffer = Buffer()\n"
+        "    TransformListener(buffer, Node('finder'))\n    Finder(buffer).find()\nmain()"
     ),
     "frame that nobody publishes": ticking(
         'self.buffer.lookup_transform("map", "base_link", Time())',
