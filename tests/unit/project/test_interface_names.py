@@ -23,6 +23,22 @@ CONSTANT = "the name of a constant has capitals, digits and single _, a letter f
         ("action/Go.action", "---\n---\nint8 x_", f":3: 'x_': {FIELD}: x"),
         ("msg/Lamp.msg", "std_msgs/Header 2nd", f":1: '2nd': {FIELD}"),
         ("msg/Lamp.msg", "uint8 On=1", f":1: 'On': {CONSTANT}: ON"),
+        (
+            "msg/Lamp.msg",
+            "int8 class",
+            ":1: 'class' is a word of Python or C++, and cannot name a field",
+        ),
+        (
+            "msg/Lamp.msg",
+            "int8 def",
+            ":1: 'def' is a word of Python or C++, and cannot name a field",
+        ),
+        ("msg/Lamp.msg", "int8 x\nint8 x", ":2: 'x' stands here a second time, first in line 1"),
+        ("msg/Lamp.msg", "double power", ":1: ROS has no type 'double': float64"),
+        ("msg/Lamp.msg", "String[] names", ":1: ROS has no type 'String': string"),
+        ("msg/Lamp.msg", "lamp x", ":1: ROS has no type 'lamp'"),
+        ("msg/Lamp.msg", "uint8 on=1", f":1: 'on': {CONSTANT}: ON"),
+        ("msg/Lamp.msg", "uint8 wheel__speed", f":1: 'wheel__speed': {FIELD}: wheel_speed"),
         ("msg/lamp.msg", "float32 power", f": 'lamp': {TYPE}: Lamp"),
         ("srv/set_lamp.srv", "---", f": 'set_lamp': {TYPE}: SetLamp"),
     ],
@@ -44,4 +60,6 @@ def test_what_ros_allows_is_right(tmp_path: Path) -> None:
         'uint8 KIND_A1 = 1\nstring NAME="a=b # c"\nwstring<=3[2] names\nint32[] v [1, 2]\n'
         'string text "x = y"\n\n# Only a Remark\nbool e\n'
     )
+    (package / "srv").mkdir()
+    (package / "srv" / "Set.srv").write_text("Lamp2D lamp\n---\nLamp2D lamp\n")
     assert wrong_names(tmp_path) == []
