@@ -35,6 +35,8 @@ _AS_JSON: Mapping[str, str] = {"\\'": "'", '"': '\\"'}
 """Of these, what is written otherwise in JSON."""
 _BLANK = re.compile(r"[ \t\n\r]*")
 _NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_PIECE = re.compile(r"\w{1,40}|\.\.\.|\S")
+"""What is told of something that has no name in `robot.commands.not_json`."""
 _DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
 _UNIT = re.compile(r"[ \t]*((?:[^\W\d_]|[°%])[^\s,\]}\"']*)")
 _DIGIT = re.compile(r"[.0-9xX]")
@@ -168,10 +170,12 @@ class _JsonScanner:
 
     def fault(self, code: str, at: int, path: Path, **details: str) -> JsonError:
         """Return the error for something else than what is due here, by its name if it has one."""
-        if found := odd(self.text, at):
-            return JsonError(found.code, at, path, **found.details)
+        if named := odd(self.text, at):
+            return JsonError(named.code, at, path, **named.details)
         if code == "value_expected" and not path:
             code = outside(self.text, at)
+        elif code == "value_expected" and (found := _PIECE.match(self.text, at)):
+            return JsonError("other_expected", at, path, found=found[0])
         return JsonError(code, at, path, **details)
 
     def string(self, at: int, path: Path) -> tuple[str, int]:

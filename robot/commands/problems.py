@@ -23,6 +23,7 @@ TEMPLATES: Mapping[str, str] = MappingProxyType(
         "too_big": N_("{size} bytes are too many: {limit} at most"),
         "encoding": N_("the text is not UTF-8"),
         "value_expected": N_("a value is expected here"),
+        "other_expected": N_("a value is expected here, not {found}"),
         "key_expected": N_("a field name in double quotes is expected here"),
         "colon_expected": N_("a colon is expected after the field name"),
         "comma_expected": N_("a comma or {closing} is expected here"),

@@ -74,7 +74,7 @@ def test_a_comma_between_two_numbers_of_a_list_is_no_decimal_comma() -> None:
     [
         ("", "nothing", 0), (" ", "nothing", 1), ("[", "value_expected", 1),
         ("{", "key_expected", 1), ('{"a" 1}', "colon_expected", 5), ("[1 2]", "comma_expected", 3),
-        ("[,]", "value_expected", 1), ("[1,,]", "value_expected", 3), ("[1e999]", "too_large", 1),
+        ("[,]", "other_expected", 1), ("[1,,]", "other_expected", 3), ("[1e999]", "too_large", 1),
         ("[-1e999]", "too_large", 1), ("9" * 400, "too_large", 0), ('{“a": 1}', "quotes", 1),
         ("{'a': 'it's'}", "quotes", 6), ("['\\x41']", "string_bad", 1), ("['a' 'b']", "quotes", 1),
         ("[«a»]", "quotes", 1), ("Here: ```json\n{}\n```", "words_before", 0),
@@ -85,7 +85,8 @@ def test_a_comma_between_two_numbers_of_a_list_is_no_decimal_comma() -> None:
         ("[+1]", "number_form", 1), ("[.5, 1]", "number_form", 1), ("[-.5]", "number_form", 1),
         ("[2.]", "number_form", 1), ("[0x1F]", "number_form", 1), ("[TRUE]", "constant", 1),
         ('{"a": nULL}', "constant", 6), ("[undefined]", "constant", 1),
-        ("[nilly]", "value_expected", 1), ("[1, // x\n2]", "comment", 4),
+        ("[nilly]", "other_expected", 1), ("[1, ...]", "other_expected", 4),
+        ("[1, // x\n2]", "comment", 4),
         ("[1 /* x */]", "comment", 3), ("{} # x", "comment", 3), ("[1\u00a0]", "invisible", 2),
         ("\u200b[]", "invisible", 0), ("[1\x00]", "invisible", 2), ("[1，2]", "alike", 2),
         ('{"a"：1}', "alike", 4), ("[−1]", "alike", 1), ("~~~json\n{}", "fence", 0),
