@@ -35,7 +35,10 @@ _WIDE_FIELD = re.compile(
 )
 """One in a `.msg`, with what it is when nobody has set it."""
 _WIDE_CONSTANT = re.compile(r"(?m)^[^\S\n]*wstring(?=\s+\w+\s*=)")
-_WIDE_IN_IDL = re.compile(r"\bwstring(?:\s*<\s*\d+\s*>)?(?=\s*[\w,>])(?!\s+\w+\s*=)")
+_WIDE_IN_IDL = re.compile(r"\bwstring\b(?:\s*<\s*\d+\s*>)?(?=\s*[\w,>])(?!\s+\w+\s*=)")
+
+
+_WIDE_LITERAL = re.compile(r'(?<==)\s*L(?=")')
 
 
 class TypeText(NamedTuple):
@@ -109,9 +112,11 @@ def _store(kind: TypeText) -> Typestore:
     try:
         if kind.is_idl:
             text = _WIDE_IN_IDL.sub(WIDE.replace("/", "::"), kind.text)
-            store.register(get_types_from_idl(text))
+            store.register(get_types_from_idl(_WIDE_LITERAL.sub("", text)))
         else:
-            text = _WIDE_FIELD.sub(rf"{WIDE}\g<many>\g<name>", kind.text)
+            # Whoever writes definitions on Windows ends their lines so.
+            text = kind.text.replace("\r\n", "\n")
+            text = _WIDE_FIELD.sub(rf"{WIDE}\g<many>\g<name>", text)
             text = _WIDE_CONSTANT.sub("string", text)
             found = get_types_from_msg(text, kind.name)
             # The library mistakes the name of a service's message for that of a package.

@@ -77,8 +77,13 @@ def test_every_type_of_jazzys_is_told_to_a_bag_so_that_it_is_understood(name: st
     ("text", "is_idl"),
     [
         ('wstring X="a"\nwstring<=3[] names\nint8 n\nwstring last "d"  # wstring\n', False),
+        (IDL, True),
+        ('wstring X="a"\r\nwstring[] names\r\nint8 n\r\nwstring last\r\n', False),
         (
-            IDL,
+            IDL.replace(
+                "module msg {",
+                'module msg { const wstring X = L"a"; typedef sequence<wstring> wstring__many;',
+            ).replace("sequence<wstring<3>> n", "wstring__many n"),
             True,
         ),
     ],
