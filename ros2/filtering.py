@@ -22,7 +22,7 @@ def wanted(expression: str | None) -> Callable[[Any], bool]:
         return lambda _message: True
     try:
         code = compile(expression.lstrip(), "<filter>", "eval")
-    except (SyntaxError, ValueError) as error:
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         before = len(expression) - len(expression.lstrip())
         raise _refused(expression, _unreadable(error, before)) from error
 
@@ -42,8 +42,13 @@ def _refused(expression: str, reason: str) -> UsageError:
 
 def _unreadable(error: Exception, before: int) -> str:
     """Say what Python says, and where; `before`: blanks at the begin."""
-    offset = getattr(error, "offset", 0)
+    if isinstance(error, (RecursionError, MemoryError)):
+        return say("is nested too deeply")
+    offset, text = getattr(error, "offset", None), getattr(error, "text", None)
     said = getattr(error, "msg", str(error))
+    if offset == 0:
+        # So it tells that the expression ends too early.
+        offset = len(text or "") + 1
     if offset:
         return say("column {column}: {reason}", reason=said, column=before + offset)
     return said

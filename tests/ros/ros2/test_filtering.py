@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from tests.ros.ros2.typed import typed
@@ -11,6 +13,8 @@ from tests.ros.ros2.typed import typed
     ("expression", "why"),
     [
         ("m.data >", "column 9: invalid syntax"),
+        ("m.data > 1 and", "column 15: invalid syntax"),
+        (f"{'-' * 100_000}1", "is nested too deeply"),
         ("m.data = 1", "column 1: invalid syntax. Maybe you meant"),
         ("m.data == «x»", "column 11: invalid character '«' (U+00AB)"),
         ("m.dta > 0", "dta: no such field; did you mean data?"),
@@ -24,8 +28,9 @@ def test_a_wrong_filter_is_told(expression: str, why: str) -> None:
     echo = typed("topic", "echo", "/distance", "--once", "--filter", expression)
     assert (echo.code, echo.out) == (2, "")
     assert f"filter expression '{expression}': " in echo.err
-    # Python 3.10 has other words, and other places, for what it cannot read.
-    assert why in echo.err or "invalid syntax" in echo.err, echo.err
+    if sys.version_info < (3, 11) and "invalid syntax" in echo.err:
+        return  # It has other words, and other places, for what it cannot read.
+    assert why in echo.err, echo.err
 
 
 def test_what_is_wanted_is_shown() -> None:
