@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from launcher.faults.failure import Failure, is_from, name_of
 from launcher.faults.remedy import listed
 from text.sentences import say
+from text.suggestions import no_number
 from text.yaml_faults import YamlError
 from text.yaml_reading import Rules, check_colons, mapping, read
 from text.yaml_tree import Branch, empty
@@ -27,7 +28,9 @@ _MIXED = re.compile(
     r"same type. Value type '(?P<type>\w+)' do not belong at line_num (?P<line>\d+)"
 )
 """What rcl_yaml_param_parser says of a file, and of a list in it."""
+_ABOVE = "before ros__parameters"
 _BOOLEAN = re.compile(r"(?<![\w'\"])(?:y|n|yes|no|on|off|true|false)(?![\w'\"])", re.IGNORECASE)
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _RULES = Rules(shares=True, longest=1 << 20, deepest=64, most=100_000, joins=True)
 _NUMBERS = ("INTEGER", "DOUBLE")
 _SETTERS = ("set_parameters", "set_parameters_atomically", "_check_undeclared_parameters")
@@ -166,8 +169,16 @@ def declared(failure: Failure) -> Words | None:
             name=name,
         )
     if wanted in _NUMBERS and given == "STRING":
-        return say("{name} is declared as a number: write one, without quotes.", name=name)
+        return _no_number(name, value)
     return None
+
+
+def _no_number(name: str, value: str) -> Words:
+    """Say what is wrong with a text where a number should be, or a list of them."""
+    if value.startswith("[") or _NUMBER.fullmatch(value.strip()):
+        return say("{name} is declared as a number: write one, without quotes.", name=name)
+    reason = no_number(value, ascii(value) if not value.isprintable() else repr(value))
+    return say("{name} is declared as a number: {reason}.", name=name, reason=reason)
 
 
 def in_file(failure: Failure) -> Words | None:
@@ -177,8 +188,15 @@ def in_file(failure: Failure) -> Words | None:
         return None
     path, name = Path(found["file"]), found["file"].rpartition("/")[2]
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        raw = path.read_bytes()
+        text = raw.decode("utf-8-sig")
         _check(read(text, _RULES))
+    except UnicodeDecodeError as error:
+        return say(
+            "{file}, line {line}: this is not UTF-8 text.",
+            file=name,
+            line=raw.count(b"\n", 0, error.start) + 1,
+        )
     except YamlError as error:
         return say(
             "{file}, line {line}, column {column}: {reason}.",
@@ -189,6 +207,12 @@ def in_file(failure: Failure) -> Words | None:
         )
     except (OSError, ValueError):
         return None
+    if _ABOVE in str(failure.error):
+        return say(
+            "{file}: parameters stand below ros__parameters, with two underscores, and this stands"
+            " below the name of the node.",
+            file=name,
+        )
     return _mixed(str(failure.error), name, text.splitlines())
 
 

@@ -214,6 +214,8 @@ PARAMETERS = {
     "text for a boolean": given("'off'", "True"),
     "text for a number of a parameter": given("'5'", "1.5"),
     "whole number for a fraction": given("5", "1.5"),
+    "comma for a point of a parameter": given("2,5", "1.5"),
+    "number with its unit for a parameter": given("2.5 m", "1.5"),
     "list for a single value": given("[1.5]", "1.5"),
     "single value for a list": given("1.5", "[1.5]"),
     "off among texts": given_in_file("p: [slow, off]"),
@@ -222,6 +224,12 @@ PARAMETERS = {
     "colon without a space in a file": given_in_file("p:slow"),
     "two colons without a space in a file": given_in_file("p:slow\\n    q: 5"),
     "no-break space in a file": given_in_file("p:\\u00a0slow"),
+    "ros__parameters misspelt in a file": given_in_file("p: slow").replace(
+        "ros__parameters", "ros_parameters"
+    ),
+    "file of parameters in another encoding": given_in_file("p: медленно").replace(
+        "write_text(", "write_text(encoding='cp1251', data="
+    ),
     "parameter not declared": node('self.get_parameter("speed")'),
     "parameter declared twice": node(
         'self.declare_parameter("v", 1.0)\nself.declare_parameter("v", 2.0)'
