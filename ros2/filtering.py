@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 MESSAGE = "m"
+LONGEST = 200
+"""Characters of an expression that an error repeats."""
 
 
 def wanted(expression: str | None) -> Callable[[Any], bool]:
@@ -37,7 +39,8 @@ def wanted(expression: str | None) -> Callable[[Any], bool]:
 
 
 def _refused(expression: str, reason: str) -> UsageError:
-    return UsageError(f"Invalid filter expression '{expression}': {localized(reason)}")
+    shown = expression if len(expression) <= LONGEST else f"{expression[: LONGEST - 1]}…"
+    return UsageError(f"Invalid filter expression '{shown}': {localized(reason)}")
 
 
 def _unreadable(error: Exception, before: int) -> str:

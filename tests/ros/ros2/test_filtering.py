@@ -14,8 +14,8 @@ from tests.ros.ros2.typed import typed
     [
         ("m.data >", "column 9: invalid syntax"),
         ("m.data > 1 and", "column 15: invalid syntax"),
-        (f"{'-' * 100_000}1", "is nested too deeply"),
-        ("m.data = 1", "column 1: invalid syntax. Maybe you meant"),
+        pytest.param(f"0{'-' * 10_000}1", "is nested too deeply", id="deep"),
+        ("m.data = 1", "column 8: invalid syntax"),
         ("m.data == «x»", "column 11: invalid character '«' (U+00AB)"),
         ("m.dta > 0", "dta: no such field; did you mean data?"),
         ("m.header.frame_id", "header: no such field; there is data"),
@@ -27,7 +27,7 @@ from tests.ros.ros2.typed import typed
 def test_a_wrong_filter_is_told(expression: str, why: str) -> None:
     echo = typed("topic", "echo", "/distance", "--once", "--filter", expression)
     assert (echo.code, echo.out) == (2, "")
-    assert f"filter expression '{expression}': " in echo.err
+    assert f"filter expression '{expression[:40]}" in echo.err
     if sys.version_info < (3, 11) and "invalid syntax" in echo.err:
         return  # It has other words, and other places, for what it cannot read.
     assert why in echo.err, echo.err
