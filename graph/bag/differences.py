@@ -167,17 +167,17 @@ def _offers(topic: StatedTopic, channels: Sequence[Channel]) -> Iterator[Note]:
 
 
 def _cut(path: Path, parts: Sequence[BagPart]) -> list[Words]:
-    cut = [part for part in parts if part.cut_bytes is not None]
-    if not cut:
-        return []
+    """Tell of each file that ends too early: of a split recording others may follow it."""
     return [
         say(
             "{path} was cut short: the recording was not ended properly. {messages} messages "
             "are intact, the last {bytes} bytes are damaged, and nothing follows them",
-            path=path,
-            messages=sum(channel.messages for channel in _channels(parts)),
-            bytes=sum(part.cut_bytes or 0 for part in cut),
+            path=path if len(parts) == 1 else part.file.name,
+            messages=sum(channel.messages for channel in part.channels),
+            bytes=part.cut_bytes,
         )
+        for part in parts
+        if part.cut_bytes is not None
     ]
 
 

@@ -168,6 +168,18 @@ def test_a_missing_file_is_named_and_what_it_held_is_counted(tmp_path: Path) -> 
     )
 
 
+def test_of_a_split_bag_the_file_that_was_cut_is_named(tmp_path: Path) -> None:
+    for number in range(3):
+        write_mcap(tmp_path / f"walk_{number}.mcap", 10, first=10 * number)
+    middle = tmp_path / "walk_1.mcap"
+    middle.write_bytes(middle.read_bytes()[: middle.stat().st_size // 2])
+    with open_bag(tmp_path) as bag:
+        (note,) = bag.notes
+    assert note.startswith("walk_1.mcap was cut short:")
+    assert " messages are intact" in note
+    assert ". 30 messages" not in note
+
+
 def test_a_file_that_cannot_be_read_does_not_cost_the_others(tmp_path: Path) -> None:
     write_mcap(tmp_path / "walk_0.mcap")
     (tmp_path / "walk_1.mcap").write_bytes(b"")
