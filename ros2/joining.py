@@ -110,7 +110,7 @@ class Guest:
             if now - begun > within_s:
                 raise NoAnswerError(
                     f"{owner} has not answered within {within_s:g} s: it may be stuck in a"
-                    " callback, or before it spins; --timeout waits longer"
+                    " callback, or before it spins, or be killed; --timeout waits longer"
                 )
 
     def call(self, service: str, kind: Any, owner: str, **fields: object) -> Any:  # noqa: ANN401
@@ -121,7 +121,7 @@ class Guest:
             if not found and not self.await_until(client.service_is_ready):
                 raise RuntimeError("Wait for service timed out")
             future = client.call_async(kind.Request(**fields))
-            self.finish(future, owner)
+            self.finish(future, owner, is_there=client.service_is_ready)
             response = future.result()
             if response is None:
                 why = future.exception()

@@ -63,7 +63,7 @@ def main(args: argparse.Namespace) -> int | str | None:
             print(f"requester: making request: {request!r}\n", flush=True)
             asked = time.monotonic()
             future = client.call_async(request)
-            me.finish(future, args.service_name)
+            me.finish(future, args.service_name, is_there=client.service_is_ready)
             if future.result() is None:
                 raise RuntimeError(f"Exception while calling service: {future.exception()!r}")
             print(f"response:\n{future.result()!r}\n", flush=True)

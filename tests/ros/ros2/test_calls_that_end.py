@@ -40,6 +40,17 @@ print("here", flush=True)
 rclpy.spin(node)
 """
 
+MORTAL = """
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+rclpy.init()
+node = Node("mortal")
+node.create_service(Trigger, "/die", lambda request, response: 1 / 0)
+print("here", flush=True)
+rclpy.spin(node)
+"""
+
 
 @contextmanager
 def program(text: str, domain: int) -> Iterator[subprocess.Popen[str]]:
@@ -94,6 +105,16 @@ def test_whoever_does_not_answer_is_named(
     asked = typed(*words, "--timeout", "0.5")
     assert asked.code == 1
     assert f"{'/never' if words[0] == 'service' else '/hung'} has not answered" in asked.err
+
+
+def test_a_service_whose_node_dies_of_the_call_is_told(
+    ros_domain: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(ros_domain))
+    with program(MORTAL, ros_domain):
+        asked = typed("service", "call", "/die", "std_srvs/srv/Trigger", "--timeout", "60")
+    assert asked.code == 1
+    assert "/die has gone before it answered" in asked.err
 
 
 @contextmanager
