@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -13,7 +12,6 @@ import pytest
 
 from tests.ros.peer import DISCOVERY, ROOT
 from tests.ros.ros2.typed import typed
-from tests.waiting import wait_until
 
 HUNG = """
 import threading, rclpy
@@ -28,17 +26,6 @@ print("here", flush=True)
 rclpy.spin(well)
 """
 """Of two nodes in one process only one is spun."""
-COUNTER = """
-import time, rclpy
-from example_interfaces.action import Fibonacci
-from rclpy.action import ActionServer
-from rclpy.node import Node
-rclpy.init()
-node = Node("counter")
-server = ActionServer(node, Fibonacci, "count", lambda goal: time.sleep(600))
-print("here", flush=True)
-rclpy.spin(node)
-"""
 
 
 @contextmanager
@@ -65,18 +52,6 @@ def hung(module_domain: int) -> Iterator[int]:
         yield module_domain
 
 
-def test_the_others_are_listed_and_the_one_that_hangs_is_named(
-    hung: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(hung))
-    listed = typed("param", "list", "--timeout", "1")
-    assert listed.code == 1
-    assert "/well:\n" in listed.out
-    assert "  speed\n" in listed.out
-    assert "/hung:" not in listed.out
-    assert listed.err.startswith("/hung has not answered within 1 s: it may be stuck")
-
-
 @pytest.mark.parametrize(
     "words",
     [
@@ -94,50 +69,3 @@ def test_whoever_does_not_answer_is_named(
     asked = typed(*words, "--timeout", "0.5")
     assert asked.code == 1
     assert f"{'/never' if words[0] == 'service' else '/hung'} has not answered" in asked.err
-
-
-@contextmanager
-def goal(domain: int) -> Iterator[subprocess.Popen[str]]:
-    """A goal that is on its way for ever, once it is accepted."""
-    words = (
-        "action",
-        "send_goal",
-        "/count",
-        "example_interfaces/action/Fibonacci",
-        "--timeout",
-        "1",
-    )
-    with subprocess.Popen(
-        [sys.executable, "-m", "ros2", *words],
-        cwd=ROOT,
-        env={**os.environ, **DISCOVERY, "ROS_DOMAIN_ID": str(domain)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as sending:
-        try:
-            assert sending.stdout is not None
-            assert any(line.startswith("Goal accepted") for line in sending.stdout)
-            yield sending
-        finally:
-            sending.kill()
-
-
-@pytest.mark.nightly  # The middleware takes 20 s until it knows.
-def test_a_goal_whose_server_is_killed_ends_with_a_word(ros_domain: int) -> None:
-    with program(COUNTER, ros_domain) as server, goal(ros_domain) as sending:
-        server.kill()
-        wait_until(lambda: sending.poll() is not None, "the end of the command")
-        assert sending.stderr is not None
-        assert "/count has gone before it answered" in sending.stderr.read()
-        assert sending.returncode == 1
-
-
-def test_ctrl_c_ends_a_goal_whose_server_hangs(ros_domain: int) -> None:
-    with program(COUNTER, ros_domain) as server, goal(ros_domain) as sending:
-        server.send_signal(signal.SIGSTOP)
-        sending.send_signal(signal.SIGINT)
-        wait_until(lambda: sending.poll() is not None, "the end of the command")
-        assert sending.stderr is not None
-        assert "/count has not answered" in sending.stderr.read()
-        assert sending.returncode == 1
