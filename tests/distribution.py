@@ -28,7 +28,6 @@ ALONE = (
     "tests/ros/view/test_page_in_a_browser.py",
     "tests/ros/graph/test_findings_of_a_robot.py",
     "tests/ros/robot/test_model_drives.py",
-    "tests/ros/robot/test_robot_profile.py",
     "tests/ros/course/test_lessons.py",
 )
 """Run last, in this order, one at a time and with nothing beside them."""

@@ -36,40 +36,6 @@ def test_theme_and_language_are_there_the_next_time_and_a_key_of_ones_own_works(
     assert second.wait_exit() == 0
 
 
-def test_the_list_opens_on_the_lesson_of_the_last_time(deck: Deck) -> None:
-    first = deck.open()
-    first.wait_for("Starts 1 node")
-    first.press("down")
-    first.wait_for("Starts 2 nodes")
-    first.press("enter")
-    first.wait_for("2/2")
-    first.press("q")
-    assert first.wait_exit() == 0
-    assert json.loads(settings_of(deck).read_text()) == {
-        "tour": "seen",
-        "lesson": "02-sonar-safety",
-    }
-    second = deck.open()
-    second.wait_for("Starts 2 nodes")
-    second.press("q")
-    assert second.wait_exit() == 0
-
-
-def test_the_tour_of_the_first_start_is_not_there_the_second_time(deck: Deck) -> None:
-    settings_of(deck).unlink()
-    first = deck.open()
-    first.wait_for("Welcome to Deck")
-    first.press("escape")
-    first.wait_gone("Welcome to Deck")
-    first.press("q")
-    assert first.wait_exit() == 0
-    second = deck.open()
-    screen = second.wait_for("Starts 1 node")
-    assert "Welcome to Deck" not in screen
-    second.press("q")
-    assert second.wait_exit() == 0
-
-
 def test_a_broken_file_ends_the_program_with_its_place(deck: Deck) -> None:
     path = settings_of(deck)
     path.write_text('{"theme": "pink"}')

@@ -143,9 +143,7 @@ def test_it_outlives_the_screen_the_gate_and_the_supervisor(
     assert deck.open("down").wait_exit(STARTED_WITHIN_S) == 0
 
 
-def test_where_nobody_listens_the_release_starts_again_what_the_stop_has_ended(
-    deck: Deck,
-) -> None:
+def test_where_nobody_listens_the_release_starts_again_what_the_stop_has_ended(deck: Deck) -> None:
     terminal = deck.open("01-hello", "--lang", "en")
     terminal.wait_for("1/1")
     terminal.press("space")

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from graph.messages.browse import interfaces
 from graph.messages.fields import BYTES, INTEGERS, FieldType, parse
-from graph.messages.types import load_action, load_message, load_service
+from graph.messages.types import load_message
 from graph.messages.values import fields_of
 
 TYPES = tuple(name for name in interfaces() if "/msg/" in name)
@@ -44,16 +44,6 @@ _SINGLE: dict[str, st.SearchStrategy[Any]] = {
     "double": st.floats(width=64),
     **{name: st.integers(*limits) for name, limits in INTEGERS.items()},
 }
-
-
-def parts_of(type_name: str) -> list[tuple[str, type[Any]]]:
-    """Return a message, the halves of a service or the thirds of an action, each with its name."""
-    kind = type_name.split("/")[1]
-    if kind == "msg":
-        return [(type_name, load_message(type_name))]
-    names = ("Request", "Response") if kind == "srv" else ("Goal", "Result", "Feedback")
-    whole = load_service(type_name) if kind == "srv" else load_action(type_name)
-    return [(f"{type_name}.{name}", getattr(whole, name)) for name in names]
 
 
 def trees_of(cls: type[Any]) -> st.SearchStrategy[dict[str, Any]]:

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import math
+import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from ackermann_msgs.msg import AckermannDriveStamped
+from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import Float32
 
 from tests.ros.node_process import NodeProcess
+from tests.ros.node_thread import NodeThread
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
+    import signal
+
     from rclpy.timer import Timer
     from typing_extensions import Self
 
@@ -28,15 +34,40 @@ def drive(speed: float, steering: float = 0.0) -> AckermannDriveStamped:
     return message
 
 
+def stamped(message: Any, since_s: float) -> Any:
+    """The message with a stamp of so many seconds from now."""
+    at_s = time.time() + since_s
+    message.header.stamp = Time(sec=int(at_s), nanosec=int(at_s % 1 * 1e9))
+    return message
+
+
+BEYOND = (
+    (0.8, 0.0, "0.8 m/s, limit 0.5 m/s"),
+    (-1e30, 0.0, "-1e+30 m/s, limit 0.5 m/s"),
+    (0.3, 1.2, "1.2 rad, limit 0.5 rad"),
+    (math.nan, 0.0, "nan m/s, limit 0.5 m/s"),
+    (0.3, math.inf, "inf rad, limit 0.5 rad"),
+)
+"""Speed and angle that nothing may obey, and what is said of them."""
+STAMPS = (
+    (-10.0, "s old by its stamp"),
+    (-86400.0, "s behind this computer's clock"),
+    (300.0, "s ahead of this computer's clock"),
+    (1e6, "set the clocks of both computers"),
+)
+"""Seconds from now, and a part of what is said of it."""
 LONG: dict[str, object] = {"stale_after_s": 60, "max_age_s": 60}
 """What is said or seen once counts for as long as the test takes."""
 
 
 class Gate:
-    """The safety node as a gate, with everything around it."""
+    """The safety node as a gate, with everything around it.
 
-    def __init__(self, domain: int, *, module: str = "nodes.safety_stop", **params: object) -> None:
-        self._domain, self._module = domain, module
+    `apart`: the module of it, to be a process that can be killed and held up.
+    """
+
+    def __init__(self, domain: int, *, apart: str = "", **params: object) -> None:
+        self._domain, self._apart = domain, apart
         self._params = {"gate": True, "rate": 50, "settle_s": 0, **LONG, **params}
         self.process = self._started()
         self.peer = Peer(domain)
@@ -53,6 +84,13 @@ class Gate:
         """End the node and the test's own."""
         self.peer.close()
         self.process.close()
+
+    def send(self, number: signal.Signals) -> None:
+        """Send a signal to its process."""
+        assert isinstance(self.process, NodeProcess)
+        self.process.send(number)
+        if number.name in ("SIGTERM", "SIGINT", "SIGKILL"):
+            self.process.wait()
 
     def restart(self, **params: object) -> None:
         """Start it again, with other parameters if some are given."""
@@ -88,8 +126,10 @@ class Gate:
         wait_until(lambda: self.states and values(self.states[-1])["verdict"] == state, state)
         return self.states[-1].status[0]
 
-    def _started(self) -> NodeProcess:
-        return NodeProcess(self._module, self._domain, params=self._params)
+    def _started(self) -> NodeProcess | NodeThread:
+        if self._apart:
+            return NodeProcess(self._apart, self._domain, params=self._params)
+        return NodeThread("nodes.safety_stop", self._domain, params=self._params)
 
 
 def values(message: DiagnosticArray) -> dict[str, str]:

@@ -97,11 +97,7 @@ class Watcher:
     """
 
     def __init__(
-        self,
-        domain: int,
-        *,
-        apart: Callable[[], ObserverProcess] = ObserverThread,
-        **settings: Any,
+        self, domain: int, *, apart: Callable[[], ObserverProcess] = ObserverThread, **settings: Any
     ) -> None:
         self.observer = Observer(domain, "localhost", **settings)
         self.observer._client.started = apart

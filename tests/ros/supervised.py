@@ -15,7 +15,14 @@ import pytest
 
 from launcher.client.client import SupervisorClient, attach, launch, running
 from launcher.errors import ConnectionLostError, NotRunningError, SilentSupervisorError
-from launcher.processes.table import read_process
+from launcher.processes.table import (
+    NODE_MARK,
+    RUN_MARK,
+    Process,
+    processes,
+    read_marks,
+    read_process,
+)
 from launcher.status import NodeState, NodeStatus
 from tests.waiting import DEADLINE_S, until
 
@@ -118,3 +125,24 @@ def alive(pid: int) -> bool:
 def kill(pid: int, number: int) -> None:
     """Send a signal to a process that the test has started."""
     os.kill(pid, number)
+
+
+def of_run(run_id: str, node: str = "") -> list[Process]:
+    """Return the living processes of a run, or of one node of it."""
+    marked = ((each, read_marks(each.pid) or {}) for each in processes() if not each.zombie)
+    return [
+        each
+        for each, marks in marked
+        if marks.get(RUN_MARK) == run_id and node in ("", marks.get(NODE_MARK))
+    ]
+
+
+async def spawn_server_of(run_id: str) -> int:
+    """Return the number of the run's spawn server once there is but one."""
+
+    def there() -> list[int]:
+        pids = [each.pid for each in of_run(run_id)]
+        return [p for p in pids if (read_marks(p) or {}).get(NODE_MARK, "").startswith("--")]
+
+    (pid,) = await until(lambda: len(found := there()) == 1 and found, "one spawn server")
+    return int(pid)

@@ -108,6 +108,3 @@ class ActionOrders:
     def ends(self, topic: str) -> dict[int, int]:
         """The numbers of action_msgs/GoalStatus by which the goals that were sent have ended."""
         return self.asked_actions[topic].ends
-
-    def withdraw_action(self, topic: str) -> None:
-        self.served_actions.pop(topic).server.destroy()

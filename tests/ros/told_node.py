@@ -15,8 +15,6 @@ import time
 from typing import Any
 
 import rclpy
-from deck_interfaces.action import DriveToPoint
-from rclpy.action import ActionClient, ActionServer
 from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -53,22 +51,17 @@ def qos(
 
 
 class Timed:
-    """A publisher at a fixed rate; late ones are caught up, so that the mean rate is exact.
+    """A publisher at a fixed rate; late ones are caught up, so that the mean rate is exact."""
 
-    With `sway_s` the time between two messages is too long and too short by it in turn.
-    """
-
-    def __init__(self, publish: Any, hz: float, sway_s: float = 0.0) -> None:
+    def __init__(self, publish: Any, hz: float) -> None:
         self.publish = publish
         self.period_s = 1.0 / hz
-        self.sway_s = sway_s
         self.next_s = time.monotonic()
 
     def step(self, now_s: float) -> None:
         while self.next_s <= now_s:
             self.publish()
-            self.next_s += self.period_s + self.sway_s
-            self.sway_s = -self.sway_s
+            self.next_s += self.period_s
 
 
 class Orders(ActionOrders):
@@ -81,7 +74,6 @@ class Orders(ActionOrders):
         self.subscriptions: dict[str, Any] = {}
         self.services: dict[str, Any] = {}
         self.clients: dict[str, Any] = {}
-        self.actions: list[Any] = []
         self.timed: dict[str, Timed] = {}
 
     def advertise(self, topic: str, type_name: str, **policies: Any) -> None:
@@ -96,35 +88,12 @@ class Orders(ActionOrders):
             numbered = {k: number if v == "NUMBER" else v for k, v in value.items()}
             publisher.publish(to_message(publisher.msg_type, numbered))
 
-    def publish_raw(self, topic: str, cdr: str) -> None:
-        self.publishers[topic].publish(bytes.fromhex(cdr))
-
-    def repeat(
-        self, topic: str, value: dict[str, Any], hz: float, pad: int = 0, sway_s: float = 0.0
-    ) -> None:
+    def repeat(self, topic: str, value: dict[str, Any], hz: float, pad: int = 0) -> None:
         """Publish at this rate; `pad` is a number of bytes for the field `data`."""
         publisher = self.publishers[topic]
         value = {**value, "data": bytes(pad)} if pad else value
         raw = serialize_message(to_message(publisher.msg_type, value))
-        self.timed[topic] = Timed(lambda: publisher.publish(raw), hz, sway_s)
-
-    def repeat_stamped(self, topic: str, hz: float, ago_s: float) -> None:
-        """Publish at this rate, each message with a stamp of so long ago."""
-        publisher = self.publishers[topic]
-
-        def publish() -> None:
-            second, rest = divmod(time.time_ns() - int(ago_s * 1e9), 10**9)
-            stamp = {"sec": second, "nanosec": rest}
-            publisher.publish(to_message(publisher.msg_type, {"header": {"stamp": stamp}}))
-
-        self.timed[topic] = Timed(publish, hz)
-
-    def burst(self, topic: str, times: int, pad: int) -> None:
-        """Publish so many with so many bytes in the field `data`, as fast as can be."""
-        publisher = self.publishers[topic]
-        raw = serialize_message(to_message(publisher.msg_type, {"data": bytes(pad)}))
-        for _ in range(times):
-            publisher.publish(raw)
+        self.timed[topic] = Timed(lambda: publisher.publish(raw), hz)
 
     def silence(self, topic: str) -> None:
         self.timed.pop(topic, None)
@@ -164,19 +133,6 @@ class Orders(ActionOrders):
 
     def stop_using(self, topic: str) -> None:
         self.node.destroy_client(self.clients.pop(topic))
-
-    def serve_drive(self, topic: str) -> None:
-        """Serve DriveToPoint under this name; every goal is reached at once."""
-
-        def drive(goal: Any) -> Any:
-            goal.succeed()
-            return DriveToPoint.Result()
-
-        self.actions.append(ActionServer(self.node, DriveToPoint, topic, drive))
-
-    def use_drive(self, topic: str) -> None:
-        """Have a client of DriveToPoint under this name."""
-        self.actions.append(ActionClient(self.node, DriveToPoint, topic))
 
     def names(self) -> list[str]:
         return [

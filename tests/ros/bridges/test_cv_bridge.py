@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import cv2
 import numpy as np
 import pytest
 from cv_bridge import CvBridge, CvBridgeError
 from sensor_msgs.msg import CompressedImage, Image
-from std_msgs.msg import Header
 
 ENCODINGS = {
     "mono8": ("uint8", 1), "mono16": ("uint16", 1), "bgr8": ("uint8", 3), "rgb8": ("uint8", 3),
@@ -47,13 +45,6 @@ def test_a_picture_comes_back_as_it_was(bridge: CvBridge, encoding: str) -> None
     back[0, 0] = 1
 
 
-def test_without_an_encoding_it_is_named_by_its_type(bridge: CvBridge) -> None:
-    header = Header(frame_id="camera_link")
-    message = bridge.cv2_to_imgmsg(picture("uint8", 3), header=header)
-    assert (message.encoding, message.header.frame_id) == ("8UC3", "camera_link")
-    assert bridge.encoding_to_cvtype2("bgr8") == cv2.CV_8UC3
-
-
 @pytest.mark.parametrize(
     ("encoding", "expected"),
     [
@@ -69,27 +60,6 @@ def test_colours_are_converted(bridge: CvBridge, encoding: str, expected: Any) -
     message = bridge.cv2_to_imgmsg(np.full((4, 6, 3), RED, np.uint8), "bgr8")
     found = bridge.imgmsg_to_cv2(message, desired_encoding=encoding)
     assert np.all(found == np.array(expected))
-
-
-@pytest.mark.parametrize(
-    ("encoding", "pattern"),
-    [
-        ("bayer_rggb8", [[200, 0], [0, 0]]),
-        ("bayer_bggr8", [[0, 0], [0, 200]]),
-        ("bayer_gbrg8", [[0, 0], [200, 0]]),
-        ("bayer_grbg8", [[0, 200], [0, 0]]),
-    ],
-)
-def test_a_sensor_behind_red_glass_shows_red(bridge: CvBridge, encoding: str, pattern: Any) -> None:
-    message = bridge.cv2_to_imgmsg(np.tile(np.array(pattern, np.uint8), (4, 4)), encoding)
-    found = bridge.imgmsg_to_cv2(message, "bgr8")
-    assert found[4, 4].tolist() == [0, 0, 200]
-
-
-def test_rows_may_be_longer_than_their_pixels(bridge: CvBridge) -> None:
-    data = bytes([1, 2, 3, 0, 4, 5, 6, 0])
-    message = Image(height=2, width=3, step=4, encoding="mono8", data=data)
-    assert bridge.imgmsg_to_cv2(message).tolist() == [[1, 2, 3], [4, 5, 6]]
 
 
 def test_the_order_of_bytes_is_the_messages(bridge: CvBridge) -> None:

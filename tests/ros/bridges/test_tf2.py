@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import importlib
 import math
-import threading
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 import rclpy
-import tf2_geometry_msgs
 import tf2_ros
-import yaml
-from geometry_msgs.msg import PointStamped, TransformStamped, Vector3Stamped
+from geometry_msgs.msg import TransformStamped
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity, get_logger
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy
 from rclpy.time import Time
@@ -75,21 +73,6 @@ def buffer() -> tf2_ros.Buffer:
     return made
 
 
-def test_a_chain_of_frames_is_followed_both_ways(buffer: tf2_ros.Buffer) -> None:
-    found = buffer.lookup_transform("odom", "camera_link", at(3))
-    assert place(found) == (3.0, 0.15)
-    assert (found.header.frame_id, found.child_frame_id) == ("odom", "camera_link")
-    assert place(buffer.lookup_transform("camera_link", "odom", at(3))) == (-0.15, 3.0)
-    assert place(buffer.lookup_transform("odom", "odom", NEWEST)) == (0.0, 0.0)
-
-
-def test_between_two_samples_it_is_interpolated(buffer: tf2_ros.Buffer) -> None:
-    found = buffer.lookup_transform("odom", "base_link", at(2.5))
-    assert place(found) == (2.5, 0.0)
-    assert math.degrees(yaw(found)) == pytest.approx(67.5)
-    assert found.header.stamp.nanosec == S / 2
-
-
 def test_time_0_is_the_newest_that_all_of_the_way_has(buffer: tf2_ros.Buffer) -> None:
     buffer.set_transform(transform("base_link", "arm", 1.0, time=1.5), "test")
     buffer.set_transform(transform("base_link", "arm", 2.0, time=2.5), "test")
@@ -98,10 +81,6 @@ def test_time_0_is_the_newest_that_all_of_the_way_has(buffer: tf2_ros.Buffer) ->
     assert buffer.get_latest_common_time("odom", "arm").nanoseconds == 2.5 * S
     static = buffer.lookup_transform("base_link", "camera_link", NEWEST)
     assert Time.from_msg(static.header.stamp).nanoseconds == 0
-
-
-def test_a_static_frame_is_there_at_any_time(buffer: tf2_ros.Buffer) -> None:
-    assert place(buffer.lookup_transform("base_link", "camera_link", at(1e6))) == (0.15, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -123,75 +102,6 @@ def test_why_there_is_no_transform(
         buffer.lookup_transform(*frames, at(time))
     assert isinstance(raised.value, tf2_ros.TransformException)
     assert not buffer.can_transform(*frames, at(time))
-
-
-def test_the_time_of_a_message_is_asked_for_in_a_sentence(buffer: tf2_ros.Buffer) -> None:
-    with pytest.raises(TypeError, match=r"Time\.from_msg"):
-        buffer.lookup_transform("odom", "base_link", at(2).to_msg())
-
-
-def test_what_is_older_than_ten_seconds_is_forgotten(buffer: tf2_ros.Buffer) -> None:
-    buffer.set_transform(transform("odom", "base_link", 12, time=12.5), "test")
-    assert buffer.can_transform("odom", "base_link", at(3))
-    assert not buffer.can_transform("odom", "base_link", at(2))
-
-
-@pytest.mark.parametrize(
-    "broken",
-    [
-        transform("odom", "odom"),
-        transform("", "arm"),
-        transform("odom", "arm", math.nan),
-        TransformStamped(child_frame_id="arm"),
-    ],
-)
-def test_a_transform_that_makes_no_sense_is_ignored(buffer: tf2_ros.Buffer, broken: Any) -> None:
-    before = buffer.all_frames_as_yaml()
-    buffer.set_transform(broken, "test")
-    assert buffer.all_frames_as_yaml() == before
-
-
-def test_a_quaternion_of_another_length_is_ignored(buffer: tf2_ros.Buffer) -> None:
-    broken = transform("odom", "arm")
-    broken.transform.rotation.w = 0.0
-    buffer.set_transform(broken, "test")
-    assert "arm" not in buffer.all_frames_as_string()
-
-
-def test_all_frames_can_be_read_by_people_and_by_programs(buffer: tf2_ros.Buffer) -> None:
-    assert "Frame camera_link exists with parent base_link.\n" in buffer.all_frames_as_string()
-    frames = yaml.safe_load(buffer.all_frames_as_yaml())
-    assert frames["base_link"]["parent"] == "odom"
-    assert frames["base_link"]["buffer_length"] == 2.0
-    assert yaml.safe_load(tf2_ros.Buffer().all_frames_as_yaml()) == {}
-
-
-def test_a_place_then_seen_from_a_place_now(buffer: tf2_ros.Buffer) -> None:
-    found = buffer.lookup_transform_full("base_link", at(3), "base_link", at(1), "odom")
-    assert place(found) == (0.0, 2.0)
-
-
-def test_a_ball_before_the_camera_is_seen_from_the_wheels(buffer: tf2_ros.Buffer) -> None:
-    ball = PointStamped()
-    ball.header.frame_id = "camera_link"
-    ball.point.x = 1.0
-    assert buffer.transform(ball, "base_link").point.x == pytest.approx(1.15)
-    push = Vector3Stamped()
-    push.vector.x = 1.0
-    turned = tf2_geometry_msgs.do_transform_vector3(push, transform("a", "b", 5.0, yaw=math.pi / 2))
-    assert (round(turned.vector.x, 6), round(turned.vector.y, 6)) == (0.0, 1.0)
-
-
-def test_who_waits_is_told_when_it_comes(buffer: tf2_ros.Buffer) -> None:
-    waiting = buffer.wait_for_transform_async("odom", "hand", NEWEST)
-    assert not waiting.done()
-    later = transform("base_link", "hand", 1.0)
-    sender = threading.Timer(0.05, buffer.set_transform_static, (later, "test"))
-    sender.start()
-    assert buffer.can_transform("odom", "hand", NEWEST, Duration(seconds=10))
-    sender.join()
-    assert place(waiting.result()) == (3.0, 1.0)
-    assert not buffer.can_transform("odom", "nobody", NEWEST, Duration(seconds=0.05))
 
 
 @pytest.fixture
@@ -264,6 +174,8 @@ def test_a_buffer_that_nothing_fills_says_which_line_asks_it(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("tf2_ros.buffer.UNHEARD_S", 0.0)
+    # An observer of Deck's in this process silences all without a level of their own.
+    get_logger("tf2_buffer").set_level(LoggingSeverity.INFO)
     alone, filled = tf2_ros.Buffer(), tf2_ros.Buffer()
     filled.set_transform(transform("map", "odom"), "test")
     for each in (alone, alone, filled):

@@ -12,9 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.main import main
 from launcher.client.client import running
-from launcher.processes.table import Process, read_process
 from robot.safety.stop_file import KeptStop, StopFile
 from robot.safety.stop_record import Stop, StopRecord
 from tests.deck_process import DeckProcess, alive, deck
@@ -95,24 +93,6 @@ def test_where_only_the_supervisor_hangs_ps_names_the_nodes_and_down_ends_them(
     assert not any(map(alive, pids.values()))
 
 
-def test_down_does_not_say_stopped_of_what_still_runs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """As if a process of the session could not be killed, which takes a broken device."""
-    left = read_process(os.getpid())
-    assert left is not None
-
-    async def outliving(_run_id: str) -> list[Process]:
-        return [left]
-
-    monkeypatch.setattr("launcher.client.client.left_behind", outliving)
-    deck("up", str(written(tmp_path, ONE, "one.yaml")))
-    assert main(["down"]) == 1
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert told.err == f"the session has ended, these have not: {left.pid} ({left.name})\n"
-
-
 def test_a_stop_that_is_remembered_is_told_with_the_way_to_release_it(
     tmp_path: Path, ros_domain: int
 ) -> None:
@@ -134,36 +114,7 @@ def test_a_stop_that_is_remembered_is_told_with_the_way_to_release_it(
     assert session["emergency_stop"] is False
 
 
-def test_logs_follow_without_a_gap_until_ctrl_c(tmp_path: Path) -> None:
-    deck("up", str(written(tmp_path, ONE, "one.yaml")))
-    logs = DeckProcess("logs", "ticker", "-f", "-n", "2")
-    wait_until(lambda: len(logs.lines) > 12, "ten lines more")
-    logs.signal(signal.SIGINT)
-    assert logs.finish() == 130
-    assert logs.errors == []
-    numbers = [int(line.split()[-1]) for line in logs.lines if "tick" in line]
-    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
-
-
-@pytest.mark.parametrize(
-    ("killed", "end"),
-    [(False, (0, ["ended from elsewhere"])), (True, (1, ["the supervisor is gone"]))],
-)
-def test_logs_that_follow_say_why_they_end(
-    tmp_path: Path, killed: bool, end: tuple[int, list[str]]
-) -> None:
-    deck("up", str(written(tmp_path, ONE, "one.yaml")))
-    logs = DeckProcess("logs", "ticker", "-f")
-    wait_until(lambda: logs.lines, "a line")
-    if killed:
-        os.kill(running()[0].supervisor_pid, signal.SIGKILL)
-    else:
-        deck("down")
-    code = logs.finish()
-    assert (code, [line.partition(":")[0] for line in logs.errors]) == end
-
-
-@pytest.mark.parametrize("words", [["ps"], ["logs"], ["logs", "-f"], ["down"]])
+@pytest.mark.parametrize("words", [["logs", "-f"], ["down"]])
 def test_a_command_whose_supervisor_is_killed_meanwhile_says_so(
     tmp_path: Path, words: list[str]
 ) -> None:
@@ -196,19 +147,6 @@ def is_connected(pid: int) -> bool:
     return len([link for link in links if link[len("socket:[") : -1] in connected]) > 2
 
 
-def test_up_says_what_did_not_come_up(tmp_path: Path) -> None:
-    path = written(
-        tmp_path,
-        'nodes: {bad: {exec: [sh, -c, "echo oh; exit 4"], ready: {topic: /never}}}',
-        "bad.yaml",
-    )
-    up = deck("up", str(path))
-    assert up.process.returncode == 1
-    assert "bad   failed" in up.lines[2]
-    assert "exit code 4: oh" in up.lines[2]
-    assert up.errors[0].startswith("some nodes are not healthy; `deck logs NODE`")
-
-
 def test_two_at_once_are_told_apart_by_name(tmp_path: Path, other_domain: int) -> None:
     deck("up", str(written(tmp_path, ONE, "one.yaml")))
     deck("up", str(written(tmp_path, TWO, "two.yaml")), "--domain", str(other_domain))
@@ -236,37 +174,3 @@ def test_a_second_one_in_the_same_domain_is_refused_where_the_two_collide(
         assert f"one is already running in domain {ros_domain}" in second.errors[0]
         assert re.search(r"`--domain \d+` starts another beside it", second.errors[0])
     assert [session.name for session in running()] == ["one"]
-
-
-def test_two_that_drive_are_not_started_in_one_domain(ros_domain: int) -> None:
-    assert deck("up", "04-ackermann").process.returncode == 0
-    second = deck("up", "03b-drive-to-point")
-    assert second.process.returncode == 2
-    assert f"04-ackermann is already running in domain {ros_domain}" in second.errors[0]
-
-
-def test_a_second_one_that_only_hears_the_first_is_told_of_it(
-    tmp_path: Path, ros_domain: int
-) -> None:
-    deck("up", str(written(tmp_path, ONE, "one.yaml")))
-    (first,) = running()
-    alone = "nodes: {alone: {exec: [sleep, 100]}}"
-    second = deck("up", str(written(tmp_path, alone, "alone.yaml")))
-    assert second.process.returncode == 0
-    assert f"in domain {ros_domain} there is already one: " in second.errors[0]
-    assert f"supervisor {first.supervisor_pid}" in second.errors[0]
-    assert re.search(r"`--domain \d+` is free", second.errors[0])
-    assert [session.name for session in running()] == ["one", "alone"]
-
-
-def test_what_runs_is_named_as_it_was_to_start_it(tmp_path: Path) -> None:
-    path = str(written(tmp_path, ONE, "71-one.yaml"))
-    elsewhere = str(written(tmp_path, TWO, "72-two.yaml"))
-    for name in ("71", "71-one", path, "71-o"):
-        deck("up", path)
-        assert deck("logs", "quiet", "--profile", name, "-n", "0").process.returncode == 0
-        for other in ("72", elsewhere):
-            missing = deck("down", other)
-            assert missing.process.returncode == 1
-            assert missing.errors == [f"{other!r} is not running; running: 71-one"]
-        assert deck("down", name).lines == ["71-one stopped, 2 nodes"]

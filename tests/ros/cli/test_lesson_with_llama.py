@@ -51,10 +51,7 @@ class Lesson:
 
 @pytest.fixture
 def lesson(
-    request: pytest.FixtureRequest,
-    ros_domain: int,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    request: pytest.FixtureRequest, ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Lesson]:
     """The lesson with a model of the habits that the test names."""
     habits: Habits = request.param

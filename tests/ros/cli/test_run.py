@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import signal
 import subprocess
 import sys
 import time
-from functools import partial
 from pathlib import Path
 
 import psutil
 import pytest
 
-from launcher.client.client import running
 from tests.deck_process import DeckProcess, alive, deck
 from tests.unit.profile_files import written
 from tests.waiting import DEADLINE_S, wait_until
@@ -47,14 +44,6 @@ def test_a_lesson_runs_for_a_while_and_is_well(ros_domain: int) -> None:
     assert not any(map(alive, pids))
 
 
-def test_without_a_terminal_a_profile_alone_is_run(tmp_path: Path) -> None:
-    path = written(tmp_path, "nodes: {a: {exec: [echo, hello]}, b: {exec: [sleep, 0.2]}}")
-    run = deck(str(path))
-    assert run.process.returncode == 0
-    assert "[a]    hello" in run.lines
-    assert run.lines[-1].startswith("every node stayed healthy")
-
-
 def test_nodes_that_fail_are_named_and_the_exit_code_says_so(tmp_path: Path) -> None:
     path = written(
         tmp_path,
@@ -78,43 +67,6 @@ def test_nodes_that_fail_are_named_and_the_exit_code_says_so(tmp_path: Path) -> 
     assert "not ready within 0.5 s" in nodes["late"]["detail"]
 
 
-def test_a_node_of_ones_own_that_publishes_another_type_is_not_well(tmp_path: Path) -> None:
-    """In place of a shipped one in a shipped lesson: a slip of `Float32` and `String`."""
-    (tmp_path / "my_sonar.py").write_text(
-        """\
-import sys, rclpy
-from rclpy.executors import ExternalShutdownException
-from std_msgs.msg import String
-rclpy.init(args=sys.argv)
-node = rclpy.create_node("sonar_front")
-node.create_publisher(String, "/sensor/sonar_front", 10)
-try: rclpy.spin(node)
-except (KeyboardInterrupt, ExternalShutdownException): pass
-"""
-    )
-    path = written(
-        tmp_path,
-        """\
-        extends: 02-sonar-safety
-        nodes:
-          sonar_front:
-            run: ./my_sonar.py
-            ready: {topic: /sensor/sonar_front, type: std_msgs/msg/Float32, within: 2}
-        """,
-    )
-    words = (
-        "not ready within 2 s: /sensor/sonar_front is published as std_msgs/msg/String,"
-        " expected std_msgs/msg/Float32"
-    )
-    run = DeckProcess("run", str(path), "--json")
-    # On a busy machine nobody may publish at first when the time is up.
-    run.said(words)
-    run.signal(signal.SIGINT)
-    assert run.finish() == 1
-    nodes = {node["node"]: node for node in run.events()[-1]["nodes"]}
-    assert (nodes["sonar_front"]["healthy"], nodes["sonar_front"]["detail"]) == (False, words)
-
-
 def test_a_supervisor_that_is_killed_is_the_reason_for_programs(tmp_path: Path) -> None:
     path = written(tmp_path, "nodes: {a: {exec: [sleep, 100]}}")
     run = DeckProcess("run", str(path), "--json")
@@ -123,48 +75,6 @@ def test_a_supervisor_that_is_killed_is_the_reason_for_programs(tmp_path: Path) 
     assert run.finish() == 1
     summary = run.events()[-1]
     assert (summary["healthy"], summary["reason"]) == (False, "the supervisor is gone")
-
-
-def test_a_profile_that_runs_already_is_not_started(tmp_path: Path) -> None:
-    path = str(written(tmp_path, "nodes: {a: {exec: [sleep, 100]}}"))
-    first = DeckProcess("run", path)
-    first.said("started, pid")
-    second = deck("run", path)
-    first.signal(signal.SIGINT)
-    assert first.finish() == 0
-    assert second.process.returncode == 2
-    assert "is already running in domain" in second.errors[0]
-
-
-@pytest.mark.parametrize(
-    ("variable", "words"),
-    [("DECK_RUN_DIR", "is not a directory"), ("DECK_LOG_DIR", "cannot be created")],
-)
-def test_without_a_place_for_the_run_nothing_is_started(
-    variable: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = written(tmp_path, "nodes: {a: {exec: [sleep, 100]}}")
-    monkeypatch.setenv(variable, str(path))
-    run = deck("run", str(path))
-    assert run.process.returncode == 2
-    assert words in run.errors[0]
-
-
-def test_a_run_directory_that_takes_no_more_is_named_and_left_as_it_was(tmp_path: Path) -> None:
-    path = written(tmp_path, "nodes: {a: {exec: [sleep, 100]}}")
-    # As on a full disk, files can be made there, but nothing goes into them.
-    full = ["sh", "-c", 'ulimit -f 0; exec "$@"', "sh"]
-    run = subprocess.run(
-        [*full, sys.executable, "-m", "tui", "run", str(path)],
-        capture_output=True,
-        text=True,
-        timeout=DEADLINE_S,
-        check=False,
-    )
-    assert run.returncode == 2
-    folder = tmp_path / "run"
-    assert run.stderr == f"{folder} cannot be written: File too large\n"
-    assert not [left for left in folder.iterdir() if left.is_dir()]
 
 
 CHAIN = """\
@@ -297,58 +207,3 @@ def test_parameters_reach_the_node_with_their_types(warm: bool, tmp_path: Path) 
 
 def gone(process: psutil.Process) -> bool:
     return not alive(process.pid)
-
-
-def test_interrupting_twice_ends_a_run_whose_supervisor_hangs(tmp_path: Path) -> None:
-    path = written(tmp_path, "nodes: {a: {exec: [sh, -c, echo up; sleep 100]}}")
-    run = DeckProcess("run", str(path))
-    try:
-        run.said("[a]    up")
-        (session,) = running()
-        os.kill(session.supervisor_pid, signal.SIGSTOP)
-        run.signal(signal.SIGINT)
-        run.said("stopping")
-        run.signal(signal.SIGINT)
-        run.finish()
-        # On a busy machine what it has started may outlive it by more than 3 s; that is told then.
-        run.said(f"the supervisor (pid {session.supervisor_pid}) did not answer")
-        assert not alive(session.supervisor_pid)
-    finally:
-        run.close()
-
-
-def supervisors(owner: psutil.Process) -> list[psutil.Process]:
-    """The supervisor that it has started, once it is under its guardian."""
-    with contextlib.suppress(psutil.NoSuchProcess):
-        for child in owner.children():
-            if " ".join(child.cmdline()).startswith("deck: guardian"):
-                return child.children()
-    return []
-
-
-def hears_hangups(pid: int) -> bool:
-    """Whether a process has a handler of its own for SIGHUP, as no Python has by itself."""
-    status = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
-    caught = int(status.partition("SigCgt:")[2].split()[0], 16)
-    return bool(caught >> (signal.SIGHUP - 1) & 1)
-
-
-def test_interrupting_twice_ends_a_run_whose_supervisor_hangs_at_its_start(tmp_path: Path) -> None:
-    # More than a pipe holds.
-    words = ", ".join(["x" * 1000] * 200)
-    path = written(tmp_path, f"nodes: {{a: {{exec: [sleep, 100, {words}]}}}}")
-    run = DeckProcess("run", str(path))
-    try:
-        deck_itself = psutil.Process(run.process.pid)
-        children = wait_until(lambda: supervisors(deck_itself), "the supervisor")
-        for child in children:
-            child.suspend()
-        wait_until(lambda: hears_hangups(run.process.pid), "a run that hears signals")
-        run.signal(signal.SIGINT)
-        run.said("stopping")
-        run.signal(signal.SIGINT)
-        run.finish()
-        for child in children:
-            wait_until(partial(gone, child), "the end of the supervisor")
-    finally:
-        run.close()

@@ -21,9 +21,6 @@ from tests.conftest import take
 if TYPE_CHECKING:
     from tests.domains import DomainPool
 
-FLOAT, STRING = "std_msgs/msg/Float32", "std_msgs/msg/String"
-DRIVE = "deck_interfaces/action/DriveToPoint"
-ADD = "example_interfaces/srv/AddTwoInts"
 STUBBORN = """
 import sys, time
 print("ready", flush=True)
@@ -63,173 +60,12 @@ time.sleep(0.2)  # Long enough to be discovered
 node.destroy_node()
 rclpy.shutdown()
 """
-ASKED: dict[str, Any] = {"publish": "/ask", "type": STRING, "message": {"data": "a${n}"}}
-
-PASSING: dict[str, dict[str, Any]] = {
-    "node": {"node": "/actor"},
-    "topic": {"topic": "/count", "type": FLOAT, "by": "/actor", "publishers": 1},
-    "subscription": {"subscription": "/ask", "by": "/actor", "type": STRING},
-    "rate": {"rate": "/count", "between": [9, 11], "over": 2},
-    "field-between": {"field": "/near", "type": FLOAT, "path": "data", "between": [0.2, 0.4]},
-    "field-equals": {"field": "/same", "type": FLOAT, "path": "data", "equals": 1, "messages": 3},
-    "field-changes": {"field": "/count", "type": FLOAT, "path": "data", "changes": True},
-    "qos": {"qos": "/same", "reliability": "best_effort", "durability": "volatile"},
-    "service": {
-        "service": "/add",
-        "type": ADD,
-        "request": {"a": "${n}", "b": 2},
-        "response": {"sum": "${n + 2}"},
-    },
-    "action": {"action": "/drive_to", "type": DRIVE, "result": {"reached": True}},
-    "action-cancel": {
-        "action": "/drive_to",
-        "type": DRIVE,
-        "goal": {"x": 2.0},
-        "cancel": True,
-        "feedback": "distance",
-    },
-    "action-refused": {
-        "action": "/drive_to",
-        "type": DRIVE,
-        "goal": {"x": -1.0},
-        "accepted": False,
-    },
-    "publish": {
-        **ASKED,
-        "then": [
-            {"field": "/answer", "type": STRING, "path": "data", "equals": "A${n}"},
-            {"log": "actor", "matches": "asked: a${n}", "level": "warn"},
-        ],
-    },
-    "publish-unheard": {
-        "publish": "/ask_twice",
-        "type": STRING,
-        "then": [{"field": "/second", "type": STRING, "path": "data", "equals": "yes"}],
-    },
-    "publish-unheard-among-others": {
-        "publish": "/among",
-        "type": STRING,
-        "message": {"data": "yours"},
-        "then": [{"field": "/echo", "type": STRING, "path": "data", "equals": "yours"}],
-    },
-    "nothing": {"nothing": "/silent", "type": STRING, "for": 0.5},
-    "parameter": {
-        "parameter": "limit",
-        "of": "/actor",
-        "type": "double",
-        "value": 0.5,
-        "set": 0.7,
-        "refuses": -1.0,
-    },
-    "transform": {
-        "transform": {"from": "base", "to": "eye"},
-        "translation": [0.3, 0, 0],
-        "rotation_rpy": [0, 0, 0],
-    },
-    "log": {"log": "actor", "matches": "actor is there", "level": "info"},
-    "image": {
-        "image": "/image",
-        "width": 2,
-        "height": 1,
-        "encoding": "bgr8",
-        "changes": True,
-        "rate": [8, 12],
-    },
-    "no-publisher": {"no_publisher": "/count", "except": "/actor"},
-    "gate": {"gate": "/shut", "from": "/actor", "distance": "/near", "stop_below": 0.5, "over": 1},
-    "python": {"python": "checks.py:grows", "topics": {"/count": FLOAT}},
-    # It needs no topic: /rosout may forget, or be heard too late.
-    "python-logged": {"python": "checks.py:logs"},
-}
-
-FAILING: dict[str, tuple[dict[str, Any], str]] = {
-    "node": ({"node": "/aktor"}, "there is no node /aktor, but /actor"),
-    "node-ends": ({"node": "/flash"}, "there is no node /flash"),
-    "topic-name": (
-        {"topic": "/cuont", "type": FLOAT},
-        "nobody publishes /cuont, but /count is published",
-    ),
-    "topic-type": (
-        {"topic": "/count", "type": STRING},
-        f"/count has the type {FLOAT}, not {STRING}",
-    ),
-    "subscription": (
-        {"subscription": "/ask", "by": "/actor", "type": FLOAT},
-        "not std_msgs/msg/Float32",
-    ),
-    "rate": ({"rate": "/count", "between": [100, 200], "over": 1}, "/count comes "),
-    "field": (
-        {"field": "/near", "type": FLOAT, "path": "data", "between": [1, 2]},
-        "data of /near is 0.3",
-    ),
-    "field-changes": (
-        {"field": "/same", "type": FLOAT, "path": "data", "changes": True},
-        "data of /same is always 1",
-    ),
-    "field-path": (
-        {"field": "/near", "type": FLOAT, "path": "dato", "equals": 1},
-        "did you mean data?",
-    ),
-    "field-type": (
-        {"field": "/near", "type": STRING, "path": "data", "matches": "x"},
-        f"has the type {FLOAT}",
-    ),
-    "qos": ({"qos": "/same", "reliability": "reliable"}, "/actor: best_effort, not reliable"),
-    "service": (
-        {"service": "/add", "type": ADD, "request": {"a": 1, "b": 2}, "response": {"sum": 4}},
-        "answered {sum: 3}",
-    ),
-    "service-name": ({"service": "/ad", "type": ADD}, "there is no service /ad, but /add"),
-    "action": ({"action": "/drive_to", "type": DRIVE, "goal": {"x": -1.0}}, "ended as rejected"),
-    "publish": (
-        {**ASKED, "then": [{"field": "/answer", "type": STRING, "path": "data", "equals": "B"}]},
-        "data of /answer is A",
-    ),
-    "publish-deaf": (
-        {"publish": "/aks", "type": STRING, "then": [{"log": "actor", "matches": "x"}]},
-        "nobody subscribes to /aks, but /ask is subscribed to",
-    ),
-    "nothing": ({"nothing": "/count", "type": FLOAT, "for": 5}, "a message came on /count"),
-    "parameter": ({"parameter": "limt", "of": "/actor"}, "declares no parameter limt, but limit"),
-    "parameter-type": (
-        {"parameter": "loose", "of": "/actor", "type": "double"},
-        "loose is a integer, not a double",
-    ),
-    "parameter-refuses": ({"parameter": "loose", "of": "/actor", "refuses": -1}, "loose takes -1"),
-    "transform": (
-        {"transform": {"from": "base", "to": "eye"}, "translation": [0, 0, 0]},
-        "0.300, 0.000, 0.000",
-    ),
-    "transform-frame": ({"transform": {"from": "base", "to": "aye"}}, "the frame aye, but eye"),
-    "log": ({"log": "actor", "matches": "is there", "level": "warn"}, "as info, not as warn"),
-    "image": ({"image": "/image", "width": 640}, "width of /image is 2"),
-    "image-changes": ({"image": "/still", "changes": True}, "all pictures of /still are the same"),
-    "no-publisher": ({"no_publisher": "/count"}, "/count is published by /actor"),
-    "gate": (
-        {"gate": "/open", "from": "/actor", "distance": "/near", "stop_below": 0.5, "over": 2},
-        "/open lets 0.40 m/s through",
-    ),
-    "gate-road": (
-        {"gate": "/shut", "from": "/gate", "distance": "/near", "stop_below": 0.5, "over": 1},
-        "/shut is published by /actor",
-    ),
-    "python": ({"python": "checks.py:never"}, "drawn: "),
-    "ends-late": ({"ends": "stubborn"}, "stubborn ends with exit code 3"),
-}
-
-UNJUDGED: dict[str, tuple[dict[str, Any], str]] = {
-    "python-breaks": ({"python": "checks.py:breaks"}, "KeyError"),
-    "python-hangs": ({"python": "checks.py:hangs"}, "takes longer than"),
-    "publish-field": (
-        {
-            "publish": "/ask",
-            "type": STRING,
-            "message": {"dato": 1},
-            "then": [{"log": "actor", "matches": "x"}],
-        },
-        "dato",
-    ),
-}
+KINDS = yaml.safe_load(Path(__file__).with_name("kinds.yaml").read_text("utf-8"))
+PASSING: dict[str, dict[str, Any]] = KINDS["passing"]
+FAILING, UNJUDGED = (
+    {name: (row["check"], row["said"]) for name, row in KINDS[group].items()}
+    for group in ("failing", "unjudged")
+)
 
 
 def all_checks() -> dict[str, dict[str, Any]]:

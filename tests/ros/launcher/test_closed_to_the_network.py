@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.deck_process import DeckProcess
-from tests.e2e.terminal import Terminal
 from tests.namespaces import Machine
 from tests.waiting import wait_until
 
@@ -151,18 +150,6 @@ def test_no_process_of_deck_listens_to_a_cable(
         session.close()
 
 
-def test_the_screen_does_not_listen_to_a_cable(
-    robot: Machine, ros_domain: int, tmp_path: Path
-) -> None:
-    (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").write_text(PLANTED)
-    deck = [*robot.inside(tmp_path), sys.executable, "-m", "tui"]
-    terminal = Terminal([*deck, "watch", "--domain", str(ros_domain)], 80, 24)
-    try:
-        assert _addresses_listened_at(robot) == {"127.0.0.1"}
-    finally:
-        terminal.close()
-
-
 def _addresses_listened_at(machine: Machine) -> set[str]:
     """Wait for the first that is in the domain, and what else has been opened by then."""
     ports = wait_until(lambda: _of_a_participant(machine.listening()), "open ports", 60)
@@ -171,16 +158,3 @@ def _addresses_listened_at(machine: Machine) -> set[str]:
 
 def _of_a_participant(ports: list[str]) -> list[str]:
     return ports if len(ports) >= PORTS_OF_ONE else []
-
-
-def test_settings_of_the_users_own_are_told_of(
-    ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    own = tmp_path / "own.xml"
-    own.write_text(PLANTED)
-    monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(own))
-    session = DeckProcess("run", profile(tmp_path, "localhost"), "--domain", str(ros_domain))
-    try:
-        session.said("FASTRTPS_DEFAULT_PROFILES_FILE is set, so Deck's own Fast DDS settings", 60)
-    finally:
-        session.close()

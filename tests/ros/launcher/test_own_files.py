@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import textwrap
 from pathlib import Path
 
@@ -28,22 +27,6 @@ time.sleep(1000)
 
 def write(file: Path, text: str) -> None:
     file.write_text(textwrap.dedent(text))
-
-
-async def test_python_of_a_command_is_the_one_that_knows_rclpy(
-    start: Launch, tmp_path: Path
-) -> None:
-    """Whatever is first on PATH; the file is meant from the profile's folder."""
-    fake = tmp_path / "bin"
-    fake.mkdir()
-    (fake / "python3").write_text("#!/bin/sh\nexit 3\n")
-    (fake / "python3").chmod(0o755)
-    write(tmp_path / "own.py", WELL.format(number=1))
-    path = f"{fake}{os.pathsep}{os.environ['PATH']}"
-    client = await start({"own": {"exec": ["python3", "own.py"], "env": {"PATH": path}}})
-    assert client.nodes["own"].file == str(tmp_path / "own.py")
-    await until(lambda: client.nodes["own"].state is NodeState.RUNNING, "it runs")
-    assert await _said(client, "knows rclpy in run 1")
 
 
 async def test_a_save_restarts_it_once_and_a_syntax_error_leaves_it_running(
@@ -76,40 +59,6 @@ async def test_a_save_restarts_it_once_and_a_syntax_error_leaves_it_running(
     assert await _said(client, "in run 3")
     assert client.nodes["own"].fault is None
     assert await _starts(client, "own") == 3
-
-
-async def test_a_node_stopped_by_hand_stays_stopped(start: Launch, tmp_path: Path) -> None:
-    write(tmp_path / "own.py", WELL.format(number=1))
-    write(tmp_path / "other.py", WELL.format(number=7))
-    client = await start(
-        {"own": {"exec": ["python", "own.py"]}, "other": {"exec": ["python", "other.py"]}}
-    )
-    await until_state(client, "own", NodeState.RUNNING)
-    assert await _said(client, "in run 7", "other")
-    await client.stop("own")
-    write(tmp_path / "own.py", WELL.format(number=2))
-    write(tmp_path / "other.py", WELL.format(number=8))
-    assert await _said(client, "in run 8", "other")
-    assert client.nodes["own"].state is NodeState.EXITED
-    told = [line.text for line in await client.history("own", 500)]
-    assert not any(text.startswith("saved") for text in told), told
-
-
-async def test_a_crash_is_told_by_the_learners_own_line_and_a_save_brings_it_back(
-    start: Launch, tmp_path: Path
-) -> None:
-    file = tmp_path / "own.py"
-    write(file, "from std_msgs.msg import Float32\n\nmessage = Float32()\nmessage.data = 1\n")
-    client = await start({"own": {"run": "./own.py", "ready": {"node": "own"}}})
-    await until_state(client, "own", NodeState.FAILED)
-    fault = client.nodes["own"].fault
-    assert fault is not None
-    assert (fault.kind, fault.line) == ("crash", 4)
-    assert fault.source_line == "message.data = 1"
-    assert "write 1.0, not 1" in fault.meaning
-    assert "own.py:4" in client.nodes["own"].detail
-    write(file, WELL.format(number=5))
-    assert await _said(client, "in run 5")
 
 
 NODE = """\
@@ -201,46 +150,6 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
     assert "rclpy.spin(node) is missing" in client.nodes["spinless"].detail
     assert "main() is never called" in (await _fault(client, "uncalled")).meaning
     assert "QoS" in (await _fault(client, "hears")).meaning
-
-
-async def test_a_topic_of_another_type_is_told_until_it_is_mended(
-    start: Launch, tmp_path: Path
-) -> None:
-    """By the node of the learner's own; Deck's is right. A node that logs nothing says so, too."""
-    write(tmp_path / "hears.py", own(SUBSCRIPTION))
-    says = 'self.create_publisher(Float32, "/said", 10)'
-    wrong = own(says).replace("import String", "import Float32, String")
-    write(tmp_path / "says.py", wrong)
-    client = await start({"hears": {"run": "./hears.py"}, "says": {"run": "./says.py"}})
-    for name, here, there, other in (
-        ("says", "Float32", "String", "hears"),
-        ("hears", "String", "Float32", "says"),
-    ):
-        fault = await _fault(client, name)
-        assert (fault.kind, fault.exception) == (
-            "warning",
-            f"/said is std_msgs/msg/{here} here, and std_msgs/msg/{there} in /{other}",
-        )
-        assert "A topic has one type" in fault.meaning
-        assert await _said(client, "/said is std_msgs", name)
-    write(tmp_path / "says.py", wrong.replace("(Float32", "(String"))
-    await until(
-        lambda: not any(client.nodes[name].fault for name in ("says", "hears")), "both are well", 60
-    )
-
-
-async def test_only_what_it_imports_counts_beside_a_file(start: Launch, tmp_path: Path) -> None:
-    """An editor's lock (.#own.py) and another lesson's file do not restart it."""
-    write(tmp_path / "words.py", "number = 1\n")
-    write(tmp_path / "own.py", f"from words import number\n{WELL.format(number='number')}")
-    client = await start({"own": {"run": "./own.py", "ready": {"node": "own", "within": 60}}})
-    assert await _said(client, "in run 1")
-    write(tmp_path / ".#own.py", "x")
-    write(tmp_path / "another.py", "x")
-    # As long as before: what Python has compiled must not stay.
-    write(tmp_path / "words.py", "number = 2\n")
-    assert await _said(client, "in run 2")
-    assert await _starts(client, "own") == 2
 
 
 async def test_a_node_is_exchanged_for_ones_own_and_back(start: Launch, tmp_path: Path) -> None:

@@ -5,39 +5,21 @@ from __future__ import annotations
 import asyncio
 import json
 import stat
-import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from launcher.client.client import attach, launch, running
-from launcher.control import server as control_server
+from launcher.client.client import attach, running
 from launcher.control.protocol import VERSION
 from launcher.control.socket import connect
-from launcher.errors import (
-    AlreadyRunningError,
-    ConnectionLostError,
-    NotRunningError,
-    ProfileError,
-    ProtocolError,
-    SeveralRunningError,
-    UnknownNodeError,
-)
+from launcher.errors import AlreadyRunningError, ConnectionLostError
 from launcher.events import ClosedEvent, StatusEvent
 from launcher.rundir import run_dir
 from launcher.status import NodeState
-from tests.ros.supervised import (
-    SLEEPER,
-    Launch,
-    running_pid,
-    until_state,
-    write_profile,
-)
+from tests.ros.supervised import SLEEPER, Launch, running_pid, until_state
 from tests.waiting import until
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from launcher.client.client import SupervisorClient
 
 NODE = {"node": {"exec": SLEEPER}}
@@ -81,47 +63,6 @@ async def test_only_the_user_can_reach_it(start: Launch) -> None:
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
 
 
-CONFINED = """
-import os, sys
-from launcher.processes import system_calls
-from launcher.processes.confinement import confine
-
-# The first barrier is out of the way: this is about the second.
-system_calls._FAMILIES = (1, *system_calls._FAMILIES)
-confine([])
-from pathlib import Path
-from launcher.control.socket import connect
-try:
-    client = connect(Path(sys.argv[1]))
-    client.setblocking(True)
-    client.sendall(b'{"deck": %s}' + bytes([10]))
-    print("greeted" if client.recv(1) else "refused")
-except OSError:
-    print("refused")
-"""
-
-
-async def test_what_is_graded_cannot_reach_it(start: Launch) -> None:
-    client = await start(NODE)
-    program = CONFINED.replace("%s", str(VERSION))
-    folder = str(run_dir() / client.session.run_id)
-    graded = await asyncio.create_subprocess_exec(
-        *(sys.executable, "-c", program, folder), stdout=asyncio.subprocess.PIPE
-    )
-    out, _ = await graded.communicate()
-    assert out == b"refused\n"
-
-
-async def test_a_path_too_long_for_a_socket_is_none_for_a_session(
-    start: Launch, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.setenv("DECK_RUN_DIR", str(tmp_path / ("long" * 40)))
-    client = await start(NODE)
-    await running_pid(client, "node")
-    other = await attach()
-    await other.aclose()
-
-
 NONSENSE = [
     (b"not json", "bad_request", "JSON"),
     (b"[1, 2]", "bad_request", "object"),
@@ -155,18 +96,6 @@ async def test_nonsense_gets_an_answer_and_harms_nobody(start: Launch) -> None:
     assert await running_pid(client, "node") == pid
 
 
-async def test_a_request_of_many_megabytes_ends_the_connection_only(start: Launch) -> None:
-    client = await start(NODE)
-    bad = await raw(client)
-    await bad.hear()
-    bad.say(b'{"deck": %d}' % VERSION)
-    bad.say(b"x" * (3 << 20))
-    assert (await bad.reply()).get("error", {}).get("kind") in ("too_long", None)
-    assert await bad.reply() == {}
-    await running_pid(client, "node")
-    bad.writer.close()
-
-
 async def test_a_client_of_another_version_is_told_so(start: Launch) -> None:
     client = await start(NODE)
     old = await raw(client)
@@ -176,24 +105,6 @@ async def test_a_client_of_another_version_is_told_so(start: Launch) -> None:
     assert await old.hear() == {}
     await running_pid(client, "node")
     old.writer.close()
-
-
-async def test_a_supervisor_of_another_version_is_told_apart(
-    start: Launch, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    await start(NODE)
-    monkeypatch.setattr("launcher.client.client.VERSION", VERSION + 1)
-    with pytest.raises(ProtocolError, match="another version"):
-        await attach()
-
-
-async def test_a_client_that_says_nothing_at_all_is_no_trouble(start: Launch) -> None:
-    client = await start(NODE)
-    silent = [await raw(client) for _client in range(5)]
-    await client.restart("node")
-    await running_pid(client, "node")
-    for one in silent:
-        one.writer.close()
 
 
 @pytest.mark.parametrize("start_of_a_line", [b"", b'{"deck": '])
@@ -214,18 +125,6 @@ async def test_the_owner_attaches_past_500_connections_that_say_nothing(
     finally:
         for connection in half_open:
             connection.close()
-
-
-async def test_who_never_greets_is_let_go_of(start: Launch) -> None:
-    client = await start(NODE)
-    silent = await raw(client)
-    silent.writer.write(b'{"deck"')
-    await silent.hear()
-    # The supervisor's own clock; what it says meanwhile is of no interest here.
-    while await silent.hear():
-        pass
-    silent.writer.close()
-    await running_pid(client, "node")
 
 
 async def test_every_client_sees_what_another_does(start: Launch) -> None:
@@ -259,14 +158,6 @@ async def test_events_begin_with_what_is_and_end_with_why_it_ended(start: Launch
     await other.aclose()
 
 
-async def test_an_unknown_node_is_named(start: Launch) -> None:
-    client = await start(NODE)
-    with pytest.raises(UnknownNodeError) as caught:
-        await client.start("nod")
-    assert (caught.value.name, caught.value.known) == ("nod", ("node",))
-    await running_pid(client, "node")
-
-
 async def test_the_same_profile_is_not_started_twice_in_a_domain(
     start: Launch, ros_domain: int
 ) -> None:
@@ -276,71 +167,3 @@ async def test_the_same_profile_is_not_started_twice_in_a_domain(
     assert caught.value.session.run_id == client.session.run_id
     assert f"domain {ros_domain}" in str(caught.value)
     await start({"other": {"exec": SLEEPER}}, name="other")
-
-
-async def test_a_run_directory_that_fills_up_stops_no_node_from_starting(start: Launch) -> None:
-    client = await start(NODE)
-    before = await running_pid(client, "node")
-    # Where the record is to be written, nothing can be.
-    (run_dir() / client.session.run_id / "session.json.new").mkdir()
-    await client.restart("node")
-    await until(lambda: client.nodes["node"].pid not in (None, before), "another process")
-    await running_pid(client, "node")
-    assert any("cannot be written" in line.text for line in await client.history(None, 100))
-
-
-async def test_sessions_are_found_by_name(start: Launch) -> None:
-    with pytest.raises(NotRunningError):
-        await attach()
-    await start(NODE, name="one")
-    await start({"other": {"exec": SLEEPER}}, name="two")
-    assert [session.name for session in running()] == ["one", "two"]
-    with pytest.raises(SeveralRunningError) as several:
-        await attach()
-    assert several.value.names == ("one", "two")
-    with pytest.raises(NotRunningError):
-        await attach("three")
-    client = await attach("two")
-    assert client.session.name == "two"
-    await client.aclose()
-
-
-async def test_a_bad_profile_starts_nothing(tmp_path: Path) -> None:
-    profile = write_profile(tmp_path, {"node": {"exec": SLEEPER, "speed": 1}})
-    with pytest.raises(ProfileError):
-        await launch(profile)
-    assert running() == []
-    assert list(run_dir().glob("*/*")) == []
-
-
-async def test_nothing_is_left_of_a_session_but_its_logs(start: Launch) -> None:
-    client = await start(NODE)
-    await running_pid(client, "node")
-    await client.shutdown()
-    assert list(run_dir().glob("*/*")) == []
-
-
-def test_a_stuck_client_is_let_go_of() -> None:
-    """For as long as it is stuck it is told nothing, so that it can take no memory."""
-
-    class Transport:
-        aborted = False
-
-        def get_write_buffer_size(self) -> int:
-            return control_server.MAX_UNSENT_BYTES + 1
-
-        def abort(self) -> None:
-            self.aborted = True
-
-    class Writer:
-        transport = Transport()
-
-    now = 1000.0
-    client = control_server._Client(Writer(), None, lambda: now)  # type: ignore[arg-type]
-    assert not client.takes_more()
-    now += control_server.STUCK_S - 1
-    assert not client.takes_more()
-    assert not Writer.transport.aborted
-    now += 2
-    assert not client.takes_more()
-    assert Writer.transport.aborted

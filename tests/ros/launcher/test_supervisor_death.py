@@ -5,26 +5,15 @@ from __future__ import annotations
 import asyncio
 import json
 import signal
-import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from launcher.client.client import attach, running
-from launcher.client.start import StartingSupervisor
 from launcher.events import ClosedEvent
-from launcher.processes.table import (
-    NODE_MARK,
-    RUN_MARK,
-    command_line,
-    processes,
-    read_marks,
-    read_process,
-)
-from launcher.runs.strays import find_strays
+from launcher.processes.table import command_line, read_process
 from launcher.status import NodeState, Stray
 from tests.ros.supervised import (
     DEAF,
@@ -33,14 +22,15 @@ from tests.ros.supervised import (
     alive,
     end_sessions,
     kill,
+    of_run,
     running_pid,
     said,
     script,
+    spawn_server_of,
     until_state,
     write_profile,
 )
 from tests.waiting import until
-from text.run_path import OWN_RUN_DIR
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -60,31 +50,9 @@ time.sleep(1000)
 """
 
 
-def of_run(run_id: str) -> list[int]:
-    """Every process of a run, its spawn server too."""
-    return [
-        process.pid
-        for process in processes()
-        if not process.zombie and (read_marks(process.pid) or {}).get(RUN_MARK) == run_id
-    ]
-
-
 async def all_gone(run_id: str) -> None:
     """Wait until a run has no process left."""
     await until(lambda: not of_run(run_id), "the end of every process of the run", GONE_WITHIN_S)
-
-
-def spawn_servers_of(run_id: str) -> list[int]:
-    return [
-        pid for pid in of_run(run_id) if (read_marks(pid) or {}).get(NODE_MARK, "").startswith("--")
-    ]
-
-
-async def spawn_server_of(run_id: str) -> int:
-    (pid,) = await until(
-        lambda: len(servers := spawn_servers_of(run_id)) == 1 and servers, "one spawn server"
-    )
-    return int(pid)
 
 
 @pytest.fixture
@@ -199,48 +167,6 @@ async def test_the_death_of_the_spawn_server_harms_nobody(start: Launch) -> None
     await running_pid(client, "other")
 
 
-async def test_a_start_that_a_spawn_server_dies_over_is_not_lost(
-    start: Launch, tmp_path: Path
-) -> None:
-    (tmp_path / "plain_module.py").write_text("print('running'); import time; time.sleep(1000)")
-    client = await start({"node": {"run": "./plain_module.py", "ready": {"topic": "/never"}}})
-    # It is still importing what warm nodes need; the request waits.
-    kill(await spawn_server_of(client.session.run_id), signal.SIGKILL)
-    await said(client, "node", "running")
-    starts = [line for line in await client.history("node", 99) if "started" in line.text]
-    assert len(starts) == 1
-
-
-async def test_a_new_spawn_server_is_an_undertaker_too(start: Launch) -> None:
-    client = await start({"deaf": {"exec": script(DEAF_FAMILY)}})
-    run_id = client.session.run_id
-    await until(lambda: len(of_run(run_id)) == 4, "the deaf node and its children")
-    kill(await spawn_server_of(run_id), signal.SIGKILL)
-    await said(client, "deck", "the spawn server")
-    kill(client.session.supervisor_pid, signal.SIGKILL)
-    await all_gone(run_id)
-
-
-UNMARKED_DAEMON = """
-    import os, time
-    if os.fork() == 0:
-        os.setsid()
-        if os.fork(): os._exit(0)
-        command = "trap '' INT TERM; echo daemon $$; while :; do sleep 1; done"
-        os.execve("/bin/sh", ["sh", "-c", command], {"PATH": os.environ["PATH"]})
-    time.sleep(1000)
-"""
-
-
-async def test_a_daemon_without_a_mark_does_not_outlive_a_killed_supervisor(start: Launch) -> None:
-    """In a session of its own, nobody's child, with an empty environment, deaf to signals."""
-    client = await start({"node": {"exec": script(UNMARKED_DAEMON)}})
-    daemon = int(await said(client, "node", "daemon"))
-    kill(client.session.supervisor_pid, signal.SIGKILL)
-    await until(lambda: not alive(daemon), "the end of the daemon", GONE_WITHIN_S)
-    await all_gone(client.session.run_id)
-
-
 async def test_a_guardian_that_is_killed_is_told_of_and_ends_nothing(start: Launch) -> None:
     client = await start({"node": {"exec": SLEEPER}})
     assert not client.unguarded
@@ -255,13 +181,6 @@ async def test_a_guardian_that_is_killed_is_told_of_and_ends_nothing(start: Laun
     assert another.unguarded, "who comes later is told, too"
     await another.aclose()
     assert await running_pid(client, "node") == pid
-
-
-async def test_a_guardian_ends_with_its_supervisor(start: Launch) -> None:
-    client = await start({"node": {"exec": SLEEPER}})
-    guardian = guardian_of(client.session.supervisor_pid)
-    await client.shutdown()
-    await until(lambda: not alive(guardian), "its end")
 
 
 def guardian_of(supervisor: int) -> int:
@@ -282,7 +201,7 @@ async def test_what_an_earlier_run_left_is_told_of_and_ended_on_demand(start: La
             kill(pid, number)
     # The node itself dies with the supervisor, though on a busy machine not at the same moment.
     await until(lambda: len(of_run(run_id)) == 2, "the end of all but the node's children")
-    left = set(of_run(run_id))
+    left = {each.pid for each in of_run(run_id)}
 
     later = await start({"node": {"exec": SLEEPER}}, name="later")
 
@@ -292,62 +211,7 @@ async def test_what_an_earlier_run_left_is_told_of_and_ended_on_demand(start: La
 
     await until(lambda: {stray.pid for stray in ours()} == left, "the strays")
     assert {stray.node for stray in ours()} == {"deaf"}
-    assert left <= set(of_run(run_id)), "they are ended only on demand"
+    assert left <= {each.pid for each in of_run(run_id)}, "they are ended only on demand"
     await later.stop_strays(ours())
     assert of_run(run_id) == []
     await until(lambda: not ours(), "the word that nothing is left")
-
-
-async def test_a_process_that_has_the_number_of_a_stray_is_left_alone(start: Launch) -> None:
-    from launcher.status import Stray
-
-    client = await start({"node": {"exec": SLEEPER}})
-    bystander = await asyncio.create_subprocess_exec("sleep", "1000")
-    started = time.time() - 1000
-    await client.stop_strays([Stray(bystander.pid, started, "node", "sleep", "20200101-1-1")])
-    assert alive(bystander.pid)
-    bystander.kill()
-    await bystander.wait()
-
-
-async def test_a_running_session_has_no_strays(start: Launch) -> None:
-    one = await start({"one": {"exec": SLEEPER}}, name="one")
-    await running_pid(one, "one")
-    two = await start({"two": {"exec": SLEEPER}}, name="two")
-    await running_pid(two, "two")
-    ours = {one.session.run_id, two.session.run_id}
-    assert not [stray for stray in two.strays if stray.run_id in ours]
-    # By the second in which they began, which may be the same.
-    assert sorted(session.name for session in running()) == ["one", "two"]
-
-
-def test_strays_of_runs_that_are_kept_apart_are_nobody_elses(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(RUN_MARK, "20200101-1-1")
-    with subprocess.Popen(["sleep", "1000"]) as left:
-        try:
-            assert [stray.pid for stray in find_strays(tmp_path)] == [left.pid]
-            monkeypatch.setenv(OWN_RUN_DIR, str(tmp_path / "another"))
-            assert find_strays(tmp_path) == ()
-        finally:
-            left.kill()
-
-
-async def test_one_that_dies_before_it_is_given_a_plan_is_not_given_one() -> None:
-    """Its guardian, the process that was started, lives a moment longer."""
-    with StartingSupervisor() as starting:
-        guardian = starting._process.pid
-
-        def supervisor() -> int | None:
-            return next((one.pid for one in processes() if one.parent == guardian), None)
-
-        pid = await until(supervisor, "a supervisor")
-        place = Path(f"/proc/{guardian}/cwd")
-        await until(lambda: str(place.readlink()) == "/", "a guardian at work")
-        assert starting.waits
-        kill(guardian, signal.SIGSTOP)
-        kill(pid, signal.SIGKILL)
-        await until(lambda: not starting.waits, "no supervisor")
-        assert alive(guardian)
-        kill(guardian, signal.SIGCONT)

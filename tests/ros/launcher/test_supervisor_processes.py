@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import signal
-import sys
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -15,7 +13,6 @@ import pytest
 from launcher.processes.table import read_marks, read_process
 from launcher.status import NodeState
 from tests.ros.supervised import (
-    DEAF,
     SLEEPER,
     Launch,
     alive,
@@ -70,9 +67,7 @@ async def test_each_node_leads_a_session_and_a_group_of_its_own(start: Launch) -
 
 
 async def test_a_node_gets_its_environment_and_no_terminal(
-    start: Launch,
-    tmp_path: Path,
-    ros_domain: int,
+    start: Launch, tmp_path: Path, ros_domain: int
 ) -> None:
     text = """
         import json, os
@@ -88,16 +83,6 @@ async def test_a_node_gets_its_environment_and_no_terminal(
     assert (cwd, read) == (str(tmp_path), "")
 
 
-async def test_a_node_hears_sigint_though_whoever_started_deck_ignores_it(start: Launch) -> None:
-    text = "import signal; print('int', signal.getsignal(2) is not signal.SIG_IGN)"
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        client = await start({"node": {"exec": script(text)}})
-    finally:
-        signal.signal(signal.SIGINT, before)
-    assert await said(client, "node", "int") == "True"
-
-
 ENDS: dict[str, tuple[str, NodeState, int | None, str | None, str]] = {
     "well": ("pass", NodeState.EXITED, 0, None, "ended"),
     "code": ("raise SystemExit(3)", NodeState.FAILED, 3, None, "exit code 3"),
@@ -108,13 +93,7 @@ ENDS: dict[str, tuple[str, NodeState, int | None, str | None, str]] = {
         "SIGABRT",
         "killed by SIGABRT: dying",
     ),
-    "error": (
-        "1/0",
-        NodeState.FAILED,
-        1,
-        None,
-        "exit code 1: ZeroDivisionError: division by zero",
-    ),
+    "error": ("1/0", NodeState.FAILED, 1, None, "exit code 1: ZeroDivisionError: division by zero"),
 }
 """What a node does, and how that is told."""
 
@@ -125,26 +104,6 @@ async def test_how_a_node_ended_is_told(start: Launch) -> None:
         status = await until_state(client, name, NodeState.EXITED, NodeState.FAILED)
         assert (status.state, status.exit_code, status.signal) == (state, code, number)
         assert (status.detail, status.pid) == (detail, None)
-
-
-async def test_a_warm_node_that_had_threads_ends_with_its_own_code(
-    start: Launch, tmp_path: Path
-) -> None:
-    # So many at once that the stacks of threads which the fork left behind are given back.
-    (tmp_path / "threads.py").write_text(
-        "import threading\n"
-        "barrier = threading.Barrier(13)\n"
-        "threads = [threading.Thread(target=barrier.wait) for _ in range(12)]\n"
-        "for thread in threads: thread.start()\n"
-        "barrier.wait()\n"
-        "for thread in threads: thread.join()\n"
-        "print('last word', end='')\n"
-        "raise SystemExit(3)\n"
-    )
-    client = await start({"node": {"run": "./threads.py", "ready": {"node": "x"}}})
-    status = await until_state(client, "node", NodeState.EXITED, NodeState.FAILED)
-    assert (status.exit_code, status.signal) == (3, None)
-    assert "last word" in [line.text for line in await client.history("node", 5)]
 
 
 async def test_a_node_that_is_interrupted_while_it_starts_ends_without_a_word(
@@ -160,29 +119,6 @@ async def test_a_node_that_is_interrupted_while_it_starts_ends_without_a_word(
     assert "Traceback" not in text
 
 
-async def test_a_file_of_the_users_own_is_interrupted_as_python_has_it(
-    start: Launch, tmp_path: Path
-) -> None:
-    (tmp_path / "mine.py").write_text(
-        "import signal\n"
-        "print('python', signal.getsignal(signal.SIGINT) is signal.default_int_handler)\n"
-    )
-    client = await start({"theirs": {"run": "nodes.hello"}, "mine": {"run": "./mine.py"}})
-    assert await said(client, "mine", "python") == "True"
-
-
-async def test_a_warm_node_collects_its_garbage(start: Launch, tmp_path: Path) -> None:
-    (tmp_path / "garbage.py").write_text("import gc; print('collects', gc.isenabled())\n")
-    client = await start({"node": {"run": "./garbage.py", "ready": {"node": "x"}}})
-    assert await said(client, "node", "collects") == "True"
-
-
-async def test_a_command_that_does_not_exist_fails_at_once(start: Launch) -> None:
-    client = await start({"node": {"exec": ["no-such-program-1"], "restart": "always"}})
-    status = await until_state(client, "node", NodeState.FAILED)
-    assert status.detail == "no-such-program-1 is not installed"
-
-
 async def test_a_killed_node_returns(start: Launch) -> None:
     client = await start({"node": {"exec": SLEEPER, "restart": "on-failure"}})
     first = await running_pid(client, "node")
@@ -192,25 +128,6 @@ async def test_a_killed_node_returns(start: Launch) -> None:
     second = await running_pid(client, "node")
     assert second != first
     assert client.nodes["node"].restarts == 1
-
-
-def has_restarted(client: SupervisorClient, times: int) -> bool:
-    return client.nodes["node"].restarts >= times
-
-
-async def test_a_crash_loop_is_given_up(start: Launch) -> None:
-    client = await start(
-        {"node": {"exec": script("raise SystemExit('no port')"), "restart": "always"}}
-    )
-    for crash in range(4):
-        # Starting it by hand skips the backoff, it does not forget the crashes.
-        await until(partial(has_restarted, client, crash), "another try")
-        await until_state(client, "node", NodeState.BACKOFF, NodeState.FAILED)
-        await client.start("node")
-    status = await until_state(client, "node", NodeState.FAILED)
-    assert status.restarts == 4
-    assert status.detail.startswith("given up after 5 exits in ")
-    assert status.detail.endswith("exit code 1: no port")
 
 
 async def test_restarts_at_the_same_time_start_one_process(start: Launch, tmp_path: Path) -> None:
@@ -224,16 +141,6 @@ async def test_restarts_at_the_same_time_start_one_process(start: Launch, tmp_pa
     await until(lambda: len(starts.read_text()) == 2, "the second start")
     await client.stop("node")
     assert starts.read_text() == "xx"
-
-
-async def test_a_stop_is_not_undone(start: Launch) -> None:
-    client = await start({"node": {"exec": SLEEPER, "restart": "always"}})
-    pid = await running_pid(client, "node")
-    await client.stop("node")
-    assert client.nodes["node"].state is NodeState.EXITED
-    assert not alive(pid)
-    await asyncio.sleep(1.5)  # Longer than the first backoff.
-    assert client.nodes["node"].state is NodeState.EXITED
 
 
 WAYS = {"group": "", "session": "session", "daemon": "session twice"}
@@ -261,17 +168,6 @@ async def test_a_deaf_grandchild_is_ended_with_its_node(start: Launch) -> None:
     for name, pid in grandchildren.items():
         assert client.nodes[name].state is NodeState.EXITED
         assert not alive(pid)
-
-
-async def test_asking_twice_is_asking_in_a_hurry(start: Launch) -> None:
-    client = await start({"node": {"exec": script(DEAF + "print('deaf'); time.sleep(1000)")}})
-    await said(client, "node", "deaf")
-    first = asyncio.ensure_future(client.stop("node"))
-    await until(lambda: client.nodes["node"].detail, "the word who holds it up")
-    began = asyncio.get_running_loop().time()
-    await client.stop("node")
-    await first
-    assert asyncio.get_running_loop().time() - began < 4
 
 
 async def test_what_a_crashed_node_leaves_is_ended_before_it_returns(start: Launch) -> None:
@@ -309,12 +205,6 @@ async def robot(start: Launch, tmp_path: Path) -> tuple[SupervisorClient, Path]:
     return client, notes
 
 
-async def test_dependants_are_stopped_first(robot: tuple[SupervisorClient, Path]) -> None:
-    client, notes = robot
-    await client.stop()
-    assert notes.read_text().splitlines()[3:] == ["down brain", "down safety", "down sonar"]
-
-
 async def test_a_restart_of_all_stops_dependants_first_and_starts_them_again(
     robot: tuple[SupervisorClient, Path],
 ) -> None:
@@ -327,27 +217,6 @@ async def test_a_restart_of_all_stops_dependants_first_and_starts_them_again(
     assert len(order) == 6
 
 
-async def test_who_is_stopped_during_a_restart_of_all_stays_stopped(
-    robot: tuple[SupervisorClient, Path],
-) -> None:
-    client, notes = robot
-    await client.restart()
-    await client.stop("brain")
-    await until(lambda: notes.read_text().count("up") == 5, "the others are up again")
-    assert client.nodes["brain"].state is NodeState.EXITED
-
-
-async def test_starting_a_node_starts_what_it_needs(start: Launch) -> None:
-    client = await start(
-        {"brain": {"exec": SLEEPER, "needs": ["sonar"]}, "sonar": {"exec": SLEEPER}}
-    )
-    await running_pid(client, "brain")
-    await client.stop()
-    await client.start("brain")
-    await running_pid(client, "brain")
-    await running_pid(client, "sonar")
-
-
 async def test_a_suspended_node_can_be_stopped(start: Launch) -> None:
     # One that is still starting may lose the first signal.
     client = await start({"node": {"exec": script("print('up'); import time; time.sleep(1000)")}})
@@ -355,20 +224,6 @@ async def test_a_suspended_node_can_be_stopped(start: Launch) -> None:
     kill(await running_pid(client, "node"), signal.SIGSTOP)
     await client.stop("node")
     assert client.nodes["node"].signal == "SIGINT", "it took no stronger signal"
-
-
-async def test_what_a_node_costs_is_that_of_its_whole_group(start: Launch) -> None:
-    """And not that of a wrapper which only waits for the work to be done."""
-    work = "x = bytearray(30_000_000)\nwhile True: pass"
-    wrapper = (
-        f"import subprocess, sys; subprocess.run([sys.executable, '-I', '-S', '-c', {work!r}])"
-    )
-    client = await start({"node": {"exec": script(wrapper)}})
-    status = await until(
-        lambda: (client.nodes["node"].cpu_percent or 0) > 15 and client.nodes["node"], "its load"
-    )
-    assert (status.memory_bytes or 0) > 30_000_000
-    assert (status.uptime_s or 0) > 0
 
 
 async def test_what_eludes_every_search_ends_with_the_session(start: Launch) -> None:
@@ -387,11 +242,3 @@ async def test_what_eludes_every_search_ends_with_the_session(start: Launch) -> 
     daemon = int(await said(client, "node", "daemon"))
     await client.shutdown()
     assert not alive(daemon)
-
-
-def test_this_python_can_ask_for_the_parents_death() -> None:
-    """The tests above mean nothing where /proc does not tell of processes."""
-    assert sys.platform == "linux"
-    process = read_process(os.getpid())
-    assert process is not None
-    assert process.parent == os.getppid()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
 import re
 import signal
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from launcher.processes.shared_memory import SHARED_MEMORY, held_segments, port_numbers, sweep
+from launcher.processes.shared_memory import SHARED_MEMORY, held_segments, port_numbers
 from launcher.processes.table import (
     NODE_MARK,
     RUN_MARK,
@@ -24,20 +23,10 @@ from launcher.processes.table import (
 from launcher.processes.usage import proportional_memory
 from launcher.status import NodeState, Severity
 from tests.domains import domain_of
-from tests.ros.supervised import (
-    SLEEPER,
-    Launch,
-    alive,
-    kill,
-    running_pid,
-    said,
-    until_state,
-)
+from tests.ros.supervised import SLEEPER, Launch, alive, kill, running_pid, said, until_state
 from tests.waiting import until
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from launcher.client.client import SupervisorClient
 
 TALKER = """
@@ -148,80 +137,6 @@ async def test_a_warm_node_is_a_process_of_its_own_in_every_respect(
     assert alive(pids[1])
 
 
-async def test_how_a_warm_node_ends_is_told_as_of_any_other(start: Launch, tmp_path: Path) -> None:
-    client = await start(
-        {
-            "code": module(tmp_path, "leaves", "import sys; print('bye', end=''); sys.exit(7)"),
-            "word": module(tmp_path, "complains", "import sys; sys.exit('no such port')"),
-            "error": module(tmp_path, "fails", "def f(): return 1 / 0\nf()"),
-            "hook": module(tmp_path, "tidies", "import atexit; atexit.register(print, 'tidied')"),
-            "abort": module(tmp_path, "aborts", "import os; os.abort()"),
-        }
-    )
-    ends = {}
-    for name in client.nodes:
-        status = await until_state(client, name, NodeState.EXITED, NodeState.FAILED)
-        ends[name] = (status.exit_code, status.signal)
-    assert ends == {
-        "code": (7, None),
-        "word": (1, None),
-        "error": (1, None),
-        "hook": (0, None),
-        "abort": (None, "SIGABRT"),
-    }
-    assert "bye" in [line.text for line in await client.history("code", 9)]
-    assert "tidied" in [line.text for line in await client.history("hook", 9)]
-    assert client.nodes["word"].detail == "exit code 1: no such port"
-    lines = [line.text for line in await client.history("error", 99) if line.source == "stderr"]
-    assert lines[0] == "Traceback (most recent call last):"
-    assert lines[1].endswith('fails.py", line 2, in <module>'), "no frame of the launcher's"
-    assert lines[-1] == "ZeroDivisionError: division by zero"
-
-
-async def test_a_warm_node_runs_the_file_as_it_is_now(start: Launch, tmp_path: Path) -> None:
-    node = module(tmp_path, "edited", "print('before'); import time; time.sleep(1000)")
-    client = await start({"node": {**node, "ready": {"topic": "never"}}})
-    await said(client, "node", "before")
-    # Of another length: Python takes a file of the same second and length for the same.
-    module(tmp_path, "edited", "print('after that'); import time; time.sleep(1000)")
-    await client.restart("node")
-    await said(client, "node", "after that")
-
-
-async def test_a_cold_node_is_the_same_but_started_as_any_program(
-    start: Launch, tmp_path: Path
-) -> None:
-    talker = module(tmp_path, "talker_module", TALKER)
-    client = await start(
-        {"cold": {**talker, "warm": False}, "env": {**talker, "env": {"PYTHONHASHSEED": "1"}}}
-    )
-    for name in client.nodes:
-        status = await until_state(client, name, NodeState.READY)
-        assert status.pid is not None
-        assert "/launcher/node_program.py " in command_line(status.pid)
-
-
-async def test_a_node_that_is_late_says_so_and_becomes_ready_all_the_same(
-    start: Launch, tmp_path: Path
-) -> None:
-    talker = module(tmp_path, "talker_module", TALKER)
-    client = await start(
-        {
-            "late": {
-                **talker,
-                "params": {"delay": 2.0},
-                "ready": {"topic": "/said", "within": 0.5},
-            },
-            "eager": {"exec": SLEEPER, "needs": ["late"]},
-        }
-    )
-    status = await until_state(client, "late", NodeState.RUNNING)
-    assert status.detail == "not ready within 0.5 s: nobody publishes /said"
-    assert client.nodes["eager"].detail == "waiting for late (not ready)"
-    await until_state(client, "late", NodeState.READY)
-    await running_pid(client, "eager")
-
-
 async def test_a_topic_of_another_type_or_too_seldom_is_not_what_was_promised(
     start: Launch, tmp_path: Path
 ) -> None:
@@ -254,20 +169,6 @@ async def test_a_topic_of_another_type_or_too_seldom_is_not_what_was_promised(
     assert client.nodes["seldom"].detail.endswith("expected 500 Hz")
 
 
-async def test_a_node_that_never_gets_ready_leaves_others_waiting_till_started_by_hand(
-    start: Launch,
-) -> None:
-    client = await start(
-        {
-            "mute": {"exec": SLEEPER, "ready": {"topic": "/said", "within": 0.3}},
-            "eager": {"exec": SLEEPER, "needs": ["mute"]},
-        }
-    )
-    await until(lambda: "(not ready)" in client.nodes["eager"].detail, "the reason")
-    await client.start("eager")
-    await running_pid(client, "eager")
-
-
 async def test_a_probe_that_nobody_can_reach_is_replaced(start: Launch, tmp_path: Path) -> None:
     """Fast DDS sometimes removes the memory that names of nodes are sent to, while it is in use."""
     client = await start(
@@ -289,29 +190,6 @@ async def test_a_probe_that_nobody_can_reach_is_replaced(start: Launch, tmp_path
     await until_state(client, "node", NodeState.READY)
 
 
-async def test_a_killed_node_is_not_ready_before_it_really_is(
-    start: Launch, tmp_path: Path
-) -> None:
-    """Who has seen it alive sees it in the graph for seconds after its death."""
-    talker = module(tmp_path, "talker_module", TALKER)
-    client = await start(
-        {
-            "node": {**talker, "restart": "on-failure"},
-            # It keeps a probe alive that has seen the node.
-            "mute": {"exec": SLEEPER, "ready": {"topic": "/never", "within": 60}},
-        }
-    )
-    status = await until_state(client, "node", NodeState.READY)
-    assert status.pid is not None
-    # What is started instead never makes a node.
-    module(tmp_path, "talker_module", "import time; time.sleep(1000)")
-    kill(status.pid, signal.SIGKILL)
-    await until_state(client, "node", NodeState.BACKOFF)
-    await until_state(client, "node", NodeState.STARTING)
-    await asyncio.sleep(2)
-    assert client.nodes["node"].state is NodeState.STARTING
-
-
 @pytest.mark.cold
 async def test_where_rclpy_is_missing_nodes_run_and_nobody_waits_for_ever(
     start: Launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -328,18 +206,6 @@ async def test_where_rclpy_is_missing_nodes_run_and_nobody_waits_for_ever(
     await running_pid(client, "other")
 
 
-async def test_what_the_middleware_prints_keeps_no_node_from_being_ready(
-    start: Launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Fast DDS prints its errors to stdout, for example when two processes want one port."""
-    faulty = tmp_path / "faulty.xml"
-    faulty.write_text("<profiles><nonsense/></profiles>")
-    monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(faulty))
-    client = await start({"node": module(tmp_path, "talker_module", TALKER)})
-    await until_state(client, "node", NodeState.READY)
-    assert any("XMLPARSER" in line.text for line in await client.history("node", 1000))
-
-
 def _python_path() -> list[str]:
     before = os.environ.get("PYTHONPATH")
     return [before] if before else []
@@ -349,30 +215,10 @@ def is_of_domain(segment: str, domain: int) -> bool:
     return all(domain_of(number) == domain for number in port_numbers([segment]))
 
 
-@pytest.fixture
-def anothers_file(ros_domain: int) -> Iterator[None]:
-    """In place of the lowest port, what nobody can open here, as if another user had left it."""
-    left = SHARED_MEMORY / f"fastrtps_port{7400 + 250 * ros_domain + 11}"
-    sweep([left.name])
-    if left.exists():
-        yield  # It is another user's indeed.
-        return
-    left.mkdir()
-    yield
-    left.rmdir()
-
-
 async def test_a_killed_nodes_shared_memory_is_given_back_and_its_port_is_nobodys(
     start: Launch, tmp_path: Path, ros_domain: int
 ) -> None:
     """Who has talked to it would go on talking to it, and not to a newcomer on its port."""
-    await check_ports_of_killed(start, tmp_path, ros_domain)
-
-
-@pytest.mark.usefixtures("anothers_file")
-async def test_it_is_nobodys_where_files_of_another_user_shift_the_ports(
-    start: Launch, tmp_path: Path, ros_domain: int
-) -> None:
     await check_ports_of_killed(start, tmp_path, ros_domain)
 
 

@@ -6,12 +6,10 @@ import os
 import stat
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from launcher.client.client import running
 from launcher.rundir import run_dir
 from tests.ros.supervised import SLEEPER, Launch, running_pid, script, start
 from tests.waiting import DEADLINE_S, until
@@ -37,11 +35,6 @@ def deck(*words: str, **environ: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def is_over(run_id: str) -> Callable[[], bool]:
-    """Whether a session has ended and is tidied up."""
-    return lambda: all(session.run_id != run_id for session in running())
-
-
 async def test_folders_of_a_person_among_the_logs_stay(start: Launch, tmp_path: Path) -> None:
     """Fifteen of them, some called as a run is: of twelve runs only Deck's own oldest go."""
     logs = tmp_path / "logs" / "test"
@@ -58,18 +51,6 @@ async def test_folders_of_a_person_among_the_logs_stay(start: Launch, tmp_path: 
         await client.shutdown(now=True)
     assert [path for path in before if not path.is_symlink() and not list(path.iterdir())] == []
     assert [path for path in before if not path.exists()] == []
-
-
-def test_a_run_directory_is_neither_made_nor_changed_by_looking(tmp_path: Path) -> None:
-    home = tmp_path / "home"
-    home.mkdir()
-    home.chmod(0o755)
-    for folder in (home, tmp_path / "none" / "deck"):
-        for command in (("ps",), ("down",), ("logs", "node")):
-            deck(*command, DECK_RUN_DIR=str(folder))
-    assert mode(home) == 0o755
-    assert list(home.iterdir()) == []
-    assert not (tmp_path / "none").exists()
 
 
 async def test_a_folder_of_the_users_own_serves_as_run_directory_and_stays_as_it_is(

@@ -8,23 +8,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from ackermann_msgs.msg import AckermannDriveStamped
 from sensor_msgs.msg import JointState
-from std_msgs.msg import ByteMultiArray, Float32, String
+from std_msgs.msg import ByteMultiArray, String
 
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
-from tests.waiting import comes, wait_until
+from tests.waiting import wait_until
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-pytestmark = pytest.mark.nightly
-
-
-AHEAD = {
-    "nan": "with the voice, no picture and no valid distance straight ahead",
-    "inf": "nothing in range ahead",
-    "-inf": "something too close to measure ahead",
-}
+    pass
 
 
 def voice(sound: bytes) -> ByteMultiArray:
@@ -37,53 +28,6 @@ def text(message: ByteMultiArray) -> str:
 
 def wait_for(heard: list[Any], what: str) -> Any:
     return wait_until(lambda: heard and heard[0], what)
-
-
-class Brain:
-    """The brain in a process of its own; the test is everything around it."""
-
-    def __init__(self, domain: int, lang: str = "en") -> None:
-        self.process = NodeProcess(
-            "nodes.ai_brain", domain, lang=lang, params={"stale_after_s": 60.0}
-        )
-        self.peer = Peer(domain)
-        self.commands = self.peer.hear("/ai_command", String)
-        self.spoken = self.peer.hear("/audio/speaker_raw", ByteMultiArray)
-        wait_until(self._answers, "an answer")
-
-    def close(self) -> None:
-        self.peer.close()
-        self.process.close()
-
-    def see(self, distance: float) -> None:
-        """Let it know the distance for sure: it tells it with its next thought."""
-        self.peer.say("/sensor/sonar_front", Float32(data=distance))
-        shown = AHEAD.get(str(distance), f"{distance:.2f} m ahead")
-        wait_until(lambda: self._answers() and shown in self.process.output, shown)
-
-    def _answers(self) -> bool:
-        """Say a word, one at a time: more might not wait; whether it knows yet who listens."""
-        self.commands.clear()
-        self.spoken.clear()
-        before = self.process.output.count("Decision: ")
-        self.peer.say("/audio/mic_raw", voice(b"stop"))
-        wait_until(lambda: self.process.output.count("Decision: ") > before, "a decision")
-        return comes(lambda: self.commands and self.spoken, within_s=1.0)
-
-    def hear(self, sound: bytes) -> tuple[str, str]:
-        """Say something to it; the word for the driver and the reply come back."""
-        self.commands.clear()
-        self.spoken.clear()
-        self.peer.say("/audio/mic_raw", voice(sound))
-        reply = text(wait_for(self.spoken, "a reply"))
-        return wait_for(self.commands, "/ai_command").data, reply
-
-
-@pytest.fixture
-def brain(ros_domain: int) -> Iterator[Brain]:
-    brain = Brain(ros_domain)
-    yield brain
-    brain.close()
 
 
 def test_a_voice_sets_the_whole_robot_in_motion(ros_domain: int) -> None:
@@ -127,66 +71,3 @@ def test_a_voice_sets_the_whole_robot_in_motion(ros_domain: int) -> None:
     finally:
         for node in started:
             node.close()
-
-
-def test_an_obstacle_or_a_broken_sonar_means_stop(brain: Brain) -> None:
-    for distance in (0.99, 0.0, math.nan, -math.inf):
-        brain.see(distance)
-        command, reply = brain.hear(b"VOICE_COMMAND: go")
-        assert command == "стоп", distance
-        assert "I stand still" in reply
-
-
-def test_without_a_sonar_it_does_not_drive(brain: Brain) -> None:
-    command, reply = brain.hear(b"VOICE_COMMAND: go")
-    assert command == "стоп"
-    assert "cannot see" in reply
-
-
-def test_with_a_free_way_and_no_head_it_drives_and_tells_what_is_missing(brain: Brain) -> None:
-    brain.see(math.inf)
-    command, reply = brain.hear(b"VOICE_COMMAND: go")
-    assert command == "вперед"
-    assert "drive on" in reply
-    brain.process.wait_for_words("[WARN]", "set_head_position is not there")
-
-
-def test_a_word_that_drives_is_obeyed_if_it_is_safe(brain: Brain) -> None:
-    for distance, said, command in (
-        (2.0, "left", "налево"),
-        (2.1, "Вперёд!", "вперед"),
-        (0.3, "forward", "стоп"),
-        (0.4, "назад", "назад"),
-        (2.2, "stop", "стоп"),
-    ):
-        brain.see(distance)
-        assert brain.hear(said.encode())[0] == command, (distance, said)
-
-
-def test_sound_that_is_no_words_is_no_wish(brain: Brain) -> None:
-    brain.see(3.0)
-    brain.commands.clear()
-    for sound in (b"\xff\xfe\x00\x80", b"\xd0", bytes(3200), bytes(range(256)) * 40):
-        brain.peer.say("/audio/mic_raw", voice(sound))
-    brain.peer.say("/audio/mic_raw", voice(b"left"))
-    assert wait_for(brain.commands, "/ai_command").data == "налево"
-    assert len(brain.commands) == 1
-
-
-def test_recognised_words_count_if_they_are_said_to_the_robot(brain: Brain) -> None:
-    answers = brain.peer.hear("/say", String)
-    brain.see(3.0)
-    brain.commands.clear()
-    answers.clear()
-    for words in ("turn left", "look around", "the robot is on the table", ""):
-        brain.peer.say("/audio/heard", String(data=words))
-    brain.peer.say("/audio/heard", String(data="Robot, turn right!"))
-    wait_until(lambda: answers, "an answer")
-    assert [message.data for message in brain.commands] == ["направо"]
-    assert [message.data for message in answers] == ["As you say."]
-    assert 'Heard "turn left", which is not a command for me' in brain.process.output
-    assert brain.process.process.poll() is None
-
-
-def test_an_empty_message_is_heard_without_harm(brain: Brain) -> None:
-    assert brain.hear(b"")[0] == "стоп"

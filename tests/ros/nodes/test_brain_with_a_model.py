@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import threading
 from typing import TYPE_CHECKING, Any
 
@@ -130,15 +129,6 @@ def test_what_was_heard_becomes_motion_and_words(robot: Robot) -> None:
     robot.brain.wait_for_words('The model thinks: "clear" (1 commands)', "m-1: 120 + 40 tokens")
 
 
-def test_the_talk_is_remembered(robot: Robot) -> None:
-    robot.hear("my name is Ada")
-    wait_until(lambda: 0.3 in robot.speeds(), "the first answer")
-    wait_until(lambda: _asks(robot, "what is my name?"), "the second question")
-    said = [message["content"] for message in robot.server.exchanges[-1].request["messages"]]
-    assert any("my name is Ada" in words for words in said)
-    assert GO in said
-
-
 def breaks(exchange: Exchange) -> None:
     exchange.begins()
     exchange.piece({"content": GO[:40]})
@@ -186,22 +176,6 @@ def test_whatever_a_server_does_wrong_the_robot_stands(
     assert set(robot.speeds()) == {0.0}
 
 
-def test_a_server_that_says_nothing_is_not_waited_for(robot: Robot) -> None:
-    """Silence ends with its limit; the newest words take the place of those that wait."""
-
-    def silent(exchange: Exchange) -> None:
-        exchange.begins()
-        robot.server.closing.wait(20)
-
-    robot.server.script = silent
-    wait_until(lambda: _fails(robot), "the end of patience")
-    assert robot.state["fault"] == "timeout"
-    robot.hear("nobody hears this")
-    wait_until(lambda: "thinks" in robot.state["words"], "the question that gets no answer")
-    robot.server.script = obeys(GO)
-    wait_until(lambda: _asks(robot, "go on") and 0.3 in robot.speeds(), "the newer answer")
-
-
 @pytest.mark.parametrize("said", ["stop", "Стоп, машина!", "emergency stop", "stop of another"])
 def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
     """Neither the word nor the emergency stop; what the model answers afterwards is not done."""
@@ -236,90 +210,6 @@ def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
             lambda: _asks(robot, "and now?") and robot.said("Another one"), "the next answer"
         )
     assert not any(robot.speeds())
-
-
-@pytest.mark.parametrize("wish", ["sent", "auto"])
-def test_a_picture_goes_along_if_a_model_sees(
-    ros_domain: int, model_folder: Path, server: ModelServer, wish: str
-) -> None:
-    """By default only to a `vision_model`, which then thinks as well."""
-    write_settings(
-        model_folder, server.url, **({"vision_model": "m-sees"} if wish == "auto" else {})
-    )
-    robot = Robot(ros_domain, server, picture=wish)
-    camera = NodeProcess("nodes.mock_camera", ros_domain)
-    try:
-        wait_until(lambda: _asks(robot, "look") and isinstance(_content(robot), list), "a picture")
-        assert _content(robot)[1]["image_url"]["url"].startswith("data:image/jpeg;base64,/9j/")
-        model = server.exchanges[-1].request["model"]
-        assert model == ("m-sees" if wish == "auto" else "m-1")
-    finally:
-        camera.close()
-        robot.close()
-
-
-@pytest.mark.parametrize("setting", ["none", "unreachable", "no key", "broken"])
-def test_without_a_model_it_works_by_its_rules_and_says_so(
-    ros_domain: int, model_folder: Path, setting: str
-) -> None:
-    """No settings, no network, no key: lesson 9 runs as it did before there were models."""
-    with ModelServer(lambda _: None) as closed:
-        url = closed.url
-    words = {
-        "none": "no language model is set up",
-        "unreachable": f"nobody answers at {url}",
-        "no key": "the variable NOT_SET with the key is not set",
-        "broken": "llm.yaml:1:1: model: is missing",
-    }
-    if setting == "unreachable":
-        write_settings(model_folder, url)
-    elif setting == "no key":
-        (model_folder / "llm.yaml").write_text(f"base_url: {url}\nmodel: m\nkey_env: NOT_SET\n")
-    elif setting == "broken":
-        (model_folder / "llm.yaml").write_text(f"base_url: {url}\n")
-    params: dict[str, object] = {"backend": "llm", "stale_after_s": 60.0}
-    brain = NodeProcess("nodes.ai_brain", ros_domain, params=params)
-    try:
-        with Peer(ros_domain) as peer:
-            commands = peer.hear("/ai_command", String)
-            states = peer.hear("/brain_state", DiagnosticArray)
-
-            def obeyed() -> bool:
-                peer.say("/sensor/sonar_front", Float32(data=math.inf))
-                peer.say("/audio/mic_raw", voice(b"have a look"))
-                return comes(lambda: any(each.data == "вперед" for each in commands), 1.0)
-
-            wait_until(obeyed, "вперед")
-            brain.wait_for_words("No model: ", words[setting], "I follow my rules")
-            wait_until(lambda: states, "a state")
-        assert "Traceback" not in brain.output
-    finally:
-        brain.close()
-
-
-def test_what_was_recognised_from_sound_needs_a_model_to_mean_a_drive(
-    ros_domain: int, model_folder: Path
-) -> None:
-    """Without a network "robot, forward" drives by the rules, and "what do you see?" does not."""
-    with ModelServer(lambda _: None) as closed:
-        write_settings(model_folder, closed.url)
-    params: dict[str, object] = {"backend": "llm", "stale_after_s": 60.0}
-    brain = NodeProcess("nodes.ai_brain", ros_domain, params=params)
-    try:
-        with Peer(ros_domain) as peer:
-            commands = peer.hear("/ai_command", String)
-
-            def obeyed(words: str, command: str) -> bool:
-                commands.clear()
-                peer.say("/sensor/sonar_front", Float32(data=math.inf))
-                peer.say("/audio/heard", String(data=words))
-                return comes(lambda: any(each.data == command for each in commands), 1.0)
-
-            wait_until(lambda: obeyed("robot forward", "вперед"), "вперед")
-            wait_until(lambda: obeyed("robot what do you see", "стоп"), "стоп")
-            assert {each.data for each in commands} == {"стоп"}
-    finally:
-        brain.close()
 
 
 def _content(robot: Robot) -> Any:

@@ -17,8 +17,10 @@ from sensor_msgs.msg import BatteryState, JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
+from robot.limits import PICO_RAD_S
 from robot.wire.pico import PicoDecoder, Welcome, encode
 from tests.ros.devices import mock_robot, set_parameter
+from tests.ros.gate import STAMPS, stamped, values
 from tests.ros.node_process import NodeProcess
 from tests.ros.nodes.test_tof_sonar import Port
 from tests.ros.peer import LATCHED, Peer
@@ -28,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-RADIUS = 0.0325
 STANDS_POSES = 20
 """At 20 Hz: more than a pause, a driver that was held up goes on after 0.5 s."""
 
@@ -101,6 +102,12 @@ class Stage:
         self.told.clear()
         wait_until(told, "that state")
 
+    def refused_by_pico(self) -> str:
+        """How many lines it says that the Pico has refused."""
+        self.told.clear()
+        wait_until(lambda: self.told, "its state")
+        return values(self.told[0])["refused_by_pico"]
+
 
 def x_of(message: PoseStamped) -> float:
     return float(message.pose.position.x)
@@ -129,10 +136,6 @@ def stage(module_stage: Stage) -> Iterator[Stage]:
     yield module_stage
     module_stage.quiet()
     module_stage.wait_standing()
-
-
-def test_nothing_moves_before_a_command(stage: Stage) -> None:
-    stage.assert_stands()
 
 
 def test_commands_turn_the_wheels_and_come_back_as_odometry(stage: Stage) -> None:
@@ -190,6 +193,22 @@ def test_an_emergency_stop_is_latched_in_the_pico_and_survives_this_node(stage: 
     stage.wait_moving(-1)
 
 
+def test_a_stop_holds_though_the_pico_is_silent(stage: Stage) -> None:
+    stage.drive(3.0)
+    stage.wait_moving()
+    set_parameter(stage.peer, "mock_robot", "pico", "silent")
+    stage.wait_told(lambda status, _values: status.level == DiagnosticStatus.ERROR)
+    stage.peer.say("/emergency_stop", Bool(data=True), listeners=2, qos=LATCHED)
+    stage.assert_stands()
+    set_parameter(stage.peer, "mock_robot", "pico", "fine")
+    stage.wait_told(lambda _status, values: "E" in values.get("flags", ""))
+    stage.assert_stands()
+    with stage.peer.saying("/emergency_stop", Bool(data=False)):
+        stage.wait_told(lambda _status, values: "E" not in values.get("flags", "E"))
+    stage.drive(-3.0)
+    stage.wait_moving(-1)
+
+
 def test_at_its_end_the_wheels_stand(stage: Stage) -> None:
     stage.drive(random.choice([3.0, -3.0]))
     stage.poses.clear()
@@ -229,17 +248,68 @@ def test_noise_and_slowness_do_not_run_away_with_it(stage: Stage, fault: str) ->
     stage.wait_told(lambda status, _values: status.level == DiagnosticStatus.OK)
 
 
-def test_a_weak_battery_and_a_fault_stop_it_and_are_told(stage: Stage) -> None:
-    stage.drive(-1.0)
-    stage.wait_moving(-1)
-    set_parameter(stage.peer, "mock_robot", "battery", 5.0)
+# ---------------------------------------------------------------- beyond the limits
+
+
+def test_it_refuses_what_is_beyond_the_limits(stage: Stage) -> None:
+    motors = stage.peer.hear("/mock/motors", JointState)
+    for speed, steering, words in (
+        (200.0, 0.0, "200 rad/s, limit 17.9"),
+        (-1e308, 0.0, "-1e+308 rad/s, limit 17.9"),
+        (3.0, 1.2, "1.2 rad, limit 0.5 rad"),
+        (math.nan, 0.0, "nan rad/s, limit 17.9"),
+    ):
+        stage.drive(3.0)
+        stage.wait_moving()
+        stage.drive(speed, steering)
+        stage.wait_told(
+            lambda status, values, words=words: (  # type: ignore[misc]
+                values.get("refused", "").startswith(words) and status.level != DiagnosticStatus.OK
+            )
+        )
+        stage.assert_stands()
+        stage.drive(-3.0)
+        stage.wait_moving(-1)
+        stage.quiet()
+        stage.wait_standing()
+    stage.chassis.wait_for_words("[ERROR]", "/wheel_commands", "refused")
+    # The controller of a wheel swings a little beyond what it was told.
+    assert max(abs(one) for told in motors for one in told.effort[:2]) <= 3.0
+
+
+def test_it_refuses_stamps_as_the_gate_does(stage: Stage) -> None:
+    for since_s, words in STAMPS:
+        with stage.peer.saying("/wheel_commands", stamped(wheels(3.0), since_s)):
+            stage.chassis.wait_for_words(words)
     stage.assert_stands()
-    stage.chassis.wait_for_words("The wheels stand: the battery is weak")
-    set_parameter(stage.peer, "mock_robot", "battery", 7.4)
-    set_parameter(stage.peer, "mock_robot", "driver_fault", "left")
-    stage.wait_told(lambda status, _: "left motor driver" in status.message)
-    set_parameter(stage.peer, "mock_robot", "driver_fault", "none")
-    stage.wait_told(lambda status, _: status.level == DiagnosticStatus.OK)
+    publisher = stage.peer.publisher("/wheel_commands", JointState)
+    stage.poses.clear()
+    for _ in range(5):
+        publisher.publish(stamped(wheels(3.0), 0.0))
+    wait_until(lambda: len({x_of(pose) for pose in stage.poses}) > 1, "a fresh one is obeyed")
+
+
+def test_whatever_is_asked_the_pico_is_never_sent_more_than_it_takes(stage: Stage) -> None:
+    """The firmware would refuse it, and count; so would this test."""
+    dice = random.Random(8)
+    kinds = (0.0, 1.0, 17.9, 17.90602, 18.0, 200.0, 1e5, 1e30, 1e308, math.inf, math.nan)
+    angles = (0.0, 0.1, 0.5, 0.50001, 1.57, 1e30, math.nan)
+    motors = stage.peer.hear("/mock/motors", JointState)
+    before = stage.refused_by_pico()
+    publisher = stage.peer.publisher("/wheel_commands", JointState)
+    wait_until(publisher.get_subscription_count, "a subscription")
+    for _ in range(300):
+        message = wheels(0.0, dice.choice(angles) * dice.choice((-1, 1)))
+        speeds = (dice.choice(kinds) * dice.choice((-1, 1)) for _side in range(2))
+        message.velocity = [*speeds, math.nan]
+        publisher.publish(message)
+        # A pace, and no synchronisation: the queue is ten long, and the device has 4 KiB, of which
+        # a second's worth is to be enough where it is held up. A line cut short would be refused.
+        time.sleep(0.007)
+    stage.drive(-2.0)
+    stage.wait_moving(-1)
+    assert max(abs(one) for told in motors for one in told.effort[:2]) <= PICO_RAD_S
+    assert stage.refused_by_pico() == before
 
 
 # ---------------------------------------------------------------- ports of others
@@ -250,23 +320,6 @@ def port(tmp_path: Path) -> Iterator[Port]:
     port = Port(tmp_path / "pico")
     yield port
     port.unplug()
-
-
-@pytest.mark.parametrize("noisy", [False, True], ids=["silent", "noisy"])
-def test_a_port_without_a_pico_is_told(ros_domain: int, port: Port, noisy: bool) -> None:
-    dice = random.Random(3)
-    with NodeProcess("nodes.chassis", ros_domain, params={"port": port.path}) as chassis:
-        chassis.wait_for_words("Connected")
-
-        def complained() -> bool:
-            if noisy:
-                port.send(dice.randbytes(100))
-            return "no Pico answers" in chassis.output
-
-        wait_until(complained, "a complaint")
-        chassis.send(signal.SIGTERM)
-        assert chassis.wait() == 0
-        assert "Traceback" not in chassis.output
 
 
 def test_a_pico_of_another_protocol_is_told(ros_domain: int, port: Port) -> None:

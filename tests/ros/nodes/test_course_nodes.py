@@ -55,23 +55,23 @@ def turns(wheels: list[Any]) -> bool:
     return any(abs(message.velocity[0]) > 0.1 for message in wheels)
 
 
-@pytest.mark.parametrize(
-    ("node", "file"),
-    [
-        ("sonar_front", "mock_sonar"),
-        ("camera", "mock_camera"),
-        ("head_controller", "head_controller"),
-        ("ai_driver", "ai_driver"),
-        ("audio", "mock_audio"),
-        ("ai_brain", "ai_brain"),
-    ],
-)
+BRAIN = {
+    "sonar_front": "mock_sonar",
+    "camera": "mock_camera",
+    "head_controller": "head_controller",
+    "ai_driver": "ai_driver",
+    "audio": "mock_audio",
+    "ai_brain": "ai_brain",
+}
+
+
 async def test_the_whole_robot_hears_answers_and_drives(
-    tmp_path: Path, ros_domain: int, person: Peer, node: str, file: str
+    tmp_path: Path, ros_domain: int, person: Peer
 ) -> None:
     wheels = person.hear("/wheel_commands", JointState)
     answers = person.hear("/audio/speaker_raw", ByteMultiArray)
-    async with lesson(tmp_path, ros_domain, "09-brain", {node: {"run": f"./{file}.py"}}) as client:
+    changes = {node: {"run": f"./{file}.py"} for node, file in BRAIN.items()}
+    async with lesson(tmp_path, ros_domain, "09-brain", changes) as client:
         for name in client.nodes:
             await until_state(client, name, RUNNING, READY)
         phrase = ByteMultiArray(data=[bytes([byte]) for byte in b"VOICE_COMMAND: look around"])
@@ -80,14 +80,11 @@ async def test_the_whole_robot_hears_answers_and_drives(
             await until(lambda: turns(wheels), "wheels that turn", 60)
 
 
-@pytest.mark.parametrize(
-    ("node", "file"), [("head_controller", "head_controller"), ("llm_parser", "llm_parser")]
-)
 async def test_a_json_drives_and_turns_the_head(
-    tmp_path: Path, ros_domain: int, person: Peer, node: str, file: str
+    tmp_path: Path, ros_domain: int, person: Peer
 ) -> None:
     wheels = person.hear("/wheel_commands", JointState)
-    changes = {node: {"run": f"./{file}.py"}}
+    changes = {name: {"run": f"./{name}.py"} for name in ("head_controller", "llm_parser")}
     async with lesson(tmp_path, ros_domain, "10-llm-json", changes) as client:
         for name in list(client.nodes):
             await until_state(client, name, READY)
@@ -97,67 +94,20 @@ async def test_a_json_drives_and_turns_the_head(
         answer = {"thought": "Off we go.", "commands": [drive, turn]}
         with person.saying("/llm_raw_json", String(data=json.dumps(answer)), 1.0):
             await until(lambda: turns(wheels), "wheels that turn", 30)
-        head = "turning to 30" if node == "head_controller" else ""
-        await said(client, "head_controller", head)
+        await said(client, "head_controller", "turning to 30")
 
 
-async def test_pictures_are_looked_at(tmp_path: Path, ros_domain: int) -> None:
-    changes = {"vlm_agent": {"run": "./vlm_agent_stub.py"}}
-    async with lesson(tmp_path, ros_domain, "07-vision", changes) as client:
-        await until_state(client, "camera", READY)
-        assert (await said(client, "vlm_agent", "a picture of ")).startswith("640x480")
-
-
-async def test_distances_are_warned_of(tmp_path: Path, ros_domain: int) -> None:
-    changes = {"safety_stop": {"run": "./safety_stop.py"}}
-    async with lesson(tmp_path, ros_domain, "02-sonar-safety", changes) as client:
-        await until_state(client, "safety_stop", RUNNING, READY)
-        await said(client, "safety_stop", "far: ")
-
-
-async def test_seconds_are_counted(tmp_path: Path, ros_domain: int) -> None:
-    changes = {"hello": {"run": "./hello.py"}}
-    async with lesson(tmp_path, ros_domain, "01-hello", changes) as client:
-        await said(client, "hello", "second 2")
-
-
-async def test_a_differential_that_only_writes_its_log_holds_nobody_up(
-    tmp_path: Path, ros_domain: int, person: Peer
+@pytest.mark.parametrize(
+    ("name", "node", "file", "words"),
+    [
+        ("07-vision", "vlm_agent", "vlm_agent_stub", "a picture of 640x480"),
+        ("02-sonar-safety", "safety_stop", "safety_stop", "far: "),
+        ("01-hello", "hello", "hello", "second 2"),
+    ],
+)
+async def test_it_does_its_part_in_a_lesson(
+    tmp_path: Path, ros_domain: int, name: str, node: str, file: str, words: str
 ) -> None:
-    changes = {"electronic_differential": {"run": "./electronic_differential.py"}}
-    async with lesson(tmp_path, ros_domain, "10-llm-json", changes) as client:
-        await until_state(client, "llm_parser", READY)
-        drive = {"action": "drive", "speed": 0.3, "steering": 0.0}
-        answer = {"thought": "Off we go.", "commands": [drive]}
-        with person.saying("/llm_raw_json", String(data=json.dumps(answer)), 1.0):
-            await said(client, "electronic_differential", "left 0.30, right 0.30")
-
-
-async def test_where_no_gate_is_the_wheels_stand_and_their_node_says_why(
-    tmp_path: Path, ros_domain: int, person: Peer
-) -> None:
-    wheels = person.hear("/wheel_commands", JointState)
-    changes = {"safety_stop": {"run": "./safety_stop.py"}}
-    async with lesson(tmp_path, ros_domain, "09-brain", changes) as client:
-        await until_state(client, "electronic_differential", READY)
-        person.say("/ai_command", String(data="вперед"))
-        assert "gate: true" in await said(
-            client, "electronic_differential", "Nobody publishes /drive_safe"
-        )
-        assert wheels
-        assert not turns(wheels)
-
-
-async def test_without_a_gate_the_wheels_turn_where_the_profile_asks_for_it(
-    tmp_path: Path, ros_domain: int, person: Peer
-) -> None:
-    wheels = person.hear("/wheel_commands", JointState)
-    changes = {
-        "safety_stop": {"run": "./safety_stop.py"},
-        "electronic_differential": {"params": {"drive_topic": "/drive", "max_age_s": 0.0}},
-    }
-    async with lesson(tmp_path, ros_domain, "09-brain", changes) as client:
-        await until_state(client, "electronic_differential", READY)
-        await until_state(client, "ai_driver", READY)
-        with person.saying("/ai_command", String(data="вперед"), 1.0):
-            await until(lambda: turns(wheels), "wheels that turn", 30)
+    changes = {node: {"run": f"./{file}.py"}}
+    async with lesson(tmp_path, ros_domain, name, changes) as client:
+        await said(client, node, words)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import json
 import math
-import signal
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -11,29 +11,21 @@ from ackermann_msgs.msg import AckermannDriveStamped
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String
 
-from tests.ros.node_process import NodeProcess
+from robot.limits import RIM_M_S
+from tests.ros.gate import BEYOND, STAMPS, drive, stamped
+from tests.ros.node_thread import NodeThread
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import comes, wait_until
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-pytestmark = pytest.mark.nightly
+    pass
 
 RADIUS = 0.0325
 
 
 @pytest.fixture
-def peer(ros_domain: int) -> Iterator[Peer]:
-    with Peer(ros_domain) as peer:
-        yield peer
-
-
-def drive(speed: float, steering: float = 0.0) -> AckermannDriveStamped:
-    message = AckermannDriveStamped()
-    message.drive.speed = speed
-    message.drive.steering_angle = steering
-    return message
+def heard(peer: Peer) -> list[JointState]:
+    return peer.hear("/wheel_commands", JointState)
 
 
 def rims(message: JointState) -> tuple[float, float]:
@@ -69,7 +61,7 @@ def drives(peer: Peer, heard: list[Any], word: str, speed: float, steering: floa
 
 @pytest.mark.parametrize("lang", ["en", "ru"])
 def test_words_of_both_languages_drive(peer: Peer, ros_domain: int, lang: str) -> None:
-    with NodeProcess("nodes.ai_driver", ros_domain, lang=lang) as node:
+    with NodeThread("nodes.ai_driver", ros_domain, lang=lang) as node:
         heard = peer.hear("/drive", AckermannDriveStamped)
         node.wait_for_words("[ai_driver_translator]")
         expected = [(0.5, 0.0), (0.3, 0.5), (0.3, -0.5), (-0.3, 0.0), (0.0, 0.0)]
@@ -84,25 +76,13 @@ def test_words_of_both_languages_drive(peer: Peer, ros_domain: int, lang: str) -
             assert heard[-1].header.stamp.sec > 0
 
 
-def test_an_unknown_or_empty_word_is_told_and_moves_nothing(peer: Peer, ros_domain: int) -> None:
-    with NodeProcess("nodes.ai_driver", ros_domain, lang="ru") as node:
-        heard = peer.hear("/drive", AckermannDriveStamped)
-        wait_until(lambda: drives(peer, heard, "right", 0.3, -0.5), "/drive of a known word")
-        peer.say("/ai_command", String(data="прыжок\x1b[31m"))
-        node.wait_for_words("[WARN]", "Неизвестная команда «прыжок␛[31m»", "вперед, налево")
-        peer.say("/ai_command", String(data=""))
-        node.wait_for_words("«»")
-        wait_until(lambda: drives(peer, heard, "left", 0.3, 0.5), "/drive of another one")
-        steered = {round(one.drive.steering_angle, 3) for one in heard}
-        assert steered == {-0.5, 0.5}, "nothing but what was known"
-
-
 # ---------------------------------------------------------------- wheels
 
 
-def test_the_course_s_left_turn_reaches_the_wheels(peer: Peer, ros_domain: int) -> None:
-    with NodeProcess("nodes.electronic_differential", ros_domain) as node:
-        heard = peer.hear("/wheel_commands", JointState)
+def test_the_course_s_left_turn_reaches_the_wheels(
+    peer: Peer, heard: list[JointState], ros_domain: int
+) -> None:
+    with NodeThread("nodes.electronic_differential", ros_domain) as node:
         peer.say("/drive", drive(0.3, 0.5))
         message = wait_for_rims(heard, 0.2508, 0.3492)
         assert message.name == ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
@@ -112,24 +92,11 @@ def test_the_course_s_left_turn_reaches_the_wheels(peer: Peer, ros_domain: int) 
         node.wait_for_words("Turning left: 0.30 m/s, steering 0.50 rad -> left 0.25, right 0.35")
 
 
-def test_who_comes_late_sees_the_command_of_the_moment(peer: Peer, ros_domain: int) -> None:
-    with NodeProcess("nodes.electronic_differential", ros_domain):
-        peer.say("/drive", drive(-0.3))
-        wait_for_rims(peer.hear("/wheel_commands", JointState), -0.3, -0.3)
-
-
-def test_another_chassis_is_a_matter_of_parameters(peer: Peer, ros_domain: int) -> None:
-    mini: dict[str, object] = {"wheelbase": 0.144, "track": 0.162, "drive_topic": "/drive_safe"}
-    with NodeProcess("nodes.electronic_differential", ros_domain, params=mini):
-        heard = peer.hear("/wheel_commands", JointState)
-        peer.say("/drive_safe", drive(0.4, 0.3903))
-        wait_for_rims(heard, 0.4 * 0.7686, 0.4 * 1.2314)
-
-
-def test_too_much_is_limited_with_a_word(peer: Peer, ros_domain: int) -> None:
+def test_too_much_is_limited_with_a_word(
+    peer: Peer, heard: list[JointState], ros_domain: int
+) -> None:
     params: dict[str, object] = {"max_speed": 0.2, "max_steering": 0.1}
-    with NodeProcess("nodes.electronic_differential", ros_domain, params=params) as node:
-        heard = peer.hear("/wheel_commands", JointState)
+    with NodeThread("nodes.electronic_differential", ros_domain, params=params) as node:
         peer.say("/drive", drive(-0.4, 0.4))
         wait_until(lambda: heard and heard[-1].velocity[0] != 0, "wheels")
         left, right = rims(heard[-1])
@@ -138,21 +105,48 @@ def test_too_much_is_limited_with_a_word(peer: Peer, ros_domain: int) -> None:
         node.wait_for_words("limited to 0.2 m/s and 0.1 rad")
 
 
-def test_a_command_that_is_no_number_stops_the_wheels(peer: Peer, ros_domain: int) -> None:
-    with NodeProcess("nodes.electronic_differential", ros_domain) as node:
-        heard = peer.hear("/wheel_commands", JointState)
-        for bad in ((math.nan, 0.0), (0.3, math.nan), (math.inf, 0.0)):
+def test_what_is_beyond_the_limits_or_old_stops_the_wheels(
+    peer: Peer, heard: list[JointState], ros_domain: int
+) -> None:
+    with NodeThread("nodes.electronic_differential", ros_domain) as node:
+        for speed, steering, words in BEYOND:
             peer.say("/drive", drive(0.3))
             wait_for_rims(heard, 0.3, 0.3)
-            peer.say("/drive", drive(*bad))
-            wait_for_rims(heard, 0.0, 0.0)
-        node.wait_for_words("not a number")
+            # Again and again: what is refused is told once a second.
+            with peer.saying("/drive", drive(speed, steering)):
+                wait_for_rims(heard, 0.0, 0.0)
+                node.wait_for_words(f"/drive asks for {words.partition(',')[0]}")
+        node.wait_for_words("[ERROR]", "refused")
+        heard.clear()
+        for since_s, words in STAMPS:
+            with peer.saying("/drive", stamped(drive(0.3), since_s)):
+                node.wait_for_words(words)
+        assert max(abs(rim) for message in heard for rim in rims(message)) == 0.0
+        peer.say("/drive", stamped(drive(0.1), 0.0))
+        wait_for_rims(heard, 0.1, 0.1)
+
+
+@pytest.mark.parametrize("params", [{}, {"track": 0.4}, {"wheelbase": 0.1}], ids=str)
+def test_the_outer_wheel_of_a_tight_curve_stays_within_its_limit(
+    peer: Peer, heard: list[JointState], ros_domain: int, params: dict[str, object]
+) -> None:
+    with NodeThread("nodes.electronic_differential", ros_domain, params=params) as node:
+        peer.say("/drive", drive(0.5, 0.5))
+        wait_until(lambda: heard and any(heard[-1].velocity[:2]), "turning wheels")
+        left, right = rims(heard[-1])
+        assert right == pytest.approx(RIM_M_S)
+        share = float(str(params.get("track", 0.15))) / 2 * math.tan(0.5)
+        share /= float(str(params.get("wheelbase", 0.25)))
+        assert left / right == pytest.approx((1 - share) / (1 + share))
+        if params:
+            node.wait_for_words("both are slowed")
 
 
 @pytest.mark.parametrize("qos", [LATCHED, 10], ids=["latched", "volatile"])
-def test_the_emergency_stop_holds_the_wheels(peer: Peer, ros_domain: int, qos: Any) -> None:
-    with NodeProcess("nodes.electronic_differential", ros_domain, params={"rate": 20}) as node:
-        heard = peer.hear("/wheel_commands", JointState)
+def test_the_emergency_stop_holds_the_wheels(
+    peer: Peer, heard: list[JointState], ros_domain: int, qos: Any
+) -> None:
+    with NodeThread("nodes.electronic_differential", ros_domain, params={"rate": 20}) as node:
         peer.say("/drive", drive(0.3))
         wait_for_rims(heard, 0.3, 0.3)
         peer.say("/emergency_stop", Bool(data=True), qos=qos)
@@ -167,10 +161,11 @@ def test_the_emergency_stop_holds_the_wheels(peer: Peer, ros_domain: int, qos: A
         wait_for_rims(heard, 0.2, 0.2)
 
 
-def test_a_command_that_is_not_renewed_becomes_a_stop(peer: Peer, ros_domain: int) -> None:
+def test_a_command_that_is_not_renewed_becomes_a_stop(
+    peer: Peer, heard: list[JointState], ros_domain: int
+) -> None:
     params: dict[str, object] = {"max_age_s": 0.3, "rate": 20}
-    with NodeProcess("nodes.electronic_differential", ros_domain, params=params) as node:
-        heard = peer.hear("/wheel_commands", JointState)
+    with NodeThread("nodes.electronic_differential", ros_domain, params=params) as node:
         wait_until(lambda: heard, "standing wheels, before they turn for a moment")
         peer.say("/drive", drive(0.3))
         wait_until(lambda: any(rims(m)[0] > 0 for m in heard), "moving wheels")
@@ -178,22 +173,74 @@ def test_a_command_that_is_not_renewed_becomes_a_stop(peer: Peer, ros_domain: in
         node.wait_for_words("No command for 0.3 s")
 
 
-def test_the_wheels_stand_when_the_node_has_ended(peer: Peer, ros_domain: int) -> None:
-    with NodeProcess("nodes.electronic_differential", ros_domain) as node:
-        heard = peer.hear("/wheel_commands", JointState)
-        peer.say("/drive", drive(0.3))
-        wait_for_rims(heard, 0.3, 0.3)
-        node.send(signal.SIGTERM)
-        assert node.wait() == 0
-        wait_until(lambda: rims(heard[-1]) == (0.0, 0.0), "a last stop")
+# ---------------------------------------------------------------- repeated for a gate
 
 
-def test_slowing_down_by_little_steps_does_not_fill_the_log(peer: Peer, ros_domain: int) -> None:
-    with NodeProcess("nodes.electronic_differential", ros_domain) as node:
-        heard = peer.hear("/wheel_commands", JointState)
-        for hundredths in range(20, 10, -1):
-            peer.say("/drive", drive(hundredths / 100))
-            wait_for_rims(heard, hundredths / 100, hundredths / 100)
-        peer.say("/drive", drive(0.0))
-        node.wait_for_words("Standing")
-        assert 2 <= node.output.count("Straight") <= 3
+LONG: dict[str, object] = {"repeat_for_s": 60.0}
+
+
+class Heard:
+    """What is said on /drive."""
+
+    def __init__(self, peer: Peer) -> None:
+        self.drives: list[AckermannDriveStamped] = peer.hear("/drive", AckermannDriveStamped)
+
+    @property
+    def speeds(self) -> list[float]:
+        return [round(message.drive.speed, 3) for message in self.drives]
+
+    def again_and_again(self, speed: float) -> None:
+        self.drives.clear()
+        wait_until(lambda: self.speeds.count(speed) >= 5, f"{speed} m/s again and again")
+
+    def stop(self) -> None:
+        wait_until(lambda: self.speeds and self.speeds[-1] == 0.0, "a stop")
+        assert self.speeds.count(0.0) == 1, "said once"
+
+
+def test_what_ends_a_word(peer: Peer, ros_domain: int) -> None:
+    with NodeThread("nodes.ai_driver", ros_domain, params=LONG) as node:
+        heard = Heard(peer)
+        for word in ("forward", "стоп"):
+            peer.say("/ai_command", String(data=word))
+            heard.again_and_again(0.5) if word == "forward" else heard.stop()
+        peer.say("/ai_command", String(data="forward"))
+        heard.again_and_again(0.5)
+        peer.say("/ai_command", String(data="назад"))
+        heard.again_and_again(-0.3)
+        peer.say("/ai_command", String(data="whoa"))
+        heard.stop()
+
+        peer.say("/ai_command", String(data="forward"))
+        heard.again_and_again(0.5)
+        peer.say("/emergency_stop", Bool(data=True), qos=LATCHED)
+        heard.stop()
+        peer.say("/ai_command", String(data="back"))
+        wait_until(lambda: heard.speeds[-1] == -0.3, "a word during the stop, said once")
+        peer.say("/emergency_stop", Bool(data=False), qos=LATCHED)
+        node.wait_for_words('Heard "back"')
+
+        peer.say("/ai_command", String(data="forward"))
+        heard.again_and_again(0.5)
+        assert -0.3 not in heard.speeds
+        node.close()
+        heard.stop()
+
+
+def test_a_response_lasts_until_the_next(peer: Peer, ros_domain: int) -> None:
+    def send(*commands: object) -> None:
+        text = json.dumps({"thought": "", "commands": commands})
+        peer.say("/llm_raw_json", String(data=text))
+
+    drive = {"action": "drive", "speed": 0.2, "steering": -0.3}
+    with NodeThread("nodes.llm_parser", ros_domain, params=LONG):
+        heard = Heard(peer)
+        send({**drive, "speed": 0.1}, drive)
+        heard.again_and_again(0.2)
+        assert heard.speeds.count(0.1) <= 1, "the last of a response is repeated"
+        send()
+        heard.stop()
+        send(drive)
+        heard.again_and_again(0.2)
+        peer.say("/llm_raw_json", String(data="no JSON"))
+        heard.stop()

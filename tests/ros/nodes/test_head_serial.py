@@ -5,30 +5,74 @@ from __future__ import annotations
 import fcntl
 import math
 import os
-import random
 import signal
+import threading
 import time
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from example_interfaces.srv import AddTwoInts
 from sensor_msgs.msg import JointState
+from typing_extensions import Self
 
-from nodes.simulated.device_fault import FINE, NOISE, SILENT, UNPLUGGED
+from nodes.simulated.device_fault import FINE, SILENT, UNPLUGGED, FaultyLine
+from nodes.simulated.pseudo_terminal import PseudoSerial
 from robot.wire.lsc16 import ServoDecoder, ServoMove
-from robot.wire.tfluna import TofFrame, encode
-from tests.ros.devices import mock_robot, set_parameter
+from robot.world.servos import SimulatedServos
+from tests.ros.devices import set_parameter
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
-from tests.ros.servo_bench import ServoBench
 from tests.waiting import wait_until
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
+_STEP_S = 0.005
 
-    from typing_extensions import Self
+
+class ServoBench:
+    """An LSC-16 that keeps time with the clock; to be closed."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.servos = SimulatedServos()
+        self.taken = b""
+        """All that came for the device."""
+        self.says = b""
+        """What it says all the time in place of an answer, if anything."""
+        self._lock = threading.Lock()
+        self._line = FaultyLine(PseudoSerial(path), seed=1)
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._live, name="servos", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        self._ending.set()
+        self._thread.join(5)
+        self._line.close()
+
+    def fail(self, fault: str = FINE) -> None:
+        """Have one of the faults of the mock robot from now on."""
+        with self._lock:
+            self._line.set_fault(fault)
+
+    def at(self, servo: int) -> float:
+        """Pulse of a servo now, us."""
+        with self._lock:
+            return self.servos.pulse_us(servo)
+
+    def _live(self) -> None:
+        last_s = time.monotonic()
+        while not self._ending.wait(_STEP_S):
+            now_s = time.monotonic()
+            with self._lock:
+                heard = self._line.read()
+                self.taken += heard
+                self.servos.advance(now_s - last_s)
+                answer = self.servos.feed(heard)
+                self._line.write(self.says or answer, now_s)
+            last_s = now_s
+
 
 PAN = 1
 
@@ -180,15 +224,6 @@ def test_servos_go_where_the_head_is_asked_to_look_and_no_faster(
     assert len(moves_of(bench)) == 3
 
 
-def test_each_connection_is_told_however_soon_it_follows(head: tuple[Head, ServoBench]) -> None:
-    node, bench = head
-    for _ in range(2):
-        bench.fail(UNPLUGGED)
-        node.wait_says("Lost")
-        bench.fail(FINE)
-        node.wait_answering()
-
-
 def test_a_cable_pulled_while_the_head_moves_is_no_arrival(head: tuple[Head, ServoBench]) -> None:
     node, bench = head
     set_parameter(node.peer, "head_controller", "speed", 20.0)
@@ -225,38 +260,6 @@ def test_a_controller_that_falls_silent_is_told_and_gets_no_moves(
     assert len(moves_of(bench)) == 1
 
 
-def test_another_device_at_the_port_gets_no_moves(head: tuple[Head, ServoBench]) -> None:
-    node, bench = head
-    bench.says = encode(TofFrame(123, 1000, 25.0))
-    node.wait_says("its data are not from an LSC-16")
-    assert node.turn(10, 0) == 0
-    bench.says = random.Random(3).randbytes(50)
-    node.wait_told(DiagnosticStatus.ERROR, "its data are not from an LSC-16")
-    assert node.turn(10, 0) == 0
-    assert moves_of(bench) == []
-
-
-def test_noise_is_outlived(head: tuple[Head, ServoBench]) -> None:
-    node, bench = head
-    bench.fail(NOISE)
-    wait_until(lambda: node.turn(10, 0) == 1, "a move")
-    bench.fail(FINE)
-    wait_until(lambda: node.turn(20, 0) == 1, "a move")
-    wait_at(bench, {PAN: 1722})
-
-
-def test_with_the_transmitting_wire_alone_nothing_is_asked(
-    peer: Peer, ros_domain: int, bench: ServoBench
-) -> None:
-    bench.fail(SILENT)
-    with Head(peer, ros_domain, bench.path, battery_every_s=0) as head:
-        head.wait_says("Connected")
-        assert head.turn(10, 0) == 1
-        wait_at(bench, {PAN: 1611})
-        head.wait_told(DiagnosticStatus.OK, "connected")
-        assert len(bench.taken) == 13
-
-
 def test_a_port_of_another_program_is_left_alone_until_it_is_free(
     peer: Peer, ros_domain: int, bench: ServoBench
 ) -> None:
@@ -269,31 +272,3 @@ def test_a_port_of_another_program_is_left_alone_until_it_is_free(
         os.close(other)
         head.wait_answering()
         assert head.turn(10, 0) == 1
-
-
-def test_no_permission_is_told_with_its_mend(
-    peer: Peer, ros_domain: int, bench: ServoBench
-) -> None:
-    bench.path.chmod(0)
-    with Head(peer, ros_domain, bench.path, mortal=True) as head:
-        head.wait_says("no permission", "dialout")
-        assert head.turn(10, 0) == 0
-
-
-def test_joints_that_make_no_sense_are_refused_at_the_start(ros_domain: int) -> None:
-    params: dict[str, object] = {"pan_servo": 2}
-    with NodeProcess("nodes.head_controller", ros_domain, params=params) as node:
-        assert node.wait() == 2
-        assert "pan_servo and tilt_servo are both 2" in node.output
-
-
-def test_the_mock_robot_has_such_a_controller(peer: Peer, ros_domain: int, tmp_path: Path) -> None:
-    folder = tmp_path / "devices"
-    with (
-        mock_robot(ros_domain, folder, battery=5.6),
-        Head(peer, ros_domain, folder / "lsc16") as head,
-    ):
-        head.wait_says("The battery of the servos is low: 5.6 V")
-        assert head.wait_told(DiagnosticStatus.WARN, "5.6 V")["battery_v"] == "5.60"
-        assert head.turn(-45, 20) == 1
-        head.wait_pose(-45, 20)

@@ -11,21 +11,19 @@ from ackermann_msgs.msg import AckermannDriveStamped
 from example_interfaces.srv import AddTwoInts
 from std_msgs.msg import String
 
-from tests.ros.node_process import NodeProcess
+from tests.ros.node_thread import NodeThread
 from tests.ros.peer import Peer
 from tests.waiting import comes, wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-pytestmark = pytest.mark.nightly
-
 DRIVE = {"action": "drive", "speed": 0.2, "steering": -0.3}
 HEAD = {"action": "turn_head", "pan": -45, "tilt": 10}
 
 
 class Parser:
-    """The parser in a process of its own; the test plays the LLM, the chassis and the head."""
+    """The parser; the test plays the LLM, the chassis and the head."""
 
     def __init__(self, domain: int, *, lang: str, params: dict[str, object], head: bool) -> None:
         self.peer = Peer(domain)
@@ -35,7 +33,7 @@ class Parser:
             self.peer.node.create_service(AddTwoInts, "set_head_position", self._turn)
         self.drives = self.peer.hear("/drive", AckermannDriveStamped)
         self._results = self.peer.hear("/llm_result", String)
-        self.process = NodeProcess("nodes.llm_parser", domain, lang=lang, params=params)
+        self.process = NodeThread("nodes.llm_parser", domain, lang=lang, params=params)
         self._tries = count(1)
         self._head = head
         wait_until(self._answers, "an answer on every way")
@@ -105,16 +103,6 @@ def test_the_course_s_example_turns_the_head_and_drives(parser: Parser) -> None:
     parser.process.wait_for_words('thinks: "Вижу тень справа."')
 
 
-def test_many_commands_are_carried_out_in_order(parser: Parser) -> None:
-    heads = [{**HEAD, "pan": pan} for pan in (10, 20, 30)]
-    drives = [{**DRIVE, "speed": speed} for speed in (0.1, 0.2, 0.0)]
-    parser.send(heads[0], drives[0], heads[1], drives[1], heads[2], drives[2])
-    results = parser.results(7)
-    assert [pan for pan, _tilt in parser.asked] == [10, 20, 30]
-    assert [result["speed"] for result in results if result["event"] == "drive"] == [0.1, 0.2, 0.0]
-    wait_until(lambda: len(parser.drives) == 3, "three /drive")
-
-
 BAD_TEXTS = [
     json.dumps({"thought": "", "commands": [DRIVE, HEAD, {**DRIVE, "speed": 0.51}]}),
     json.dumps({"thought": "", "commands": [DRIVE, {"action": "fly"}]}),
@@ -142,42 +130,13 @@ def test_one_bad_command_and_nothing_moves(parser: Parser) -> None:
     assert parser.asked == []
 
 
-@pytest.mark.parametrize("parser", [{"lang": "ru"}], indirect=True)
-def test_a_refusal_names_the_place_in_the_node_s_language(parser: Parser) -> None:
-    parser.send_text(
-        '{"thought": "x",\n "commands": [{"action": "drive", "speed": 7, "steering": 0}]}'
-    )
-    problem = parser.results(1)[0]["problems"][0]
-    place = problem["field"], problem["line"], problem["column"]
-    assert place == ("commands[0].speed", 2, 44)
-    assert problem["message"] == "должно быть от -0.5 до 0.5 м/с, а не 7"
-    assert (problem["code"], problem["args"]["high"]) == ("range", 0.5)
-    parser.process.wait_for_words("2:44 commands[0].speed: должно быть")
-
-
-def test_a_refusing_head_is_reported(parser: Parser) -> None:
-    parser.sum = 0
-    parser.send(HEAD)
-    assert parser.results(2)[1] == {"event": "head", "pan": -45, "tilt": 10, "sum": 0}
-    parser.process.wait_for_words("refused")
-
-
-@pytest.mark.parametrize("parser", [{"head": False}], indirect=True)
-def test_a_missing_head_is_told_and_does_not_keep_the_chassis_waiting(parser: Parser) -> None:
-    parser.send(HEAD, DRIVE)
-    wait_until(lambda: parser.drives, "/drive")
-    head = parser.results(3)[2]
-    assert (head["event"], head["pan"]) == ("head", -45)
-    assert "set_head_position is not there" in head["error"]
-
-
 @pytest.mark.parametrize(
     "parser", [{"head": False, "params": {"head_timeout": 3.0}}], indirect=True
 )
 def test_a_head_that_never_answers_is_given_up_and_newer_commands_win(
     parser: Parser, ros_domain: int
 ) -> None:
-    with NodeProcess("nodes.head_controller", ros_domain, params={"move_time": 30.0}) as slow:
+    with NodeThread("nodes.head_controller", ros_domain, params={"move_time": 30.0}) as slow:
         slow.wait_for_words("ready for set_head_position")
         parser.send(HEAD, {**HEAD, "pan": 5})
         slow.wait_for_words("pan -45")

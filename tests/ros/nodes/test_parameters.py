@@ -6,7 +6,6 @@ import importlib
 import json
 import math
 import os
-import re
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -17,14 +16,10 @@ from hypothesis import strategies as st
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 
-from graph.data import ParameterRow
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
-from tests.ros.node_process import NodeProcess
+from tests.ros.node_thread import NodeThread
 from tests.ros.peer import DISCOVERY, ROOT, Peer
-from tests.unit.scripts_of_setup import load
-from text.i18n import set_language
-from tui.graph.parameter_words import allowed_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -55,68 +50,6 @@ def test_every_parameter_is_described_and_takes_its_own_default(module: str) -> 
             assert setting.low < setting.high
         descriptor = setting.descriptor()
         assert descriptor.description == setting.about
-
-
-@pytest.mark.parametrize("module", [*MODULES, "camera"])
-def test_the_screen_has_every_description_in_russian(module: str) -> None:
-    catalogue = load("catalogues").translated("ru")
-    for setting in settings_of(module):
-        entry = catalogue.get(setting.about)
-        assert entry is not None, setting.about
-        assert re.search("[а-яё]|JPEG", str(entry.string), re.IGNORECASE), setting.about
-
-
-@pytest.fixture
-def in_russian() -> Iterator[None]:
-    """The screen speaks Russian."""
-    set_language("ru")
-    yield
-    set_language("en")
-
-
-@pytest.mark.parametrize("module", [*MODULES, "camera"])
-def test_nothing_english_is_left_in_what_a_parameter_may_be(module: str, in_russian: None) -> None:
-    """Only words that are typed as they are stay."""
-    del in_russian
-    for setting in settings_of(module):
-        choices = getattr(setting, "choices", ())
-        kept = {
-            "none",
-            "dev",
-            "URL",
-            "inf",
-            "true",
-            "false",
-            *re.findall(r"[A-Za-z]+", str(choices)),
-        }
-        descriptor = setting.descriptor()
-        ranges = [*descriptor.floating_point_range, *descriptor.integer_range]
-        row = ParameterRow(
-            setting.name,
-            "",
-            setting.default,
-            constraints=descriptor.additional_constraints,
-            least=ranges[0].from_value if ranges else None,
-            greatest=ranges[0].to_value if ranges else None,
-        )
-        words = allowed_words(row)
-        assert words
-        assert {*re.findall(r"[A-Za-z]+", words)} <= kept, words
-
-
-def test_the_screen_has_the_descriptions_of_rclpys_own_parameters_in_russian(
-    ros_domain: int,
-) -> None:
-    """They stand in the list of every node."""
-    with Peer(ros_domain) as peer:
-        names = list(peer.node.get_parameters_by_prefix(""))
-        told = [one.description for one in peer.node.describe_parameters(names) if one.description]
-    assert told
-    catalogue = load("catalogues").translated("ru")
-    for description in told:
-        entry = catalogue.get(description)
-        assert entry is not None, description
-        assert re.search("[а-яё]", str(entry.string), re.IGNORECASE), description
 
 
 @given(st.floats() | st.integers() | st.booleans() | st.text() | st.none())
@@ -165,6 +98,12 @@ BAD_STARTS = [
 ]
 
 
+OTHER_STARTS = [
+    (["5"], "2", "не знает 5"),
+    (["--ros-args", "-p", "rate"], "2", "Couldn't parse"),
+    (["--ros-args", "-p", "x:=\udcf0"], "2", "этот аргумент — не текст в UTF-8"),
+    (["--help"], "0", "rate = 1.0  (0.1 .. 200 Hz)"),
+]
 STARTS = """
 import importlib, json, sys
 for module, words in json.loads(sys.argv[1]):
@@ -172,55 +111,47 @@ for module, words in json.loads(sys.argv[1]):
 """
 
 
-def test_a_bad_parameter_ends_the_start_with_one_line_and_code_2(ros_domain: int) -> None:
-    """One start after the other in one process, most of whose time goes into imports."""
-    starts = [
-        (f"nodes.{name}", ["--ros-args", "-p", f"{key}:={value}"])
-        for name, key, value, _ in BAD_STARTS
-    ]
+def run_in_one_process(starts: list[tuple[str, list[str]]], domain: int, lang: str) -> list[str]:
+    """Start one after the other in one process: most of the time of a start goes into imports."""
     done = subprocess.run(
         [sys.executable, "-c", STARTS, json.dumps(starts)],
         cwd=ROOT,
-        env={**os.environ, **DISCOVERY, "ROS_DOMAIN_ID": str(ros_domain), "DECK_LANG": "en"},
+        env={**os.environ, **DISCOVERY, "ROS_DOMAIN_ID": str(domain), "DECK_LANG": lang},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
         check=True,
     )
-    lines = iter(done.stdout.splitlines())
+    return done.stdout.splitlines()
+
+
+def test_a_bad_parameter_ends_the_start_with_one_line_and_code_2(ros_domain: int) -> None:
+    starts = [
+        (f"nodes.{name}", ["--ros-args", "-p", f"{key}:={value}"])
+        for name, key, value, _ in BAD_STARTS
+    ]
+    lines = iter(run_in_one_process(starts, ros_domain, "en"))
     for _name, _key, _value, words in BAD_STARTS:
         assert words in next(lines)
         assert next(lines) == "2"
     assert not list(lines)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("5",), "не знает 5"),
-        (("--ros-args", "-p", "rate"), "Couldn't parse"),
-        (("--ros-args", "-p", "x:=\udcf0"), "этот аргумент — не текст в UTF-8"),
-    ],
-)
-def test_arguments_that_make_no_sense_end_with_code_2(
-    module_domain: int, arguments: tuple[str, ...], words: str
+def test_wrong_arguments_end_with_code_2_and_the_help_tells_every_parameter(
+    ros_domain: int,
 ) -> None:
-    with NodeProcess("nodes.mock_sonar", module_domain, arguments=arguments, lang="ru") as process:
-        assert process.wait() == 2
-        assert words in process.output
-        assert "Traceback" not in process.output
-
-
-def test_the_help_tells_every_parameter(module_domain: int) -> None:
-    with NodeProcess("nodes.mock_sonar", module_domain, arguments=("--help",)) as process:
-        assert process.wait() == 0
-        assert "python -m nodes.mock_sonar --ros-args" in process.output
-        assert "rate = 1.0  (0.1 .. 200 Hz)" in process.output
+    starts = [("nodes.mock_sonar", words) for words, _code, _said in OTHER_STARTS]
+    said = "\n".join(run_in_one_process(starts, ros_domain, "ru"))
+    assert "Traceback" not in said
+    for _words, code, words in OTHER_STARTS:
+        _before, found, said = said.partition(words)
+        assert found, words
+        assert f"\n{code}" in said
 
 
 @pytest.fixture(scope="module")
 def peer(module_domain: int) -> Iterator[Peer]:
-    with Peer(module_domain) as peer, NodeProcess("nodes.mock_sonar", module_domain):
+    with Peer(module_domain) as peer, NodeThread("nodes.mock_sonar", module_domain):
         yield peer
 
 
@@ -246,17 +177,16 @@ def test_ros_tools_see_description_and_range(peer: Peer) -> None:
     assert pattern.additional_constraints == "random, sweep, constant"
 
 
-@pytest.mark.parametrize("value", [0.0, 1000.0, math.nan, math.inf])
-def test_nonsense_is_refused_at_run_time_too(peer: Peer, value: float) -> None:
-    taken, reason = set_parameter(peer, "rate", a_double(value))
-    assert not taken
-    assert "rate" in reason
-
-
-def test_what_is_fixed_at_the_start_stays(peer: Peer) -> None:
+def test_nonsense_and_what_is_fixed_is_refused_at_run_time_too(peer: Peer) -> None:
+    for value in (0.0, 1000.0, math.nan, math.inf):
+        taken, reason = set_parameter(peer, "rate", a_double(value))
+        assert not taken
+        assert "rate" in reason
     text = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value="/elsewhere")
-    taken, _reason = set_parameter(peer, "topic", text)
+    assert not set_parameter(peer, "topic", text)[0]
+    taken, reason = set_parameter(peer, "min_distance", a_double(50.0))
     assert not taken
+    assert "max_distance" in reason
 
 
 def test_a_whole_number_is_taken_for_one_with_a_point(peer: Peer) -> None:
@@ -265,12 +195,6 @@ def test_a_whole_number_is_taken_for_one_with_a_point(peer: Peer) -> None:
     request = GetParameters.Request(names=["rate"])
     (value,) = peer.ask(f"{NODE}/get_parameters", GetParameters, request).values
     assert (value.type, value.double_value) == (ParameterType.PARAMETER_DOUBLE, 50.0)
-
-
-def test_values_that_contradict_each_other_are_refused(peer: Peer) -> None:
-    taken, reason = set_parameter(peer, "min_distance", a_double(50.0))
-    assert not taken
-    assert "max_distance" in reason
 
 
 @pytest.mark.parametrize("module", MODULES)

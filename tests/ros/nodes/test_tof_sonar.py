@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import fcntl
 import math
 import os
 import pty
-import random
 import signal
 import tty
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import Range
 from std_msgs.msg import Float32
 
@@ -108,47 +105,6 @@ def test_bytes_become_distances_by_rep_117(peer: Peer, module_domain: int, port:
         assert "Traceback" not in node.output
 
 
-def test_noise_moves_nothing_and_frames_are_found_behind_it(
-    peer: Peer, module_domain: int, port: Port
-) -> None:
-    heard = peer.hear(TOPIC, Float32)
-    told = peer.hear("/diagnostics", DiagnosticArray)
-    dice = random.Random(7)
-    with sonar(module_domain, port.path) as node:
-        node.wait_for_words("Connected")
-
-        def complained() -> bool:
-            port.send(dice.randbytes(200))
-            return "make no sense" in node.output
-
-        wait_until(complained, "a complaint", every_s=0.05)
-        assert all(math.isnan(message.data) for message in heard)
-        hears(port, NEAR, heard, 1.23)
-        told.clear()
-
-        def is_well() -> bool:
-            port.send(NEAR)  # A silent sonar is not well.
-            return bool(told) and told[-1].status[0].level == DiagnosticStatus.OK
-
-        wait_until(is_well, "a good state", every_s=0.05)
-        values = {item.key: item.value for item in told[-1].status[0].values}
-        assert values["port"] == str(port.path)
-        assert values["connected"] == "true"
-
-
-def test_silence_is_no_distance(peer: Peer, module_domain: int, port: Port) -> None:
-    heard = peer.hear(TOPIC, Float32)
-    told = peer.hear("/diagnostics", DiagnosticArray)
-    with sonar(module_domain, port.path, silent_after_s=0.3) as node:
-        node.wait_for_words("Connected")
-        hears(port, NEAR, heard, 1.23)
-        wait_until(lambda: math.isnan(heard[-1].data), "nan")
-        node.wait_for_words("is it a tf_luna")
-        wait_until(
-            lambda: told and told[-1].status[0].level == DiagnosticStatus.ERROR, "a bad state"
-        )
-
-
 def test_a_cable_is_pulled_and_put_back(peer: Peer, module_domain: int, port: Port) -> None:
     heard = peer.hear(TOPIC, Float32)
     with sonar(module_domain, port.path) as node:
@@ -162,35 +118,5 @@ def test_a_cable_is_pulled_and_put_back(peer: Peer, module_domain: int, port: Po
             wait_until(lambda count=count: node.output.count("Connected") == count, "again")  # type: ignore[misc]
             hears(port, NEAR, heard, 1.23)
         node.send(signal.SIGINT)
-        assert node.wait() == 0
-        assert "Traceback" not in node.output
-
-
-def test_a_port_of_another_program_is_left_alone_until_it_is_free(
-    peer: Peer, module_domain: int, port: Port
-) -> None:
-    heard = peer.hear(TOPIC, Float32)
-    other = os.open(port.path, os.O_RDWR | os.O_NOCTTY)
-    fcntl.flock(other, fcntl.LOCK_EX)
-    with sonar(module_domain, port.path) as node:
-        node.wait_for_words("another program is using it")
-        assert "Connected" not in node.output
-        os.close(other)
-        node.wait_for_words("Connected")
-        hears(port, NEAR, heard, 1.23)
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [("missing", "no such port"), ("file", "not a serial port"), ("loo://", "Cannot open loo://")],
-)
-def test_what_is_no_port_is_told_and_the_node_lives_on(
-    module_domain: int, tmp_path: Path, name: str, words: str
-) -> None:
-    (tmp_path / "file").touch()
-    where = name if "://" in name else tmp_path / name
-    with sonar(module_domain, where) as node:
-        node.wait_for_words(words)
-        node.send(signal.SIGTERM)
         assert node.wait() == 0
         assert "Traceback" not in node.output

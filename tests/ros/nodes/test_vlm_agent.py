@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from tests.model_server import Exchange
 
 pytestmark = pytest.mark.nightly
 
@@ -52,11 +51,7 @@ def test_a_picture_becomes_words_and_boxes(ros_domain: int, model_folder: Path) 
             wait_until(lambda: described and detected and states, "a description")
             assert described[0].data == "A red cup."
             report = json.loads(detected[0].data)
-            assert report == {
-                "width": 640,
-                "height": 480,
-                "things": [{"label": "cup", "box": BOX}],
-            }
+            assert report == {"width": 640, "height": 480, "things": [{"label": "cup", "box": BOX}]}
             assert pictures(server)[0].startswith("data:image/jpeg;base64,/9j/")
             assert {each.request["model"] for each in server.exchanges} == {"m-sees"}
             agent.wait_for_words(f"go to m-sees at {server.url}", "m-sees sees: A red cup.")
@@ -64,54 +59,3 @@ def test_a_picture_becomes_words_and_boxes(ros_domain: int, model_folder: Path) 
             assert KEY not in agent.output
         finally:
             agent.close()
-
-
-@pytest.mark.usefixtures("camera")
-def test_while_one_is_under_way_none_is_sent_and_none_waits(
-    ros_domain: int, model_folder: Path
-) -> None:
-    """A slow model gets the newest picture after its answer, not those of meanwhile."""
-    answers = iter(range(100))
-
-    def slow(exchange: Exchange) -> None:
-        if "deck-" not in json.dumps(exchange.request) and next(answers) == 0:
-            server.closing.wait(1.5)
-            overlapping.append(len(pictures(server)))
-        obeys(SEEN)(exchange)
-
-    overlapping: list[int] = []
-    with ModelServer(slow) as server, Peer(ros_domain) as peer:
-        write_settings(model_folder, server.url)
-        described = peer.hear("/vlm/description", String)
-        agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.1})
-        try:
-            wait_until(lambda: len(described) >= 2, "two descriptions")
-            assert overlapping == [1]
-            assert len(set(pictures(server))) == len(pictures(server))
-        finally:
-            agent.close()
-
-
-@pytest.mark.usefixtures("camera")
-def test_a_failure_is_told_and_the_next_picture_is_tried(
-    ros_domain: int, model_folder: Path
-) -> None:
-    with ModelServer(lambda exchange: exchange.fails(500)) as server, Peer(ros_domain) as peer:
-        write_settings(model_folder, server.url)
-        described = peer.hear("/vlm/description", String)
-        agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.2})
-        try:
-            agent.wait_for_words("No description: the server failed (500)")
-            server.script = obeys(SEEN)
-            wait_until(lambda: described, "a description after all")
-        finally:
-            agent.close()
-
-
-def test_without_a_model_nothing_is_sent(ros_domain: int, model_folder: Path) -> None:
-    del model_folder
-    agent = NodeProcess("nodes.vlm_agent", ros_domain, params={"period": 0.2})
-    try:
-        agent.wait_for_words("No picture goes anywhere: no language model is set up")
-    finally:
-        agent.close()

@@ -14,14 +14,11 @@ from tests.ros.robot_nodes import NODES, RobotNodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
-
-pytestmark = pytest.mark.nightly
 
 
-@pytest.fixture
-def robot(ros_domain: int, tmp_path: Path) -> Iterator[RobotNodes]:
-    nodes = RobotNodes(ros_domain, tmp_path / "devices")
+@pytest.fixture(scope="module")
+def robot(module_domain: int, tmp_path_factory: pytest.TempPathFactory) -> Iterator[RobotNodes]:
+    nodes = RobotNodes(module_domain, tmp_path_factory.mktemp("robot") / "devices")
     nodes.start(*NODES)
     yield nodes
     nodes.close()

@@ -54,11 +54,6 @@ def nodes(request: pytest.FixtureRequest, module_nodes: RobotNodes) -> Iterator[
     module_nodes.wheels.quiet()
 
 
-def test_starting_moves_no_wheel(nodes: RobotNodes) -> None:
-    nodes.wheels.assert_stays()
-    nodes.wheels.assert_still()
-
-
 Fall = Callable[[str], None]
 
 
@@ -119,23 +114,6 @@ def test_commands_that_have_waited_for_who_hung_are_old(nodes: RobotNodes) -> No
     nodes.hang("safety_stop")
     wait_back_and_still(nodes, "electronic_differential")
     wait_back_and_still(nodes, "safety_stop")
-
-
-def test_who_commands_and_falls_silent_is_no_driver_any_more(nodes: RobotNodes) -> None:
-    nodes.wheels.drive()
-    nodes.wheels.wait_moving()
-    nodes.wheels.quiet()
-    nodes.wheels.assert_stands()
-
-
-@pytest.mark.parametrize("device", ["pico", "tof_front"])
-def test_a_cable_that_is_pulled_and_put_back(nodes: RobotNodes, device: str) -> None:
-    nodes.wheels.drive()
-    nodes.wheels.wait_moving()
-    set_parameter(nodes.peer, "mock_robot", device, "unplugged")
-    nodes.wheels.assert_stands()
-    set_parameter(nodes.peer, "mock_robot", device, "fine")
-    nodes.wheels.wait_moving()
 
 
 def test_an_emergency_stop_holds_in_each_place_by_itself(nodes: RobotNodes) -> None:

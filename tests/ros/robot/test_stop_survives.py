@@ -79,9 +79,7 @@ def release(robot: RobotNodes, holders: Holders) -> None:
         holders.wait(False, OBEYING)
 
 
-def test_all_is_killed_with_the_pico_and_nothing_moves_until_the_release(
-    robot: RobotNodes,
-) -> None:
+def test_all_is_killed_with_the_pico_and_nothing_moves_until_the_release(robot: RobotNodes) -> None:
     holders = Holders(robot.peer)
     stop_from_one_who_is_killed(robot)
     holders.wait(True, OBEYING)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
-from geometry_msgs.msg import Transform, TransformStamped
+from geometry_msgs.msg import Transform
 
-from ros2.programs.static_transform_publisher import ArgumentsError, read
+from ros2.programs.static_transform_publisher import read
 from ros2.programs.tf2_echo import described
 
 NEW = "--x 0.15 --z 0.25 --yaw 0.3 --pitch -0.2 --frame-id base_link --child-frame-id eye"
@@ -42,27 +42,3 @@ def test_a_transform_is_described_as_by_the_real_program() -> None:
     assert f"RPY (degree) [0.000, {math.degrees(math.pi / 2):.3f}, 0.000]" in up.replace(
         "-0.0", "0.0"
     )
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("--x", "Not enough arguments for --x"),
-        ("--x one", "Failed to parse --x argument as float"),
-        ("1 2 3", "Extra unparsed arguments on command-line"),
-        ("--frame-id a", "Child frame id must not be empty"),
-        ("--qz 1 --yaw 1 --frame-id a --child-frame-id b", "both quaternion and Euler"),
-        ("0 0 0 0 0 0 a b --x 1", "both new-style (flags) and old-style (arguments)"),
-    ],
-)
-def test_a_faulty_command_line_is_named(line: str, words: str) -> None:
-    with pytest.raises(ArgumentsError) as raised:
-        read(line.split())
-    assert words in str(raised.value)
-
-
-def test_nothing_said_means_the_same_place() -> None:
-    found = read(["--frame-id", "a", "--child-frame-id", "b"])
-    same = TransformStamped(child_frame_id="b")
-    same.header.frame_id = "a"
-    assert found == same

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import os
-import shlex
-import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 import pexpect
 import pytest
+from std_msgs.msg import String
 
 from launcher.ros_tools import COMMANDS
+from tests.ros.peer import Peer
 from tests.ros.shell.conftest import DECK, WITHIN_S, Run
+from tests.waiting import wait_until
 
 
 def test_a_command_runs_in_the_domain_and_its_exit_code_is_passed_on(
@@ -32,11 +33,11 @@ def test_a_command_runs_in_the_domain_and_its_exit_code_is_passed_on(
     ]
 
 
-def test_within_a_shell_there_can_be_another(run: Run) -> None:
-    seen = run(f"{shlex.join(DECK)} -c 'echo $PATH; which ros2'")
-    path, ros2 = seen.stdout.splitlines()
-    assert path.split(":").count(str(COMMANDS)) == 1
-    assert ros2 == str(COMMANDS / "ros2")
+def test_what_is_published_from_it_is_heard(run: Run, peer: Peer) -> None:
+    heard = peer.hear("/ai_command", String)
+    seen = run("ros2 topic pub --once /ai_command std_msgs/msg/String 'data: вперёд'")
+    assert seen.returncode == 0, seen.stderr
+    wait_until(lambda: [message.data for message in heard] == ["вперёд"], "the message")
 
 
 def test_a_real_ros2_is_preferred_unless_it_is_broken(run: Run, tmp_path: Path) -> None:
@@ -50,8 +51,7 @@ def test_a_real_ros2_is_preferred_unless_it_is_broken(run: Run, tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    ("shell", "settings", "extra"),
-    [("bash", ".bashrc", {}), ("sh", "shrc", {"ENV": "shrc"})],
+    ("shell", "settings", "extra"), [("bash", ".bashrc", {}), ("sh", "shrc", {"ENV": "shrc"})]
 )
 def test_the_prompt_tells_the_domain_and_the_users_settings_are_read(
     shell: str, settings: str, extra: Mapping[str, str], home: Path, ros_domain: int
@@ -86,16 +86,3 @@ def test_what_is_not_there_is_told_with_what_is(own: str, home: Path, ros_domain
     terminal.expect_exact("own word for no_such_program" if own else "no_such_program: command not")
     terminal.expect(pexpect.EOF)
     terminal.close()
-
-
-def test_without_a_terminal_it_reads_its_commands(home: Path, ros_domain: int) -> None:
-    seen = subprocess.run(
-        DECK,
-        cwd=home,
-        input="echo $ROS_DOMAIN_ID\nexit 4\n",
-        capture_output=True,
-        text=True,
-        timeout=WITHIN_S,
-        check=False,
-    )
-    assert (seen.stdout, seen.returncode) == (f"{ros_domain}\n", 4)

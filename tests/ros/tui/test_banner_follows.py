@@ -15,7 +15,7 @@ from std_msgs.msg import Bool
 from graph.observer.observer import Observer
 from launcher.client.stop_road import StopRoad
 from tests.ros.node_process import NodeProcess
-from tests.ros.peer import LATCHED, Peer
+from tests.ros.peer import Peer
 from tests.waiting import until
 from tui.emergency.control import EmergencyControl
 from tui.emergency.state import FOLLOWED, listeners
@@ -104,38 +104,10 @@ async def test_a_volatile_word_of_one_who_leaves_stops_and_releases(
             await screen.until(lambda: screen.says(False), "the release")
         await screen.until(lambda: not screen.words, "no banner over wheels that may turn")
         assert any("released elsewhere" in note for note in screen.notes)
-        with (
-            Peer(ros_domain, "joy") as other,
-            other.saying("/emergency_stop", Bool(data=True)),
-        ):
+        with Peer(ros_domain, "joy") as other, other.saying("/emergency_stop", Bool(data=True)):
             await screen.until(lambda: "(by joy)" in screen.words, "the foreign stop, by name")
         screen.emergency.release()
         await screen.until(lambda: not screen.words and screen.says(False), "our release")
-
-
-async def test_who_looks_later_sees_the_stop_and_releases_a_node_that_was_started_anew(
-    screen: Screen, ros_domain: int, tmp_path: Path
-) -> None:
-    with NodeProcess("nodes.electronic_differential", ros_domain) as node:
-        with Peer(ros_domain, "passer_by") as other:
-            await asyncio.to_thread(
-                other.say, "/emergency_stop", Bool(data=True), listeners=2, qos=LATCHED
-            )
-            await screen.until(lambda: screen.says(True), "the stop")
-        node.send(signal.SIGKILL)
-        node.wait()
-    with NodeProcess("nodes.electronic_differential", ros_domain) as node:
-        await asyncio.to_thread(node.wait_for_words, "given before this node was started")
-        late = Screen(ros_domain, tmp_path)
-        try:
-            await late.until(lambda: "(from earlier) since" in late.words, "the stop")
-            late.emergency.release()
-            await late.until(lambda: not late.words and late.says(False), "the release")
-            assert not late.notes
-        finally:
-            await late.close()
-        await screen.until(lambda: not screen.words, "the release on the other screen")
-        assert any("released elsewhere" in note for note in screen.notes)
 
 
 async def test_a_stop_that_only_the_screen_has_heard_is_passed_on_and_shown(

@@ -1,32 +1,36 @@
-"""The observer's process hangs or dies: nobody waits for it, it is said, and another takes over."""
+"""The observer's process: it delays and leaves nothing, and where it hangs another takes over."""
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
-from graph.data import GoalStatus
+from graph.data import GoalStatus, GraphUpdate
+from graph.observer.observer import Observer
 from graph.observer.process.language import LATE_S, WITHDRAWN_LATE_S
 from graph.observer.process.started import ObserverProcess
 from graph.observer.requests import ObserverError
 from graph.publishing.dead_man_switch import HeldCommand
-from graph.ros import FAST_DDS_VARIABLES
+from tests.middleware_words import own_words
 from tests.ros.observing import ROOT, Peer, Watcher, let_updates_come
-from tests.shared_memory_port import ports_of
-from tests.waiting import wait_until
+from tests.waiting import DEADLINE_S, wait_until
 
 BOOL, FLOAT = "std_msgs/msg/Bool", "std_msgs/msg/Float32"
 ADD, DRIVE = "example_interfaces/srv/AddTwoInts", "deck_interfaces/action/DriveToPoint"
 NO_WAITING_S = 2.0
 """Forty calls that wait for nothing take less, on a machine that is busy; one that waited for the
 process that hangs would take at least as long as that is given."""
+LONGEST_GAP_S = 2.0
+"""Between two updates that are due every tenth of a second, on a machine that is busy."""
 
 
 @pytest.fixture
@@ -133,24 +137,6 @@ def test_one_that_was_killed_is_replaced_at_once(watcher: Watcher) -> None:
     assert number > goal
 
 
-def test_marks_of_the_dead_in_its_shared_memory_hold_up_nobody(
-    watcher: Watcher, teller: Peer
-) -> None:
-    watched(watcher)
-    pid = pid_of(watcher)
-    watcher.observer.publish("/stop", BOOL, {"data": False}, latched=True).result(20)
-    (port,) = [port for port in ports_of(teller.process.pid) if port.is_open_in(pid)][:1]
-    # As if somebody had been killed between taking this lock and giving it back.
-    port.lock()
-    try:
-        watcher.observer.publish("/stop", BOOL, {"data": True}, latched=True)
-        wait_until(lambda: port.is_awaited_by(pid), "it waits for the lock", within_s=20)
-        check_that_nobody_waits(watcher)
-    finally:
-        port.unlock()
-    wait_until(lambda: watcher.update.old_since_s is None, "it sees again", within_s=40)
-
-
 def test_it_leaves_with_whoever_it_works_for(ros_domain: int) -> None:
     program = (
         "import threading, time\n"
@@ -212,38 +198,174 @@ def test_a_release_from_before_a_hang_is_given_up_and_a_stop_is_not(
     assert "False" not in str(teller.heard.get("/held"))
 
 
-DEAF = """<?xml version="1.0"?>
-<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles>
-<participant profile_name="deaf" is_default_profile="true"><rtps><builtin><discovery_config>
-<ignoreParticipantFlags>FILTER_DIFFERENT_PROCESS</ignoreParticipantFlags>
-</discovery_config></builtin></rtps></participant></profiles></dds>
+# ---------------------------------------------------------------- begin and end
+
+
+def run(program: str, domain: int, **env: str) -> subprocess.CompletedProcess[str]:
+    """Run a small program in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=ROOT,
+        env={**os.environ, "ROS_DOMAIN_ID": str(domain), **env},
+        capture_output=True,
+        text=True,
+        timeout=DEADLINE_S,
+        check=False,
+    )
+
+
+def test_importing_the_room_imports_neither_rclpy_nor_numpy(ros_domain: int) -> None:
+    program = (
+        "import json, sys;"
+        "import graph, graph.data, graph.pictures.images, graph.observer.observer;"
+        "print(json.dumps([m for m in ('rclpy', 'numpy', 'rosidl_parser') if m in sys.modules]))"
+    )
+    assert json.loads(run(program, ros_domain).stdout) == []
+
+
+WORKING = """
+import sys, threading, time
+from graph.observer.interest import Interest
+from graph.observer.observer import Observer
+seen = threading.Event()
+observer = Observer({domain})
+observer.start(lambda update: seen.set() if update.topics else None)
+observer.measure(True)
+observer.watch(["/rosout"])
+observer.publish("/x", "std_msgs/msg/String", {{"data": "x"}}, latched=True)
+call = observer.call("/y", "example_interfaces/srv/AddTwoInts", {{}}, timeout_s=60)
+assert seen.wait(30)
+{end}
 """
-"""Settings by which a node finds nobody, as after a load peak in which it has heard nothing."""
 
 
-def test_one_that_lives_and_sees_less_than_there_is_is_replaced(
-    ros_domain: int, teller: Peer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    "end",
+    [
+        "observer.stop(); print(call.result(1).error)",
+        "print('the observer has been stopped')",
+        "print('the observer has been stopped'); sys.exit(0)",
+    ],
+    ids=["stopped", "forgotten", "exit"],
+)
+def test_it_writes_nothing_and_ends_cleanly(ros_domain: int, end: str, tmp_path: Path) -> None:
+    peer = Peer("talker", ros_domain)
+    peer.advertise("/a", type_name="std_msgs/msg/String")
+    logs = tmp_path / "logs-of-ros"
+    done = run(WORKING.format(domain=ros_domain, end=end), ros_domain, ROS_LOG_DIR=str(logs))
+    peer.close()
+    assert done.stderr == ""
+    assert own_words(done.stdout).strip() == "the observer has been stopped"
+    assert done.returncode == 0
+    assert not logs.exists()
+
+
+@pytest.mark.parametrize(
+    ("domain", "discovery", "word"),
+    [
+        (233, "localhost", "domain 233 is not between 0 and 232"),
+        (-3, "localhost", "domain -3 is not between 0 and 232"),
+        (5, "everywhere", "discovery 'everywhere' is neither of localhost, subnet"),
+    ],
+)
+def test_a_domain_that_is_refused_is_told_and_so_is_every_order(
+    domain: int, discovery: str, word: str
 ) -> None:
-    settings = tmp_path / "deaf.xml"
-    settings.write_text(DEAF)
-    started: list[ObserverProcess] = []
+    updates: list[GraphUpdate] = []
+    observer = Observer(domain, discovery)
+    before = observer.publish("/x", "std_msgs/msg/String", {"data": "x"})
+    observer.start(updates.append)
+    with pytest.raises(ObserverError, match="ROS cannot be used"):
+        before.result(30)
+    wait_until(lambda: updates, "an update")
+    assert word in updates[0].error
+    with pytest.raises(ObserverError, match="ROS cannot be used"):
+        observer.publish("/x", "std_msgs/msg/String", {"data": "x"}).result(1)
+    result = observer.call("/y", "example_interfaces/srv/AddTwoInts", {}).result(1)
+    assert "ROS cannot be used" in result.error
+    observer.stop()
 
-    def start() -> ObserverProcess:
-        with monkeypatch.context() as patch:
-            if not started:
-                patch.setenv(FAST_DDS_VARIABLES[0], str(settings))
-            started.append(ObserverProcess())
-        return started[-1]
 
-    watcher = Watcher(ros_domain, apart=start)
-    watcher.observer.watch(["/beat"])
+# ---------------------------------------------------------------- a node that hangs
+
+
+class TimedWatcher(Watcher):
+    """It knows the longest time between two updates since it was last set to nothing."""
+
+    longest_s = 0.0
+    _newest_s = 0.0
+
+    def _take(self, update: GraphUpdate) -> None:
+        now_s = time.monotonic()
+        if self._newest_s:
+            self.longest_s = max(self.longest_s, now_s - self._newest_s)
+        self._newest_s = now_s
+        super()._take(update)
+
+
+@pytest.fixture
+def stuck(ros_domain: int) -> Iterator[Peer]:
+    peer = Peer("stuck", ros_domain)
+    peer.advertise("/stuck", type_name=FLOAT)
+    peer.serve("/add")
+    peer.repeat("/stuck", value={"data": 1.0}, hz=20)
+    yield peer
+    peer.process.send_signal(signal.SIGCONT)
+    peer.close()
+
+
+@pytest.fixture
+def lively(ros_domain: int) -> Iterator[Peer]:
+    peer = Peer("lively", ros_domain)
+    peer.advertise("/lively", type_name=FLOAT)
+    peer.repeat("/lively", value={"data": 2.0}, hz=20)
+    peer.serve("/other_add")
+    yield peer
+    peer.close()
+
+
+@contextmanager
+def stopped(peer: Peer) -> Iterator[None]:
+    peer.process.send_signal(signal.SIGSTOP)
     try:
-        wait_until(lambda: len(started) == 2, "a second one looks", within_s=40)
-        assert watcher.node(teller.name) is None
-        wait_until(lambda: watcher.of("/beat"), "it has taken over", within_s=40)
-        assert watcher.node(teller.name)
-        assert not started[0].is_alive
-        let_updates_come(watcher, 20)
-        assert len(started) == 2, "no third one is needed"
+        yield
+    finally:
+        peer.process.send_signal(signal.SIGCONT)
+
+
+def test_one_stopped_node_freezes_nothing(ros_domain: int, stuck: Peer, lively: Peer) -> None:
+    watcher = TimedWatcher(ros_domain)
+    watcher.observer.watch(["/lively", "/stuck"])
+    watcher.observer.measure(all_topics=True)
+    try:
+        for topic in ("/lively", "/stuck"):
+            watcher.wait_for(topic, lambda row: row.hz and abs(row.hz - 20) < 2, "its rate")
+        wait_until(lambda: len(watcher.update.services) > 1, "the services")
+        with stopped(stuck):
+            check_that_all_goes_on(watcher)
+        watcher.wait_for("/stuck", lambda row: row.trouble is None, "it is back")
+        assert lively.process.poll() is None
     finally:
         watcher.close()
+
+
+def check_that_all_goes_on(watcher: TimedWatcher) -> None:
+    watcher.longest_s = 0.0
+    unanswered = watcher.observer.call("/add", ADD, {"a": 1, "b": 2}, timeout_s=3)
+    parameters = watcher.observer.parameters("/stuck", timeout_s=3)
+    publishing = watcher.observer.publish("/lively", FLOAT, {"data": 3.0})
+    answered = watcher.observer.call("/other_add", ADD, {"a": 1, "b": 2}, timeout_s=20).result(30)
+    assert answered.response == {"sum": 3}
+    seen = len(watcher.samples["/lively"])
+    watcher.wait_for("/stuck", lambda row: row.trouble is not None, "it has gone quiet")
+    let_updates_come(watcher, 10)
+    result = unanswered.result(30)
+    assert (result.ok, "no answer within 3 s" in result.error) == (False, True)
+    assert result.elapsed_s < 6
+    assert parameters.result(30).error
+    publishing.result(30)
+    assert watcher.node("/stuck") is not None
+    rate = pytest.approx(20, rel=0.1)
+    watcher.wait_for("/lively", lambda row: row.hz == rate, "has its rate")
+    assert len(watcher.samples["/lively"]) > seen + 10
+    assert watcher.longest_s < LONGEST_GAP_S

@@ -3,32 +3,36 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-from tests.ros.launcher.mistakes import actions, language, messages, nodes
+import yaml
 
-GROUPS: tuple[dict[str, str], ...] = (
-    messages.FIELDS,
-    messages.SENT,
-    nodes.MADE,
-    nodes.CREATED,
-    nodes.PARAMETERS,
-    nodes.CLOCKS,
-    nodes.SEEN,
-    nodes.LOGGED,
-    actions.CLIENTS,
-    actions.SERVERS,
-    language.IMPORTS,
-    language.NAMES,
-    language.ATTRIBUTES,
-    language.CALLS,
-    language.OPERATORS,
-    language.VALUES,
-    language.SYNTAX,
+from tests.ros.launcher.mistakes import programs
+
+TABLE: dict[str, dict[str, dict[str, Any]]] = yaml.safe_load(
+    Path(__file__).with_name("mistakes.yaml").read_text(encoding="utf-8")
 )
-MISTAKES: dict[str, str] = {name: text for group in GROUPS for name, text in group.items()}
-"""Name to program."""
+"""Group, name, and what is wrong in which program."""
 SENTENCES = Path(__file__).with_name("sentences.txt")
 """Of each mistake a line with its name, one with the English sentence, one with the Russian."""
+
+
+def program(text: str = "", swap: list[list[str]] | None = None, **around: Any) -> str:
+    """Return the program that a row of the table describes."""
+    made = text.replace("{HEAD}", programs.HEAD)
+    for kind, given in around.items():
+        build = getattr(programs, kind)
+        made = build(**given) if isinstance(given, dict) else build(given)
+    for before, after, *times in swap or ():
+        made = made.replace(before, after, *map(int, times))
+    return made
+
+
+MISTAKES = {name: program(**row) for group in TABLE.values() for name, row in group.items()}
+"""Name to program."""
+ONE_IN_EACH = 9
+GATE = tuple(name for group in TABLE.values() for name in list(group)[::ONE_IN_EACH])
+"""Some sixty of all groups; the others are tried at night."""
 
 
 def sentences() -> dict[str, tuple[str, str]]:

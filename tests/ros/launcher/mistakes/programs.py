@@ -83,3 +83,69 @@ def bare_heard(body: str, message: str = "Float32(data=2.0)") -> str:
 def script(body: str) -> str:
     """Return a program of these lines below the imports."""
     return f"{HEAD}{body}\n"
+
+
+def given(value: str, default: str) -> str:
+    """Return a program that declares a parameter, and is given it on its command line."""
+    return script(
+        f'rclpy.init(args=["--ros-args", "-p", "p:={value}"])\n'
+        f'Node("n").declare_parameter("p", {default})'
+    )
+
+
+def given_in_file(lines: str) -> str:
+    """Return a program that is given these lines of a file of parameters."""
+    return script(
+        "from pathlib import Path\nfile = Path(__file__).with_name('given.yaml')\n"
+        f"file.write_text('/**:\\n  ros__parameters:\\n    {lines}')\n"
+        'rclpy.init(args=["--ros-args", "--params-file", str(file)])'
+    )
+
+
+# ---------------------------------------------------------------- actions
+
+IMPORTS = """\
+from example_interfaces.action import Fibonacci
+from rclpy.action import ActionClient, ActionServer
+"""
+SERVER = """\
+def execute(self, goal_handle):
+    goal_handle.publish_feedback(Fibonacci.Feedback())
+    goal_handle.succeed()
+    return Fibonacci.Result()
+"""
+GO = """\
+self.server = ActionServer(self, Fibonacci, "fibonacci", self.execute)
+self.client = ActionClient(self, Fibonacci, "fibonacci")
+self.client.wait_for_server(timeout_sec=5.0)
+self.sent = self.client.send_goal_async(Fibonacci.Goal(order=3), feedback_callback=self.heard)
+self.sent.add_done_callback(self.accepted)"""
+ACCEPTED = """\
+def accepted(self, future):
+    self.result = future.result().get_result_async()
+    self.result.add_done_callback(self.done)
+"""
+HEARD = """\
+def heard(self, msg):
+    pass
+"""
+DONE = """\
+def done(self, future):
+    raise SystemExit
+"""
+
+
+def acting(init: str, methods: str = "") -> str:
+    """A node that makes something of an action in its __init__."""
+    return node(init, methods).replace(HEAD, HEAD + IMPORTS)
+
+
+def sending(*, accepted: str = ACCEPTED, heard: str = HEARD, done: str = DONE) -> str:
+    """A node that sends itself a goal, whose client has these methods."""
+    return acting(GO, f"{SERVER}\n{accepted}\n{heard}\n{done}")
+
+
+def serving(body: str, head: str = "def execute(self, goal_handle):") -> str:
+    """A node that sends itself a goal, whose server runs these lines; rclpy catches what fails."""
+    done = "def done(self, future):\n    import os\n    os._exit(0)\n"
+    return acting(GO, f"{head}\n{indented(body, 4)}\n{ACCEPTED}\n{HEARD}\n{done}")
