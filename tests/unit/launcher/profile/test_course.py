@@ -74,6 +74,10 @@ def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
     assert nodes["drive_to_point"].params["simulate"] == "never"
 
 
+def test_nobody_tells_the_robot_to_drive_before_a_user_does() -> None:
+    assert load_profile(PROFILES / "robot.yaml").nodes["mock_audio"].params["period"] == 0
+
+
 @pytest.fixture
 def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
