@@ -1,9 +1,10 @@
 """A simulated microphone and loudspeaker.
 
 Every `period` seconds somebody says a phrase into the microphone, as text in bytes instead of
-sound; what comes for the loudspeaker is written to the log. The first phrase waits for
-a subscriber, but not longer than a period. With a period of 0 nobody speaks. With `sound_file` it is a microphone of sound: silence,
-and every `period` seconds what is in the file. The level of the voice goes to /audio/level.
+sound, or nobody if that is 0; what comes for the loudspeaker is written to the log. The first
+phrase waits for a subscriber, but not longer than a period. With `sound_file` it is a microphone of
+sound: silence, and every `period` seconds what is in the file. The level of the voice goes to
+/audio/level.
 """
 
 from __future__ import annotations

@@ -12,5 +12,5 @@ def one_word_for_a_voice(seen):
     # How many have come by now is chance.
     return {
         "en": f"one voice was heard, and /ai_command keeps saying {words[-1]}: distances start it",
-        "ru": f"голос был один, а в /ai_command раз за разом — {words[-1]}: действие запускают расстояния",
+        "ru": f"голос был один, а в /ai_command раз за разом — {words[-1]}: по расстояниям",
     }

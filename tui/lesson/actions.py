@@ -29,8 +29,11 @@ class LessonTarget(Protocol):
     def go(self, by: int) -> None:
         """Go to that step."""
 
-    def take_hint(self) -> None:
-        """Show the next hint, and after the last one the solution."""
+    def go_on(self) -> None:
+        """Go to the next step, and after the last one to the next lesson."""
+
+    def take_hint(self) -> object:
+        """Show the next hint; after the last one the solution, if it is wanted."""
 
     def compare(self) -> None:
         """Show the solution beside the learner's file, or the text again."""
@@ -57,18 +60,25 @@ class GoOn(LessonAction):
     id = "lesson.next_step"
     key = "enter"
     title = N_("Next step")
-    tooltip = N_("Go on to the next step, once this one has passed.")
+    tooltip = N_("Go on to the next step, once this one has passed; after the last, to a lesson.")
     footer = True
 
     @classmethod
+    def label(cls, target: LessonTarget) -> str:
+        """Named after what comes next."""
+        return cls.title if target.at_work.neighbour(1) else N_("Next lesson")
+
+    @classmethod
     def possible(cls, target: LessonTarget) -> bool | None:
-        """Only after it has passed, and if there is another."""
-        return target.at_work.passed_now and bool(target.at_work.neighbour(1))
+        """Only after it has passed, and if there is another step, or a lesson after all of them."""
+        return target.at_work.passed_now and (
+            bool(target.at_work.neighbour(1)) or target.at_work.next_lesson is not None
+        )
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
         """Go on."""
-        target.go(1)
+        target.go_on()
 
 
 class TakeHint(LessonAction):

@@ -97,7 +97,9 @@ def test_nobody_speaks_until_there_is_a_period(peer: Peer, ros_domain: int) -> N
         assert heard == []
         value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=0.2)
         request = SetParameters.Request(parameters=[Parameter(name="period", value=value)])
-        assert peer.ask("/audio_system/set_parameters", SetParameters, request).results[0].successful
+        assert (
+            peer.ask("/audio_system/set_parameters", SetParameters, request).results[0].successful
+        )
         wait_until(lambda: len(heard) >= 2, "two phrases")
 
 
