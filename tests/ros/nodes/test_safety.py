@@ -233,7 +233,8 @@ def test_a_way_on_which_it_is_slowed_is_not_called_free(
     [
         ("en", 0.61, "0.61 m ahead; the emergency stop holds the wheels."),
         ("ru", 0.61, "Впереди 0,61 м; колёса держит аварийный стоп."),
-        ("en", 2.0, "The path is clear (2.00 m)."),
+        ("en", 2.0, "2.00 m ahead; the emergency stop holds the wheels."),
+        ("en", math.inf, "Nothing in range ahead; the emergency stop holds the wheels."),
     ],
 )
 def test_nothing_is_called_free_to_move_during_an_emergency_stop(
