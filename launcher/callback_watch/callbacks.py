@@ -107,7 +107,12 @@ class Look:
             if not thread.is_callback(frame):
                 continue
             entity = thread.entity_around(frame)
-            waits = [each for each in self.waits[thread.number] if each.entity is entity]
+            # What spins it has no entity, nor has an action's execution.
+            waits = [
+                each
+                for each in self.waits[thread.number]
+                if each.entity is entity and thread.is_within(each.own, frame)
+            ]
             proven = [each for each in waits if self._waits_for_itself(each, thread)]
             wait = next(iter(proven or waits), None)
             kind = told_as(wait) if wait is not None and proven else ""

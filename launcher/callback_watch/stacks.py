@@ -64,6 +64,10 @@ class Thread:
             return False
         return any(is_of(each, EXECUTORS) for each in _down(frame))
 
+    def is_within(self, frame: FrameType, outer: FrameType) -> bool:
+        """Whether a frame of this thread is another, or is called by it."""
+        return self.frames.index(frame) <= self.frames.index(outer)
+
     def entities_around(self, frame: FrameType) -> list[object]:
         """Return the timers, subscriptions and so on whose callbacks this frame is in.
 

@@ -220,7 +220,9 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
     assert client.nodes["pool"].fault is None
     assert await _said(client, "carried out", "drives")
     assert client.nodes["drives"].fault is None
-    assert "carry_out still runs" in (await _fault(client, "cancels")).exception
+    cancels = await _fault(client, "cancels")
+    assert "carry_out still runs" in cancels.exception
+    assert "let a timer do the waiting" in cancels.meaning
     assert "rclpy.spin(node) is missing" in (await _fault(client, "spinless")).meaning
     assert "rclpy.spin(node) is missing" in client.nodes["spinless"].detail
     assert "main() is never called" in (await _fault(client, "uncalled")).meaning
