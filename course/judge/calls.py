@@ -32,7 +32,7 @@ async def service(check: ServiceCheck, evidence: Evidence) -> Observation:
     if not result.ok or result.response is None:
         return Observation(
             met=False,
-            seen=say("{service}: {why}", service=check.service, why=result.error),
+            seen=result.error,
             look=dead_nodes(evidence)
             or say("Does the callback return the response, and does it not wait for too long?"),
         )
