@@ -93,7 +93,6 @@ class ThinnedCamera:
             self._publisher.publish(self._message)
 
     def close(self) -> None:
-        """Offer nothing more."""
         if self._tap is not None:
             self._tap.close()
         self._node.destroy_publisher(self._publisher)
@@ -110,7 +109,6 @@ class PictureRelay:
 
     @property
     def is_asked_for(self) -> bool:
-        """Whether anybody looks."""
         return any(offer.is_asked_for for offer in self._offers.values())
 
     def look(self) -> None:

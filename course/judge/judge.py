@@ -63,7 +63,6 @@ class Judge:
         """Done once the session has ended."""
 
     async def close(self) -> None:
-        """Stop listening."""
         self.over.cancel()
         with contextlib.suppress(asyncio.CancelledError):
             await self.over

@@ -56,7 +56,6 @@ class OwnFiles:
         self._started[node] = {path: _stamp(path) for path in (file, *modules_of(file))}
 
     async def watch(self) -> None:
-        """Watch until cancelled."""
         try:
             while True:
                 self._changed.clear()

@@ -33,7 +33,7 @@ _COLD_PREFIXES = ("PYTHON", "LD_", "RMW_", "OPENBLAS_", "OMP_", "MALLOC_", "LTTN
 
 @dataclass(frozen=True)
 class NodePlan:
-    """One node."""
+    """How one node is started."""
 
     name: str
     command: str
@@ -64,7 +64,7 @@ class NodePlan:
 
 @dataclass(frozen=True)
 class Plan:
-    """The whole session."""
+    """How all nodes of a session are started."""
 
     profile: str
     name: str

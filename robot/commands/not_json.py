@@ -38,7 +38,7 @@ _INVISIBLE = frozenset({"Cc", "Cf", "Zl", "Zp", "Zs"})
 
 
 class Odd(NamedTuple):
-    """One of them."""
+    """A place where the text is not JSON."""
 
     code: str
     """Key of `robot.commands.problems.TEMPLATES`."""

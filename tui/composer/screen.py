@@ -102,7 +102,6 @@ class ComposerScreen(DeckScreen):
         self.asking = ComposerAsking(self)
 
     def compose_body(self) -> ComposeResult:
-        """Editor, verdict, outcome."""
         with Horizontal(id="composer-body"):
             with Vertical(id="composer-left"):
                 yield Static(id="composer-to", classes="composer-title", markup=False)
@@ -163,7 +162,6 @@ class ComposerScreen(DeckScreen):
         return set(WATCHED)
 
     def on_mount(self) -> None:
-        """Focus the editor."""
         self.editor.focus()
         self.check()
         self.line.show_mark(auto=False)
@@ -205,7 +203,6 @@ class ComposerScreen(DeckScreen):
         self._say()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw all texts."""
         del message
         self.verdict.relabel()
         self.asking.read_settings()

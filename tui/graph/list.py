@@ -27,7 +27,6 @@ class GraphList(Rows):
 
     @property
     def chosen_name(self) -> str:
-        """The chosen one."""
         return self.chosen.partition("|")[2]
 
     def show_entries(

@@ -77,7 +77,6 @@ class GoOn(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Go on."""
         target.go_on()
 
 
@@ -97,7 +96,6 @@ class TakeHint(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Show it."""
         target.take_hint()
 
 
@@ -144,7 +142,6 @@ class EditFile(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Open it."""
         target.edit()
 
 
@@ -165,7 +162,6 @@ class MakeOwnFolder(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Make it."""
         target.make_own()
 
 
@@ -185,7 +181,6 @@ class NextStep(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Go to it."""
         target.go(1)
 
 
@@ -205,7 +200,6 @@ class PreviousStep(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Go to it."""
         target.go(-1)
 
 

@@ -46,7 +46,6 @@ class LessonAtWork:
     """The lesson, from the side of whoever shows it; there is one for the app, see `of`."""
 
     def __init__(self, host: Host) -> None:
-        """Know nothing yet."""
         self._host = host
         self.folder: LessonFolder | None = None
         """The lesson, None while there is none."""

@@ -115,7 +115,6 @@ class LessonScreen(DeckScreen):
 
     @on(SessionChanged)
     def _session_changed(self, message: SessionChanged) -> None:
-        """Follow the session."""
         self.at_work.session_changed(self, message)
 
     # Actions

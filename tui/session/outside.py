@@ -40,7 +40,6 @@ class Outside:
     """The current nodes of others."""
 
     def __init__(self) -> None:
-        """Start empty."""
         self.forget()
 
     def forget(self) -> None:

@@ -110,7 +110,7 @@ class InnerLink(Protocol):
     def set_logger_level(
         self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[LevelResult]:
-        """Set it."""
+        """Set from which severity on a node's logger writes."""
 
 
 class GraphLink(Protocol):
