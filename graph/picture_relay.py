@@ -88,7 +88,7 @@ class ThinnedCamera:
             try:
                 self._message.format, self._message.data = thinned_picture(sample.value)
             except ImageError:
-                continue  # Whoever looks at the raw picture is told what is wrong with it.
+                continue  # The raw picture's viewers report what is wrong with it.
             _copy_header(sample.value, self._message.header)
             self._publisher.publish(self._message)
 

@@ -141,7 +141,7 @@ class Sharing:
 
     @property
     def url(self) -> str:
-        """What Foxglove is told to connect to."""
+        """What Foxglove has to connect to."""
         return f"ws://{HERE}:{self.port}"
 
     def wait(self, stop: threading.Event) -> None:

@@ -332,7 +332,7 @@ class _Grading:
             result = unpack_step(event["step"])
             document = next(step for step in self._terms.lesson.steps if step.id == result.id)
             known = {one.step.id: one for one in self._grade.steps}
-            # One that is told again has been judged before; something was found out since.
+            # One that is reported again has been judged before; something was found out since.
             before = known.get(result.id)
             seconds = before.seconds if before is not None else float(event["seconds"])
             known[result.id] = StepGrade(document, result, seconds)

@@ -203,7 +203,7 @@ async def _declared(
     there = await evidence.until(
         lambda: MET if evidence.node(node) is not None else Observation(met=False), within_s
     )
-    # What a node serves is told apart from its name, on a busy machine seconds later.
+    # A node's services are announced apart from its name, on a busy machine seconds later.
     served = f"{node}/list_parameters"
     await evidence.until(
         lambda: MET if any(row.name == served for row in evidence.update.services) else None,

@@ -37,7 +37,7 @@ class OwnFiles:
         file_of: Callable[[], Mapping[str, str]],
         saved: Callable[[str, NodeFault | None], None],
     ) -> None:
-        """`file_of`: each such node's file; `saved` is told of a node whose file was saved."""
+        """`file_of`: each such node's file; `saved` is called with a node whose file was saved."""
         self._file_of = file_of
         self._saved = saved
         self._started: dict[str, dict[str, _Stamp]] = {}

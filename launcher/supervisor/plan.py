@@ -217,6 +217,6 @@ def _learner_env(node: NodeSpec) -> Mapping[str, str | None]:
 
 
 def _foreign_env(program: str) -> Mapping[str, str | None]:
-    """Return changes for a program of somebody else's; `ros2` is found as in `deck shell`."""
+    """Return changes for a foreign program; `ros2` is found as in `deck shell`."""
     tools = ros_tools(os.environ) if program == "ros2" else {}
     return {**without_wheels(os.environ), **tools}

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 KEPT = 50
 LONGEST = 2000
-"""Characters of a question: as many as a model is told."""
+"""Characters of a question: as many as a model gets."""
 LONGEST_NOTE = 600
 NoteKind = Literal["", "warning", "error"]
 

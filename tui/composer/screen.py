@@ -158,7 +158,7 @@ class ComposerScreen(DeckScreen):
         return set(FOLLOWED) if tracing or self.is_current else set()
 
     def watch_topics(self) -> set[str]:
-        """What a model is told of the robot."""
+        """What a model gets to know of the robot."""
         return set(WATCHED)
 
     def on_mount(self) -> None:

@@ -241,7 +241,7 @@ class CancelGoal(Action["CancelGoalScreen"]):
     id = "cancel_goal.cancel"
     key = "enter"
     title = N_("Cancel the goal")
-    tooltip = N_("Ask its server to cancel it; whoever sent it is told by the server.")
+    tooltip = N_("Ask its server to cancel it; the server informs whoever sent it.")
     footer = True
     palette = False
 

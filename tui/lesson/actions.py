@@ -137,7 +137,7 @@ class EditFile(LessonAction):
 
     @classmethod
     def possible(cls, target: LessonTarget) -> bool | None:
-        """Only with a file of one's own."""
+        """Only with a file of the learner's."""
         return target.at_work.node is not None
 
     @classmethod
@@ -151,7 +151,7 @@ class MakeOwnFolder(LessonAction):
     id = "lesson.own"
     key = "C,С"
     title = N_("My own files")
-    means = "files of one's own"
+    means = "own files"
     tooltip = N_("Make a folder of your own for this lesson, if there is none, and open it.")
     footer = True
 

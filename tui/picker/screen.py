@@ -80,7 +80,7 @@ class StartOwn(Action["PickerScreen"]):
     id = "lesson.start_own"
     key = "C,С"
     title = N_("My own files")
-    means = "files of one's own"
+    means = "own files"
     tooltip = N_("Make a folder of your own for the selected lesson, and start your files.")
     footer = True
 
