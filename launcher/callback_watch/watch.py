@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 LONG_S = 0.7
 LOOK_S = 0.2
 _IN_ENGLISH = "callback {name} still runs after {seconds:g} s{within}: {file}, line {line}"
-_IN_RUSSIAN = "колбек {name} не закончил и через {seconds:g} с{within}: {file}, строка {line}"
+_IN_RUSSIAN = "обработчик {name} не закончил и через {seconds:g} с{within}: {file}, строка {line}"
 """Both together are less than a second: a callback that sleeps one is noticed."""
 
 

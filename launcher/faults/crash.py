@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _BLOCKED = re.compile(
-    r"(?:callback|колбек) (?P<name>\S+) (?:still runs after|не закончил и через) "
+    r"(?:callback|обработчик) (?P<name>\S+) (?:still runs after|не закончил и через) "
     r"(?P<seconds>[\d.]+) [sс](?: (?:in|в) (?P<waits_in>\w+))?: "
     r"(?P<file>.+), (?:line|строка) (?P<line>\d+)"
 )
