@@ -74,6 +74,11 @@ def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
     assert nodes["drive_to_point"].params["simulate"] == "never"
 
 
+def test_the_front_sonar_of_the_brain_lesson_is_where_the_gate_listens() -> None:
+    nodes = load_profile(PROFILES.parent / "lessons" / "09-brain" / "starter" / "lesson.yaml").nodes
+    assert nodes["sonar_front"].params["topic"] == "/sensor/sonar_front"
+
+
 def test_nobody_tells_the_robot_to_drive_before_a_user_does() -> None:
     assert load_profile(PROFILES / "robot.yaml").nodes["mock_audio"].params["period"] == 0
 
