@@ -45,7 +45,7 @@ class NoArguments(Arguments):
 
 
 class SeeArguments(Arguments):
-    """Of `see`."""
+    """Arguments of the tool `see`."""
 
     topic: RosName | None = Field(None, description="By default the robot's own camera.")
     width: int = Field(640, ge=32, le=1280, description="Longest side in pixels.")
@@ -58,7 +58,7 @@ class FindArguments(Arguments):
 
 
 class EchoArguments(Arguments):
-    """Of `echo`."""
+    """Arguments of the tool `echo`."""
 
     topic: RosName
     count: int = Field(1, ge=1, le=10, description="How many messages.")
@@ -66,7 +66,7 @@ class EchoArguments(Arguments):
 
 
 class ProposeArguments(Arguments):
-    """Of `propose`."""
+    """Arguments of the tool `propose`."""
 
     commands: list[dict[str, Any]] = Field(
         max_length=MAX_COMMANDS,
@@ -77,13 +77,13 @@ class ProposeArguments(Arguments):
 
 
 class ExecuteArguments(Arguments):
-    """Of `execute`."""
+    """Arguments of the tool `execute`."""
 
     proposal: str = Field(max_length=20, description="The id that `propose` has returned.")
 
 
 class HeadArguments(Arguments):
-    """Of `head`."""
+    """Arguments of the tool `head`."""
 
     pan: Degrees = Field(description="Left and right in whole degrees.")
     tilt: Degrees = Field(description="Up and down in whole degrees.")
@@ -91,7 +91,7 @@ class HeadArguments(Arguments):
 
 
 class SayArguments(Arguments):
-    """Of `say`."""
+    """Arguments of the tool `say`."""
 
     text: Annotated[
         str, Field(min_length=1, max_length=LONGEST_TEXT), AfterValidator(_printable)
@@ -99,14 +99,14 @@ class SayArguments(Arguments):
 
 
 class PublishArguments(Arguments):
-    """Of `publish`."""
+    """Arguments of the tool `publish`."""
 
     topic: RosName
     message: dict[str, Any] = Field(description="The fields of one message.")
 
 
 class CallArguments(Arguments):
-    """Of `call`."""
+    """Arguments of the tool `call`."""
 
     service: RosName
     request: dict[str, Any] = Field(description="The fields of the request.")

@@ -48,7 +48,6 @@ class GuardedConnection(H11Protocol):
         self._expect_request()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Forget it."""
         self.shows_token()
         self._expect_nothing()
         super().connection_lost(exc)

@@ -119,7 +119,7 @@ class AgentServer:
             record.ends(say("failed: {why}", why=why), Severity.WARN)
             return _error(f"failed: {why}")
         except Exception as error:
-            # A fault of ours: the agent is told that there is one, standard error which.
+            # A fault of ours: the agent learns that there is one, standard error says which.
             logger.exception("a tool has failed")
             record.ends(say("failed: {why}", why=type(error).__name__), Severity.ERROR)
             return _error(f"a fault of Deck: {type(error).__name__}")

@@ -64,7 +64,6 @@ class RobotSession:
 
     @property
     def info(self) -> SessionInfo:
-        """What runs."""
         return self.link.session
 
     async def settled(self) -> None:

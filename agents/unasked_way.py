@@ -29,5 +29,4 @@ class UnaskedWay:
         return metres <= self.left_m(limit_m) + _ROUNDING
 
     def add(self, metres: float) -> None:
-        """Count a way."""
         self._ways.append((self._now(), metres))

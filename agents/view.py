@@ -61,17 +61,14 @@ class GraphView:
 
     @property
     def topics(self) -> tuple[TopicRow, ...]:
-        """All topics."""
         return () if self._update is None else self._update.topics
 
     @property
     def nodes(self) -> tuple[NodeRow, ...]:
-        """All nodes."""
         return () if self._update is None else self._update.nodes
 
     @property
     def services(self) -> tuple[ServiceRow, ...]:
-        """All services."""
         return () if self._update is None else self._update.services
 
     def topic(self, name: str) -> TopicRow | None:

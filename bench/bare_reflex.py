@@ -20,7 +20,6 @@ CRITICAL_M, SPEED_RAD_S, PERIOD_S = 0.5, 9.0, 0.02
 
 
 def main() -> None:
-    """Drive until interrupted."""
     sonar = serial.Serial(sys.argv[1], 115_200, timeout=PERIOD_S, exclusive=True)
     pico = serial.Serial(sys.argv[2], 115_200, timeout=0, exclusive=True)
     decoder, numbers = TofDecoder(), count(1)

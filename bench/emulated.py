@@ -41,7 +41,6 @@ class Line:
         self.plug()
 
     def plug(self) -> None:
-        """Connect the device."""
         ours, theirs = pty.openpty()
         tty.setraw(theirs)
         os.set_blocking(ours, False)

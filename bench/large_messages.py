@@ -38,7 +38,6 @@ def answered_ms(terminal: Terminal, key: str, topic: str) -> float:
 
 
 def main() -> None:
-    """Measure and print."""
     opened, left = [], []
     with program("bench.heavy_load", DOMAIN, "cloud"), tempfile.TemporaryDirectory() as name:
         terminal = open_topics(Path(name), NUMBER, DOMAIN)

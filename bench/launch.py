@@ -172,7 +172,6 @@ def is_node(pid: int) -> bool:
 
 
 def measure(kind: str, profile: Profile) -> Figures:
-    """Measure one start."""
     with watch(list(profile.nodes)) as watcher:
         assert watcher.stdout is not None
         with STARTERS[kind](profile) as started:

@@ -23,7 +23,6 @@ TOPICS = {
 
 
 def main() -> None:
-    """Listen until interrupted."""
     rclpy.init()
     node = rclpy.create_node("listener")
     for topic, kind in TOPICS.items():

@@ -76,7 +76,6 @@ def turn(folder: Path) -> tuple[list[float], float, float]:
 
 
 def main() -> None:
-    """Measure and print."""
     delays: list[float] = []
     errors, used = [], []
     with program("bench.heavy_load", DOMAIN, "many"), tempfile.TemporaryDirectory() as name:

@@ -68,7 +68,6 @@ def rates(process: subprocess.Popen[str]) -> dict[str, float]:
 
 
 def measure(subject: list[str]) -> Figures:
-    """Measure one subject."""
     with program(*subject) as process:
         time.sleep(WARM_UP_S)
         rates(process)
@@ -81,7 +80,6 @@ def measure(subject: list[str]) -> Figures:
 
 
 def main() -> None:
-    """Measure and print."""
     turns: dict[str, list[Figures]] = {name: [] for name in SUBJECTS}
     with program("bench.load", DOMAIN):
         for _ in range(ROUNDS):

@@ -46,7 +46,6 @@ def asked(process: subprocess.Popen[str]) -> int:
 
 
 def measure(module: str, folder: Path) -> Figures:
-    """Measure one subject."""
     with (
         program(module, DOMAIN, str(folder)) as subject,
         program("bench.recorders.load", DOMAIN) as load,
@@ -63,7 +62,6 @@ def measure(module: str, folder: Path) -> Figures:
 
 
 def main() -> None:
-    """Measure and print."""
     turns: dict[str, list[Figures]] = {name: [] for name in SUBJECTS}
     with tempfile.TemporaryDirectory() as folder:
         for turn in range(ROUNDS):

@@ -75,7 +75,6 @@ class AskedModels:
         return await think(ladder, schema, messages, parse_llm, on_text, on_repair)
 
     async def close(self) -> None:
-        """Close all connections."""
         client, self._client = self._client, None
         self._ladders.clear()
         if client is not None:

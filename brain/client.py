@@ -49,7 +49,7 @@ class ModelRequest:
 
 @dataclass(frozen=True)
 class Answer:
-    """A whole answer."""
+    """A model's whole answer, and what it has cost."""
 
     text: str
     """What the model wrote, or the arguments of the tool that it called."""
@@ -110,7 +110,6 @@ class ModelClient:
         await self.close()
 
     async def close(self) -> None:
-        """Close all connections."""
         if self._made is not None:
             await self._made.close()
             self._made = None

@@ -121,7 +121,7 @@ def load(
     """Return the user's settings, None if there are none.
 
     Raises:
-        ModelError: if they cannot be used; the words name the file, the line and the mend.
+        ModelError: if they cannot be used; the words name the file, the line and the fix.
     """
     path = settings_path() if path is None else path
     environ = os.environ if environ is None else environ

@@ -1,4 +1,4 @@
-"""What the robot's brain is told before it answers: its senses in words, the talk so far.
+"""What the robot's brain gets to read before it answers: its senses in words, the talk so far.
 
 The words are English whatever the screen speaks: they are for the model, and every model reads it.
 What was heard comes last, and is marked as what it is: somebody's words.

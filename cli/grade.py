@@ -201,13 +201,13 @@ class _GradeReport:
     def step(self, _submission: Submission, step: StepGrade) -> None:
         """A step has been judged: not for good, for its node may still fail."""
         if self._count == 1 and self._aloud:
-            say_error(f"{plain(step.step.id)}: {_(_STATES[step.result.state.value])}")
+            say_error(f"{title(step)}: {_(_STATES[step.result.state.value])}")
 
     def _say_step(self, step: StepGrade) -> None:
         state = step.result.state
         words = f"{_(_STATES[state.value]):{_WIDTH}}"
         points = f"{step.result.earned}/{step.result.points}"
-        rest = f"{points:>6}  {plain(step.step.id)}: {title(step)}"
+        rest = f"{points:>6}  {title(step)}"
         self._write(f"{words}{rest}", f"{self._paint(words, _COLOURS.get(state, RED))}{rest}")
         for more in filter(None, (message(step), look(step))):
             self._write(f"{'':{_WIDTH + 8}}{more}")
@@ -226,7 +226,8 @@ class _GradeReport:
         if len(grades) == 1:
             self._end_of_one(grades[0])
             return
-        steps = [plain(step.id) for step in grades[0].lesson.steps]
+        # Their titles would not fit; the screen numbers them, too.
+        steps = [str(number) for number, _step in enumerate(grades[0].lesson.steps, start=1)]
         head = (_("STUDENT"), _("STATE"), _("POINTS"), *steps, _("FIRST TO MEND"))
         rows = [_row(grade) for grade in grades]
         first, *others = table(head, rows)
@@ -270,5 +271,5 @@ def _row(grade: Grade) -> list[str]:
         _(_STATES[grade.state.value]),
         f"{grade.points}/{grade.max_points}",
         *(str(step.result.earned) for step in grade.steps),
-        "" if first is None else f"{first.step.id}: {message(first)}",
+        "" if first is None else f"{title(first)}: {message(first)}",
     ]

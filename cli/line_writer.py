@@ -50,7 +50,6 @@ class LineWriter:
         threading.Thread(target=self._run, name="output", daemon=True).start()
 
     def write(self, line: str) -> None:
-        """Queue a line."""
         with self._lock:
             if self.gone:
                 return

@@ -26,7 +26,6 @@ class _PlainHandler(logging.Handler):
     """Writes to standard error what is safe to write there."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write a line."""
         say_error(f"deck mcp: {plain(record.getMessage(), 500)}")
 
 

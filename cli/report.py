@@ -220,7 +220,6 @@ class JsonReport:
         """Do nothing: everything that programs need has its own event."""
 
     def summary(self, summary: Summary) -> None:
-        """Report the result."""
         self._object(
             "summary",
             healthy=summary.well,

@@ -31,6 +31,7 @@ def pack_step(step: StepResult) -> dict[str, Any]:
                 "what": pack_text(check.what),
                 "seen": pack_text(check.seen),
                 "look": pack_text(check.look),
+                "hint": pack_text(check.hint),
             }
             for check in step.checks
         ],
@@ -41,7 +42,8 @@ def unpack_step(fields: Mapping[str, Any]) -> StepResult:
     """Return the result that `pack_step` was given."""
     checks = tuple(
         CheckResult(
-            State(check["state"]), *(unpack_text(check[key]) for key in ("what", "seen", "look"))
+            State(check["state"]),
+            *(unpack_text(check[key]) for key in ("what", "seen", "look", "hint")),
         )
         for check in fields["checks"]
     )

@@ -36,6 +36,8 @@ class CheckResult:
     """What was seen instead; empty if it passed."""
     look: str = ""
     """Where to look, for the learner."""
+    hint: str = ""
+    """What the lesson itself says of that, which may be half of the answer."""
 
 
 @dataclass(frozen=True)

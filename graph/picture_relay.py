@@ -88,12 +88,11 @@ class ThinnedCamera:
             try:
                 self._message.format, self._message.data = thinned_picture(sample.value)
             except ImageError:
-                continue  # Whoever looks at the raw picture is told what is wrong with it.
+                continue  # The raw picture's viewers report what is wrong with it.
             _copy_header(sample.value, self._message.header)
             self._publisher.publish(self._message)
 
     def close(self) -> None:
-        """Offer nothing more."""
         if self._tap is not None:
             self._tap.close()
         self._node.destroy_publisher(self._publisher)
@@ -110,7 +109,6 @@ class PictureRelay:
 
     @property
     def is_asked_for(self) -> bool:
-        """Whether anybody looks."""
         return any(offer.is_asked_for for offer in self._offers.values())
 
     def look(self) -> None:

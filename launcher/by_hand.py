@@ -38,7 +38,6 @@ def main(argv: list[str]) -> None:
 
 
 def _explain(file: str, error: BaseException) -> None:
-    """Print the sentence."""
     from launcher.faults.explain import explained
     from text.i18n import detect, localized, set_language
     from text.output import say_error

@@ -21,7 +21,6 @@ class MonotonicClock:
     """The machine's monotonic clock."""
 
     def now(self) -> float:
-        """Return monotonic seconds."""
         return time.monotonic()
 
     async def wait(self, event: asyncio.Event, within_s: float) -> bool:

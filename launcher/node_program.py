@@ -27,7 +27,7 @@ BRIDGES = f"{INSTALLATION}/bridges"
 def prepare(argv: tuple[str, ...], *, tells: bool = True) -> None:
     """Make this process look like a node's program; `argv` begins with its module or file.
 
-    `tells`: a supervisor reads what it prints, and is told what is wrong with a learner's program.
+    `tells`: a supervisor reads what it prints, and gets what is wrong with a learner's program.
     """
     name = argv[0]
     places = [place for place in sys.path if place not in (INSTALLATION, BRIDGES, "")]

@@ -1,4 +1,4 @@
-"""What a shell and a program of somebody else's need to use ROS as Deck does: Python, `ros2`.
+"""What a shell and a foreign program need to use ROS as Deck does: Python, `ros2`.
 
 `launcher/prefix` is laid out like a folder that colcon installs into: `bin` has the command `ros2`,
 `lib` the nodes of the lessons as executables of the package `deck_nodes`, `share` the ament index.

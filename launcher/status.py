@@ -100,17 +100,21 @@ class NodeFault:
     @property
     def words(self) -> Words:
         """All of it in one line."""
+        # Some exceptions are whole sentences.
+        exception = self.exception
+        if type(exception) is str and self.meaning:
+            exception = exception.removesuffix(".")
         if not self.file:
-            return say("{exception}. {meaning}", exception=self.exception, meaning=self.meaning)
+            return say("{exception}. {meaning}", exception=exception, meaning=self.meaning)
         place = say("{file}:{line}", file=self.file.rpartition("/")[2], line=self.line)
         if self.meaning:
             return say(
                 "{place}: {exception}. {meaning}",
                 place=place,
-                exception=self.exception,
+                exception=exception,
                 meaning=self.meaning,
             )
-        return say("{place}: {exception}", place=place, exception=self.exception)
+        return say("{place}: {exception}", place=place, exception=exception)
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,11 @@
 """The brain of lesson 9: hears a voice, checks the distance, and makes the robot act.
 
 With `backend: rules` the reasoning is that of `robot.commands.brain`: with an obstacle within
-`stop_distance`, or without a fresh and valid distance, the robot is told to stop; otherwise the
+`stop_distance`, or without a fresh and valid distance, the robot has to stop; otherwise the
 head turns, the robot drives forward, and the loudspeaker announces it. A drive command ("стоп",
 "left") is obeyed directly, unless it leads into the unknown.
 
-With `backend: llm` the model of the user's settings is asked (`brain.settings`): it is told what
+With `backend: llm` the model of the user's settings is asked (`brain.settings`): it gets what
 was heard, the distances, the pose, what the gate says, and what the camera sees. Its commands go to
 /llm_raw_json, and so through llm_parser and the gate; it has no other way to the wheels. If there
 are no settings, or nobody answers there, the rules decide, and the log says so; if an answer is

@@ -107,7 +107,6 @@ class Audio(LessonNode):
         self._speaker.start()
 
     def before_end(self) -> None:
-        """Release the devices."""
         self._microphone.close()
         self._speaker.close()
 

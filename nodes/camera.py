@@ -83,7 +83,6 @@ class Camera(LessonNode):
         self._capture.start()
 
     def before_end(self) -> None:
-        """Release the camera."""
         self._capture.close()
 
     # ---------------------------------------------------------------- the capture's thread

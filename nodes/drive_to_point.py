@@ -168,7 +168,6 @@ class DriveToPointNode(LessonNode):
     # ---------------------------------------------------------------- goals
 
     def _judge(self, goal: DriveToPoint.Goal) -> GoalResponse:
-        """Refuse unreachable goals."""
         refusal = self._refusal(goal)
         if refusal is None:
             return GoalResponse.ACCEPT

@@ -1,9 +1,10 @@
 """A simulated microphone and loudspeaker.
 
 Every `period` seconds somebody says a phrase into the microphone, as text in bytes instead of
-sound; what comes for the loudspeaker is written to the log. The first phrase waits for
-a subscriber, but not longer than a period. With `sound_file` it is a microphone of sound: silence,
-and every `period` seconds what is in the file. The level of the voice goes to /audio/level.
+sound, or nobody if that is 0; what comes for the loudspeaker is written to the log. The first
+phrase waits for a subscriber, but not longer than a period. With `sound_file` it is a microphone of
+sound: silence, and every `period` seconds what is in the file. The level of the voice goes to
+/audio/level.
 """
 
 from __future__ import annotations
@@ -38,6 +39,7 @@ _SHORT = 64
 _LOOK_EVERY_S = 0.5
 """How long to wait for a first subscriber."""
 _BLOCK_S = 0.1
+_SHORTEST_S = 0.1
 _SAY_EVERY_S = 5.0
 
 
@@ -46,7 +48,7 @@ class MockAudio(LessonNode):
 
     NAME = "audio_system"
     SETTINGS = (
-        Number("period", 10.0, "Time between two phrases", low=0.1, high=3600.0, unit="s"),
+        Number("period", 10.0, "Time between two phrases; 0: no phrases", high=3600.0, unit="s"),
         Number(
             "first_after", 3.0, "Time before the first", low=0.1, high=3600.0, unit="s", fixed=True
         ),
@@ -82,15 +84,20 @@ class MockAudio(LessonNode):
     def parameters_changed(self) -> None:
         """Apply the new period, from the next phrase on."""
         if self._began:
-            change_period(self._timer, self.number("period"))
+            change_period(self._timer, self._period_s())
+
+    def _period_s(self) -> float:
+        return max(self.number("period"), _SHORTEST_S)
 
     def _speak(self) -> None:
+        if not self.number("period"):
+            return
         if not self._began:
             if not self._has_listener():
                 change_period(self._timer, _LOOK_EVERY_S)
                 return
             self._began = True
-            change_period(self._timer, self.number("period"))
+            change_period(self._timer, self._period_s())
         if self._sound:
             self._left = self._sound
             self.say.info(_PLAYED_FILE, path=self.text("sound_file"))

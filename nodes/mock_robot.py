@@ -125,7 +125,6 @@ class MockRobot(LessonNode):
         self._pico.battery_v = self._servos.battery_v = self.number("battery")
 
     def before_end(self) -> None:
-        """Remove the devices."""
         for line in self._lines.values():
             line.close()
 

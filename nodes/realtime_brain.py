@@ -103,7 +103,6 @@ class RealtimeBrain(LessonNode):
         self._begin()
 
     def before_end(self) -> None:
-        """Hang up."""
         self._model.close()
 
     # ---------------------------------------------------------------- the talk

@@ -117,7 +117,6 @@ class RobotStatePublisher(LessonNode):
         )
 
     def contradiction(self, values: Mapping[str, Value]) -> str | None:
-        """Refuse two robots."""
         return _TWO if values["robot_description"] and values["urdf_file"] else None
 
     # ---------------------------------------------------------------- at the start

@@ -90,7 +90,6 @@ class TofSonar(LessonNode):
         self._pace.start()
 
     def before_end(self) -> None:
-        """Release the port."""
         self._pace.close()
         self._link.close()
 

@@ -4,7 +4,7 @@ Each `period` the newest picture goes to the model of the user's settings (`visi
 `model`), as a JPEG. Its words come on /vlm/description, and what stands out on /vlm/detections, as
 JSON: `{"width", "height", "things": [{"label", "box"}]}`, where a box is `{"left", "top", "right",
 "bottom"}` in shares of the picture, or null. While an answer is awaited pictures are passed over:
-none is ever queued. What that takes is told on /brain_state.
+none is ever queued. What that takes is published on /brain_state.
 """
 
 from __future__ import annotations

@@ -10,7 +10,6 @@ class Window:
     """The last so many values, in seconds."""
 
     def __init__(self, longest: int) -> None:
-        """Keep `longest` values."""
         self.values: deque[float] = deque(maxlen=longest)
 
     def add(self, value: float) -> None:
@@ -19,7 +18,6 @@ class Window:
 
     @property
     def mean(self) -> float:
-        """Their mean."""
         return fmean(self.values)
 
     @property

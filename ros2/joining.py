@@ -67,7 +67,6 @@ class Guest:
     def __init__(
         self, node: Node, executor: SingleThreadedExecutor, answered_within_s: float
     ) -> None:
-        """Take both, open."""
         self.node = node
         self.answered_within_s = answered_within_s
         self._executor = executor

@@ -7,5 +7,5 @@ import time
 
 
 def log(logger: str, words: str, severity: str = "INFO") -> None:
-    """Write one."""
+    """Write a line of the log as ros2 does."""
     print(f"[{severity}] [{time.time():.9f}] [{logger}]: {words}", file=sys.stderr, flush=True)

@@ -329,7 +329,7 @@ def main(folder: str) -> int:
         say(f"deck: failed at: {failed}; the whole log is in {failed.log}")
     except WrongNameError as wrong:
         say(str(wrong))
-        say("deck: nothing is built before these names are mended")
+        say("deck: nothing is built before these names are fixed")
         return 2
     except OSError as error:
         say(f"deck: cannot set up here: {error}")

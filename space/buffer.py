@@ -54,7 +54,6 @@ class TransformBuffer:
             history.add(one, self._keep_s)
 
     def clear(self) -> None:
-        """Forget everything."""
         self._frames.clear()
 
     @property

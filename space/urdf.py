@@ -30,7 +30,7 @@ T = TypeVar("T")
 
 
 class UrdfError(ValueError):
-    """Why a text describes no robot; its text is a sentence with the line and the mend."""
+    """Why a text describes no robot; its text is a sentence with the line and the fix."""
 
 
 def read_urdf(text: str) -> RobotModel:
@@ -132,7 +132,7 @@ def _check_ends(
 def _without_vain_mimics(
     joints: Mapping[str, ModelJoint], elements: Mapping[str, Element]
 ) -> tuple[dict[str, ModelJoint], list[str]]:
-    """Return the joints, each of which follows another in the end or nobody, and what is told."""
+    """Return the joints, each of which follows another in the end or nobody, and remarks."""
     found, told = dict(joints), []
     ends_well: set[str] = set()
     for name in joints:

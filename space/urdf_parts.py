@@ -58,7 +58,7 @@ class Materials:
     """
 
     def __init__(self, robot: Element, warnings: list[str]) -> None:
-        """Read the definitions; append what is left out or mended to `warnings`."""
+        """Read the definitions; append what is left out or corrected to `warnings`."""
         self._warnings = warnings
         self._colours: dict[str, Colour | None] = {}
         places = [robot, *(visual for link in robot.all("link") for visual in link.all("visual"))]

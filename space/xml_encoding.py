@@ -1,7 +1,7 @@
 """From the bytes of an XML file to its text: by their mark, or by the encoding that it declares.
 
 The text is handed on to others, who take it for UTF-8 whatever it declares, as RViz does: what it
-declares is mended with it.
+declares is fixed with it.
 """
 
 from __future__ import annotations

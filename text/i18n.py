@@ -105,16 +105,13 @@ def translated(message: str, code: str) -> str:
     return _catalogue_of(code).gettext(message) if message else ""
 
 
-def decimal(number: str) -> str:
-    """Return a number in a sentence as the current language writes it: `0,36` in Russian.
+def decimal(number: str, code: str = "") -> str:
+    """Return a number in a sentence as a language writes it: `0,36` in Russian.
 
-    Data that is echoed, edited or sent keeps its decimal point.
+    Without a `code`, the current language is meant. Data that is echoed, edited or sent keeps its
+    decimal point.
     """
-    return _decimal(number, _language)
-
-
-def _decimal(number: str, code: str) -> str:
-    return number.replace(".", ",") if code == "ru" else number
+    return number.replace(".", ",") if (code or _language) == "ru" else number
 
 
 class LocalizedFloat(float):
@@ -129,7 +126,7 @@ class LocalizedFloat(float):
         return made
 
     def __format__(self, spec: str) -> str:
-        return _decimal(super().__format__(spec), self.code)
+        return decimal(super().__format__(spec), self.code)
 
 
 def _in_words(value: object, code: str) -> object:

@@ -1,6 +1,6 @@
 """What is wrong with a YAML text, in words that help whoever typed it: PyYAML's are for its makers.
 
-`events` reads for every room: a profile, a message and a parameter are told the same of the same.
+`events` reads for every room: the same fault gets the same message everywhere.
 """
 
 from __future__ import annotations

@@ -481,7 +481,6 @@ class DeckApp(App[int], Acting):
         self._remember(editor=name)
 
     def watch_theme(self, theme: str) -> None:
-        """Remember the theme."""
         self._remember(theme=theme)
 
     def on_agents_changed(self) -> None:

@@ -84,7 +84,6 @@ class RealTerminal:
 
     @property
     def app(self) -> DeckApp:
-        """The running app."""
         assert self._app is not None
         return self._app
 

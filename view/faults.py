@@ -6,7 +6,7 @@ from text.sentences import say
 
 
 class ViewError(Exception):
-    """Why there is no viewer; its text is a sentence for the user, with the mend."""
+    """Why there is no viewer; its text is a sentence for the user, with the fix."""
 
 
 class PortTakenError(ViewError):

@@ -48,7 +48,6 @@ class _Channels:
         self._lock = threading.Lock()
 
     def add_topic(self, topic: BagTopic, text: str) -> None:
-        """Announce a topic."""
         import foxglove
 
         if is_latched(topic):
@@ -60,7 +59,6 @@ class _Channels:
             self._channels[topic.name] = channel
 
     def put(self, messages: Sequence[Message]) -> None:
-        """Hand on messages."""
         for message in messages:
             name = message.topic.name
             with self._lock:
@@ -143,7 +141,7 @@ class Sharing:
 
     @property
     def url(self) -> str:
-        """What Foxglove is told to connect to."""
+        """What Foxglove has to connect to."""
         return f"ws://{HERE}:{self.port}"
 
     def wait(self, stop: threading.Event) -> None:
@@ -172,7 +170,6 @@ def _listener(channels: _Channels) -> Any:  # noqa: ANN401
         """Tells the channels who begins to listen."""
 
         def on_subscribe(self, client: Any, channel: Any) -> None:  # noqa: ANN401
-            """Pass it on."""
             del client
             channels.ask_for(channel.topic)
 

@@ -1,7 +1,7 @@
 """Rerun's own program: the window, or the server that a page reads from.
 
-It is told to listen on this machine alone, where by itself it would listen on all addresses, and to
-tell nobody how it is used.
+It is configured to listen on this machine alone, where by itself it would listen on all addresses,
+and to report to nobody how it is used.
 """
 
 from __future__ import annotations

@@ -46,7 +46,6 @@ class Model:
         self.done_s = 0.0
 
     def __call__(self, exchange: Exchange) -> None:
-        """Answer."""
         obeys(ANSWER)(exchange)
         self.done_s = time.monotonic()
 

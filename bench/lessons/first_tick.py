@@ -109,7 +109,6 @@ async def measure(folder: Path, step: str) -> list[float]:
 
 
 def main() -> None:
-    """Measure and print."""
     print(f"load of the machine {os.getloadavg()[0]:.1f}\n")
     print("| what | measured | goal |")
     print("| --- | --- | --- |")

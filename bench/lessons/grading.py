@@ -32,7 +32,6 @@ def graded(folder: Path) -> float:
 
 
 def main() -> None:
-    """Measure and print."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place, "anna")
         shutil.copytree(LESSON / "starter", folder)

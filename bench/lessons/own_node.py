@@ -65,7 +65,6 @@ async def consume(client: SupervisorClient) -> None:
 
 
 def main() -> None:
-    """Measure and print."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place, "02-sonar-safety")
         shutil.copytree(LESSON / "starter", folder)

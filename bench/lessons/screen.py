@@ -45,7 +45,6 @@ def measured(folder: Path, *, solved: bool) -> None:
 
 
 def main() -> None:
-    """Measure and print."""
     print(f"load of the machine {os.getloadavg()[0]:.1f}\n")
     print("| what | measured | goal |")
     print("| --- | --- | --- |")

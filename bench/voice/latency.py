@@ -94,7 +94,6 @@ def now() -> float:
 
 
 def main() -> int:
-    """Measure and print."""
     os.environ.update(environment())
     voices = ("en-us", "en", "en-us+f2", "en-gb-scotland")
     dice = np.random.default_rng(2)

@@ -12,6 +12,6 @@ class ServingError(Exception):
     """It cannot be served; str() is the reason in English."""
 
     def __init__(self, words: Words) -> None:
-        """`words` are made by `text.sentences.say`, and name the mend."""
+        """`words` are made by `text.sentences.say`, and name the fix."""
         super().__init__(words)
         self.words = words

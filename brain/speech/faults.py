@@ -20,7 +20,7 @@ class SpeechError(Exception):
 
     @property
     def sentence(self) -> Words:
-        """Return the reason and the mend."""
+        """Return the reason and the fix."""
         if not self.fix:
             return self.words
         return say("{problem}: {fix}", problem=self.words, fix=self.fix)

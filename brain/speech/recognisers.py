@@ -28,7 +28,7 @@ def recogniser(backend: str, language: str, model: str) -> Recogniser:
     """Return one of `BACKENDS`; `model` is a folder for vosk and sherpa, and unused otherwise.
 
     Raises:
-        SpeechError: a package, a model or the settings are missing; the words name the mend.
+        SpeechError: a package, a model or the settings are missing; the words name the fix.
     """
     if backend == "sphinx":
         from brain.speech.sphinx import SphinxRecogniser

@@ -15,7 +15,6 @@ class Sound:
 
     @property
     def seconds(self) -> float:
-        """Return its length."""
         return len(self.pcm) / 2 / self.rate_hz
 
     def at(self, rate_hz: int) -> Sound:

@@ -25,7 +25,7 @@ def voice(backend: str, model: str) -> Voice:
     """Return one of `BACKENDS`; `model` is a file for piper, and unused otherwise.
 
     Raises:
-        SpeechError: a package, a model or the settings are missing; the words name the mend.
+        SpeechError: a package, a model or the settings are missing; the words name the fix.
     """
     if backend == "espeak":
         from brain.speech.espeak import EspeakVoice

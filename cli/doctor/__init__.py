@@ -21,7 +21,6 @@ THINGS = (
 
 
 def examine() -> list[Finding]:
-    """Examine everything."""
     found: list[Finding] = []
     for thing in THINGS:
         module = import_module(f"{__name__}.{thing}")

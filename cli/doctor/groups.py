@@ -38,7 +38,6 @@ class GroupFacts:
 
 
 def collect(root: Path = ROOT) -> GroupFacts:
-    """Gather the facts."""
     groups = grp.getgrall()
     try:
         user = pwd.getpwuid(os.getuid()).pw_name

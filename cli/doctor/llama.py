@@ -27,7 +27,6 @@ class LlamaFacts:
 
 
 def collect() -> LlamaFacts:
-    """Gather the facts."""
     try:
         version = metadata.version(DISTRIBUTION)
     except metadata.PackageNotFoundError:

@@ -36,7 +36,6 @@ class LoginFacts:
 
 
 def collect() -> LoginFacts:
-    """Gather the facts."""
     user = os.environ.get("USER", "")
     return LoginFacts(
         logind=Path("/run/systemd/system").is_dir(),

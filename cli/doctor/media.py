@@ -35,7 +35,6 @@ class MediaFacts:
 
 
 def collect() -> MediaFacts:
-    """Gather the facts."""
     cameras = tuple(
         (str(path), _camera_name(path.name), os.access(path, os.R_OK | os.W_OK))
         for path in sorted(Path("/dev").glob("video[0-9]*"))

@@ -25,7 +25,6 @@ class ModelFacts:
 
 
 def collect() -> ModelFacts:
-    """Gather the facts."""
     try:
         settings = load()
         if settings is not None:

@@ -33,7 +33,6 @@ class NetworkFacts:
 
 
 def collect() -> NetworkFacts:
-    """Gather the facts."""
     return NetworkFacts({name: os.environ[name] for name in VARIABLES if os.environ.get(name)})
 
 

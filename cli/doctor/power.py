@@ -51,7 +51,6 @@ def ask_firmware() -> str:
 
 
 def collect(root: Path = ROOT, ask: Callable[[], str] = ask_firmware) -> PowerFacts:
-    """Gather the facts."""
     model = _text(root / "proc/device-tree/model").strip("\0 \n")
     pi = model if model.startswith("Raspberry Pi") else ""
     cpu = root / "sys/devices/system/cpu/cpu0/cpufreq"

@@ -39,7 +39,6 @@ class PythonFacts:
 
 
 def collect() -> PythonFacts:
-    """Gather the facts."""
     installed = {}
     for name in PACKAGES:
         version = _version(name)

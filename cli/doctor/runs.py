@@ -35,7 +35,6 @@ class RunFacts:
 
 
 def collect() -> RunFacts:
-    """Gather the facts."""
     from launcher.client.client import running
     from launcher.runs.strays import find_strays
 

@@ -38,7 +38,6 @@ class SharedMemoryFacts:
 
 
 def collect() -> SharedMemoryFacts:
-    """Gather the facts."""
     if not SHARED_MEMORY.is_dir():
         return SharedMemoryFacts(exists=False, free=0)
     status = os.statvfs(SHARED_MEMORY)

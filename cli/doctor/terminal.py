@@ -36,7 +36,6 @@ class TerminalFacts:
 
 
 def collect() -> TerminalFacts:
-    """Gather the facts."""
     size = shutil.get_terminal_size(fallback=(0, 0))
     return TerminalFacts(
         is_terminal=sys.stdin.isatty() and sys.stdout.isatty(),

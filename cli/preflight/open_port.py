@@ -33,7 +33,6 @@ class OpenPort:
         )
 
     def close(self) -> None:
-        """Close it."""
         with contextlib.suppress(*BAD):
             self._port.close()
 

@@ -66,7 +66,8 @@ def shell_command(options: Namespace) -> int:
     environ = environment_in(domain, discovery)
     if options.lang:
         environ["DECK_LANG"] = options.lang
-    label = f"domain {domain}" if name == f"domain-{domain}" else f"{name}, domain {domain}"
+    in_domain = _("domain {domain}").format(domain=domain)
+    label = in_domain if name == f"domain-{domain}" else f"{name}, {in_domain}"
     environ[LABEL] = plain(label, 80)
     shell = _shell(environ)
     if options.line is not None:

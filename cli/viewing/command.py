@@ -154,7 +154,6 @@ def _lines(opened: ViewOpened, ssh: str) -> list[str]:
 
 
 def _rviz(domain: int, discovery: str | tuple[str, ...]) -> NoReturn:
-    """Become RViz2."""
     from cli.shell.command import environment_in
     from launcher.profile.text import SHIPPED
     from view.installed import rviz_program

@@ -5,18 +5,19 @@ The folders are in `course.lessons.catalog.course_dir`, each named after its les
 
 from __future__ import annotations
 
-import filecmp
 import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from course.folder.comments import in_language
 from course.folder.node_template import NODE, PROFILE
 from course.lessons.catalog import course_dir
 from course.lessons.lesson import IGNORED
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
+from text.i18n import language
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -77,15 +78,21 @@ def own_profile(lesson: LessonFolder) -> Path:
 def _written(folder: Path, sources: dict[Path, Path]) -> NewFolder:
     written, kept = [], []
     for name, source in sources.items():
-        target = folder / name
+        target, content = folder / name, _content(source)
         if target.exists():
-            if filecmp.cmp(source, target, shallow=False):
+            if target.read_bytes() == content:
                 continue
             kept.append(_copied(target))
         target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(source, target)
+        target.write_bytes(content)
         written.append(target)
     return NewFolder(folder, tuple(written), tuple(kept))
+
+
+def _content(source: Path) -> bytes:
+    """Return what the learner gets of a file of the starter."""
+    raw = source.read_bytes()
+    return in_language(raw, language()) if source.suffix in (".py", ".yaml") else raw
 
 
 def _copied(file: Path) -> Path:

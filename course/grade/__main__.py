@@ -1,6 +1,6 @@
 """An examiner: `python -m course.grade FD` judges one folder, and ends with everything it started.
 
-FD is a socket on which it is told what to do and tells what it finds, see `course.grade.protocol`;
+FD is a socket for its orders and its findings, see `course.grade.protocol`;
 no process that it starts has it. It limits itself and its descendants, and confines the nodes. Its
 first process is a guardian: whatever the nodes do to the supervisor or to the judge, the guardian
 ends all that descends from it, and then itself.

@@ -52,7 +52,7 @@ class StepGrade:
     def look(self) -> str:
         """Where the learner should look; empty if it has passed, or nothing can be said."""
         checks = (one for one in self.result.checks if one.state is State.FAILED)
-        return next((check.look for check in checks), "")
+        return next((check.hint or check.look for check in checks), "")
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from course.folder.comments import in_language
 from course.grade.defaults import WITHIN_S
 from course.grade.environment import own_places
 from course.grade.examination import EXAMINER, Examination, Examiners
@@ -34,6 +35,7 @@ from course.protocol import unpack_step
 from course.results import State
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.steps.draw import LARGEST_SEED
+from text.i18n import LANGUAGES
 from text.packing import unpack_text
 from text.sentences import say
 
@@ -239,7 +241,8 @@ class _Grading:
                 )
             )
         own = self._files.contents.get(Path(FOLDERS_OWN))
-        if own is not None and own != self._starter.contents[Path(FOLDERS_OWN)]:
+        given = self._starter.contents[Path(FOLDERS_OWN)]
+        if own not in (None, given, *(in_language(given, code) for code in LANGUAGES)):
             notes.append(
                 say("the folder's {file} was not used, but the lesson's own", file=FOLDERS_OWN)
             )
@@ -329,7 +332,7 @@ class _Grading:
             result = unpack_step(event["step"])
             document = next(step for step in self._terms.lesson.steps if step.id == result.id)
             known = {one.step.id: one for one in self._grade.steps}
-            # One that is told again has been judged before; something was found out since.
+            # One that is reported again has been judged before; something was found out since.
             before = known.get(result.id)
             seconds = before.seconds if before is not None else float(event["seconds"])
             known[result.id] = StepGrade(document, result, seconds)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 FOUND_WITHIN_S = 10.0
 """How long the services that every node has may take to be discovered."""
 ANSWERS_WITHIN_S = 20.0
-"""How long a node may take to answer: longer than until it is told that it is stuck."""
+"""How long a node may take to answer: longer than until Deck reports that it is stuck."""
 ASKED_AGAIN_S = 4.0
 SETTLED_WITHIN_S = 10.0
 """How long a node may take to start, or the supervisor to tell that its process has ended."""

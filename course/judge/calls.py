@@ -32,7 +32,7 @@ async def service(check: ServiceCheck, evidence: Evidence) -> Observation:
     if not result.ok or result.response is None:
         return Observation(
             met=False,
-            seen=say("{service}: {why}", service=check.service, why=result.error),
+            seen=result.error,
             look=dead_nodes(evidence)
             or say("Does the callback return the response, and does it not wait for too long?"),
         )
@@ -203,7 +203,7 @@ async def _declared(
     there = await evidence.until(
         lambda: MET if evidence.node(node) is not None else Observation(met=False), within_s
     )
-    # What a node serves is told apart from its name, on a busy machine seconds later.
+    # A node's services are announced apart from its name, on a busy machine seconds later.
     served = f"{node}/list_parameters"
     await evidence.until(
         lambda: MET if any(row.name == served for row in evidence.update.services) else None,

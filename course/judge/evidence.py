@@ -300,7 +300,7 @@ def _written_s(file: str) -> float:
 
 
 def _began_s(pid: int, uptime_s: float) -> float:
-    """Return when a process began, unix time: by the kernel, for a status is told late.
+    """Return when a process began, unix time: by the kernel, for a status arrives late.
 
     Of a process that is no more, by the uptime it was told with.
     """

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import ctypes
 import importlib.util
+import re
 import threading
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from course.judge.evidence import MET, Observation
 from course.judge.missing import dead_nodes, no_messages
 from launcher.profile.steps.checks import PublishCheck, PythonCheck
+from text.i18n import decimal
 from text.sentences import InLanguages, say
 
 if TYPE_CHECKING:
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from launcher.profile.steps.expressions import Drawn
 
 T = TypeVar("T")
+_POINT = re.compile(r"(?<=\d)\.(?=\d)")
 AT_MOST_S = 2.0
 """How long a function may take."""
 
@@ -196,8 +199,16 @@ def _complaint(said: object, check: PythonCheck, evidence: Evidence) -> Observat
         row = evidence.topic(topic)
         if row is None or not row.publishers:
             return no_messages(evidence, topic, type_name)
-    seen = InLanguages(said) if isinstance(said, dict) else str(said)
+    seen = InLanguages(_with_commas(said)) if isinstance(said, dict) else str(said)
     return Observation(met=False, seen=seen, look=dead_nodes(evidence))
+
+
+def _with_commas(texts: Mapping[str, str]) -> dict[str, str]:
+    """Return the texts with the decimal point that Python writes as their language has it."""
+    return {
+        code: _POINT.sub(decimal(".", code), text) if isinstance(text, str) else text
+        for code, text in texts.items()
+    }
 
 
 def _fault(path: Path, error: BaseException) -> str:

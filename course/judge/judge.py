@@ -63,7 +63,6 @@ class Judge:
         """Done once the session has ended."""
 
     async def close(self) -> None:
-        """Stop listening."""
         self.over.cancel()
         with contextlib.suppress(asyncio.CancelledError):
             await self.over
@@ -241,7 +240,7 @@ class Judge:
         if before is not None and len(before.checks) >= len(found):
             more = before.checks[len(found) :]
             found = [
-                replace(one, state=old.state, seen=old.seen, look=old.look)
+                replace(one, state=old.state, seen=old.seen, look=old.look, hint=old.hint)
                 for one, old in zip(found, before.checks, strict=False)
             ]
         meanwhile = before.state if before is not None else State.NOT_YET
@@ -279,11 +278,12 @@ class Judge:
             return CheckResult(State.PASSED, what)
         if self.evidence.ended:
             return CheckResult(State.UNJUDGED, what, say("the session has ended"))
-        look = InLanguages(check.look) if check.look else observation.look
         if any(node.ails for node in self.evidence.nodes.values()):
             # Whatever a check advises is meant for a program that runs.
             look = dead_nodes(self.evidence)
-        return CheckResult(State.FAILED, what, observation.seen, look)
+            return CheckResult(State.FAILED, what, observation.seen, look)
+        hint = InLanguages(check.look) if check.look else ""
+        return CheckResult(State.FAILED, what, observation.seen, observation.look, hint)
 
     def _filled(self, check: CheckDocument) -> CheckDocument:
         """Return the check with the values of this run in it."""

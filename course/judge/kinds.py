@@ -211,6 +211,8 @@ def expected(check: CheckDocument) -> str:
     if isinstance(check, ActionCheck):
         return say(_expected_end(check), **about)
     if isinstance(check, NoPublisherCheck) and check.except_nodes:
+        names = check.except_nodes
+        about["except"] = names if isinstance(names, str) else ", ".join(names)
         return say("nobody but {except} publishes {no_publisher}", **about)
     if isinstance(check, LogCheck):
         about["matches"] = _plainly(check.matches)

@@ -56,6 +56,12 @@ def find_lesson(name: str | Path) -> LessonFolder:
     raise UsageError(say("there is no lesson {name!r}; {hint}", name=text, hint=hint))
 
 
+def next_lesson(lesson: LessonFolder) -> LessonFolder | None:
+    """Return the lesson that comes after one; None after the last."""
+    known = lessons()
+    return next((known[name] for name in known if name > lesson.name), None)
+
+
 def lesson_of(profile: Profile) -> LessonFolder | None:
     """Return the lesson that a profile belongs to, by its number; None if there is none."""
     number = profile.document.lesson

@@ -37,7 +37,6 @@ class Places:
         }
 
     def make(self) -> None:
-        """Make them."""
         for folder in self.writable:
             folder.mkdir(parents=True, exist_ok=True)
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from graph.bag.stated import Stated, StatedTopic
 
 NAMED = 5
-"""So many topics are named in a sentence; of more their number is told."""
+"""So many topics are named in a sentence; of more only the number."""
 
 
 class Note(NamedTuple):

@@ -15,7 +15,6 @@ class BagError(Exception):
     """A bag cannot be written or read; `words` says which one, why, and what to do."""
 
     def __init__(self, words: Words) -> None:
-        """Say `words`."""
         super().__init__(words)
         self.words = words
 

@@ -1,6 +1,6 @@
 """Reads recorded bags: a rosbag2 directory (MCAP, sqlite3), or one of its files.
 
-What is read is what the files hold, whatever metadata.yaml says of them; all differences are told.
+What is read is what the files hold, whatever metadata.yaml says of them; differences are reported.
 A bag that was cut short, by a crash or a full disk, is read as far as it goes.
 """
 

@@ -133,7 +133,6 @@ class PolledActionClient:
         return heard
 
     def close(self) -> None:
-        """Leave the graph."""
         self._handle.destroy_when_not_in_use()
 
 

@@ -88,7 +88,7 @@ class Exchanges:
         timeout_s: float,
         end: Callable[[str], None],
     ) -> None:
-        """Begin an exchange with the node of this full name; `end` is told why it failed, or ""."""
+        """Begin an exchange with the node of this full name; `end` gets why it failed, or ""."""
         self._exchanges.append(
             _RunningExchange(
                 node, exchange, services, next(exchange), timeout_s, end, time.monotonic()

@@ -49,5 +49,4 @@ class Cancelling:
         return say(NO_WORD_OF_CANCEL, seconds=f"{ANSWER_WITHIN_S:g}")
 
     def close(self) -> None:
-        """Leave the graph."""
         self._client.close()

@@ -113,7 +113,6 @@ class SeenAction:
         return None if seen is None else seen.told.status
 
     def close(self) -> None:
-        """Unsubscribe."""
         for subscription in filter(None, (self._status, self._feedback)):
             self._node.destroy_subscription(subscription)
 
@@ -211,7 +210,6 @@ class SeenGoals:
             self._errors[goal_id] = say("it cannot be cancelled: {error}", error=str(error))
 
     def close(self) -> None:
-        """Leave the graph."""
         for action in self._actions.values():
             action.close()
         for cancelling in self._cancelling.values():

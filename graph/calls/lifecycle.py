@@ -47,7 +47,7 @@ ERROR_PROCESSING = "errorprocessing"
 
 @dataclass
 class _Followed:
-    """One node."""
+    """A node whose state is followed."""
 
     subscription: Subscription
     row: LifecycleRow
@@ -118,7 +118,6 @@ class Lifecycles:
         self._exchanges.begin(node, change(transition, facts), SERVICES, timeout_s, end)
 
     def close(self) -> None:
-        """Listen no more."""
         while self._followed:
             self._node.destroy_subscription(self._followed.popitem()[1].subscription)
 

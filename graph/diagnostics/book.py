@@ -65,7 +65,6 @@ class DiagnosticsBook:
         return self._records.get(name)
 
     def clear(self) -> None:
-        """Forget everything."""
         self._records.clear()
         self.left_out = 0
         self.revision += 1

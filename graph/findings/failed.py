@@ -19,7 +19,7 @@ def failures(failed: Mapping[str, str]) -> Iterator[GraphFinding]:
             "failed",
             FindingPlace("node", name),
             say("It has failed, and is not started again: {reason}", reason=why),
-            say("Look at its log, and start it again once its fault is mended."),
+            say("Look at its log, and start it again once its fault is fixed."),
             (name,),
             settled_s=0.0,
         )

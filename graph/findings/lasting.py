@@ -2,7 +2,7 @@
 
 On a slow machine the nodes of a robot come one after the other, for longer than a finding takes to
 settle; so it settles once no node has come or gone for as long. Where one comes and goes for ever,
-it is told nevertheless, after `CHANGING_S`.
+it is reported nevertheless, after `CHANGING_S`.
 """
 
 from __future__ import annotations

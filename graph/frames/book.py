@@ -41,7 +41,6 @@ class FrameBook:
         self._made_room_s = 0.0
 
     def clear(self) -> None:
-        """Forget all frames."""
         self._records.clear()
         self._lists.clear()
 

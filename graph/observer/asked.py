@@ -110,6 +110,6 @@ class AskedBook:
             for asked in lost:
                 del self._waiting[asked.number]
         self._late.clear()
-        # Who is told may ask for something else at once.
+        # The receiver may ask for something else at once.
         for asked in lost:
             asked.fail(error)

@@ -50,7 +50,7 @@ class Census:
 
 
 def census(node: Node, own_name: str, domain: int, is_networked: bool) -> Census:
-    """Count."""
+    """Count who is in the graph, and the programs of this domain that are not."""
     ends = [end for end in publishers(node, EVENTS) if end.is_named and end.gid]
     found = {end.process for end in ends}
     others = (end.gid[:PREFIX_BYTES] for end in ends if end.node != own_name)

@@ -1,7 +1,7 @@
 """The screen's side of the observer's process: a thread that listens, and makes it anew.
 
 No method waits for the process, whatever that does: orders go to its socket, or wait here. When it
-has died, or hangs, another takes its place, and is told what is wanted; what was under way fails.
+has died, or hangs, another takes its place, and gets the same orders; what was under way fails.
 """
 
 from __future__ import annotations

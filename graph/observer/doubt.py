@@ -89,7 +89,6 @@ class SecondLook:
     """What a second observer sees, compared with the first."""
 
     def __init__(self, now_s: float) -> None:
-        """Begin."""
         self._until_s = now_s + LOOKS_FOR_S
         self._more_since_s: float | None = None
 

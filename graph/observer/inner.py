@@ -18,7 +18,6 @@ class InnerStates:
     """Requests to one node each. All methods may be called from any thread, none blocks."""
 
     def __init__(self, client: ObserverClient) -> None:
-        """Ask by this."""
         self._client = client
 
     def change_state(

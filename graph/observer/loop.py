@@ -84,7 +84,6 @@ class ObserverLoop:
         self._look_at(pictures=frozenset(topics))
 
     def measure(self, wanted: tuple[bool, bool]) -> None:
-        """Measure rates."""
         self._look_at(all_topics=wanted[0], all_images=wanted[1])
 
     def watch_goals(self, actions: Iterable[str]) -> None:
@@ -96,7 +95,6 @@ class ObserverLoop:
         self._look_at(inner_states=wanted)
 
     def watch_frames(self, wanted: bool) -> None:
-        """Report frames."""
         self._look_at(frames=wanted)
 
     def run(self) -> ObserverError | None:

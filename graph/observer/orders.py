@@ -34,7 +34,6 @@ class Orders:
         self._requests = requests
 
     def prepare_publisher(self, topic: str, type_name: str, latched: bool) -> Future[None]:
-        """Create a publisher."""
         request = PreparePublisher(topic, type_name, latched)
         self._requests.put(request)
         return request.future
@@ -42,7 +41,6 @@ class Orders:
     def publish(
         self, topic: str, type_name: str, value: Mapping[str, Value], latched: bool
     ) -> Future[int]:
-        """Publish one message."""
         request = SendMessage(topic, type_name, value, latched)
         if latched:
             # An emergency stop is one of these.
@@ -62,7 +60,6 @@ class Orders:
     def call(
         self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float
     ) -> Future[CallResult]:
-        """Call a service."""
         asked = CallService(service, type_name, request, timeout_s)
         self._requests.put(asked)
         return asked.future
@@ -70,7 +67,6 @@ class Orders:
     def start_publishing(
         self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
     ) -> Future[int]:
-        """Publish periodically."""
         request = Begin[int](
             lambda node, future: node.publications.start(
                 topic, type_name, value, hz, node.ends(topic), future
@@ -80,11 +76,9 @@ class Orders:
         return request.future
 
     def stop_publishing(self, number: int) -> None:
-        """Stop one."""
         self._requests.put(Perform(lambda node: node.publications.stop(number)))
 
     def stop_publishing_all(self) -> None:
-        """Stop all."""
         self._now_and_in_turn(Perform(lambda node: node.publications.close()))
 
     def stop_commanding(self) -> None:
@@ -124,7 +118,6 @@ class Orders:
         self._requests.hurry(Perform(lambda node: node.dead_man_switch.let_go(topic)))
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
-        """Send a goal."""
         request = Begin[int](
             lambda node, future: node.goals.send(
                 action, type_name, goal, node.action(action), future
@@ -164,7 +157,6 @@ class Orders:
     def set_parameters(
         self, node: str, values: Mapping[str, Value], timeout_s: float
     ) -> Future[SetResult]:
-        """Set parameters."""
         asked_s = time.monotonic()
         request = Begin[SetResult](
             lambda own, future: own.parameters.write(node, values, timeout_s, asked_s, future),
@@ -194,7 +186,6 @@ class Orders:
         return request.future
 
     def set_logger_level(self, node: str, level: str, timeout_s: float) -> Future[LevelResult]:
-        """Set it."""
         request = Begin[LevelResult](
             lambda own, future: own.logger_levels.write(node, level, timeout_s, future),
             lambda error: LevelResult(node, error=reason_of(error)),

@@ -58,7 +58,6 @@ class PreparePublisher:
     future: Future[None] = field(default_factory=Future)
 
     def carry_out(self, node: ObserverNode) -> None:
-        """Do it."""
         ends = node.ends(self.topic)
         node.outbox.prepare(self.topic, self.type_name, ends, latched=self.latched)
         self.future.set_result(None)
@@ -133,7 +132,6 @@ class Perform:
     act: Callable[[ObserverNode], None]
 
     def carry_out(self, node: ObserverNode) -> None:
-        """Do it."""
         self.act(node)
 
     def fail(self, error: Exception) -> None:

@@ -10,7 +10,7 @@ LOOK_AT_GRAPH_S = 0.25
 
 @dataclass(frozen=True)
 class ObserverSettings:
-    """What an observer is told at its start."""
+    """What an observer gets at its start."""
 
     domain: int
     discovery: str | tuple[str, ...] = "localhost"

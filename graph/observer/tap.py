@@ -154,7 +154,6 @@ class Tap:
         return wanted if not self.depth / 2 <= wanted <= self.depth * 2 else self.depth
 
     def close(self) -> None:
-        """End the subscription."""
         self._losses.close()
         self._end_senders()
         self._node.destroy_subscription(self._subscription)

@@ -142,7 +142,6 @@ class Taps:
         return tuple(self._row(topic, row, now_s) for topic, row in self._rows.items())
 
     def close(self) -> None:
-        """End all subscriptions."""
         for topic in list(self._taps):
             self._close(topic)
 

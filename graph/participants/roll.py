@@ -58,7 +58,6 @@ class Roll:
         self._told: dict[bytes, _Told] = {}
 
     def close(self) -> None:
-        """Listen no more."""
         if self._telling is not None:
             self._telling.close()
 

@@ -118,7 +118,6 @@ class Telling:
             self._forget(message)
 
     def close(self) -> None:
-        """Unsubscribe."""
         self._destroy(self._node, self._subscription)
 
 

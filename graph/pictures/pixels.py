@@ -50,7 +50,6 @@ class ImageError(ValueError):
     """The message is not a picture that can be shown; `words` says why."""
 
     def __init__(self, words: Words) -> None:
-        """Say `words`."""
         super().__init__(words)
         self.words = words
 

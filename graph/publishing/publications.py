@@ -121,7 +121,6 @@ class RepeatedPublications:
         future.set_result(number)
 
     def stop(self, number: int) -> None:
-        """Stop this publication."""
         repeated = self._repeated.pop(number, None)
         if repeated is not None:
             self._node.destroy_publisher(repeated.publisher)
@@ -155,6 +154,5 @@ class RepeatedPublications:
         return tuple(each.row() for each in self._repeated.values())
 
     def close(self) -> None:
-        """Stop publishing."""
         for number in list(self._repeated):
             self.stop(number)

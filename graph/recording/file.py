@@ -70,7 +70,6 @@ class BagFile:
 
     @property
     def path(self) -> Path:
-        """The MCAP file."""
         return self._storage.path
 
     def add_topic(self, topic: BagTopic, text: str) -> None:

@@ -149,7 +149,6 @@ class Recorder:
 
     @property
     def status(self) -> RecordingStatus:
-        """The current state."""
         until_s = time.monotonic() if self._ended_s is None else self._ended_s
         writer, topics = self._writer, self._topics
         common = (str(self._folder), self._since_s, until_s - self._begun_s)

@@ -43,7 +43,6 @@ class Relay:
         self._thread = threading.Thread(target=self._run, name="deck-relay", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
         # DDS threads must end before the interpreter does.
         atexit.register(self.stop)
         self._thread.start()

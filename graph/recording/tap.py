@@ -101,7 +101,6 @@ class RecordingTap:
         )
 
     def drain(self) -> list[Message]:
-        """Empty the queue."""
         if self._subscription is None:
             return []
         taken: list[Message] = []
@@ -134,7 +133,6 @@ class RecordingTap:
         return len(self._ever)
 
     def close(self) -> None:
-        """End the subscription."""
         if self._subscription is not None:
             self._node.destroy_subscription(self._subscription)
             self._subscription = None

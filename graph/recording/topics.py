@@ -95,7 +95,6 @@ class RecordingTopics:
         return found
 
     def close(self) -> None:
-        """End all subscriptions."""
         for tap in self._taps.values():
             tap.close()
 

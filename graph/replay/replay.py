@@ -73,7 +73,6 @@ class Replay:
 
     @property
     def state(self) -> ReplayState:
-        """The current state."""
         return self._state
 
     def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
@@ -166,21 +165,18 @@ class Replay:
     def prepare_publisher(
         self, topic: str, type_name: str, *, latched: bool = False
     ) -> Future[None]:
-        """Fail."""
         del topic, type_name, latched
         return refused()
 
     def publish(
         self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
     ) -> Future[int]:
-        """Fail."""
         del topic, type_name, value, latched
         return refused()
 
     def start_publishing(
         self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
     ) -> Future[int]:
-        """Fail."""
         del topic, type_name, value, hz
         return refused()
 
@@ -194,12 +190,10 @@ class Replay:
         """Do nothing: nothing is commanded."""
 
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
-        """Fail."""
         del topic, type_name
         return refused()
 
     def hold(self, topic: str, type_name: str, command: HeldCommand) -> Future[int]:
-        """Fail."""
         del topic, type_name, command
         return refused()
 
@@ -230,7 +224,6 @@ class Replay:
         return _done(SetResult(node, error=_refusal()))
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
-        """Fail."""
         del action, type_name, goal
         return refused()
 

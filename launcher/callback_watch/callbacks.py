@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 
 from .finding import DEADLOCK_S, LOST, NOBODY, STUCK_S, UNSPUN_S, Finding
+from .stacks import ACTION_SERVER, is_of
+from .unspun import awaits_calls
 from .waits import (
     CALL,
     EVENT,
@@ -104,12 +107,17 @@ class Look:
             if not thread.is_callback(frame):
                 continue
             entity = thread.entity_around(frame)
-            waits = [each for each in self.waits[thread.number] if each.entity is entity]
+            # What spins it has no entity, nor has an action's execution.
+            waits = [
+                each
+                for each in self.waits[thread.number]
+                if each.entity is entity and thread.is_within(each.own, frame)
+            ]
             proven = [each for each in waits if self._waits_for_itself(each, thread)]
             wait = next(iter(proven or waits), None)
             kind = told_as(wait) if wait is not None and proven else ""
             finding = Finding.at("runs", frame, thread.own[0], kind, STUCK_S)
-            finding.name, finding.long = frame.f_code.co_name, frame.f_code
+            finding.name = frame.f_code.co_name
             if proven:
                 # That long from when it is so, not from when the callback was called.
                 finding.bound_s, finding.subject = DEADLOCK_S, proven[0].frame
@@ -117,6 +125,8 @@ class Look:
                 finding.bound_s = float("inf")
             if wait is not None and wait.how in _REPORTED and not wait.limited:
                 finding.reported_in = wait.how
+            if finding.reported_in or not carries_out_a_goal(frame):
+                finding.long = frame.f_code
             found.append(finding)
         return found
 
@@ -211,6 +221,22 @@ def _outermost(wait: Wait, look: Look) -> FrameType:
             around = [each for each in thread.own if thread.entity_around(each) is wait.entity]
             return around[-1]
     return wait.own
+
+
+def carries_out_a_goal(callback: FrameType) -> bool:
+    """Whether it is an action's, and holds nothing up: that may take long.
+
+    Nothing is held up if goals cannot be cancelled and the node has nothing else to be called.
+    """
+    caller = callback.f_back
+    frames = [each for each in (caller, caller and caller.f_back) if each is not None]
+    servers = [each.f_locals.get("self") for each in frames if is_of(each, ACTION_SERVER)]
+    refuses = getattr(sys.modules.get("rclpy.action.server"), "default_cancel_callback", None)
+    return any(
+        getattr(server, "_cancel_callback", None) is refuses
+        and not awaits_calls(getattr(server, "_node", None))
+        for server in servers
+    )
 
 
 def told_as(wait: Wait) -> str:

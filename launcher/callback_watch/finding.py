@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 DEADLOCK_S = 3.0
 """How long it may last if it cannot end by itself, such as waiting for the answer to a `call`."""
 STUCK_S = 30.0
-"""How long any other callback may run before it counts as stuck; it is told if it goes on."""
+"""How long any other callback may run before it counts as stuck; it is reported if it goes on."""
 UNSPUN_S = 15.0
 """How long the main thread may take before it spins, or a service before somebody offers it."""
 _UNOFFERED_LOOKS = 2
@@ -42,7 +42,7 @@ class Finding:
         self.offered = False
         """Whether somebody offers what it waits for."""
         self.long: CodeType | None = None
-        """The callback, if it is told early that it runs, since nothing else is done meanwhile."""
+        """The callback, if that it runs is reported early: nothing else is done meanwhile."""
         self.reported_in = ""
         self.proof: Callable[[], bool] = lambda: True
         """Asked once it has lasted: whether it can be nothing else."""
@@ -54,7 +54,7 @@ class Finding:
     def at(
         cls, kind: str, frame: FrameType, own: FrameType, waits_in: str, bound_s: float
     ) -> Finding:
-        """Return what is found in a frame, of which the learner's own `own` is told."""
+        """Return what is found in a frame, of which the learner's own frame `own` is reported."""
         place = own.f_code.co_filename, own.f_lineno
         return cls((kind, frame), own.f_code.co_name, place, waits_in, bound_s)
 
@@ -63,7 +63,7 @@ class Finding:
         if earlier is not None and earlier.subject is self.subject:
             self.ran_s, self.stuck = earlier.ran_s + passed_s, earlier.stuck
             if self.waits_in == LOST != earlier.waits_in:
-                self.stuck = False  # It is told anew, in other words.
+                self.stuck = False  # It is reported again, in other words.
             self.unoffered_looks = earlier.unoffered_looks
         self.unoffered_looks += self.awaited is not None and not self.offered
         if self.offered and not self._was_asked_in_vain:

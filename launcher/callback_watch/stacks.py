@@ -15,6 +15,7 @@ EXECUTORS = "/rclpy/executors.py"
 RCLPY = "/rclpy/__init__.py"
 CLIENT = "/rclpy/client.py"
 ACTION_CLIENT = "/rclpy/action/client.py"
+ACTION_SERVER = "/rclpy/action/server.py"
 TASK = "/rclpy/task.py"
 POOL = "/concurrent/futures/thread.py"
 """What calls those of a `MultiThreadedExecutor`."""
@@ -62,6 +63,10 @@ class Thread:
         if frame.f_back is None or not is_of(frame.f_back, EXECUTORS, TASK):
             return False
         return any(is_of(each, EXECUTORS) for each in _down(frame))
+
+    def is_within(self, frame: FrameType, outer: FrameType) -> bool:
+        """Whether a frame of this thread is another, or is called by it."""
+        return self.frames.index(frame) <= self.frames.index(outer)
 
     def entities_around(self, frame: FrameType) -> list[object]:
         """Return the timers, subscriptions and so on whose callbacks this frame is in.

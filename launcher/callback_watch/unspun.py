@@ -60,10 +60,11 @@ def awaits_calls(node: Any) -> bool:  # noqa: ANN401 - a node of rclpy
     """Whether a node has timers, subscriptions, clients or services of its learner's."""
     own = ("timers", "subscriptions", "clients")
     try:
-        prefix = f"{node.get_fully_qualified_name()}/"
+        # rclpy names its own services by the node's name alone, others by the whole.
+        everybodys = (f"{node.get_name()}/", f"{node.get_fully_qualified_name()}/")
         served = (each.srv_name for each in node.services)
         return any(any(True for _ in getattr(node, kind)) for kind in own) or not all(
-            name.startswith(prefix) for name in served
+            name.startswith(everybodys) for name in served
         )
     except Exception:  # noqa: BLE001 - its constructor is not through: nothing can be said
         return False

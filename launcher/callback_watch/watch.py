@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 LONG_S = 0.7
 LOOK_S = 0.2
+_IN_ENGLISH = "callback {name} still runs after {seconds:g} s{within}: {file}, line {line}"
+_IN_RUSSIAN = "обработчик {name} не закончил и через {seconds:g} с{within}: {file}, строка {line}"
 """Both together are less than a second: a callback that sleeps one is noticed."""
 
 
@@ -79,10 +81,12 @@ def _findings(folder: str, homes: Homes) -> list[Finding] | None:
 
 
 def _report(finding: Finding) -> None:
-    within = f" in {finding.reported_in}" if finding.reported_in else ""
-    words = (
-        f"callback {finding.name} still runs after {LONG_S:g} s{within}: {finding.file}, "
-        f"line {finding.line}"
+    # Without the catalogues, which it does not load; `launcher.faults.crash` reads both.
+    russian = os.environ.get("DECK_LANG", "").startswith("ru")
+    words = _IN_RUSSIAN if russian else _IN_ENGLISH
+    within = f" {'в' if russian else 'in'} {finding.reported_in}" if finding.reported_in else ""
+    words = words.format(
+        name=finding.name, seconds=LONG_S, within=within, file=finding.file, line=finding.line
     )
     sys.stderr.write(f"[WARN] [{time.time():.9f}] [deck]: {words}\n")
     sys.stderr.flush()

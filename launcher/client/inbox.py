@@ -54,12 +54,10 @@ class Inbox:
         self._filled.set()
 
     def put_strays(self, strays: tuple[Stray, ...]) -> None:
-        """Replace the strays."""
         self._strays = strays
         self._filled.set()
 
     def put_agents(self, agents: Agents) -> None:
-        """Replace the agents."""
         self._agents = agents
         self._filled.set()
 

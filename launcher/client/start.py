@@ -40,7 +40,6 @@ class StartingSupervisor:
     """A supervisor waiting for its plan; used as a context manager, it is released on exit."""
 
     def __init__(self) -> None:
-        """Start it."""
         self._begun = False
         self._words = os.memfd_create("supervisor")
         self._process = subprocess.Popen(

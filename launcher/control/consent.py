@@ -96,7 +96,6 @@ class ConsentDesk:
 
     @property
     def state(self) -> Agents:
-        """What screens show."""
         return Agents(
             tuple(known.agent for known in self._known.values()),
             tuple(pending.question for pending in self._pending.values()),

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _BLOCKED = re.compile(
-    r"callback (?P<name>\S+) still runs after (?P<seconds>[\d.]+) s(?: in (?P<waits_in>\w+))?: "
-    r"(?P<file>.+), line (?P<line>\d+)"
+    r"(?:callback|обработчик) (?P<name>\S+) (?:still runs after|не закончил и через) "
+    r"(?P<seconds>[\d.]+) [sс](?: (?:in|в) (?P<waits_in>\w+))?: "
+    r"(?P<file>.+), (?:line|строка) (?P<line>\d+)"
 )
 """What `launcher.callback_watch` writes."""
 _UNHEARD = re.compile(

@@ -59,7 +59,6 @@ class TraceLevel(NamedTuple):
 
     @property
     def values(self) -> dict[str, Any]:
-        """Its local variables."""
         return self.frame.f_locals
 
     def is_in(self, package: str, module: str = "") -> bool:

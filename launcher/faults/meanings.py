@@ -15,7 +15,7 @@ LONGEST = 1000
 
 
 class Meaning(NamedTuple):
-    """One mistake."""
+    """What a mistake of a beginner looks like, and what it means."""
 
     pattern: str
     """Of the exception with its text, or of a line of the log."""

@@ -58,7 +58,6 @@ class Reaper:
         self._early: dict[tuple[int, int], Exit] = {}
 
     def install(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Start reaping."""
         loop.add_signal_handler(signal.SIGCHLD, self.collect)
         self.collect()
 

@@ -157,7 +157,6 @@ class _SpecBuilder:
     def profile(
         self, document: ProfileDocument, nodes: dict[str, NodeSpec], hardware: str, domain: int
     ) -> Profile:
-        """Put everything together."""
         return Profile(
             path=self.path,
             name=name_of(self.path),

@@ -84,7 +84,7 @@ class NodeSpec:
 
     @property
     def own_file(self) -> str:
-        """The Python file of one's own that it runs, absolute; empty if it runs none."""
+        """The user's own Python file that it runs, absolute; empty if it runs none."""
         run = self.document.run
         if run is not None:
             return run if "/" in run else ""

@@ -55,7 +55,6 @@ class RunRecord:
         return unknown or not nodes.isdisjoint(self.nodes) or (self.drives and drives)
 
     def write(self) -> None:
-        """Write it atomically."""
         make_folder(self.folder)
         fields = {
             "session": pack_session(self.session),

@@ -64,7 +64,6 @@ class SpawnServerLink:
         send(self.handle, signal.SIGKILL)
 
     def drop(self) -> None:
-        """Close the connection."""
         if self._again is not None:
             self._again.cancel()
         self._forget_outbox()

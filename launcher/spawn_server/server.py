@@ -154,7 +154,7 @@ def serve(link: socket.socket, supervisor: int, packages: Iterable[str], *, cold
     # Not inherited: the supervisor ends this process, a signal from a terminal does not.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    # Nodes inherit this: a node that is told to end at once must not find the signal ignored.
+    # Nodes inherit this: a node that has to end at once must not find the signal ignored.
     signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     server = SpawnServer(link, supervisor, Preload(packages, cold=cold))
     task = server.serve()

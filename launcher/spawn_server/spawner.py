@@ -101,7 +101,7 @@ class Spawner:
             spawned = await self._ask(link, request, fds)
             if spawned is not None:
                 self._groups.add(spawned.pid)
-                self._mention("adopt", [spawned.pid])  # A new server is told all existing groups.
+                self._mention("adopt", [spawned.pid])  # A new server gets all existing groups.
                 return spawned
             hangs += link.hung
             if hangs == MAX_HANGS:

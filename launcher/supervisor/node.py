@@ -449,7 +449,7 @@ class SupervisedNode:
 
     @property
     def _does_not_compile(self) -> bool:
-        """Whether its file was found not to be Python; it may have been mended since."""
+        """Whether its file was found not to be Python; it may have been fixed since."""
         return self.fault is not None and self.fault.kind == "syntax"
 
     def _is_hopeless(self, end: Exit, lasted: float) -> bool:

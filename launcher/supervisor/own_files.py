@@ -37,7 +37,7 @@ class OwnFiles:
         file_of: Callable[[], Mapping[str, str]],
         saved: Callable[[str, NodeFault | None], None],
     ) -> None:
-        """`file_of`: each such node's file; `saved` is told of a node whose file was saved."""
+        """`file_of`: each such node's file; `saved` is called with a node whose file was saved."""
         self._file_of = file_of
         self._saved = saved
         self._started: dict[str, dict[str, _Stamp]] = {}
@@ -56,7 +56,6 @@ class OwnFiles:
         self._started[node] = {path: _stamp(path) for path in (file, *modules_of(file))}
 
     async def watch(self) -> None:
-        """Watch until cancelled."""
         try:
             while True:
                 self._changed.clear()

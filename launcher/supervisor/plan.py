@@ -33,7 +33,7 @@ _COLD_PREFIXES = ("PYTHON", "LD_", "RMW_", "OPENBLAS_", "OMP_", "MALLOC_", "LTTN
 
 @dataclass(frozen=True)
 class NodePlan:
-    """One node."""
+    """How one node is started."""
 
     name: str
     command: str
@@ -64,7 +64,7 @@ class NodePlan:
 
 @dataclass(frozen=True)
 class Plan:
-    """The whole session."""
+    """How all nodes of a session are started."""
 
     profile: str
     name: str
@@ -217,6 +217,6 @@ def _learner_env(node: NodeSpec) -> Mapping[str, str | None]:
 
 
 def _foreign_env(program: str) -> Mapping[str, str | None]:
-    """Return changes for a program of somebody else's; `ros2` is found as in `deck shell`."""
+    """Return changes for a foreign program; `ros2` is found as in `deck shell`."""
     tools = ros_tools(os.environ) if program == "ros2" else {}
     return {**without_wheels(os.environ), **tools}

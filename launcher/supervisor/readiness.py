@@ -79,7 +79,7 @@ class Readiness:
     ) -> None:
         """`env`: the variables that the probe needs to watch the right domain.
 
-        `on_clashes` is told of the topics of several types as often as the probe reports.
+        `on_clashes` is called with the topics of several types as often as the probe reports.
         """
         self._conditions = list(dict.fromkeys(conditions))
         self._spawner = spawner

@@ -55,11 +55,12 @@ def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
         return say("{program} is not installed", program=program)
     if end == UNSEEN:
         return say("gone, nobody saw how it ended")
-    how = (
-        say("killed by {signal}", signal=end.signal)
-        if end.signal is not None
-        else say("exit code {code}", code=end.code)
-    )
+    if end.signal == "SIGINT":
+        how = say("interrupted ({signal})", signal=end.signal)
+    elif end.signal is not None:
+        how = say("killed by {signal}", signal=end.signal)
+    else:
+        how = say("exit code {code}", code=end.code)
     # A killed process cannot say why: its last line is about something else.
     told = last and not asked and end.signal != "SIGKILL"
     return say("{how}: {last}", how=how, last=_short(last)) if told else how

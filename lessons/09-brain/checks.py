@@ -1,16 +1,16 @@
 """What makes the brain of lesson 9 act, and what does not."""
 
-WORD_OF_BEFORE = 1
-"""The voice of the step before may be answered as late as now."""
+AT_MOST = 2
+"""The answer, and one to the voice of the check before, which may come as late as now."""
 
 
-def no_word_for_a_distance(seen):
-    """Several distances have come; they start nothing."""
+def one_word_for_a_voice(seen):
+    """One voice was heard, and distances keep coming, which start nothing."""
     words = [message["data"] for _, message in seen.messages["/ai_command"]]
-    if len(words) <= WORD_OF_BEFORE:
+    if len(words) <= AT_MOST:
         return None
     # How many have come by now is chance.
     return {
-        "en": f"distances came and no voice, and /ai_command said {words[-1]}",
-        "ru": f"пришли расстояния, голоса не было, а в /ai_command — {words[-1]}",
+        "en": f"one voice was heard, and /ai_command keeps saying {words[-1]}: distances start it",
+        "ru": f"голос был один, а в /ai_command раз за разом — {words[-1]}: по расстояниям",
     }

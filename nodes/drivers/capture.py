@@ -89,7 +89,6 @@ class Capture:
         return self.connected and time.monotonic() - self.seen_s > SILENT_S
 
     def start(self) -> None:
-        """Start opening it."""
         self._thread.start()
 
     def close(self) -> None:

@@ -68,7 +68,6 @@ class PicoClient:
 
     @property
     def answers(self) -> bool:
-        """Whether telemetry arrives."""
         return self.telemetry is not None and time.monotonic() - self._heard_s < SILENT_AFTER_S
 
     @property

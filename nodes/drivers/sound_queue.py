@@ -33,6 +33,5 @@ class SoundQueue:
             return sound
 
     def clear(self) -> None:
-        """Forget everything."""
         with self._lock:
             self._sound.clear()

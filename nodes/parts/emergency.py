@@ -36,7 +36,7 @@ PICO = "pico"
 """What engaged it."""
 _TOLD_EVERY_S = 1.0
 _AGAIN_S = 0.1
-"""What others need not know at once is told with what follows within this time."""
+"""What others need not know at once is sent with what follows within this time."""
 _JUST_NOW_NS = 1_000_000_000
 _MOST_NAMES = 16
 _CONTRADICTED_S = 10.0

@@ -161,7 +161,6 @@ class Text(Setting):
     may_be_empty: bool = False
 
     def accept(self, value: object) -> str:
-        """Return a str."""
         if isinstance(value, str) and (value.strip() or self.may_be_empty):
             return value
         raise BadValueError(N_("a string (in quotes if it looks like a number)"))
@@ -184,5 +183,4 @@ class Choice(Setting):
         raise BadValueError(N_("one of: {choices}"), choices=self.expected())
 
     def expected(self) -> str:
-        """List the words."""
         return ", ".join(self.choices)

@@ -23,7 +23,6 @@ class PeriodicThread:
         self._thread = threading.Thread(target=self._live, name="pace", daemon=True)
 
     def start(self) -> None:
-        """Start the thread."""
         self._thread.start()
 
     def close(self) -> None:

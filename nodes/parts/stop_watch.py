@@ -37,7 +37,6 @@ class StopWatch:
         self._looked_s, self._still_s = time.monotonic(), -_JUST_S
 
     def start(self) -> None:
-        """Start the thread."""
         self._thread.start()
 
     @property

@@ -98,7 +98,6 @@ class CommandGate:
         self._pass_on(self._sources.driving(now_s))
 
     def stop(self) -> None:
-        """Stop the robot."""
         self._send(STOP)
         self._publisher.wait_for_all_acked(_LAST_STOP)
 

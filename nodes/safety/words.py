@@ -46,7 +46,12 @@ _FRONT_TOO_RARE = N_(
     " treated as danger."
 )
 _FRONT_SLOWED = N_("Free to move, slowed to {percent} % ({metres:.2f} m).")
-_FRONT_HELD = N_("{metres:.2f} m ahead; the emergency stop holds the wheels.")
+_FRONT_HELD = {
+    RangeState.FREE: N_("{metres:.2f} m ahead; the emergency stop holds the wheels."),
+}
+_FRONT_HELD_OUT_OF_RANGE = {
+    RangeState.FREE: N_("Nothing in range ahead; the emergency stop holds the wheels."),
+}
 _LOG_EVERY_S = 0.9
 
 _VERDICTS = {
@@ -81,11 +86,14 @@ def tell_front(say: TranslatedLogger, result: SensorResult, *, stopped: bool = F
     `stopped`: during an emergency stop, when nothing is free to move.
     """
     log = say.info if result.state == RangeState.FREE else say.warn
-    slowed = result.state == RangeState.FREE and result.share < 1
-    slowly = _FRONT_HELD if stopped else _FRONT_SLOWED
-    phrase = slowly if slowed else _phrase(result, _FRONT, _FRONT_OUT_OF_RANGE)
+    free = result.state == RangeState.FREE
+    words = _phrase(result, _FRONT, _FRONT_OUT_OF_RANGE)
+    if free and stopped:
+        words = _phrase(result, _FRONT_HELD, _FRONT_HELD_OUT_OF_RANGE)
+    elif free and result.share < 1:
+        words = _FRONT_SLOWED
     log(
-        _FRONT_TOO_RARE if result.too_rare else phrase,
+        _FRONT_TOO_RARE if result.too_rare else words,
         every_s=_LOG_EVERY_S,
         metres=result.reading.distance_m,
         seconds=result.reading.age_s,

@@ -34,7 +34,6 @@ class FaultyLine:
             self._serial.plug()
 
     def close(self) -> None:
-        """Remove the device."""
         self._serial.unplug()
 
     def read(self) -> bytes:

@@ -25,7 +25,6 @@ class PseudoSerial:
         self.plug()
 
     def plug(self) -> None:
-        """Create the device."""
         if self._ends is not None:
             return
         ours, theirs = pty.openpty()

@@ -66,13 +66,11 @@ class ModelMind:
         )
 
     def stop(self) -> None:
-        """Think no further."""
         if self.model.busy:
             self.model.cancel()
             self.state.waits()
 
     def close(self) -> None:
-        """End all connections."""
         self.model.close()
 
     def _sees(self, settings: ModelSettings) -> bool:

@@ -1,4 +1,4 @@
-"""What the model is told of the robot, gathered from the topics."""
+"""What the model gets to know of the robot, gathered from the topics."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _GATE_S, _POSE_S, _SEEN_S = 3.0, 2.0, 30.0
-"""How long each is told: an older one is unknown."""
+"""How long each is passed on: an older one counts as unknown."""
 
 
 class _Newest(Generic[T]):

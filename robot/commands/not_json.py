@@ -1,4 +1,4 @@
-"""What stands in a text where JSON has something else: told by its name and with its mend.
+"""What stands in a text where JSON has something else: told by its name and with its fix.
 
 These are the habits of those who write it: people who know Python or JavaScript, models that talk,
 keyboards and editors that choose other signs.
@@ -38,7 +38,7 @@ _INVISIBLE = frozenset({"Cc", "Cf", "Zl", "Zp", "Zs"})
 
 
 class Odd(NamedTuple):
-    """One of them."""
+    """A place where the text is not JSON."""
 
     code: str
     """Key of `robot.commands.problems.TEMPLATES`."""

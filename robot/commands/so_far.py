@@ -20,11 +20,11 @@ _COMMAND_LEVEL = 2
 
 
 def so_far(text: str) -> tuple[int, tuple[Problem, ...]]:
-    """Return how many whole commands have come, and the problems that no continuation can mend."""
+    """Return how many whole commands have come, and the problems that no continuation can fix."""
     text = straightened(unwrapped(text, whole=False))
     begun = text.lstrip()
     if not begun.startswith("{"):
-        # Thoughts or words: a fence or </think> may still mend them.
+        # Thoughts or words: a fence or </think> may still fix them.
         return 0, ()
     try:
         response = parse_llm(_closed(text))

@@ -56,7 +56,7 @@ def _read(inner: str) -> PlacedJson:
         try:
             return read(straight, _UNITS)
         except JsonError:
-            # Not sure, then: what is told is the quote.
+            # Not sure, then: what is named is the quote.
             pass
         raise
 

@@ -145,7 +145,6 @@ class RawReader:
         self._words = FramePhrases(language, self._PHRASES)
 
     def feed(self, data: bytes) -> list[FramePiece]:
-        """Return one piece."""
         return [FramePiece(data, self._words("raw", count=len(data)))] if data else []
 
     def flush(self) -> list[FramePiece]:

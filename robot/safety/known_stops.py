@@ -55,7 +55,6 @@ class KnownStops:
     """What one node knows: the record, and since when it knows each stop that holds."""
 
     def __init__(self) -> None:
-        """Begin without any."""
         self.record = StopRecord()
         self.since_ns: dict[Stop, int] = {}
         """By the clock of this computer, for each stop that holds."""

@@ -188,11 +188,11 @@ class StopFile:
             os.close(descriptor)
 
     def give(self, stop: Stop, by: str) -> str:
-        """Add a stop on behalf of somebody who is no node; return why that failed."""
+        """Add a stop for a program that is not a node; return why that failed."""
         return self.keep(KeptStop(time.time(), by), StopRecord().stopped(stop))
 
     def release(self, said_ns: int) -> str:
-        """Release what was saved before this time on behalf of somebody who is no node.
+        """Release what was saved before this time for a program that is not a node.
 
         Return why that failed. It may have waited since it was said, by the clock of this computer.
         """

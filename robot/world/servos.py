@@ -28,7 +28,6 @@ class SimulatedServos:
         return answer
 
     def advance(self, seconds: float) -> None:
-        """Let time pass."""
         self._now_s += seconds
 
     def pulse_us(self, servo: int) -> float:

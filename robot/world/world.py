@@ -121,7 +121,6 @@ class World:
         return mean_rad_s * self.body.wheel_radius_m
 
     def step(self) -> None:
-        """Let `STEP_S` pass."""
         self.steps += 1
         self._turn_wheels()
         command = DriveSetpoint(self.speed_m_s, self.wheels.steering_rad)

@@ -21,7 +21,6 @@ SUMMARY = "Run a package specific executable"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     parser.add_argument(
         "--prefix",
         help="Prefix command, which should go before the executable. "

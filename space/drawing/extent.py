@@ -38,7 +38,6 @@ class SpaceBox:
 
     @property
     def size_m(self) -> float:
-        """The longest edge."""
         return max(b - a for a, b in zip(self.least, self.most, strict=True))
 
     def widened(self, share: float, least_m: float) -> SpaceBox:

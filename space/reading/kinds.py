@@ -50,7 +50,6 @@ class NewestReader:
         self._newest = self._read(tree)
 
     def shown(self, now_s: float) -> Sequence[Drawable]:
-        """Return the newest."""
         del now_s
         return () if self._newest is None else (self._newest,)
 
@@ -60,7 +59,6 @@ class NewestReader:
         return None if self._newest is None else self._newest.remark
 
     def clear(self) -> None:
-        """Forget it."""
         self._newest = None
 
 

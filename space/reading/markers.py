@@ -69,7 +69,6 @@ class MarkerBook:
         """What kind the markers are that are not drawn."""
 
     def clear(self) -> None:
-        """Forget all markers."""
         self._kept.clear()
         self._refused.clear()
 

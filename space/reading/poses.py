@@ -113,7 +113,6 @@ class DrivenTrail:
         return drawable
 
     def clear(self) -> None:
-        """Forget the trail."""
         self._places, self._least_m, self._held = [], LEAST_M, None
 
     def add(self, frame_id: str, place: Vector) -> bool:
@@ -129,7 +128,6 @@ class DrivenTrail:
         return True
 
     def line(self) -> Strokes:
-        """Return the trail."""
         points = places(*self._places)
         ways = points[1:] - points[:-1]
         torn = max(TORN_M, 2 * self._least_m)

@@ -73,7 +73,6 @@ class ModelReader:
         return say("shapes in files (mesh) are not drawn: {count}", count=self._meshes)
 
     def clear(self) -> None:
-        """Forget the robot."""
         self._text, self._links, self._meshes, self._warnings = "", (), 0, ()
 
     def _drawable(self, link: ModelLink) -> Drawable:

@@ -52,7 +52,7 @@ def _numbers(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
             count=sum(one.count for one in found),
         )
         advice = say(
-            "tf2 drops such a transform as well: mend what {node} fills in",
+            "tf2 drops such a transform as well: fix what {node} fills in",
             node=by_whom([first]),
         )
         yield FrameFinding(FrameTrouble.NUMBERS, _names(found), text, advice)

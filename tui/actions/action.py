@@ -81,7 +81,6 @@ class Action(Generic[Target]):
 
     @classmethod
     async def run(cls, target: Target) -> None:
-        """Run the action."""
         raise NotImplementedError
 
 

@@ -77,7 +77,6 @@ class LeaveOut(Action["BeginRecordingScreen"]):
 
     @classmethod
     async def run(cls, target: BeginRecordingScreen) -> None:
-        """Switch."""
         target.toggle()
 
 
@@ -93,7 +92,6 @@ class NoRecording(Action["BeginRecordingScreen"]):
 
     @classmethod
     async def run(cls, target: BeginRecordingScreen) -> None:
-        """Answer with nothing."""
         target.dismiss(None)
 
 
@@ -148,7 +146,6 @@ class BeginRecordingScreen(Dialog["RecordingWish | None"]):
 
     @property
     def chosen(self) -> str:
-        """The chosen type."""
         return next((rows.chosen for rows in self.query(Rows)), "")
 
     def toggle(self) -> None:
@@ -193,7 +190,6 @@ class BeginRecordingScreen(Dialog["RecordingWish | None"]):
         self.redraw()
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("Record what?")
 
     def redraw(self) -> None:
@@ -251,7 +247,6 @@ def _long_words(seconds: float) -> str:
 
 
 def _a_minute(bytes_per_s: float | None) -> str:
-    """Return `540 MB/min`."""
     if bytes_per_s is None:
         return _("measuring…")
     return _("{size}/min").format(size=size_words(bytes_per_s * MINUTE_S))

@@ -51,7 +51,6 @@ class OpenRecording(Action["RecordingsScreen"]):
 
     @classmethod
     async def run(cls, target: RecordingsScreen) -> None:
-        """Open it."""
         target.open_chosen()
 
 
@@ -67,7 +66,6 @@ class LeaveRecordings(Action["RecordingsScreen"]):
 
     @classmethod
     async def run(cls, target: RecordingsScreen) -> None:
-        """Close the list."""
         target.dismiss(None)
 
 
@@ -99,7 +97,6 @@ class RecordingsScreen(Dialog[None]):
             yield KeyBar()
 
     def on_mount(self) -> None:
-        """Look for them."""
         self.query_one(Rows).focus()
         self.redraw()
         self.look()
@@ -116,7 +113,6 @@ class RecordingsScreen(Dialog[None]):
 
     @property
     def chosen(self) -> ListedBag | None:
-        """The chosen recording."""
         chosen = next((rows.chosen for rows in self.query(Rows)), "")
         return next((bag for bag in self._bags or () if str(bag.path) == chosen), None)
 
@@ -150,7 +146,6 @@ class RecordingsScreen(Dialog[None]):
         self.redraw()
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("Recordings")
 
     def redraw(self) -> None:

@@ -112,7 +112,6 @@ class SendAnyway(_SendAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Send it unchanged."""
         target.send(anyway=True)
 
 
@@ -141,7 +140,6 @@ class Ask(ComposerAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Go there."""
         target.go_to_line()
 
 
@@ -162,7 +160,6 @@ class StopAsking(ComposerAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Hang up."""
         target.stop_asking()
 
 
@@ -208,7 +205,6 @@ class Compare(ComposerAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Ask both."""
         target.compare()
 
 
@@ -223,7 +219,6 @@ class ShowPrompt(ComposerAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Show it."""
         target.show_prompt()
 
 
@@ -240,7 +235,6 @@ class Templates(_WritingAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Open the dialog."""
         target.choose_template()
 
 
@@ -289,7 +283,6 @@ class NextProblem(ComposerAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Go there."""
         target.go_to_next_problem()
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 KEPT = 50
 LONGEST = 2000
-"""Characters of a question: as many as a model is told."""
+"""Characters of a question: as many as a model gets."""
 LONGEST_NOTE = 600
 NoteKind = Literal["", "warning", "error"]
 
@@ -70,7 +70,6 @@ class AskLine(Vertical):
 
     @property
     def field(self) -> Input:
-        """The text field."""
         return self.query_one(Input)
 
     @property
@@ -118,7 +117,6 @@ class AskLine(Vertical):
         self._said.keep(words)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Ask."""
         event.stop()
         words = event.value.strip()
         if words:

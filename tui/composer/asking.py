@@ -116,7 +116,7 @@ class ComposerAsking:
         return self._question is not None
 
     def messages(self, words: str) -> list[Message]:
-        """Return what a model is told: the prompt, and how things stand.
+        """Return what a model gets: the prompt, and how things stand.
 
         Raises:
             ModelError: if the prompt cannot be read.

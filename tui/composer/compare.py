@@ -59,7 +59,6 @@ class TakeAnswer(Action["CompareDialog"]):
 
     @classmethod
     async def run(cls, target: CompareDialog) -> None:
-        """Close with it."""
         target.dismiss(target.chosen_answer)
 
 
@@ -76,7 +75,6 @@ class LeaveCompare(Action["CompareDialog"]):
 
     @classmethod
     async def run(cls, target: CompareDialog) -> None:
-        """Close with nothing."""
         target.dismiss(None)
 
 
@@ -90,7 +88,6 @@ class _Compared:
 
     @property
     def text(self) -> str:
-        """What has come."""
         if self.thought is not None:
             return self.thought.text
         return "" if self.question is None else self.question.text
@@ -221,13 +218,11 @@ class CompareDialog(Dialog[ModelAnswer | None]):
             yield KeyBar()
 
     def on_mount(self) -> None:
-        """Begin to ask."""
         self._answers[0].query_one(JsonEditor).focus()
         self.set_interval(PROGRESS_S, self._progress)
         self.run_worker(self._ask(), group="compare")
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("Two models, the same words")
 
     def words(self) -> Content:

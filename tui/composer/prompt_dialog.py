@@ -39,7 +39,6 @@ class ClosePrompt(Action["PromptDialog"]):
 
     @classmethod
     async def run(cls, target: PromptDialog) -> None:
-        """Close it."""
         target.dismiss(None)
 
 
@@ -59,7 +58,6 @@ class PromptDialog(Dialog[None]):
         self.query_one(VerticalScroll).focus()
 
     def title_words(self) -> str:
-        """Name the model."""
         request = self._models.went_out
         if request is None:
             return _("Prompt")

@@ -102,7 +102,6 @@ class ComposerScreen(DeckScreen):
         self.asking = ComposerAsking(self)
 
     def compose_body(self) -> ComposeResult:
-        """Editor, verdict, outcome."""
         with Horizontal(id="composer-body"):
             with Vertical(id="composer-left"):
                 yield Static(id="composer-to", classes="composer-title", markup=False)
@@ -159,11 +158,10 @@ class ComposerScreen(DeckScreen):
         return set(FOLLOWED) if tracing or self.is_current else set()
 
     def watch_topics(self) -> set[str]:
-        """What a model is told of the robot."""
+        """What a model gets to know of the robot."""
         return set(WATCHED)
 
     def on_mount(self) -> None:
-        """Focus the editor."""
         self.editor.focus()
         self.check()
         self.line.show_mark(auto=False)
@@ -205,7 +203,6 @@ class ComposerScreen(DeckScreen):
         self._say()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw all texts."""
         del message
         self.verdict.relabel()
         self.asking.read_settings()

@@ -1,4 +1,4 @@
-"""What the model is told of the robot: the newest of what the screen sees anyway."""
+"""What the model gets to know of the robot: the newest of what the screen sees anyway."""
 
 from __future__ import annotations
 

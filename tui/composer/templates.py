@@ -123,7 +123,6 @@ class TemplatesDialog(Dialog[str | None]):
     """
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("Templates")
 
     def words(self) -> Content:
@@ -137,7 +136,6 @@ class TemplatesDialog(Dialog[str | None]):
             yield Static(id="dialog-text", markup=False)
 
     def on_mount(self) -> None:
-        """Focus the list."""
         self.query_one(OptionList).focus()
 
     def action_leave(self) -> None:

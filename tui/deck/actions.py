@@ -194,7 +194,6 @@ class EditNode(_OfNode):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Open it."""
         target.edit()
 
 
@@ -222,7 +221,6 @@ class ExchangeNode(_OfNode):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Exchange it."""
         target.exchange()
 
 
@@ -238,7 +236,6 @@ class _AskAll(DeckAction):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Send the request."""
         target.ask(cls.asked)
 
 
@@ -316,7 +313,6 @@ class RaiseLogSeverity(DeckAction):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Raise the level."""
         target.filter_log(target.log_filter.next_minimum())
 
 
@@ -332,7 +328,6 @@ class HearAllNodes(DeckAction):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Show all."""
         target.hear_all()
 
 
@@ -359,7 +354,6 @@ class TurnPage(DeckAction):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Turn the page."""
         target.turn_page()
 
 
@@ -402,7 +396,6 @@ class WriteCommand(DeckAction):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Focus the field."""
         target.write_command()
 
 

@@ -77,7 +77,6 @@ class CommandLine(Vertical):
 
         @property
         def control(self) -> Widget:
-            """The command line."""
             return self.line
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
@@ -97,7 +96,6 @@ class CommandLine(Vertical):
 
     @property
     def field(self) -> Input:
-        """The text field."""
         return self.query_one(Input)
 
     def show_listeners(self, count: int) -> None:

@@ -32,7 +32,6 @@ class DeckPanels:
     """
 
     def __init__(self, screen: Screen[None]) -> None:
-        """Start without panels."""
         self._screen = screen
         self._grid: PanelGrid | None = None
         self._put: set[str] = set()

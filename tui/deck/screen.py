@@ -142,7 +142,6 @@ class LessonDeck(DeckScreen):
 
     @property
     def pane(self) -> LogPane:
-        """The log."""
         return self.query_one(LogPane)
 
     @property
@@ -249,7 +248,6 @@ class LessonDeck(DeckScreen):
             self.notify(reason_words(error), severity="error", markup=False)
 
     def focus_usual(self) -> None:
-        """Focus the nodes."""
         self.table.focus()
 
     def action_leave_field(self) -> None:
@@ -374,7 +372,6 @@ class LessonDeck(DeckScreen):
             self.refresh_bindings()
 
     def on_log_arrived(self, message: LogArrived) -> None:
-        """Append the lines."""
         self.pane.view.append(message.lines, message.skipped)
 
     async def on_graph_changed(self, message: GraphChanged) -> None:

@@ -192,7 +192,6 @@ class ClearFrames(DevicesAction):
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Discard them."""
         target.clear_frames()
 
 

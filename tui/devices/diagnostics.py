@@ -43,7 +43,6 @@ class DiagnosticsTree(Rows):
         super().__init__(header=False)
 
     def show_tree(self, rows: Sequence[TreeRow]) -> None:
-        """Show these lines."""
         self.show([Column("")], [self._row(row) for row in rows])
 
     @staticmethod
@@ -104,7 +103,6 @@ class DiagnosticsView(Horizontal):
         """Revision of the book, and language."""
 
     def compose(self) -> ComposeResult:
-        """Tree and detail."""
         yield DiagnosticsTree()
         with Vertical(id="status"):
             yield NameHead()
@@ -112,7 +110,6 @@ class DiagnosticsView(Horizontal):
 
     @property
     def names(self) -> DiagnosticsTree:
-        """The tree."""
         return self.query_one(DiagnosticsTree)
 
     def redraw(self) -> None:

@@ -42,7 +42,6 @@ class FrameRows:
         """Whether to show bytes in hex even if they are readable text."""
 
     def clear(self) -> None:
-        """Discard every frame."""
         self._kept.clear()
         self._width = 0
 

@@ -100,7 +100,6 @@ class DevicesScreen(DeckScreen):
 
     @property
     def pane(self) -> LogPane:
-        """The frames."""
         return self.query_one(LogPane)
 
     @property
@@ -134,7 +133,6 @@ class DevicesScreen(DeckScreen):
         return {DIAGNOSTICS} | frames
 
     def on_mount(self) -> None:
-        """Focus the table."""
         self._name_lines()
         self.set_interval(_LOOK_EVERY_S, self._look)
         self._look()
@@ -169,7 +167,6 @@ class DevicesScreen(DeckScreen):
             self._take_frames(samples.get(self._topic, ()))
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw all texts."""
         del message
         self._show_way(None)
         self._lay_frames()
@@ -248,7 +245,6 @@ class DevicesScreen(DeckScreen):
         self.refresh_bindings()
 
     def clear_frames(self) -> None:
-        """Discard all frames."""
         self.frames.clear()
         self.pane.view.clear()
 

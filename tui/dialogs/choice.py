@@ -35,7 +35,6 @@ class TakeChoice(Action["ChoiceScreen"]):
 
     @classmethod
     async def run(cls, target: ChoiceScreen) -> None:
-        """Answer with it."""
         target.take()
 
 
@@ -51,7 +50,6 @@ class LeaveChoice(Action["ChoiceScreen"]):
 
     @classmethod
     async def run(cls, target: ChoiceScreen) -> None:
-        """Answer with nothing."""
         target.dismiss("")
 
 
@@ -99,7 +97,6 @@ class ChoiceScreen(Dialog[str]):
         rows.focus()
 
     def title_words(self) -> str:
-        """Return the title."""
         return self._title()
 
     def words(self) -> Content:

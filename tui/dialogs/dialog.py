@@ -69,7 +69,6 @@ class Dialog(ModalScreen[Answer], Acting, Working):
 
     @property
     def deck(self) -> Host:
-        """The app."""
         return host_of(self)
 
     @abstractmethod
@@ -88,7 +87,6 @@ class Dialog(ModalScreen[Answer], Acting, Working):
             yield KeyBar()
 
     def on_mount(self) -> None:
-        """Show the text."""
         self.redraw()
 
     def on_language_changed(self, message: LanguageChanged) -> None:

@@ -24,7 +24,6 @@ class Line(Widget):
         self._words = words
 
     def render(self) -> Content:
-        """Return the line."""
         return Content(self._words)
 
 
@@ -32,7 +31,6 @@ class OpeningScreen(Screen[None]):
     """The title and a few words: quick to import and to draw."""
 
     def __init__(self, words: str) -> None:
-        """Show these words."""
         super().__init__()
         self._words = words
 

@@ -35,5 +35,4 @@ class CopyDialogAsRos2(Action[Pastable]):
 
     @classmethod
     async def run(cls, target: Pastable) -> None:
-        """Copy it."""
         copy_command(target.deck, await target.ros2_command())

@@ -32,7 +32,6 @@ class Plainly(Widget):
         self.set_interval(LOOK_S, self.refresh)
 
     def render(self) -> Content:
-        """Return the lines."""
         deck = host_of(self)
         return Content("\n".join(plain(line, 400) for line in safe_lines(deck)))
 
@@ -41,7 +40,6 @@ class SafeScreen(Screen[None]):
     """Keeps the keys of the app working: stop, release, leave, and every other screen."""
 
     def compose(self) -> ComposeResult:
-        """Only the lines."""
         yield Plainly()
 
 

@@ -157,7 +157,6 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         self.refresh()
 
     def action_move(self, by: int) -> None:
-        """Move the cursor."""
         self._move_to(self._cursor + by)
 
     def action_page(self, pages: int) -> None:

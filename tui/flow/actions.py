@@ -80,7 +80,6 @@ class OlderChain(FlowAction):
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Go there."""
         target.go(1)
 
 
@@ -100,7 +99,6 @@ class NewerChain(FlowAction):
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Go there."""
         target.go(-1)
 
 
@@ -120,7 +118,6 @@ class PauseFlow(FlowAction):
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Pause, or resume."""
         target.toggle_pause()
 
 
@@ -138,7 +135,6 @@ class HideLane(_Chosen):
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Hide it."""
         if target.chosen_step:
             target.toggle_lane(target.chosen_step.lane)
 
@@ -155,7 +151,6 @@ class ShowAllLanes(FlowAction):
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Hide nothing."""
         target.show_all()
 
 
@@ -202,7 +197,6 @@ class CopyChain(_Chosen):
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Copy."""
         target.copy_chain()
 
 

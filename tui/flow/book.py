@@ -33,7 +33,6 @@ class FlowBook:
         return self._chains
 
     def clear(self) -> None:
-        """Forget everything."""
         self._chains.clear()
         self._loose.clear()
 

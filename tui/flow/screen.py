@@ -83,7 +83,6 @@ class FlowScreen(DeckScreen):
 
     @property
     def view(self) -> FlowView:
-        """The timeline."""
         return self.query_one(FlowView)
 
     @property
@@ -127,14 +126,12 @@ class FlowScreen(DeckScreen):
             self._show()
 
     def on_log_arrived(self, message: LogArrived) -> None:
-        """Add log lines."""
         programs = {name: node.command for name, node in self.feed.nodes.items()}
         steps = log_steps(message.lines, programs)
         self._has_agents = self._has_agents or any(step.lane is Lane.AGENT for step in steps)
         self._take(steps)
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Add messages."""
         self._update = message.update
         self._note_since(message.update)
         said_by = {
@@ -154,7 +151,6 @@ class FlowScreen(DeckScreen):
             self._say_lanes()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw all texts."""
         del message
         self._show()
 
@@ -199,7 +195,6 @@ class FlowScreen(DeckScreen):
             self.view.choose((chain.start_s, -1))
 
     def toggle_pause(self) -> None:
-        """Pause, or resume."""
         self._held = () if self.paused else tuple(reversed(self._book.chains))
         self.paused = not self.paused
         self._show()

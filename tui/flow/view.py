@@ -139,7 +139,6 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
             self.show()
 
     def render_line(self, y: int) -> Strip:
-        """One line."""
         row, width, base = y + self.scroll_offset.y, self.size.width, self.rich_style
         if row >= len(self._lines):
             return Strip.blank(width, base)

@@ -42,8 +42,7 @@ def _once(step: FlowStep) -> str:
     if step.kind is StepKind.DRIVE:
         return outcome_words.drive_words(*step.figures)
     if step.kind is StepKind.WHEELS:
-        left, right = step.figures
-        return _("left {left}, right {right} rad/s").format(left=figure(left), right=figure(right))
+        return outcome_words.rim_words(*step.figures)
     if step.kind is StepKind.HEAD_MOVES:
         return _("begins to turn")
     if step.kind is StepKind.HEAD_THERE:

@@ -84,7 +84,6 @@ class DeckScreen(Screen[None], Acting, Working):
 
     @property
     def deck(self) -> Host:
-        """The app."""
         return host_of(self)
 
     @property
@@ -192,7 +191,6 @@ class DeckScreen(Screen[None], Acting, Working):
         self.feed.catch_up(self)
 
     def on_unmount(self) -> None:
-        """Stop receiving updates."""
         self.feed.forget(self)
 
     def on_pictures_changed(self) -> None:
@@ -205,22 +203,18 @@ class DeckScreen(Screen[None], Acting, Working):
         self.topics_changed()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Update the title."""
         del message
         self.show_frame()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Update the title."""
         del message
         self.show_frame()
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
-        """Update the title."""
         del message
         self.show_frame()
 
     def on_agents_changed(self, message: AgentsChanged) -> None:
-        """Update the banner."""
         del message
         self.show_frame()
 

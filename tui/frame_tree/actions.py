@@ -108,7 +108,6 @@ class NextFinding(_Findings):
 
     @classmethod
     async def run(cls, target: FramesTarget) -> None:
-        """Go there."""
         target.go_to_finding(1)
 
 
@@ -123,7 +122,6 @@ class PreviousFinding(_Findings):
 
     @classmethod
     async def run(cls, target: FramesTarget) -> None:
-        """Go there."""
         target.go_to_finding(-1)
 
 
@@ -138,7 +136,6 @@ class CopyTransform(FramesAction):
 
     @classmethod
     async def run(cls, target: FramesTarget) -> None:
-        """Copy it."""
         target.copy_pair()
 
 
@@ -161,7 +158,6 @@ class FilterFrames(FramesAction):
 
     @classmethod
     async def run(cls, target: FramesTarget) -> None:
-        """Focus the filter."""
         target.focus_filter()
 
 
@@ -182,7 +178,6 @@ class OtherWayRound(FramesAction):
 
     @classmethod
     async def run(cls, target: FramesTarget) -> None:
-        """Turn it round."""
         target.turn_round()
 
 

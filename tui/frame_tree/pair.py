@@ -47,7 +47,6 @@ class FramePairs:
         self._newest = TransformBuffer()
 
     def clear(self) -> None:
-        """Forget all frames."""
         self._buffer.clear()
         self._newest.clear()
 

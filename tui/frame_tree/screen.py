@@ -100,7 +100,6 @@ class FramesScreen(DeckScreen):
 
     @property
     def table(self) -> FrameTable:
-        """The tree."""
         return self.query_one(FrameTable)
 
     @property
@@ -158,7 +157,6 @@ class FramesScreen(DeckScreen):
         self._show()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw all texts."""
         del message
         self._show()
 
@@ -197,7 +195,6 @@ class FramesScreen(DeckScreen):
         return ros2_words.tf2_echo(pair.target, pair.source) if pair else ""
 
     def focus_filter(self) -> None:
-        """Focus the filter."""
         self.set_focus(self.filter)
 
     def relate(self) -> None:

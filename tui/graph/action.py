@@ -71,7 +71,6 @@ class ActionPane(AskPane):
 
     @property
     def chosen(self) -> Goal | SeenGoal | None:
-        """The chosen goal."""
         wanted = self.asked_rows.chosen
         goals: list[Goal | SeenGoal] = [*self.goals, *self.of_others]
         return next((goal for goal in goals if _key(goal) == wanted), None)
@@ -84,7 +83,6 @@ class ActionPane(AskPane):
         return next((row for row in actions if row.name == self.name_shown), None)
 
     def type_names(self) -> tuple[str, ...]:
-        """Return its types."""
         return () if self.row is None else self.row.type_names
 
     def links(self) -> Sequence[Row]:
@@ -139,7 +137,6 @@ class ActionPane(AskPane):
         return ros2_words.action_info(self.name_shown)
 
     def ask(self, value: Mapping[str, Any]) -> None:
-        """Send a goal."""
         graph = self.deck.feed.graph
         if graph is not None:
             future = graph.send_goal(self.name_shown, self.type_names()[0], value)
@@ -244,13 +241,12 @@ class CancelGoal(Action["CancelGoalScreen"]):
     id = "cancel_goal.cancel"
     key = "enter"
     title = N_("Cancel the goal")
-    tooltip = N_("Ask its server to cancel it; whoever sent it is told by the server.")
+    tooltip = N_("Ask its server to cancel it; the server informs whoever sent it.")
     footer = True
     palette = False
 
     @classmethod
     async def run(cls, target: CancelGoalScreen) -> None:
-        """Answer yes."""
         target.dismiss(target.goal)
 
 
@@ -266,7 +262,6 @@ class LeaveGoal(Action["CancelGoalScreen"]):
 
     @classmethod
     async def run(cls, target: CancelGoalScreen) -> None:
-        """Answer no."""
         target.dismiss(None)
 
 
@@ -282,7 +277,6 @@ class CancelGoalScreen(Dialog["SeenGoal | None"]):
         self._state = state
 
     def title_words(self) -> str:
-        """Name the question."""
         return _("Cancel a goal of another client?")
 
     def words(self) -> Content:

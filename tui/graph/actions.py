@@ -56,7 +56,6 @@ class FilterNames(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Focus the filter."""
         target.focus_filter()
 
 
@@ -72,7 +71,6 @@ class NextKind(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """List it."""
         target.list_next(1)
 
 
@@ -88,7 +86,6 @@ class PreviousKind(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """List it."""
         target.list_next(-1)
 
 
@@ -203,7 +200,6 @@ class SubmitRequest(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Send it."""
         if target.ask_pane is not None:
             target.ask_pane.form.submit()
 
@@ -229,7 +225,6 @@ class CancelRequest(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Cancel it."""
         if target.ask_pane is not None:
             target.ask_pane.cancel()
 
@@ -251,7 +246,6 @@ class ForgetGoal(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Remove it."""
         if target.ask_pane is not None:
             target.ask_pane.forget()
 
@@ -283,7 +277,6 @@ class GoBack(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Go back."""
         target.go_back()
 
 

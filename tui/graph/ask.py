@@ -82,7 +82,6 @@ class AskPane(GraphPane):
 
     @property
     def form(self) -> YamlForm:
-        """The form."""
         return self.query_one(YamlForm)
 
     @property
@@ -117,7 +116,6 @@ class AskPane(GraphPane):
         raise NotImplementedError
 
     def ask(self, value: Mapping[str, Any]) -> None:
-        """Send the request."""
         raise NotImplementedError
 
     @property
@@ -209,7 +207,6 @@ class AskPane(GraphPane):
         self.redraw()
 
     def first(self) -> Widget:
-        """The form."""
         return self.form.editor
 
     def on_rows_highlighted(self, event: Rows.Highlighted) -> None:
@@ -220,7 +217,6 @@ class AskPane(GraphPane):
             self.screen.refresh_bindings()
 
     def on_yaml_form_submitted(self, event: YamlForm.Submitted) -> None:
-        """Send the request."""
         event.stop()
         if self.deck.feed.graph is None:
             self.warn(_("no lesson is running"))

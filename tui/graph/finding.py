@@ -64,7 +64,6 @@ class FindingPane(GraphPane):
     """
 
     def compose(self) -> ComposeResult:
-        """Head, words, links."""
         yield NameHead()
         yield Static(id="finding-words", markup=False)
         yield GraphLinks()
@@ -113,5 +112,4 @@ class FindingPane(GraphPane):
         self.query_one(GraphLinks).show_links(rows)
 
     def first(self) -> Widget:
-        """Return the links."""
         return self.query_one(GraphLinks)

@@ -1,4 +1,4 @@
-"""The findings of the graph on the screen: which are told now, and in which words."""
+"""The findings of the graph on the screen: which are shown now, and in which words."""
 
 from __future__ import annotations
 

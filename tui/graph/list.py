@@ -27,7 +27,6 @@ class GraphList(Rows):
 
     @property
     def chosen_name(self) -> str:
-        """The chosen one."""
         return self.chosen.partition("|")[2]
 
     def show_entries(
@@ -36,7 +35,7 @@ class GraphList(Rows):
         """Show these entries; `chosen` was chosen last, and `words` are the filter."""
         listed = [(entry, True) for entry in shown]
         missing = chosen and not words and chosen not in {entry.name for entry in shown}
-        # A finding that has gone was mended.
+        # A finding that has gone was fixed.
         if missing and kind is not GraphKind.FINDING:
             # A type does not disappear when nobody uses it.
             listed.append((GraphEntry(chosen), kind is GraphKind.TYPE))

@@ -51,7 +51,6 @@ class NodePane(GraphPane):
     """Those of its lifecycle that are possible now."""
 
     def compose(self) -> ComposeResult:
-        """Head, links, parameters."""
         yield NameHead()
         yield EmptyNotice(id="node-words")
         yield GraphLinks()
@@ -64,7 +63,6 @@ class NodePane(GraphPane):
 
     @property
     def parameters(self) -> GraphParameters:
-        """The node's parameters."""
         return self.query_one(GraphParameters)
 
     @property

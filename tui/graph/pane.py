@@ -55,7 +55,6 @@ class GraphPane(Vertical, Working):
 
     @property
     def deck(self) -> Host:
-        """The app."""
         return host_of(self)
 
     @property

@@ -69,7 +69,6 @@ class PathDialog(Dialog[str]):
             yield Static(id="path-keys", markup=False)
 
     def on_mount(self) -> None:
-        """Focus the field."""
         self.query_one(Input).focus()
         self._remark("")
 

@@ -82,7 +82,6 @@ class ParameterDialog(Dialog[bool]):
             yield Static(id="parameter-keys", markup=False)
 
     def on_mount(self) -> None:
-        """Focus the field."""
         self.query_one(Input).focus()
         if self._row.read_only:
             self._remark(_("It can only be read: the node sets it when it starts."))

@@ -55,7 +55,6 @@ class GraphParameters(Vertical, Working):
         """Processes of the node that was asked; None until they are known."""
 
     def compose(self) -> ComposeResult:
-        """Title, words, table."""
         yield Static(classes="parameters-title", markup=False)
         yield EmptyNotice()
         yield Rows(id="graph-parameters")
@@ -66,7 +65,6 @@ class GraphParameters(Vertical, Working):
 
     @property
     def table(self) -> Rows:
-        """The table."""
         return self.query_one(Rows)
 
     @property
@@ -81,7 +79,6 @@ class GraphParameters(Vertical, Working):
 
     @property
     def chosen(self) -> ParameterRow | None:
-        """The chosen parameter."""
         return next((row for row in self.rows if row.name == self.table.chosen), None)
 
     def forget(self) -> None:

@@ -70,7 +70,6 @@ class PlaceHistory:
 
     @property
     def here(self) -> GraphPlace | None:
-        """The chosen place."""
         name = self._chosen.get(self.kind, "")
         return GraphPlace(self.kind, name) if name else None
 
@@ -98,7 +97,6 @@ class PlaceHistory:
         return False
 
     def forget(self) -> None:
-        """Start over."""
         self._chosen.clear()
         self._been.clear()
 

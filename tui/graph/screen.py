@@ -132,7 +132,6 @@ class GraphScreen(DeckScreen):
 
     @property
     def map(self) -> GraphMap:
-        """The map."""
         return self.query_one(GraphMap)
 
     @property
@@ -142,7 +141,6 @@ class GraphScreen(DeckScreen):
 
     @property
     def pane(self) -> GraphPane | None:
-        """The current detail."""
         return self._detail.pane_of(self.history.here)
 
     @property
@@ -242,7 +240,6 @@ class GraphScreen(DeckScreen):
     # Message handlers
 
     def on_mount(self) -> None:
-        """Focus the list."""
         self.names.focus()
         self.set_interval(SETTLE_S, self._settle)
         self.redraw()
@@ -268,7 +265,6 @@ class GraphScreen(DeckScreen):
         self.take(None)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw all texts."""
         del message
         self._detail.relabel()
         self.redraw()
@@ -369,7 +365,6 @@ class GraphScreen(DeckScreen):
         self._arrive()
 
     def list_kind(self, kind: GraphKind) -> None:
-        """List another kind."""
         self.remove_class("-map")
         self.history.kind = kind
         self.redraw()
@@ -390,7 +385,6 @@ class GraphScreen(DeckScreen):
         return "" if self.pane is None else self.pane.ros2_command()
 
     def focus_filter(self) -> None:
-        """Focus the filter."""
         self.set_focus(self.filter)
 
     def toggle_everything(self) -> None:

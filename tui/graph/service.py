@@ -61,7 +61,6 @@ class CallTimeout(Horizontal):
 
     @property
     def field(self) -> Field:
-        """The input field."""
         return self.query_one(Field)
 
     @property
@@ -82,7 +81,6 @@ class CallTimeout(Horizontal):
         self.query_one(".timeout-bad", Static).update(wrong)
 
     def on_mount(self) -> None:
-        """Show the texts."""
         self.relabel()
 
     @on(Input.Changed)
@@ -154,7 +152,6 @@ class ServicePane(AskPane):
 
     @property
     def chosen(self) -> ServiceCall | None:
-        """The chosen call."""
         wanted = self.asked_rows.chosen
         return next((call for call in self.calls if str(call.number) == wanted), None)
 
@@ -166,7 +163,6 @@ class ServicePane(AskPane):
         return next((row for row in services if row.name == self.name_shown), None)
 
     def type_names(self) -> tuple[str, ...]:
-        """Return its types."""
         return () if self.row is None else self.row.type_names
 
     def links(self) -> Sequence[Row]:
@@ -237,7 +233,6 @@ class ServicePane(AskPane):
         return ros2_words.service_type(self.name_shown)
 
     def ask(self, value: Mapping[str, Any]) -> None:
-        """Call the service."""
         graph, timeout_s = self.deck.feed.graph, self.timeout.seconds
         if timeout_s is None:
             self.warn(_("Not called: correct the time-out below the form."))

@@ -192,7 +192,6 @@ class TypePane(GraphPane):
         self._failure = ""
 
     def compose(self) -> ComposeResult:
-        """Head, tree, users."""
         yield NameHead()
         yield EmptyNotice()
         yield GraphTypeTree()
@@ -200,7 +199,6 @@ class TypePane(GraphPane):
 
     @property
     def fields(self) -> GraphTypeTree:
-        """The fields."""
         return self.query_one(GraphTypeTree)
 
     @property
@@ -239,7 +237,6 @@ class TypePane(GraphPane):
         self.redraw()
 
     def first(self) -> Widget:
-        """The tree."""
         return self.fields if self.fields.display else self.query_one(GraphLinks)
 
     def _load_soon(self) -> None:

@@ -61,7 +61,6 @@ class Page(ScrollView, can_focus=True):
         self._fold()
 
     def render_line(self, y: int) -> Strip:
-        """One line."""
         at, base = y + self.scroll_offset.y, self.rich_style
         if at >= len(self._lines):
             return Strip.blank(self.size.width, base)

@@ -37,7 +37,6 @@ class CloseHelp(Action["HelpScreen"]):
 
     @classmethod
     async def run(cls, target: HelpScreen) -> None:
-        """Close it."""
         target.dismiss()
 
 
@@ -53,7 +52,6 @@ class HelpScreen(ModalScreen[None], Acting):
     """
 
     def __init__(self, explained: Screen[Any]) -> None:
-        """Explain this screen."""
         super().__init__()
         self._explained = explained
 
@@ -64,7 +62,6 @@ class HelpScreen(ModalScreen[None], Acting):
         yield KeyBar()
 
     def on_mount(self) -> None:
-        """Show the page."""
         self.redraw()
         self.query_one(Page).focus()
 

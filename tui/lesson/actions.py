@@ -29,8 +29,11 @@ class LessonTarget(Protocol):
     def go(self, by: int) -> None:
         """Go to that step."""
 
-    def take_hint(self) -> None:
-        """Show the next hint, and after the last one the solution."""
+    def go_on(self) -> None:
+        """Go to the next step, and after the last one to the next lesson."""
+
+    def take_hint(self) -> object:
+        """Show the next hint; after the last one the solution, if it is wanted."""
 
     def compare(self) -> None:
         """Show the solution beside the learner's file, or the text again."""
@@ -57,18 +60,24 @@ class GoOn(LessonAction):
     id = "lesson.next_step"
     key = "enter"
     title = N_("Next step")
-    tooltip = N_("Go on to the next step, once this one has passed.")
+    tooltip = N_("Go on to the next step, once this one has passed; after the last, to a lesson.")
     footer = True
 
     @classmethod
+    def label(cls, target: LessonTarget) -> str:
+        """Named after what comes next."""
+        return cls.title if target.at_work.neighbour(1) else N_("Next lesson")
+
+    @classmethod
     def possible(cls, target: LessonTarget) -> bool | None:
-        """Only after it has passed, and if there is another."""
-        return target.at_work.passed_now and bool(target.at_work.neighbour(1))
+        """Only after it has passed, and if there is another step, or a lesson after all of them."""
+        return target.at_work.passed_now and (
+            bool(target.at_work.neighbour(1)) or target.at_work.next_lesson is not None
+        )
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Go on."""
-        target.go(1)
+        target.go_on()
 
 
 class TakeHint(LessonAction):
@@ -87,7 +96,6 @@ class TakeHint(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Show it."""
         target.take_hint()
 
 
@@ -129,12 +137,11 @@ class EditFile(LessonAction):
 
     @classmethod
     def possible(cls, target: LessonTarget) -> bool | None:
-        """Only with a file of one's own."""
+        """Only with a file of the learner's."""
         return target.at_work.node is not None
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Open it."""
         target.edit()
 
 
@@ -144,7 +151,7 @@ class MakeOwnFolder(LessonAction):
     id = "lesson.own"
     key = "C,С"
     title = N_("My own files")
-    means = "files of one's own"
+    means = "own files"
     tooltip = N_("Make a folder of your own for this lesson, if there is none, and open it.")
     footer = True
 
@@ -155,7 +162,6 @@ class MakeOwnFolder(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Make it."""
         target.make_own()
 
 
@@ -175,7 +181,6 @@ class NextStep(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Go to it."""
         target.go(1)
 
 
@@ -195,7 +200,6 @@ class PreviousStep(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Go to it."""
         target.go(-1)
 
 

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
+from course.lessons.catalog import next_lesson
 from course.progress.files import state_of
 from course.progress.progress import Progress, load_progress, noted
 from course.results import State, StepResult
@@ -45,7 +46,6 @@ class LessonAtWork:
     """The lesson, from the side of whoever shows it; there is one for the app, see `of`."""
 
     def __init__(self, host: Host) -> None:
-        """Know nothing yet."""
         self._host = host
         self.folder: LessonFolder | None = None
         """The lesson, None while there is none."""
@@ -54,6 +54,8 @@ class LessonAtWork:
         self.reading: StepTexts | None = None
         self.beside_nodes = False
         """Whether it is wished beside the nodes on the Deck, too."""
+        self._next: LessonFolder | None = None
+        """The lesson after this one, None after the last."""
         self.progress = Progress()
         self.seed = 0
         """What the judge draws its values from; 0 until it is at work."""
@@ -138,6 +140,7 @@ class LessonAtWork:
             self._changed()
             return
         self.reading = StepTexts(folder)
+        self._next = await asyncio.to_thread(next_lesson, folder)
         self.files = await asyncio.to_thread(state_of, self._own_files)
         passed = self.progress.passed(folder.name)
         ids = [step.id for step in folder.steps]
@@ -326,6 +329,22 @@ class LessonAtWork:
         return step is not None and (self.taken < len(step.hints) or not self.saw_solution)
 
     @property
+    def takes_solution(self) -> bool:
+        """Whether the next help is the solution."""
+        return self.step is not None and self.taken >= len(self.step.hints)
+
+    @property
+    def hinted(self) -> bool:
+        """Whether the lesson may say where to look: a hint was asked for, or there is none."""
+        return self.taken > 0 or self.takes_solution
+
+    @property
+    def next_lesson(self) -> LessonFolder | None:
+        """The lesson to go on with once all steps have passed; None before, and after the last."""
+        steps = () if self.folder is None else self.folder.steps
+        return self._next if steps and all(step.id in self.passed for step in steps) else None
+
+    @property
     def node(self) -> NodeStatus | None:
         """The node that runs the file of this step, else any that runs a file of the learner."""
         nodes = [node for node in self._host.feed.nodes.values() if node.file]
@@ -359,7 +378,7 @@ class LessonAtWork:
         step = self.step
         if step is None:
             return False
-        solution = self.taken >= len(step.hints)
+        solution = self.takes_solution
         if solution:
             self.note(step.id, solution=True)
         else:

@@ -79,7 +79,12 @@ class LessonColumn(VerticalScroll):
         self._put(
             "head",
             words.head(
-                step, number, len(ids), at_work.result(step).state, at_work.was_right(step.id)
+                step,
+                number,
+                len(ids),
+                at_work.result(step).state,
+                at_work.was_right(step.id),
+                saw_solution=at_work.saw_solution,
             ),
         )
         self._put("checks", Content("\n").join(judged_lines(at_work, host_of(self), beside=True)))

@@ -33,7 +33,7 @@ def judged_lines(at_work: LessonAtWork, host: Host, *, beside: bool = False) -> 
     if result.state is State.WAITS:
         yield from words.waiting_lines(lesson.steps, step, at_work.passed)
     else:
-        yield from words.check_lines(result)
+        yield from words.check_lines(result, hinted=at_work.hinted)
     if not at_work.own:
         told = _("Deck's own nodes run. {key} starts files of your own for this lesson.")
         key = host.keys_of(MakeOwnFolder)[0]
@@ -42,7 +42,7 @@ def judged_lines(at_work: LessonAtWork, host: Host, *, beside: bool = False) -> 
         yield Content.styled(_after(at_work, there if beside else ""), "bold $text-success")
         yield from grade_lines(at_work)
         if not at_work.neighbour(1):
-            yield Content(where_lessons_are(host))
+            yield from _next_lesson(at_work, host, there if beside else "")
     elif at_work.grade is not None and at_work.grade.failed:
         yield from grade_lines(at_work)
     elif not result.checks and result.state is not State.WAITS:
@@ -67,6 +67,18 @@ def _after(at_work: LessonAtWork, there: str) -> str:
         told = _("Passed, but other steps have not with these files: {steps}.")
         return told.format(steps=", ".join(faded))
     return _("Passed. That was the last step.")
+
+
+def _next_lesson(at_work: LessonAtWork, host: Host, there: str) -> Iterable[Content]:
+    """Yield which lesson comes next, and where all are; `there`: as in `_after`."""
+    if at_work.next_lesson is not None:
+        name = plain(at_work.next_lesson.name, words.LONGEST)
+        if there:
+            told = _("{key}, then Enter, opens the next lesson, {name}.")
+            yield Content(told.format(key=there, name=name))
+        else:
+            yield Content(_("Enter opens the next lesson, {name}.").format(name=name))
+    yield Content(where_lessons_are(host))
 
 
 def grade_lines(at_work: LessonAtWork) -> Iterable[Content]:

@@ -28,7 +28,6 @@ class StepTexts:
     """The texts of one lesson in the current language."""
 
     def __init__(self, lesson: LessonFolder) -> None:
-        """Read nothing yet."""
         self._lesson = lesson
         self._texts = Texts("", {})
         self._language = ""

@@ -17,6 +17,7 @@ from text.i18n import N_, _, language, localized
 from text.plain import plain
 from text.sentences import reason_of
 from tui.actions import bindings
+from tui.dialogs.choice import ChoiceScreen
 from tui.editing import edit_node
 from tui.frame.screen import DeckScreen
 from tui.lesson import words
@@ -114,7 +115,6 @@ class LessonScreen(DeckScreen):
 
     @on(SessionChanged)
     def _session_changed(self, message: SessionChanged) -> None:
-        """Follow the session."""
         self.at_work.session_changed(self, message)
 
     # Actions
@@ -130,8 +130,24 @@ class LessonScreen(DeckScreen):
         self.query_one("#lesson-reading").scroll_home(animate=False)
         self.at_work.go(by)
 
-    def take_hint(self) -> None:
-        """Show the next hint, and after the last one the solution."""
+    def go_on(self) -> None:
+        """Go to the next step, and after the last one to the next lesson."""
+        if self.at_work.neighbour(1):
+            self.go(1)
+        else:
+            self.open_own(self.at_work.next_lesson)
+
+    @work(exclusive=True, group="hint")
+    async def take_hint(self) -> None:
+        """Show the next hint; after the last one the solution, if it is wanted."""
+        if self.at_work.takes_solution and not self.at_work.passed_now:
+            asked = ChoiceScreen(
+                lambda: _("The solution"),
+                lambda: _("There are no more hints. It will be noted that you saw the solution."),
+                {"show": _("Show the solution")},
+            )
+            if not await self.app.push_screen_wait(asked):
+                return
         if self.at_work.help():
             self.beside = True
             self._show()
@@ -152,15 +168,19 @@ class LessonScreen(DeckScreen):
         session, node = self.feed.session, self.at_work.node
         return "" if node is None or session is None else await node_command(session, node)
 
-    @work(exclusive=True, group="own")
-    async def make_own(self) -> None:
+    def make_own(self) -> None:
         """Make the learner's folder, and open it."""
+        self.open_own(self.at_work.folder)
+
+    @work(exclusive=True, group="own")
+    async def open_own(self, lesson: LessonFolder | None) -> None:
+        """Open the learner's folder of a lesson, which is made if there is none."""
         from course.folder.folder import own_profile
 
-        if self.at_work.folder is None:
+        if lesson is None:
             return
         try:
-            profile = await asyncio.to_thread(own_profile, self.at_work.folder)
+            profile = await asyncio.to_thread(own_profile, lesson)
         except (LauncherError, OSError) as error:
             self.notify(plain(localized(reason_of(error))), severity="error", markup=False)
             return
@@ -201,7 +221,14 @@ class LessonScreen(DeckScreen):
         number = ids.index(step.id) + 1
         put(
             self.query_one("#lesson-head", Static),
-            words.head(step, number, len(ids), result.state, at_work.was_right(step.id)),
+            words.head(
+                step,
+                number,
+                len(ids),
+                result.state,
+                at_work.was_right(step.id),
+                saw_solution=at_work.saw_solution,
+            ),
         )
         earned = _("{points} of {all} points").format(
             points=at_work.progress.points(lesson.name, at_work.passed), all=lesson.points

@@ -37,7 +37,13 @@ LONGEST = 400
 
 
 def head(
-    step: StepDocument, number: int, count: int, state: State, was_right: int | None = None
+    step: StepDocument,
+    number: int,
+    count: int,
+    state: State,
+    was_right: int | None = None,
+    *,
+    saw_solution: bool = False,
 ) -> Content:
     """Return the line above everything: which step, what it is worth, how far it is.
 
@@ -47,9 +53,11 @@ def head(
     points = ngettext("{n} point", "{n} points", step.points).format(n=step.points)
     title = plain(pick(step.title) or step.id, LONGEST)
     faded = "" if was_right is None else f" · {was_right_words(was_right)}"
+    with_it = _("with the solution")
+    helped = f" · {with_it}" if saw_solution else ""
     return Content.assemble(
         (f"{number}/{count} {title}", "bold"),
-        (f" · {points}   ", "$text-muted"),
+        (f" · {points}{helped}   ", "$text-muted"),
         (f"{sign} {_(word)}", f"bold {colour}"),
         (faded, "$text-muted"),
     )
@@ -100,23 +108,27 @@ def waiting_lines(
     ]
 
 
-def check_lines(result: StepResult) -> list[Content]:
-    """Return the checks: each with its sign; one that fails also with what was seen, and where."""
+def check_lines(result: StepResult, *, hinted: bool) -> list[Content]:
+    """Return the checks: each with its sign; one that fails also with what was seen, and where.
+
+    `hinted`: a hint was asked for, so that the lesson may say where, too.
+    """
     lines = [Content.styled(_told(result.reason), "$text-warning")] if result.reason else []
     for check in result.checks:
-        lines += _check(check)
+        lines += _check(check, hinted=hinted)
     return lines
 
 
-def _check(check: CheckResult) -> list[Content]:
+def _check(check: CheckResult, *, hinted: bool) -> list[Content]:
     sign, _word, colour = STATES[check.state]
     lines = [Content.assemble((f"{sign} ", colour), (_told(check.what), ""))]
     if check.state in (State.FAILED, State.UNJUDGED):
         if check.seen:
             seen = _("seen: {words}").format(words=_told(check.seen))
             lines.append(Content.styled(f"  {seen}", colour))
-        if check.look:
-            lines.append(Content.styled(f"  → {_told(check.look)}", "$text-accent"))
+        look = check.hint if hinted and check.hint else check.look
+        if look:
+            lines.append(Content.styled(f"  → {_told(look)}", "$text-accent"))
     return lines
 
 

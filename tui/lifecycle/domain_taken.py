@@ -40,7 +40,6 @@ class StartApart(Action["DomainTakenScreen"]):
 
     @classmethod
     async def run(cls, target: DomainTakenScreen) -> None:
-        """Choose that."""
         target.dismiss(DomainAnswer.APART)
 
 
@@ -62,7 +61,6 @@ class StartTogether(Action["DomainTakenScreen"]):
 
     @classmethod
     async def run(cls, target: DomainTakenScreen) -> None:
-        """Choose that."""
         target.dismiss(DomainAnswer.TOGETHER)
 
 
@@ -78,7 +76,6 @@ class StartNot(Action["DomainTakenScreen"]):
 
     @classmethod
     async def run(cls, target: DomainTakenScreen) -> None:
-        """Choose that."""
         target.dismiss(DomainAnswer.NOT)
 
 
@@ -94,7 +91,6 @@ class DomainTakenScreen(Dialog[DomainAnswer]):
         self.taken = taken
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("Domain {domain} is in use").format(domain=self.taken.domain)
 
     def words(self) -> Content:

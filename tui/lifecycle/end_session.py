@@ -30,7 +30,6 @@ class EndIt(Action["EndSessionScreen"]):
 
     @classmethod
     async def run(cls, target: EndSessionScreen) -> None:
-        """Answer yes."""
         target.dismiss(True)
 
 
@@ -46,7 +45,6 @@ class LeaveIt(Action["EndSessionScreen"]):
 
     @classmethod
     async def run(cls, target: EndSessionScreen) -> None:
-        """Answer no."""
         target.dismiss(False)
 
 
@@ -56,12 +54,10 @@ class EndSessionScreen(Dialog[bool]):
     BINDINGS: ClassVar[list[BindingType]] = bindings(EndIt, LeaveIt)
 
     def __init__(self, session: SessionInfo) -> None:
-        """Ask about `session`."""
         super().__init__()
         self._session = session
 
     def title_words(self) -> str:
-        """Return the question."""
         return _("End what was started elsewhere?")
 
     def words(self) -> Content:

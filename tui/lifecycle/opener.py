@@ -137,7 +137,7 @@ class LiveOpener:
     async def judge(
         self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]
     ) -> JudgeLink:
-        """Start a judge, which begins once it is told what to judge."""
+        """Start a judge, which begins with its first order."""
         from course.judging import RemoteJudge
 
         return await RemoteJudge.start(lesson.path, session.run_id, passed=passed)

@@ -27,7 +27,6 @@ class CloseRefused(Action["RefusedScreen"]):
 
     @classmethod
     async def run(cls, target: RefusedScreen) -> None:
-        """Close it."""
         target.dismiss()
 
 
@@ -37,14 +36,11 @@ class RefusedScreen(Dialog[None]):
     BINDINGS: ClassVar[list[BindingType]] = bindings(CloseRefused)
 
     def __init__(self, reason: str) -> None:
-        """Show `reason`."""
         super().__init__()
         self._reason = reason
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("It could not be opened")
 
     def words(self) -> Content:
-        """Return the reason."""
         return Content("\n".join(plain(line) for line in self._reason.splitlines()))

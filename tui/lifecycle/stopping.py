@@ -30,7 +30,6 @@ class StopNow(Action["StoppingScreen"]):
 
     @classmethod
     async def run(cls, target: StoppingScreen) -> None:
-        """Kill the rest."""
         target.deck.sessions.stop_now()
 
 
@@ -45,7 +44,6 @@ class StoppingScreen(Dialog[None]):
         self.set_interval(0.2, self.redraw)
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("Stopping the nodes")
 
     def words(self) -> Content:

@@ -29,7 +29,6 @@ class StopStrays(Action["StraysScreen"]):
 
     @classmethod
     async def run(cls, target: StraysScreen) -> None:
-        """Answer yes."""
         target.dismiss(True)
 
 
@@ -45,7 +44,6 @@ class LeaveStrays(Action["StraysScreen"]):
 
     @classmethod
     async def run(cls, target: StraysScreen) -> None:
-        """Answer no."""
         target.dismiss(False)
 
 
@@ -55,16 +53,13 @@ class StraysScreen(Dialog[bool]):
     BINDINGS: ClassVar[list[BindingType]] = bindings(StopStrays, LeaveStrays)
 
     def __init__(self, strays: tuple[Stray, ...]) -> None:
-        """Ask about `strays`."""
         super().__init__()
         self._strays = strays
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("Left behind by an earlier run")
 
     def words(self) -> Content:
-        """Return the processes."""
         count = len(self._strays)
         lines = [
             Content(

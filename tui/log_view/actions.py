@@ -40,7 +40,6 @@ class PauseLines(Action[Shown]):
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Pause, or follow."""
         target.pane.view.toggle_following()
 
 
@@ -115,7 +114,6 @@ class CopyLines(Action[Shown]):
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Copy."""
         target.pane.copy()
 
 

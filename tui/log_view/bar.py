@@ -39,7 +39,6 @@ class LogBar(Widget):
     """
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Start empty."""
         super().__init__(id=id, classes=classes)
         self._parts: tuple[tuple[str, str], ...] = ()
 

@@ -29,7 +29,6 @@ class LineChoice:
         self.cursor = entry_id
 
     def clear(self) -> None:
-        """Choose nothing."""
         self.cursor = self._anchor = None
 
     def __contains__(self, entry_id: int) -> bool:

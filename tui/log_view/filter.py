@@ -42,7 +42,6 @@ class LogFilter:
         return replace(self, only=None if self.only == node else node)
 
     def all_nodes(self) -> LogFilter:
-        """Unmute all nodes."""
         return replace(self, muted=frozenset(), only=None)
 
     def next_minimum(self) -> LogFilter:

@@ -45,7 +45,6 @@ class LogPrompt(Horizontal):
 
         @property
         def control(self) -> Widget:
-            """The prompt."""
             return self.prompt
 
     class Edited(Said):
@@ -58,12 +57,10 @@ class LogPrompt(Horizontal):
         """Escape was pressed."""
 
     def __init__(self, id: str | None = None) -> None:
-        """Start hidden."""
         super().__init__(id=id)
         self.kind = ""
 
     def compose(self) -> ComposeResult:
-        """Label, field, remark."""
         yield Static("", id="label", markup=False)
         yield Field(compact=True, select_on_focus=False)
         yield Static("", id="remark", markup=False)
@@ -85,7 +82,6 @@ class LogPrompt(Horizontal):
         self.query_one("#remark", Static).update(words)
 
     def close(self) -> None:
-        """Hide the prompt."""
         self.kind = ""
         self.remove_class("-asking")
 
@@ -96,10 +92,8 @@ class LogPrompt(Horizontal):
         self.post_message(self.Edited(self, event.value))
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Report the answer."""
         event.stop()
         self.post_message(self.Answered(self, event.value))
 
     def action_give_up(self) -> None:
-        """Cancel."""
         self.post_message(self.Cancelled(self, self.query_one(Input).value))

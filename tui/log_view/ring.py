@@ -100,7 +100,6 @@ class LineRing:
         self._bytes += self.entries[-1].size
 
     def clear(self) -> None:
-        """Remove every line."""
         self.entries.clear()
         self.counts.clear()
         self._last_seq.clear()

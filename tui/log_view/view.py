@@ -73,13 +73,11 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         """The rows have changed, or the filter, following, search or choice."""
 
         def __init__(self, view: LogView) -> None:
-            """Carry the view."""
             super().__init__()
             self.view = view
 
         @property
         def control(self) -> Widget:
-            """The view."""
             return self.view
 
         def can_replace(self, message: Message) -> bool:
@@ -134,7 +132,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self.lay_out()
 
     def clear(self) -> None:
-        """Remove every line."""
         self.ring.clear()
         self.index.rebuild(())
         self.follow()
@@ -275,17 +272,14 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._step(step, extend=True)
 
     def action_let_go(self) -> None:
-        """Choose nothing."""
         self.choice.clear()
         self._repaint()
         self._tell()
 
     def action_scroll_left(self) -> None:
-        """Shift unwrapped lines."""
         self._shift(-SHIFT_CELLS)
 
     def action_scroll_right(self) -> None:
-        """Shift unwrapped lines."""
         self._shift(SHIFT_CELLS)
 
     def on_click(self, event: Click) -> None:

@@ -244,7 +244,6 @@ class CopyWholeLog(LogsAction):
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:
-        """Copy."""
         target.pane.copy_all()
 
 

@@ -73,12 +73,10 @@ class LogsScreen(DeckScreen):
 
     @property
     def pane(self) -> LogPane:
-        """The lines."""
         return self.query_one(LogPane)
 
     @property
     def node_list(self) -> LogNodes:
-        """The nodes."""
         return self.query_one(LogNodes)
 
     @property
@@ -139,7 +137,6 @@ class LogsScreen(DeckScreen):
         return ros2_words.log_of(nodes[0] if alone else "")
 
     def choose(self, chosen: LogFilter) -> None:
-        """Apply a filter."""
         self.pane.view.log_filter = chosen
         self._show_nodes()
 

@@ -65,7 +65,6 @@ class Outcome(ScrollView, can_focus=True):
 
     @property
     def entries(self) -> tuple[OutcomeEntry, ...]:
-        """What is shown."""
         return self._entries
 
     def render_line(self, y: int) -> Strip:

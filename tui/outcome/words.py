@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL
+from robot.kinematics import WHEEL_RADIUS_M
 from text.figures import figure, whole
 from text.i18n import _
 from text.nested import read_json
@@ -38,9 +39,15 @@ def drive_words(speed_m_s: float, steering_rad: float) -> str:
 
 def wheel_words(value: Mapping[str, Value]) -> str:
     """Describe the speeds of the rear wheels in a JointState."""
-    return _("left {left}, right {right} rad/s").format(
-        left=figure(joint(value, REAR_LEFT_WHEEL, "velocity")),
-        right=figure(joint(value, REAR_RIGHT_WHEEL, "velocity")),
+    return rim_words(
+        joint(value, REAR_LEFT_WHEEL, "velocity"), joint(value, REAR_RIGHT_WHEEL, "velocity")
+    )
+
+
+def rim_words(left_rad_s: float, right_rad_s: float) -> str:
+    """Describe how fast the wheels roll: in m/s, as the panel of the wheels does."""
+    return _("left {left}, right {right} m/s").format(
+        left=figure(left_rad_s * WHEEL_RADIUS_M), right=figure(right_rad_s * WHEEL_RADIUS_M)
     )
 
 

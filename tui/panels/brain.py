@@ -28,7 +28,6 @@ class BrainView(Drawing):
     """The reports of the nodes that may ask a model, one below the other."""
 
     def __init__(self) -> None:
-        """Start empty."""
         super().__init__()
         self._reports: dict[str, BrainReport] = {}
 
@@ -73,7 +72,6 @@ class BrainPanel(Panel):
     across_below = 80
 
     def compose(self) -> ComposeResult:
-        """The reports."""
         yield BrainView()
 
     def followed(self) -> set[str]:

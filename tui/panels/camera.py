@@ -50,7 +50,6 @@ class CameraPanel(Panel):
         )
 
     def compose(self) -> ComposeResult:
-        """The picture."""
         yield ImageView(bits=4)
 
     def pictures(self) -> set[str]:
@@ -58,7 +57,6 @@ class CameraPanel(Panel):
         return {CAMERA} if self._in_sight else set()
 
     def on_show(self) -> None:
-        """Ask for pictures."""
         self._in_sight = True
         self.post_message(PicturesChanged())
 

@@ -34,7 +34,6 @@ class LlmPanel(Panel):
         self._newest: dict[str, Sample] = {}
 
     def compose(self) -> ComposeResult:
-        """The trail."""
         yield Outcome()
 
     def on_mount(self) -> None:

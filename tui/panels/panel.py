@@ -51,7 +51,6 @@ class Panel(Vertical):
     """Shown in place of the widget while it fails."""
 
     def on_mount(self) -> None:
-        """Show the title."""
         self._entitle()
 
     def name_source(self, topic: str) -> None:

@@ -90,7 +90,6 @@ class PanelGrid(Container, can_focus=True):
 
     @property
     def pages(self) -> int:
-        """Number of pages."""
         return len(self._pages)
 
     @property

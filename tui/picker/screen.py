@@ -71,7 +71,6 @@ class StartLesson(Action["PickerScreen"]):
 
     @classmethod
     async def run(cls, target: PickerScreen) -> None:
-        """Open it."""
         target.open_chosen()
 
 
@@ -81,7 +80,7 @@ class StartOwn(Action["PickerScreen"]):
     id = "lesson.start_own"
     key = "C,С"
     title = N_("My own files")
-    means = "files of one's own"
+    means = "own files"
     tooltip = N_("Make a folder of your own for the selected lesson, and start your files.")
     footer = True
 
@@ -114,7 +113,6 @@ class StartDecks(Action["PickerScreen"]):
 
     @classmethod
     async def run(cls, target: PickerScreen) -> None:
-        """Start them."""
         target.open_chosen(own=False)
 
 
@@ -152,7 +150,6 @@ class PickerScreen(Screen[None], Acting, Working):
 
     @property
     def deck(self) -> Host:
-        """The app."""
         return host_of(self)
 
     def compose(self) -> ComposeResult:

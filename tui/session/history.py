@@ -39,6 +39,5 @@ class LogHistory:
         return tuple(self._lines)
 
     def clear(self) -> None:
-        """Remove all lines."""
         self._lines.clear()
         self._characters = 0

@@ -69,7 +69,6 @@ class LessonOpened(Message, bubble=False):
     """A profile was started; for the app, which remembers it."""
 
     def __init__(self, name: str) -> None:
-        """Carry its name."""
         super().__init__()
         self.name = name
 

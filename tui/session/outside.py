@@ -1,7 +1,7 @@
 """The nodes in a session's domain that Deck did not start: their names, and their log lines.
 
 A learner's `python my_node.py` is on the same graph as the lesson. Its state and its log are shown,
-but it cannot be started or stopped here and is not counted. It is told apart by its process:
+but it cannot be started or stopped here and is not counted. It is recognised by its process:
 everything that Deck has started, under whatever name, carries the mark of its run. The name decides
 only if the middleware does not report the process.
 """
@@ -40,7 +40,6 @@ class Outside:
     """The current nodes of others."""
 
     def __init__(self) -> None:
-        """Start empty."""
         self.forget()
 
     def forget(self) -> None:

@@ -110,7 +110,7 @@ class InnerLink(Protocol):
     def set_logger_level(
         self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[LevelResult]:
-        """Set it."""
+        """Set from which severity on a node's logger writes."""
 
 
 class GraphLink(Protocol):
@@ -263,7 +263,7 @@ class SessionOpener(Protocol):
     async def judge(
         self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]
     ) -> JudgeLink:
-        """Start a judge, which begins once it is told what to judge."""
+        """Start a judge, which begins with its first order."""
 
     async def grade(self, lesson: LessonFolder, folder: Path) -> WholeGrade:
         """Have a learner's folder graded, which takes a while."""

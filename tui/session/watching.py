@@ -95,7 +95,6 @@ class NodelessLink:
         """Nobody asks."""
 
     async def answer(self, question: int, answer: ConsentAnswer) -> bool:
-        """Nothing was asked."""
         del question, answer
         return False
 
@@ -103,12 +102,10 @@ class NodelessLink:
         """Nothing was allowed."""
 
     async def shutdown(self, now: bool = False) -> None:
-        """Disconnect."""
         del now
         self._closed.set()
 
     async def aclose(self) -> None:
-        """Disconnect."""
         self._closed.set()
 
 

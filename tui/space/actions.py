@@ -83,7 +83,6 @@ class PublishAim(_ArmedAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Publish it."""
         await target.publish_aim()
 
 
@@ -97,7 +96,6 @@ class Disarm(_ArmedAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Disarm."""
         target.disarm()
 
 
@@ -135,7 +133,6 @@ class FitAll(SpaceAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Fit it."""
         target.fit()
 
 
@@ -150,7 +147,6 @@ class FollowFrame(SpaceAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Ask which."""
         target.choose_follow()
 
 
@@ -164,7 +160,6 @@ class FixedFrame(SpaceAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Ask which."""
         target.choose_fixed()
 
 
@@ -173,7 +168,6 @@ class _LayerAction(SpaceAction):
 
     @classmethod
     def possible(cls, target: SpaceTarget) -> bool | None:
-        """Only with layers."""
         return target.has_layers
 
 
@@ -204,7 +198,6 @@ class OnlyLayer(_LayerAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Hide the others."""
         target.only_layer()
 
 
@@ -219,7 +212,6 @@ class AllLayers(_LayerAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Show them."""
         target.all_layers()
 
 
@@ -236,7 +228,6 @@ class ArmGoal(SpaceAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Arm it."""
         target.arm_goal()
 
 
@@ -250,7 +241,6 @@ class ArmInitialPose(SpaceAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Arm it."""
         target.arm_initial_pose()
 
 

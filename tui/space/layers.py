@@ -94,7 +94,6 @@ class SpaceLayers:
     """All layers, by topic."""
 
     def __init__(self) -> None:
-        """Begin with none."""
         self._layers: dict[str, SpaceLayer] = {}
 
     def __iter__(self) -> Iterator[SpaceLayer]:
@@ -127,7 +126,6 @@ class SpaceLayers:
         return self._layers.keys() != before.keys()
 
     def clear(self) -> None:
-        """Forget all layers."""
         self._layers.clear()
 
     def watched(self) -> set[str]:

@@ -86,7 +86,6 @@ class SpaceScreen(DeckScreen):
 
     @property
     def view(self) -> SpaceView:
-        """The picture."""
         return self.query_one(SpaceView)
 
     @property
@@ -157,7 +156,6 @@ class SpaceScreen(DeckScreen):
             self._show()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw all texts."""
         del message
         self.view.words_changed()
         self._show()
@@ -197,7 +195,6 @@ class SpaceScreen(DeckScreen):
         self.fit() if view.fits else self._show(by_user=True)
 
     def fit(self) -> None:
-        """Show everything."""
         self.stage.follow_frame("")
         self._place()
         self.view.fit(self.stage.extent(), anew=True)
@@ -262,7 +259,6 @@ class SpaceScreen(DeckScreen):
         self._layers_changed()
 
     def all_layers(self) -> None:
-        """Show all layers."""
         self.stage.show_frames = True
         for layer in self.stage.layers:
             layer.on = True

@@ -116,7 +116,6 @@ class MoveAction(TeleopAction):
 
     @classmethod
     async def run(cls, target: DrivenByKeys) -> None:
-        """Press it once."""
         target.press(cls.move)
 
 

@@ -52,7 +52,6 @@ class TeleopDock:
             self._leave()
 
     def take(self, update: GraphUpdate) -> None:
-        """Update the panel."""
         if self._panel is not None:
             self._panel.show(update)
 

@@ -131,7 +131,6 @@ def _way(setpoint: DriveSetpoint) -> str:
 
 
 def _arrows(setpoint: DriveSetpoint) -> str:
-    """`↑ ← 0.30`."""
     speed, angle = setpoint.speed_m_s, setpoint.steering_rad
     way = "■" if not abs(speed) >= STANDING_M_S else "↑" if speed > 0 else "↓"
     side = (

@@ -158,7 +158,6 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self.redraw()
 
     def release(self) -> None:
-        """Release all keys."""
         self._keys = NOTHING
         graph = self._deck.feed.graph
         if graph is not None and self._route.topic:
@@ -166,7 +165,6 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self.redraw()
 
     def close(self) -> None:
-        """Stop driving."""
         self.release()
         self.post_message(self.Closed())
 

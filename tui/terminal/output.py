@@ -92,7 +92,6 @@ class Terminal:
         return True
 
     def fileno(self) -> int:
-        """Return the descriptor."""
         return self._fd
 
     def finish(self) -> None:

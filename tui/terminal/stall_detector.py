@@ -31,12 +31,10 @@ class KeyStallDetector:
         self._over = threading.Event()
 
     def watch(self) -> None:
-        """Start checking."""
         self._last_s = clock.steady()
         threading.Thread(target=self._run, name="stall-detector", daemon=True).start()
 
     def end(self) -> None:
-        """Stop checking."""
         self._over.set()
 
     def may_precede(self, at_s: float) -> bool:

@@ -97,7 +97,6 @@ class FilterTopics(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Focus the filter."""
         target.focus_filter()
 
 
@@ -123,7 +122,6 @@ class PauseTopic(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Pause, or resume."""
         target.plotting.toggle_pause()
 
 
@@ -219,7 +217,6 @@ class ClearPlot(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Remove them."""
         target.plotting.plot.clear()
 
 
@@ -240,7 +237,6 @@ class CopyMessage(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Copy it."""
         target.detail.copy_message()
 
 
@@ -262,7 +258,6 @@ class FilterMessages(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Focus the expression."""
         target.filter_messages()
 
 
@@ -277,7 +272,6 @@ class PictureOrTree(TopicsAction):
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """Only for images."""
         return target.shows_image and not target.plotting.covers_all
 
     @classmethod
@@ -320,7 +314,6 @@ class SortByNext(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Sort by it."""
         target.table.sort_by_next()
 
 
@@ -334,7 +327,6 @@ class ReverseOrder(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Reverse it."""
         order = target.table.order
         target.table.reorder(order.by(order.column_id))
 
@@ -371,7 +363,6 @@ class OpenPublish(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Open it."""
         target.open_publish()
 
 

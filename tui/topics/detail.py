@@ -70,7 +70,6 @@ class TopicHead(Widget):
         return self._count(width)
 
     def render(self) -> Content:
-        """Draw the lines."""
         name, type_name, parts, below = self._texts
         width = max(1, self.size.width)
         *above, last = chop_cells(name, width) or [""]

@@ -60,7 +60,6 @@ class EchoFilter(Horizontal):
         yield Static(classes="filter-told", markup=False)
 
     def on_mount(self) -> None:
-        """Show the texts."""
         self.relabel()
 
     @property

@@ -86,7 +86,6 @@ class TopicEndpoints(ScrollView, can_focus=True):
         self._fold()
 
     def render_line(self, y: int) -> Strip:
-        """One line."""
         width, base = self.scrollable_size.width, self.rich_style
         index = y + self.scroll_offset.y
         if index >= len(self._lines):

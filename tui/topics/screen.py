@@ -151,7 +151,6 @@ class TopicsScreen(DeckScreen):
         return followed
 
     def on_mount(self) -> None:
-        """Focus the table."""
         self.table.focus()
         self._label()
 
@@ -187,7 +186,6 @@ class TopicsScreen(DeckScreen):
             self._label()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw all texts."""
         del message
         self._label()
         self.detail.relabel()
@@ -273,7 +271,6 @@ class TopicsScreen(DeckScreen):
         self.call_later(self.table.choose, topic)
 
     def focus_filter(self) -> None:
-        """Focus the filter."""
         self.set_focus(self.filter)
 
     def filter_messages(self) -> None:

@@ -34,7 +34,6 @@ class NextPage(Action["TourScreen"]):
 
     @classmethod
     async def run(cls, target: TourScreen) -> None:
-        """Show it."""
         target.turn(1)
 
 
@@ -56,7 +55,6 @@ class PreviousPage(Action["TourScreen"]):
 
     @classmethod
     async def run(cls, target: TourScreen) -> None:
-        """Show it."""
         target.turn(-1)
 
 
@@ -72,7 +70,6 @@ class LeaveTour(Action["TourScreen"]):
 
     @classmethod
     async def run(cls, target: TourScreen) -> None:
-        """Close it."""
         target.dismiss(None)
 
 

@@ -31,7 +31,6 @@ class CloseView(Action["ViewDialog"]):
 
     @classmethod
     async def run(cls, target: ViewDialog) -> None:
-        """Close the dialog."""
         target.dismiss()
 
 
@@ -52,7 +51,6 @@ class CopyViewUrl(Action["ViewDialog"]):
 
     @classmethod
     async def run(cls, target: ViewDialog) -> None:
-        """Copy it."""
         target.copy(target.opened.url)
 
 
@@ -68,7 +66,6 @@ class CopyViewAll(Action["ViewDialog"]):
 
     @classmethod
     def possible(cls, target: ViewDialog) -> bool | None:
-        """Only over SSH."""
         return bool(target.opened.ssh)
 
     @classmethod
@@ -106,7 +103,6 @@ class ViewDialog(Dialog[None]):
         self._end = end
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("The robot in 3D")
 
     def words(self) -> Content:

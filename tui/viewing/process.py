@@ -39,7 +39,7 @@ class OpenedView:
 
 
 class ViewProcess:
-    """A viewer that is open, until its user closes it or it is told to end."""
+    """A viewer that is open, until its user closes it or it is ordered to end."""
 
     def __init__(self, process: Process, opened: OpenedView, words: Task[str]) -> None:
         """`words` become what it has said last on standard error."""

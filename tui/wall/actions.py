@@ -23,7 +23,6 @@ class LeaveWall(Action["DeckScreen"]):
 
     @classmethod
     async def run(cls, target: DeckScreen) -> None:
-        """Show it."""
         await target.deck.show_screen("deck")
 
 

@@ -118,11 +118,9 @@ class WallScreen(DeckScreen):
                     yield VoicePanel()
 
     def watch_topics(self) -> set[str]:
-        """The numbers."""
         return set(NUMBERS)
 
     def picture_topics(self) -> set[str]:
-        """The picture."""
         return self.query_one(CameraPanel).pictures() if self._sees and self.is_mounted else set()
 
     def follow_topics(self) -> set[str]:
@@ -145,13 +143,11 @@ class WallScreen(DeckScreen):
         self._show_state(None)
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Start anew."""
         del message
         self._reader = WallReader()
         self._choose(None)
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Show the newest."""
         update = message.update
         if self.feed.front is not self or update.error:
             return

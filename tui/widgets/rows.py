@@ -62,7 +62,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
 
         @property
         def control(self) -> Rows:
-            """The list."""
             return self.rows
 
     class Opened(Highlighted):

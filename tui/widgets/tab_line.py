@@ -70,7 +70,6 @@ class TabLine(Widget):
         self.post_message(self.Selected(key))
 
     def render(self) -> Content:
-        """Draw the tabs."""
         parts = []
         for entry in self._entries:
             name = "front" if entry.key == self._front else entry.meaning or "tab"

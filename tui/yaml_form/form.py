@@ -49,7 +49,6 @@ class YamlForm(Vertical, Acting, Working):
 
         @property
         def control(self) -> YamlForm:
-            """The form."""
             return self.form
 
     class Checked(Message):
@@ -61,7 +60,6 @@ class YamlForm(Vertical, Acting, Working):
 
         @property
         def control(self) -> YamlForm:
-            """The form."""
             return self.form
 
     BINDINGS: ClassVar = bindings(*FORM_ACTIONS)

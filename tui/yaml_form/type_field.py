@@ -59,7 +59,6 @@ class TypeField(Vertical):
 
     @property
     def field(self) -> Input:
-        """The input field."""
         return self.query_one(Input)
 
     @property
@@ -85,7 +84,6 @@ class TypeField(Vertical):
         self.close()
 
     def close(self) -> None:
-        """Close the list."""
         self.remove_class("-listing")
 
     def fitting(self) -> list[str]:

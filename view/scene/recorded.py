@@ -37,7 +37,6 @@ class Stream:
         self._recording.log(list(drawn.path), *shapes, static=drawn.static)
 
     def arrange(self, blueprint: Any) -> None:  # noqa: ANN401 - rerun comes without types
-        """Arrange the viewer."""
         self._recording.send_blueprint(blueprint)
 
     def close(self) -> None:

@@ -25,7 +25,6 @@ class Solids:
     """A row for each, or one for all, 0 to 255."""
 
     def boxes(self) -> Any:  # noqa: ANN401 - rerun comes without types
-        """Return boxes."""
         import rerun
 
         return rerun.Boxes3D(sizes=self._each(self.size_m), **self._placed())

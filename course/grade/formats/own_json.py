@@ -61,7 +61,7 @@ def _step(step: StepGrade) -> dict[str, Any]:
                 "state": check.state.value,
                 "what": plain(localized(check.what)),
                 "seen": plain(localized(check.seen)),
-                "look": plain(localized(check.look)),
+                "look": plain(localized(check.hint or check.look)),
             }
             for check in step.result.checks
         ],

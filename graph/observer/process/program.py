@@ -1,7 +1,7 @@
 """The program of the observer's process: `python program.py DESCRIPTOR PARENT`.
 
 It is run by its path, so that it starts with whatever Python the screen runs on; where modules are
-it is told over the socket DESCRIPTOR.
+it gets by the socket DESCRIPTOR.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What the observer's process does: it serves the end of the socket that it was given.
 
 It takes orders and hands over updates, answers, and a sign of life each second. Its own end has
-three causes: it is told to leave, nobody is there any more, or ROS cannot be used. When it hangs,
+three causes: it gets that order, nobody is there any more, or ROS cannot be used. When it hangs,
 so that no Python runs, the kernel ends it after a while, whoever is there.
 """
 

@@ -69,7 +69,6 @@ class Lengthener:
         self._last = GraphUpdate(0.0)
 
     def update(self, short: Shortened) -> GraphUpdate:
-        """Return the update."""
         time_s, error, samples, changed, topics = short
         last = self._last
         rows = last.topics if topics is None else tuple(self._row(each) for each in topics)

@@ -1,6 +1,6 @@
 """Expressions that make of a value what a field of a message takes.
 
-Each is tried on a message of the same class before it is told: what is told mends the line.
+Each is tried on a message of the same class before it is suggested: a suggestion fixes the line.
 """
 
 from __future__ import annotations

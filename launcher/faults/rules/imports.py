@@ -69,7 +69,7 @@ def missing_import(name: str, statement: ast.stmt | None, folder: str) -> Words:
 
 
 def missing_messages(package: str, kind: str, names: list[str]) -> Words:
-    """Say what is meant by a package of messages that is not there, or how it is to be had."""
+    """Say what is meant by a package of messages that is not there, or how to get it."""
     if package in OF_TUTORIALS:
         return _of_tutorial(package)
     of_ros = package in (*OF_ROS1, *OF_ROS)
@@ -109,7 +109,7 @@ def _like(name: str, known: Iterable[str], cutoff: float) -> str:
 
 
 def missing_module(name: str, folder: str) -> Words:
-    """Say what is meant by a module that is not there, or how it is to be had."""
+    """Say what is meant by a module that is not there, or how to get it."""
     first, _, rest = name.partition(".")
     if first in OF_ROS1:
         return say(

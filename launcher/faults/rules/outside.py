@@ -11,7 +11,7 @@ from text.sentences import Words, say
 
 
 def files(failure: Failure) -> Words | None:
-    """A file is not there, or is not to be had."""
+    """A file does not exist, or cannot be accessed."""
     error = failure.error
     name = getattr(error, "filename", None)
     within = failure.inner.file if failure.inner is not None else ""

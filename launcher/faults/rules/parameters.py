@@ -1,4 +1,4 @@
-"""Parameters: set, declared and asked for by something that is none, and what is told of them."""
+"""Parameters: set, declared and asked for by something that is none, and what callbacks get."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def listing(failure: Failure) -> Words | None:
 
 
 def told(failure: Failure) -> Words | None:
-    """A callback that is told of new values does not take them."""
+    """A callback of new values has the wrong arguments."""
     inner = failure.inner
     if inner is None or not isinstance(failure.error, TypeError):
         return None

@@ -11,6 +11,7 @@ import operator
 import re
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from text.i18n import LANGUAGES, decimal
 from text.sentences import say
 from text.suggestions import did_you_mean
 
@@ -80,10 +81,16 @@ def evaluate(expression: str, values: Mapping[str, Drawn]) -> Drawn:
     return found
 
 
-def filled(value: Any, values: Mapping[str, Drawn]) -> Any:  # noqa: ANN401 - any YAML
-    """Return a part of a check with every `${...}` in it replaced. Raises ExpressionError."""
+def filled(value: Any, values: Mapping[str, Drawn], language: str = "en") -> Any:  # noqa: ANN401
+    """Return a part of a check with every `${...}` in it replaced. Raises ExpressionError.
+
+    `language`: the one that the text is in, where a number gets its decimal comma.
+    """
     if isinstance(value, dict):
-        return {key: filled(inner, values) for key, inner in value.items()}
+        return {
+            key: filled(inner, values, key if key in LANGUAGES else "en")
+            for key, inner in value.items()
+        }
     if isinstance(value, (list, tuple)):
         return type(value)(filled(inner, values) for inner in value)
     if not isinstance(value, str):
@@ -91,7 +98,12 @@ def filled(value: Any, values: Mapping[str, Drawn]) -> Any:  # noqa: ANN401 - an
     whole = PLACE.fullmatch(value)
     if whole:
         return evaluate(whole.group(1), values)
-    return PLACE.sub(lambda found: written(evaluate(found.group(1), values)), value)
+    return PLACE.sub(lambda found: _read(evaluate(found.group(1), values), language), value)
+
+
+def _read(value: Drawn, language: str) -> str:
+    text = written(value)
+    return decimal(text, language) if isinstance(value, float) else text
 
 
 def written(value: Drawn) -> str:

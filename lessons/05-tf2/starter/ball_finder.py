@@ -21,7 +21,7 @@ class BallFinder(Node):
     def on_ball(self, message):
         # MISSING: the transform from message.header.frame_id to base_link;
         # an unknown frame is a warning with its name, and no answer.
-        # НЕ ХВАТАЕТ: трансформации из message.header.frame_id в base_link;
+        # НЕ ХВАТАЕТ: преобразования из message.header.frame_id в base_link;
         # неизвестная система — это warning с её именем и никакого ответа.
         # MISSING: a PointStamped in base_link: the point plus the translation, published
         # (step 5: turned as well, by do_transform_point).

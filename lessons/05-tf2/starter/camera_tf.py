@@ -19,7 +19,7 @@ class CameraTf(Node):
         # MISSING: translation (0.15, 0, 0.25) m, and a rotation that does not turn.
         # НЕ ХВАТАЕТ: translation (0.15, 0, 0.25) м и поворота, который ничего не поворачивает.
         # MISSING: give the transform to the broadcaster.
-        # НЕ ХВАТАЕТ: отдать трансформацию вещателю.
+        # НЕ ХВАТАЕТ: отдать преобразование рассыльщику.
 
 
 def main(args=None):

@@ -20,7 +20,7 @@ class SonarView(Node):
         self.markers = self.create_publisher(Marker, "/sonar/obstacle", 10)
         self.create_subscription(Float32, "/sensor/sonar_front", self.on_distance, 10)
         # MISSING: send self.place() with the broadcaster.
-        # НЕ ХВАТАЕТ: отправить self.place() через вещателя.
+        # НЕ ХВАТАЕТ: отправить self.place() через рассыльщик.
 
     def place(self):
         transform = TransformStamped()

@@ -14,7 +14,6 @@ SUMMARY = "Print information about an action"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     add = parser.add_argument
     add("action_name", help="Name of the ROS action to get info (e.g. '/fibonacci')")

@@ -14,7 +14,6 @@ SUMMARY = "Output a list of action names"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     add = parser.add_argument
     add("-t", "--show-types", action="store_true", help="Additionally show the action type")

@@ -27,7 +27,6 @@ ENDED = (4, 5, 6)
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_node(parser)
     options.answers(parser)
     add = parser.add_argument

@@ -15,7 +15,6 @@ SUMMARY = "Print a action's type"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     parser.add_argument("action_name", help="Name of the ROS action to get type")
 

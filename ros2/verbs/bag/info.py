@@ -25,14 +25,12 @@ STEP = 1024
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     bags.bag_path(parser, "open")
     parser.add_argument("-t", "--topic-name", action="store_true", help="Only display topic names.")
     bags.refuse(parser, "-v --verbose")
 
 
 def main(args: argparse.Namespace) -> int | str | None:
-    """Print it."""
     from graph.bag.errors import BagError
     from graph.bag.reading import open_bag
     from text.i18n import localized

@@ -22,7 +22,6 @@ NODE = "rosbag2_player"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     bags.bag_path(parser, "play back")
     add = parser.add_argument
     add(

@@ -25,7 +25,6 @@ LOOK_S = 0.1
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     add = parser.add_argument
     add(
         "-o",
@@ -69,7 +68,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int | str | None:
-    """Record until Ctrl-C."""
     from graph.bag.errors import BagError
     from graph.recording.recorder import Recorder
     from text.i18n import localized

@@ -20,7 +20,6 @@ LIST_NODES_TYPE = "composition_interfaces/srv/ListNodes"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument

@@ -17,7 +17,6 @@ INDEX = Path("share/ament_index/resource_index/rclcpp_components")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     parser.add_argument(
         "package_name", nargs="?", help="Name of the package to list components from"
     )

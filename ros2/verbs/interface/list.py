@@ -13,7 +13,6 @@ SUMMARY = "List all interface types available"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     add = parser.add_argument
     add("-m", "--only-msgs", action="store_true", help="Print out only the message types")
     add("-s", "--only-srvs", action="store_true", help="Print out only the service types")

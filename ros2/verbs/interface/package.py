@@ -13,12 +13,10 @@ SUMMARY = "Output a list of available interface types within one package"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     parser.add_argument("package_name", help="Name of the ROS package (e.g. 'std_msgs')")
 
 
 def main(args: argparse.Namespace) -> int | str | None:
-    """Print their names."""
     names = interfaces.packages().get(args.package_name)
     if names is None:
         return f"Unknown package '{args.package_name}'"

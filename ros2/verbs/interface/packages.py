@@ -13,7 +13,6 @@ SUMMARY = "Output a list of packages that provide interfaces"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     add = parser.add_argument
     add("-m", "--only-msgs", action="store_true", help="Only list packages that have messages")
     add("-s", "--only-srvs", action="store_true", help="Only list packages that have services")
@@ -21,7 +20,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int | str | None:
-    """Print their names."""
     wanted = {"msg": args.only_msgs, "srv": args.only_srvs, "action": args.only_actions}
     kinds = tuple(f"{kind}/" for kind in wanted if wanted[kind] or not any(wanted.values()))
     for package, names in interfaces.packages().items():

@@ -27,7 +27,6 @@ PRIMITIVES = frozenset(f"{name}{bits}" for name in ("int", "uint") for bits in (
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     comments = parser.add_mutually_exclusive_group()
     comments.add_argument(
         "--all-comments",

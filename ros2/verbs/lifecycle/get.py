@@ -18,7 +18,6 @@ SUMMARY = "Get lifecycle state for one or more nodes"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument

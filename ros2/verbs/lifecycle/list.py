@@ -15,7 +15,6 @@ SUMMARY = "Output a list of available transitions"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument

@@ -14,7 +14,6 @@ SUMMARY = "Output a list of nodes with lifecycle"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_node_list(parser)
 
 

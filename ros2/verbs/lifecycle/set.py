@@ -14,7 +14,6 @@ SUMMARY = "Trigger lifecycle state transition"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument

@@ -15,7 +15,6 @@ SUMMARY = "Output information about a node"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     add = parser.add_argument
     add("node_name", help="Node name to request information")

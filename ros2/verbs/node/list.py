@@ -15,7 +15,6 @@ SUMMARY = "Output a list of available nodes"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_node_list(parser)
 
 

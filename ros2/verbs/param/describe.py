@@ -15,7 +15,6 @@ SUMMARY = "Show descriptive information about declared parameters"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument

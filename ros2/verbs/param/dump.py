@@ -16,7 +16,6 @@ SUMMARY = "Show all of the parameters of a node in a YAML file format"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument

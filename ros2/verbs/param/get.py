@@ -22,7 +22,6 @@ LABELS = (
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument
@@ -33,7 +32,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int | str | None:
-    """Print it."""
     with joined(args) as me:
         node = parameters.find_node(me, args.node_name, hidden=args.include_hidden_nodes)
         if not node:

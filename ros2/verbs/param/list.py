@@ -18,7 +18,6 @@ SUMMARY = "Output a list of available parameters"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument

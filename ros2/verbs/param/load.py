@@ -16,7 +16,6 @@ SUMMARY = "Load parameter file for a node"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument

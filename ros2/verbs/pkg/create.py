@@ -31,7 +31,6 @@ BUILD_TYPES = ("cmake", "ament_cmake", "ament_python")
 
 
 def arguments(parser: ArgumentParser) -> None:
-    """Declare the options."""
     parser.add_argument("package_name", type=_name, help="The package name")
     parser.add_argument(
         "--package-format", "--package_format", choices=("2", "3"), default="3",

@@ -13,7 +13,6 @@ SUMMARY = "Output a list of package specific executables"
 
 
 def arguments(parser: ArgumentParser) -> None:
-    """Declare the options."""
     parser.add_argument("package_name", nargs="?", help="The package name")
     parser.add_argument(
         "--full-path", action="store_true", help="Show the full path of each executable"

@@ -17,6 +17,5 @@ def arguments(_parser: ArgumentParser) -> None:
 
 
 def main(_args: Namespace) -> None:
-    """Print them."""
     for name in sorted(packages()):
         print(name)

@@ -13,7 +13,6 @@ SUMMARY = "Output the prefix path of a package"
 
 
 def arguments(parser: ArgumentParser) -> None:
-    """Declare the options."""
     parser.add_argument("package_name", help="The package name")
     parser.add_argument(
         "--share", action="store_true", help="Show share directory for the package prefix"
@@ -21,7 +20,6 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def main(args: Namespace) -> str | None:
-    """Print it."""
     try:
         prefix = prefix_of(args.package_name)
     except NoPackageError:

@@ -14,13 +14,11 @@ SUMMARY = "Output the XML of the package manifest or a specific tag"
 
 
 def arguments(parser: ArgumentParser) -> None:
-    """Declare the options."""
     parser.add_argument("package_name", help="The package name")
     parser.add_argument("-t", "--tag", help="The XML tag to output, e.g. 'version'")
 
 
 def main(args: Namespace) -> str | None:
-    """Print it."""
     try:
         file = prefix_of(args.package_name) / "share" / args.package_name / "package.xml"
         text = file.read_text(encoding="utf-8")

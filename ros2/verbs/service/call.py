@@ -19,7 +19,6 @@ WORTH_SAYING_S = 1.0
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_node(parser)
     options.answers(parser)
     add = parser.add_argument

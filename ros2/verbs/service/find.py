@@ -14,7 +14,6 @@ SUMMARY = "Output a list of available services of a given type"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     add = parser.add_argument
     add("service_type", help="Name of the ROS service type to filter for")
@@ -23,7 +22,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int | str | None:
-    """Print their names."""
     with joined(args, settled=True) as me:
         known = naming.shown(
             me.node.get_service_names_and_types(), hidden=args.include_hidden_services

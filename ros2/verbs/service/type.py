@@ -15,7 +15,6 @@ SUMMARY = "Output a service's type"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     parser.add_argument("service_name", help="Name of the ROS service to get type (e.g. '/x')")
     parser.add_argument("--include-hidden-services", action="store_true")

@@ -20,7 +20,6 @@ UNITS = ((1e3, 1.0, ".0f", "B"), (1e6, 1e3, ".2f", "KB"), (float("inf"), 1e6, ".
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_node(parser)
     add = parser.add_argument
     add("topic", help="Topic name to monitor for bandwidth utilization")

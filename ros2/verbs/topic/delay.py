@@ -17,7 +17,6 @@ WINDOW = 10_000
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_node(parser)
     add = parser.add_argument
     add("topic", help="Topic name to calculate the delay for")

@@ -19,7 +19,6 @@ LONGEST = 128
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     add = parser.add_argument
     add("topic_name", help="Name of the ROS topic to listen to (e.g. '/chatter')")

@@ -14,7 +14,6 @@ SUMMARY = "Output a list of available topics of a given type"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     add = parser.add_argument
     add("topic_type", help="Name of the ROS topic type to filter for")
@@ -23,7 +22,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int | str | None:
-    """Print their names."""
     with joined(args, settled=True) as me:
         known = naming.shown(me.node.get_topic_names_and_types(), hidden=args.include_hidden_topics)
     names = [name for name, types in known if args.topic_type in types]

@@ -18,7 +18,6 @@ EVERY_S = 1.0
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_node(parser)
     add = parser.add_argument
     add("topic_name", help="Name of the ROS topic to listen to (e.g. '/chatter')")

@@ -17,7 +17,6 @@ SUMMARY = "Print information about a topic"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     add = parser.add_argument
     add("topic_name", help="Name of the ROS topic to get info (e.g. '/chatter')")

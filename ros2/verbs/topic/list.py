@@ -15,7 +15,6 @@ SUMMARY = "Output a list of available topics"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     add = parser.add_argument
     add("-t", "--show-types", action="store_true", help="Additionally show the topic type")

@@ -27,7 +27,6 @@ ARRIVES_S = 1.0
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_node(parser)
     add = parser.add_argument
     add("topic_name", help="Name of the ROS topic to publish to (e.g. '/chatter')")

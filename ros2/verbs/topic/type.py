@@ -15,7 +15,6 @@ SUMMARY = "Print a topic's type"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     options.of_graph(parser)
     parser.add_argument("topic_name", help="Name of the ROS topic to get type (e.g. '/x')")
     parser.add_argument("--include-hidden-topics", action="store_true")

@@ -95,6 +95,22 @@ if __name__ == "__main__":
 """
 TIMER = "self.create_timer(0.05, self.tick)"
 SUBSCRIPTION = 'self.create_subscription(String, "/said", lambda m: print(m), 10)'
+ACTS = """\
+from rclpy.action import ActionClient, ActionServer, CancelResponse
+        from example_interfaces.action import Fibonacci
+        self.server = ActionServer(self, Fibonacci, "{name}", self.carry_out{cancel})
+        self.client = ActionClient(self, Fibonacci, "{name}")
+        self.client.wait_for_server()
+        self.client.send_goal_async(Fibonacci.Goal())
+
+    def carry_out(self, goal_handle):
+        from example_interfaces.action import Fibonacci
+        time.sleep(1.0)
+        goal_handle.succeed()
+        print("carried out", flush=True)
+        return Fibonacci.Result()
+"""
+CANCELS = ", cancel_callback=lambda goal: CancelResponse.ACCEPT"
 HASTY = 'self.create_publisher(String, "/said", rclpy.qos.qos_profile_sensor_data)'
 
 
@@ -114,7 +130,8 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
 ) -> None:
     """A callback that blocks, a forgotten spin, a main that nobody calls, a QoS that does not fit.
 
-    Each in a node of its own. A callback blocks nothing where there are several threads.
+    Each in a node of its own. A callback blocks nothing where there are several threads, nor does
+    a goal that nobody may cancel.
     """
     write(tmp_path / "slow.py", own(tick="time.sleep(1.0)"))
     several = "rclpy.spin(node, rclpy.executors.MultiThreadedExecutor(2))"
@@ -126,6 +143,8 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
     write(tmp_path / "turns.py", own(spin='rclpy.spin(node)\n    rclpy.spin(Node("second"))'))
     write(tmp_path / "hears.py", own(SUBSCRIPTION))
     write(tmp_path / "says.py", own(HASTY))
+    write(tmp_path / "drives.py", own(ACTS.format(name="drive", cancel="")))
+    write(tmp_path / "cancels.py", own(ACTS.format(name="cancel", cancel=CANCELS)))
     client = await start(
         {
             "slow": {"run": "./slow.py"},
@@ -135,6 +154,8 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
             "turns": {"run": "./turns.py"},
             "hears": {"run": "./hears.py"},
             "says": {"run": "./says.py"},
+            "drives": {"run": "./drives.py"},
+            "cancels": {"run": "./cancels.py"},
         }
     )
     turns = await _fault(client, "turns")
@@ -146,6 +167,11 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
     assert client.nodes["slow"].state is NodeState.READY
     assert await _said(client, "slept", "pool")
     assert client.nodes["pool"].fault is None
+    assert await _said(client, "carried out", "drives")
+    assert client.nodes["drives"].fault is None
+    cancels = await _fault(client, "cancels")
+    assert "carry_out still runs" in cancels.exception
+    assert "let a timer do the waiting" in cancels.meaning
     assert "rclpy.spin(node) is missing" in (await _fault(client, "spinless")).meaning
     assert "rclpy.spin(node) is missing" in client.nodes["spinless"].detail
     assert "main() is never called" in (await _fault(client, "uncalled")).meaning

@@ -177,6 +177,7 @@ def test_without_the_gate_it_only_warns_and_does_not_flood_the_log(
         ("en", 0.5, False, "EMERGENCY BRAKE! Obstacle at 0.50 m.", ""),
         ("en", 0.61, True, "0.61 m ahead; the emergency stop holds the wheels.", ""),
         ("ru", 0.61, True, "Впереди 0,61 м; колёса держит аварийный стоп.", ""),
+        ("en", math.inf, True, "Nothing in range ahead; the emergency stop holds the wheels.", ""),
     ],
 )
 def test_what_is_ahead_is_told_in_words(

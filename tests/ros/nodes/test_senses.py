@@ -75,6 +75,21 @@ def test_somebody_speaks_and_the_loudspeaker_is_heard(peer: Peer, ros_domain: in
         node.wait_for_words("Динамик воспроизводит: «hi�␛␊»")
 
 
+def test_nobody_speaks_until_there_is_a_period(peer: Peer, ros_domain: int) -> None:
+    params: dict[str, object] = {"first_after": 0.1, "period": 0.0}
+    with NodeProcess("nodes.mock_audio", ros_domain, params=params):
+        heard = peer.hear("/audio/mic_raw", ByteMultiArray)
+        levels = peer.hear("/audio/level", Float32)
+        wait_until(lambda: len(levels) >= 5, "five levels")
+        assert heard == []
+        value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=0.2)
+        request = SetParameters.Request(parameters=[Parameter(name="period", value=value)])
+        assert (
+            peer.ask("/audio_system/set_parameters", SetParameters, request).results[0].successful
+        )
+        wait_until(lambda: len(heard) >= 2, "two phrases")
+
+
 def test_the_place_of_the_camera_is_latched(peer: Peer, ros_domain: int) -> None:
     params: dict[str, object] = {"yaw": 1.5707963}
     with NodeThread("nodes.camera_tf", ros_domain, params=params) as node:

@@ -81,7 +81,7 @@ def test_the_trail_of_a_message_is_told_in_order_with_its_delays() -> None:
         ("✓", "/llm_result", "accepted: 2 commands “I look”"),
         ("→", "/drive", "0.20 m/s, -0.30 rad, to the right"),
         ("✓", "/drive_safe", "let through"),
-        ("→", "/wheel_commands", "left 6.20, right 5.10 rad/s"),
+        ("→", "/wheel_commands", "left 0.20, right 0.17 m/s"),
         ("✓", "/head_state", "pan -45°, tilt 10°"),
         ("✓", "set_head_position", "pan -45°, tilt 10°: done"),
     ]

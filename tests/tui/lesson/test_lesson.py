@@ -17,7 +17,8 @@ from course.judge.kinds import expected
 from course.judging import ValuesDrawn
 from course.lessons.catalog import SHIPPED
 from course.lessons.lesson import LessonFolder
-from course.progress.progress import load_progress
+from course.progress.files import state_of
+from course.progress.progress import load_progress, noted
 from course.results import CheckResult, State, StepResult
 from launcher.status import NodeFault, NodeState, NodeStatus
 from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession
@@ -26,6 +27,7 @@ from tests.waiting import until
 from text.i18n import set_language
 from text.sentences import say
 from tui.app import DeckApp
+from tui.dialogs.choice import ChoiceScreen
 from tui.lesson.column import LessonColumn
 from tui.session.requests import WholeGrade
 
@@ -192,12 +194,47 @@ async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(
         assert "Hint 2" in text(app, "hints")
         assert "mine" not in text(app, "text")
         await pilot.press("T")
+        await until(lambda: isinstance(app.screen, ChoiceScreen), "the question")
+        await pilot.press("escape")
+        assert not load_progress().step(LESSON, "topic").solution
+        await pilot.press("T")
+        await until(lambda: isinstance(app.screen, ChoiceScreen), "the question again")
+        await pilot.press("enter")
         await until(lambda: "- mine = 1" in text(app, "text"), "the difference")
+        assert "with the solution" in text(app, "head")
         assert "+ import rclpy" in text(app, "text")
         await pilot.press("tab")
         assert app.focused is app.screen.query_one("#lesson-side")
         step = load_progress().step(LESSON, "topic")
         assert (step.hints, step.solution, step.passed) == (2, True, False)
+
+
+async def test_what_the_lesson_says_of_a_mistake_waits_for_a_hint_to_be_asked_for(
+    course: Path,
+) -> None:
+    opener = own_opener(str(course / "mock_sonar.py"))
+    (check,) = SEEN.checks
+    async with learning(opener) as (app, pilot):
+        opener.judged.say(replace(SEEN, checks=(replace(check, hint="create_publisher(Float32)"),)))
+        await until(lambda: "Is create_publisher called" in text(app, "checks"), "where to look")
+        await pilot.press("T")
+        await until(lambda: "→ create_publisher(Float32)" in text(app, "checks"), "the hint")
+
+
+async def test_the_last_step_leads_to_the_next_lesson(course: Path) -> None:
+    file = course / "mock_sonar.py"
+    file.write_text("right = 1\n")
+    files = state_of([str(file)])
+    for step in LessonFolder(SHIPPED / LESSON).steps:
+        noted(LESSON, step.id, {"passed": True, "points": step.points, "files": files, "at": 1})
+    opener = own_opener(str(file))
+    async with opened(opener, "lesson") as (app, pilot):
+        await until(lambda: "10 of 10" in text(app, "overview"), "all steps")
+        await pilot.press(*"nnnn")
+        await until(lambda: "opens the next lesson, 03-head-service" in text(app, "checks"), "it")
+        await pilot.press("enter")
+        await until(lambda: len(opener.orders) == 2, "the next lesson to be opened")
+    assert opener.orders[-1].profile == course / LONG_TASK / "lesson.yaml"
 
 
 async def test_decks_own_nodes_are_not_judged_and_a_folder_is_offered(course: Path) -> None:

@@ -11,6 +11,8 @@ import pytest
 
 from cli import main
 from cli.grade import exit_code
+from course.lessons.catalog import SHIPPED
+from course.lessons.lesson import folders
 from course.results import State
 from launcher.profile.catalog import find_profile
 from launcher.profile.load import load_profile
@@ -97,6 +99,17 @@ def test_what_was_written_is_kept_as_a_copy(
     profile = load_profile(find_profile(str(file.parent)))
     assert profile.name == "02-sonar-safety"
     assert profile.nodes["sonar_front"].own_file == str(file)
+
+
+@pytest.mark.parametrize("code", ["en", "ru"])
+def test_a_folder_has_its_comments_in_one_language(course: Path, code: str) -> None:
+    for lesson in folders(SHIPPED):
+        assert main(["new", lesson.name, "--lang", code]) == 0
+    texts = [file.read_text("utf-8") for file in course.rglob("*.py")]
+    assert any(("MISSING" if code == "en" else "НЕ ХВАТАЕТ") in text for text in texts)
+    assert not any(("НЕ ХВАТАЕТ" if code == "en" else "MISSING") in text for text in texts)
+    for file in course.rglob("*.yaml"):
+        assert load_profile(file).nodes
 
 
 def test_an_empty_node_runs_by_its_own_profile(

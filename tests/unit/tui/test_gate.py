@@ -22,7 +22,7 @@ def _english_after() -> Iterator[None]:
     [
         (("/mock",), "en", "forward is blocked: mock speaks too rarely ahead"),
         (("/a", "/b"), "en", "forward is blocked: one of a, b speaks too rarely ahead"),
-        (("/mock",), "ru", "вперёд нельзя: mock: спереди слишком редко"),
+        (("/mock",), "ru", "вперёд нельзя: mock: показания спереди слишком редки"),
     ],
 )
 def test_who_speaks_too_rarely_is_named_in_place_of_a_silent_sonar(

@@ -37,7 +37,6 @@ class AllowAgent(AgentAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Allow it."""
         target.agents.answer(ConsentAnswer.ONCE)
 
 
@@ -51,7 +50,6 @@ class AllowAgentForATime(AgentAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Allow it."""
         target.agents.answer(ConsentAnswer.FOR_A_TIME)
 
 
@@ -71,7 +69,6 @@ class RefuseAgent(AgentAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Refuse, and end."""
         target.agents.refuse()
 
 

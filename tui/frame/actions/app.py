@@ -105,7 +105,6 @@ class ShowScreen(OpenedAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Show it."""
         await target.show_screen(cls.screen)
 
 
@@ -248,7 +247,6 @@ class ShowPalette(AppAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Open it."""
         target.show_palette()
 
 
@@ -262,7 +260,6 @@ class ShowTour(AppAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Show it again."""
         target.show_tour()
 
 
@@ -292,7 +289,6 @@ class SwitchTheme(AppAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Switch to it."""
         target.next_theme()
 
 
@@ -340,7 +336,6 @@ class Redraw(AppAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Redraw it."""
         target.redraw()
 
 

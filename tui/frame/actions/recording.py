@@ -55,7 +55,6 @@ class ShowRecordings(Action["Host"]):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Show them."""
         target.show_recordings()
 
 
@@ -75,7 +74,6 @@ class RecordAsRos2(Action["Host"]):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Copy it."""
         copy_command(target, ros2_words.record())
 
 

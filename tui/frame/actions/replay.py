@@ -24,7 +24,6 @@ class ReplayAction(Action["Host"]):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Run it."""
         if target.feed.replay is not None:
             cls.do(target.feed.replay)
             target.replay_changed()
@@ -53,7 +52,6 @@ class PlayPause(ReplayAction):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Pause, or resume."""
         replay.toggle()
 
 
@@ -67,7 +65,6 @@ class Step(ReplayAction):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Play one."""
         replay.step()
 
 
@@ -81,7 +78,6 @@ class Back(ReplayAction):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Jump."""
         replay.skip(-SKIP_S)
 
 
@@ -95,7 +91,6 @@ class Forward(ReplayAction):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Jump."""
         replay.skip(SKIP_S)
 
 

@@ -44,6 +44,5 @@ class CopyAsRos2(Action["Host"]):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Copy it."""
         if target.feed.front is not None:
             copy_command(target, await target.feed.front.ros2_command())

@@ -27,7 +27,6 @@ class OpenView(Action["Host"]):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Open it."""
         target.view.open()
 
 
@@ -56,5 +55,4 @@ class OpenViewHere(Action[OnDeck]):
 
     @classmethod
     async def run(cls, target: OnDeck) -> None:
-        """Open it."""
         await OpenView.run(target.deck)

@@ -31,11 +31,9 @@ class HeadPanel(Panel):
         self._joints = Joints(HEAD_STATE, (HEAD_PAN, HEAD_TILT))
 
     def compose(self) -> ComposeResult:
-        """The drawing."""
         yield HeadView()
 
     def watched(self) -> set[str]:
-        """The pose."""
         return {HEAD_STATE}
 
     def followed(self) -> set[str]:

@@ -24,12 +24,10 @@ class HeadReading:
 
     @property
     def pan_words(self) -> str:
-        """`45° left`."""
         return _words(self.pan_deg, _("{degrees}° left"), _("{degrees}° right"))
 
     @property
     def tilt_words(self) -> str:
-        """`10° up`."""
         return _words(self.tilt_deg, _("{degrees}° up"), _("{degrees}° down"))
 
     @property

@@ -50,7 +50,6 @@ class DrivenPath:
         return True
 
     def clear(self) -> None:
-        """Discard the path."""
         self.pieces, self.length_m, self._points = [], 0.0, 0
         self._least_m, self._corners = LEAST_M, []
         self.revision += 1

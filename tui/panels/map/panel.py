@@ -43,7 +43,6 @@ class MapPanel(Panel):
         self._bounds = COURSE
 
     def compose(self) -> ComposeResult:
-        """The drawing."""
         yield RoomMap()
 
     def watched(self) -> set[str]:

@@ -95,7 +95,6 @@ class RoomMap(Drawing):
         self._bounds = bounds
 
     def show_occupancy(self, occupancy: OccupancyGrid) -> None:
-        """Show this room."""
         self._occupancy = occupancy
 
     def forget_path(self) -> None:

@@ -34,7 +34,6 @@ class SonarPanel(Panel):
         self._bounds = COURSE
 
     def compose(self) -> ComposeResult:
-        """The gauges."""
         yield SonarView()
 
     def watched(self) -> set[str]:

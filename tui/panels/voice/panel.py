@@ -36,7 +36,6 @@ class VoicePanel(Panel):
         self._placeholder: dict[str, Placeholder | None] = {}
 
     def compose(self) -> ComposeResult:
-        """The transcript."""
         yield VoiceView()
 
     def followed(self) -> set[str]:
@@ -44,7 +43,6 @@ class VoicePanel(Panel):
         return {*TOPICS, HEARD}
 
     def watched(self) -> set[str]:
-        """The current level."""
         return {AUDIO_LEVEL}
 
     def show(self, update: GraphUpdate) -> None:

@@ -81,7 +81,6 @@ class VoiceView(Drawing):
     """Shows messages from the microphone (`human`) and to the loudspeaker (`robot`)."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Start empty."""
         super().__init__(id=id, classes=classes)
         self._sayings: deque[Saying] = deque(maxlen=KEPT)
         self._dbfs: float | None = None

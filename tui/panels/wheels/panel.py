@@ -41,7 +41,6 @@ class WheelsPanel(Panel):
         """Shown instead of the drive commands."""
 
     def compose(self) -> ComposeResult:
-        """The drawing."""
         yield WheelsView()
 
     def watched(self) -> set[str]:

@@ -57,7 +57,6 @@ class TopicPlot(Drawing):
 
     @property
     def fields(self) -> tuple[PlotField, ...]:
-        """The plotted fields."""
         return tuple(series.field for series in self._series)
 
     @property
@@ -112,7 +111,6 @@ class TopicPlot(Drawing):
         return added
 
     def clear(self) -> None:
-        """Remove all fields."""
         self._series = []
         self._axis = self._paused_s = None
         self.refresh()

@@ -57,7 +57,6 @@ class PublishMessage(PublishAction):
 
     @classmethod
     async def run(cls, target: PublishingTarget) -> None:
-        """Publish it."""
         target.publish_once()
 
 
@@ -71,7 +70,6 @@ class PublishAtRate(PublishAction):
 
     @classmethod
     async def run(cls, target: PublishingTarget) -> None:
-        """Start publishing."""
         target.publish_at_rate()
 
 
@@ -91,7 +89,6 @@ class StopPublication(PublishAction):
 
     @classmethod
     async def run(cls, target: PublishingTarget) -> None:
-        """Stop it."""
         target.stop_chosen()
 
 
@@ -111,7 +108,6 @@ class TakeMessage(PublishAction):
 
     @classmethod
     async def run(cls, target: PublishingTarget) -> None:
-        """Copy it."""
         target.take_message()
 
 

@@ -65,7 +65,6 @@ class PublishDialog(Dialog[None]):
         self._listed: tuple[Publication, ...] | None = None
 
     def title_words(self) -> str:
-        """Return the title."""
         return _("Publish a message")
 
     def words(self) -> Content:
@@ -108,7 +107,6 @@ class PublishDialog(Dialog[None]):
 
     @property
     def form(self) -> YamlForm:
-        """The message."""
         return self.query_one(YamlForm)
 
     @property

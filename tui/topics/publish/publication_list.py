@@ -29,7 +29,6 @@ class PublicationList(Rows):
         self._shown: tuple[Publication, ...] = ()
 
     def show_publications(self, publications: tuple[Publication, ...]) -> None:
-        """Show these."""
         self._shown = publications
         columns = (
             Column(_("Publishing")),

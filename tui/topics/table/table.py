@@ -95,7 +95,6 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         """By line of the widget."""
 
     def show(self, rows: Sequence[TopicRow]) -> None:
-        """Show these topics."""
         self._rows = rows
         self._arrange()
 

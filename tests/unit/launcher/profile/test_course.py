@@ -11,7 +11,7 @@ from launcher.profile.catalog import find_profile
 from launcher.profile.load import load_profile
 from launcher.profile.schema import render
 from launcher.profile.steps.checks import KINDS, kind_of
-from launcher.profile.steps.expressions import ExpressionError, evaluate
+from launcher.profile.steps.expressions import ExpressionError, evaluate, filled
 from tests.unit.profile_files import loaded, told, written
 
 PROFILES = Path(__file__).parents[4] / "profiles"
@@ -72,6 +72,15 @@ def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
     assert nodes["electronic_differential"].params["drive_topic"] == "/drive_safe"
     assert nodes["drive_to_point"].document.remap == {"/drive": "/drive_action"}
     assert nodes["drive_to_point"].params["simulate"] == "never"
+
+
+def test_the_front_sonar_of_the_brain_lesson_is_where_the_gate_listens() -> None:
+    nodes = load_profile(PROFILES.parent / "lessons" / "09-brain" / "starter" / "lesson.yaml").nodes
+    assert nodes["sonar_front"].params["topic"] == "/sensor/sonar_front"
+
+
+def test_nobody_tells_the_robot_to_drive_before_a_user_does() -> None:
+    assert load_profile(PROFILES / "robot.yaml").nodes["mock_audio"].params["period"] == 0
 
 
 @pytest.fixture
@@ -223,3 +232,11 @@ def test_every_kind_is_read_by_its_own_key(tmp_path: Path) -> None:
 def test_anything_else_is_refused(bad: str) -> None:
     with pytest.raises(ExpressionError):
         evaluate(bad, {"v": 1.0})
+
+
+def test_a_drawn_number_is_written_as_the_language_of_its_text_has_it() -> None:
+    what = {"en": "at ${v + 0.1} m/s", "ru": "едем со скоростью ${v + 0.1} м/с"}
+    assert filled({"what": what, "data": "go ${v}"}, {"v": 0.3}) == {
+        "what": {"en": "at 0.4 m/s", "ru": "едем со скоростью 0,4 м/с"},
+        "data": "go 0.3",
+    }

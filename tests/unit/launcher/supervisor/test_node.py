@@ -15,6 +15,7 @@ from launcher.supervisor.plan import NodePlan
 from launcher.supervisor.readiness import ReadyCondition, Seen
 from tests.unit.launcher.supervisor.fake_session import PLAN, FakeSession, crash, started
 from tests.unit.manual_clock import settle
+from text.i18n import localized
 
 ACTIVE = ReadyCondition("lifecycle", "sonar", "active", goes=True)
 TOPIC = ReadyCondition("topic", "/sonar")
@@ -185,6 +186,18 @@ async def test_a_node_that_a_signal_has_suspended_is_not_healthy_until_it_goes_o
     node.halted(0)
     assert (node.status().fault, well(node.status())) == (warning, True)
     assert session.lines[-1] == "it runs again, after SIGCONT"
+
+
+async def test_an_interrupted_node_is_not_called_killed(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, restart="never"))
+    session.process.end(100, Exit(None, "SIGINT"))
+    await settle()
+    assert localized(node.detail, "ru").startswith("прерван (SIGINT)")
+
+
+def test_an_exception_that_is_a_sentence_gets_no_second_full_stop() -> None:
+    fault = NodeFault("crash", "/a.py", 3, exception="Error: no workspace.", meaning="Type it.")
+    assert fault.words == "a.py:3: Error: no workspace. Type it."
 
 
 async def test_a_crash_loop_ends_with_a_word_why(session: FakeSession) -> None:
