@@ -244,6 +244,7 @@ class Feed:
             self._tell_status(frozenset(node.name for node in event.nodes))
         elif isinstance(event, LogEvent):
             self.history.add(event.lines)
+            self.outside.note(event.lines)
             self.tell(lambda: LogArrived(event.lines, event.skipped))
         elif isinstance(event, StraysEvent):
             owner.ask_about(event.strays)
