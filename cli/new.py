@@ -12,6 +12,7 @@ from launcher.profile.text import shown
 from text.i18n import _
 from text.output import write
 from text.plain import plain
+from text.program import deck_command
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -38,4 +39,5 @@ def tell(made: NewFolder) -> None:
         write(_("kept yours as {path}").format(path=plain(shown(copy))))
     if not made.files:
         write(_("all of it is there already: {path}").format(path=plain(shown(made.path))))
-    write(_("next: deck {path}").format(path=plain(shlex.quote(shown(made.path)))))
+    path = plain(shlex.quote(shown(made.path)))
+    write(_("next: {deck} {path}").format(deck=plain(deck_command()), path=path))
