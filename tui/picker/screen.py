@@ -148,7 +148,7 @@ class PickerScreen(Screen[None], Acting, Working):
         super().__init__()
         self._lessons: list[Lesson] = []
         self._sessions: list[SessionInfo] = []
-        self._offered = ""
+        self._offered = self._left_off = ""
         self._domain: int | None = None
         """The domain to watch without a lesson; None if the configured one is invalid."""
 
@@ -205,10 +205,14 @@ class PickerScreen(Screen[None], Acting, Working):
         ]
 
     def _offer(self) -> None:
-        """Show the list; the first time with the likeliest row chosen, from then on it stays."""
+        """Show the list, with the likeliest row chosen: at first, and after a session of another.
+
+        Whatever comes later moves the cursor no more.
+        """
         self.redraw()
-        if not self._offered:
-            self._offered = self._first()
+        last = self.deck.sessions.last_lesson
+        if not self._offered or last != self._left_off:
+            self._offered, self._left_off = self._first(), last
             self.query_one(Rows).choose(self._offered)
 
     def _first(self) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import pytest
 
@@ -16,7 +17,7 @@ TICKS_S = [each * 0.1 for each in range(200)]
 
 def seen(ticks_s: Iterable[float], there_s: float) -> SeenMessages:
     """What is told of a head that is at the fourth tilt from this moment on."""
-    states = [
+    states: list[tuple[float, Mapping[str, Any]]] = [
         (time_s, {"position": [0.0, math.radians(4 if time_s >= there_s else 3)]})
         for time_s in ticks_s
     ]

@@ -22,7 +22,7 @@ from graph.diagnostics.book import STALE_S, DiagnosticsBook
 from graph.diagnostics.reading import StatusLevel
 from graph.diagnostics.tree import tree
 from graph.findings.examining import examine
-from graph.findings.finding import FORGOTTEN_S, FindingLevel, GraphFinding
+from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, GraphFinding
 from graph.findings.lasting import CHANGING_S, LastingFindings
 from graph.findings.names import meant
 from graph.messages.types import UnknownTypeError
