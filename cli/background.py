@@ -31,6 +31,7 @@ from launcher.profile.catalog import find_profile
 from text.i18n import _, language, localized, ngettext
 from text.output import RED, Paint, json_text, say_error, write
 from text.plain import plain
+from text.program import typable
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -100,7 +101,7 @@ async def _up(options: Namespace) -> int:
     if stop_is_kept(profile.domain):
         say_error(stop_words(profile.domain))
     if healthy:
-        write(_("`deck attach` shows it, `deck down` stops it"))
+        write(typable(_("`deck attach` shows it, `deck down` stops it")))
     else:
         say_error(
             _(

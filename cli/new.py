@@ -12,6 +12,7 @@ from launcher.profile.text import shown
 from text.i18n import _
 from text.output import write
 from text.plain import plain
+from text.program import deck_command
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -22,7 +23,10 @@ def new_command(options: Namespace) -> int:
     """Make the folder, and say what is in it and what comes next."""
     if bool(options.lesson) == bool(options.node):
         raise UsageError(say("write deck new LESSON or deck new --node NAME"))
-    made = new_node(options.node) if options.node else new_folder(find_lesson(options.lesson))
+    if options.node:
+        made = new_node(options.node)
+    else:
+        made = new_folder(find_lesson(options.lesson), again=options.again)
     tell(made)
     return 0
 
@@ -35,4 +39,5 @@ def tell(made: NewFolder) -> None:
         write(_("kept yours as {path}").format(path=plain(shown(copy))))
     if not made.files:
         write(_("all of it is there already: {path}").format(path=plain(shown(made.path))))
-    write(_("next: deck {path}").format(path=plain(shlex.quote(shown(made.path)))))
+    path = plain(shlex.quote(shown(made.path)))
+    write(_("next: {deck} {path}").format(deck=plain(deck_command()), path=path))

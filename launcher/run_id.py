@@ -41,6 +41,11 @@ def supervisor_runs(run_id: str) -> bool:
     return living_supervisor(run_id) is not None
 
 
+def is_of_supervisor(run_id: str, process: Process, number: int) -> bool:
+    """Whether this is the supervisor of this run; `number` is its pid where it runs itself."""
+    return (number, process.started_ticks) == _process_of(run_id) and not process.zombie
+
+
 def _process_of(run_id: str) -> tuple[int, int]:
     try:
         pid, started = map(int, run_id.split("-")[-2:])

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from text.plain import plain, plain_layout, plain_lines, replaced
+from text.program import typable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -90,9 +91,9 @@ def keep_stdout_to_ourselves() -> None:
 
 
 def say_error(text: str) -> None:
-    """Write to standard error, even if it is closed."""
+    """Write to standard error, even if it is closed; commands of Deck's as they can be typed."""
     try:
-        sys.stderr.write(harmless(text) + "\n")
+        sys.stderr.write(harmless(typable(text)) + "\n")
         sys.stderr.flush()
     except (OSError, ValueError):
         pass

@@ -15,6 +15,7 @@ from textual.keys import key_to_character
 
 from text.i18n import LANGUAGES, _, language, set_language
 from text.plain import plain, plain_lines
+from text.program import typable
 from tui.actions import Acting, Action, Keys, bindings
 from tui.agents.control import AgentControl
 from tui.dialogs.opening import OpeningScreen
@@ -291,7 +292,7 @@ class DeckApp(App[int], Acting):
         markup: bool = False,
     ) -> None:
         """Show a notification as plain text."""
-        message, title = plain_lines(message), plain(title)
+        message, title = plain_lines(typable(message)), plain(title)
         super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)
 
     def copy_to_clipboard(self, text: str) -> None:

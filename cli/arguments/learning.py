@@ -21,10 +21,12 @@ def add_new(parser: Parser) -> None:
     parser.add_argument(
         "--node", metavar=_("NAME"), help=_("instead: an empty node of this name, and its profile")
     )
-    parser.epilog = _(
-        "The folder is in ~/deck-course, or where DECK_COURSE says. Nothing that is there is"
-        " overwritten without a copy."
+    parser.add_argument(
+        "--again",
+        action="store_true",
+        help=_("begin anew where there are files of yours, which are kept as copies (.1)"),
     )
+    parser.epilog = _("The folder is in ~/deck-course, or where DECK_COURSE says.")
 
 
 def add_lesson(parser: Parser) -> None:

@@ -10,10 +10,12 @@ from cli.doctor.finding import fail, ok, warn
 from launcher.errors import LauncherError
 from launcher.rundir import check_writable, found_run_dir, log_path
 from text.i18n import LocalizedFloat, _, localized
+from text.plain import plain
 from text.run_path import run_path
 
 if TYPE_CHECKING:
     from cli.doctor.finding import Finding
+    from launcher.runs.found import FoundSupervisor
 
 LEAST_FREE = 200 * 10**6
 """Bytes to keep free for logs; these are rotated but may still grow to a limit."""
@@ -30,12 +32,15 @@ class RunFacts:
     error: str = ""
     """Why a directory cannot be used."""
     running: tuple[str, ...] = ()
+    apart: tuple[str, ...] = ()
+    """Sessions that no other command sees: with another DECK_RUN_DIR, or in a container."""
     strays: tuple[tuple[int, str], ...] = ()
     """Process number and node."""
 
 
 def collect() -> RunFacts:
     from launcher.client.client import running
+    from launcher.runs.found import supervisors_everywhere
     from launcher.runs.strays import find_strays
 
     try:
@@ -45,12 +50,24 @@ def collect() -> RunFacts:
     except LauncherError as error:
         return RunFacts(error=localized(error.args[0]))
     status = os.statvfs(there)
+    sessions = running()
+    known = {session.run_id for session in sessions}
+    others = [one for one in supervisors_everywhere() if one.run_id not in known]
     return RunFacts(
         run_dir=str(here),
         log_dir=str(logs),
         free=status.f_bavail * status.f_frsize,
-        running=tuple(f"{each.name} ({each.domain})" for each in running()),
+        running=tuple(f"{each.name} ({each.domain})" for each in sessions),
+        apart=tuple(map(_apart, others)),
         strays=tuple((stray.pid, stray.node) for stray in find_strays(here)),
+    )
+
+
+def _apart(supervisor: FoundSupervisor) -> str:
+    record = supervisor.record()
+    name = record.session.name if record is not None else supervisor.run_id
+    return _("{name} (domain {domain}, supervisor {pid})").format(
+        name=plain(name), domain=supervisor.domain, pid=supervisor.pid
     )
 
 
@@ -58,7 +75,7 @@ def diagnose(facts: RunFacts) -> list[Finding]:
     """Report what is all right and what is not."""
     if facts.error:
         return [fail("folders", facts.error, _("set DECK_RUN_DIR and DECK_LOG_DIR"))]
-    return [_folders(facts), _running(facts), *_strays(facts)]
+    return [_folders(facts), _running(facts), *_elsewhere(facts), *_strays(facts)]
 
 
 def _folders(facts: RunFacts) -> Finding:
@@ -74,6 +91,13 @@ def _running(facts: RunFacts) -> Finding:
     if not facts.running:
         return ok("running", _("no profile is running"))
     return ok("running", _("running: {names}").format(names=", ".join(facts.running)))
+
+
+def _elsewhere(facts: RunFacts) -> list[Finding]:
+    if not facts.apart:
+        return []
+    text = _("also running, in a container or with another DECK_RUN_DIR: {names}")
+    return [ok("apart", text.format(names=", ".join(facts.apart)))]
 
 
 def _strays(facts: RunFacts) -> list[Finding]:

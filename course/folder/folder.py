@@ -42,15 +42,31 @@ def folder_of(lesson: LessonFolder) -> Path:
     return course_dir() / lesson.name
 
 
-def new_folder(lesson: LessonFolder) -> NewFolder:
+def new_folder(lesson: LessonFolder, *, again: bool = False) -> NewFolder:
     """Make the learner's folder of a lesson from its starter.
 
-    A file that is there and differs is copied first: mock_sonar.py to mock_sonar.py.1, or .2.
+    What differs is the learner's. `again` copies it first, mock_sonar.py to mock_sonar.py.1, or .2.
 
     Raises:
-        UsageError: if the lesson has no starter.
+        UsageError: if the lesson has no starter; without `again`, if there are files that differ.
         OSError: if the folder cannot be written.
     """
+    folder, texts = folder_of(lesson), _starter(lesson)
+    own = [name for name, text in texts.items() if _differs(folder / name, text)]
+    if own and not again:
+        raise UsageError(
+            say(
+                "{path} has files of yours already: {files}; nothing was changed. --again begins"
+                " anew, and keeps yours as copies",
+                path=str(folder),
+                files=", ".join(map(str, own)),
+            )
+        )
+    return _written(folder, texts)
+
+
+def _starter(lesson: LessonFolder) -> dict[Path, Path]:
+    """Return the files that a lesson begins with, by their place in the folder."""
     if not lesson.starter.is_dir():
         raise UsageError(say("there is no folder {folder}", folder=str(lesson.starter)))
     sources = [
@@ -58,12 +74,15 @@ def new_folder(lesson: LessonFolder) -> NewFolder:
         for file in sorted(lesson.starter.rglob("*"))
         if file.is_file() and not IGNORED & set(file.parts)
     ]
-    texts = {file.relative_to(lesson.starter): file for file in sources}
-    return _written(folder_of(lesson), texts)
+    return {file.relative_to(lesson.starter): file for file in sources}
+
+
+def _differs(file: Path, source: Path) -> bool:
+    return file.exists() and file.read_bytes() != _content(source)
 
 
 def own_profile(lesson: LessonFolder) -> Path:
-    """Return the profile of the learner's folder of a lesson; the folder is made if it has none.
+    """Return the profile of the learner's folder of a lesson; what is missing there is made.
 
     Raises:
         UsageError: if the lesson has no starter.
@@ -71,20 +90,22 @@ def own_profile(lesson: LessonFolder) -> Path:
     """
     profile = folder_of(lesson) / FOLDERS_OWN
     if not profile.is_file():
-        new_folder(lesson)
+        folder = folder_of(lesson)
+        texts = _starter(lesson).items()
+        _written(folder, {name: text for name, text in texts if not (folder / name).exists()})
     return profile
 
 
 def _written(folder: Path, sources: dict[Path, Path]) -> NewFolder:
     written, kept = [], []
     for name, source in sources.items():
-        target, content = folder / name, _content(source)
-        if target.exists():
-            if target.read_bytes() == content:
-                continue
+        target = folder / name
+        if _differs(target, source):
             kept.append(_copied(target))
+        elif target.exists():
+            continue
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(content)
+        target.write_bytes(_content(source))
         written.append(target)
     return NewFolder(folder, tuple(written), tuple(kept))
 

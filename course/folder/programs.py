@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.folder.folder import folder_of, new_folder
+from course.folder.folder import folder_of, own_profile
 from course.lessons.catalog import course_dir, lesson_of
 from course.lessons.lesson import folders
 from launcher.errors import LauncherError
@@ -54,7 +54,7 @@ def _own(lesson: LessonFolder | None, name: str, node: str) -> list[Path]:
     if lesson is not None and not (folder_of(lesson) / FOLDERS_OWN).is_file():
         starter = _profile_in(lesson.starter)
         if starter is not None and _file_in(starter, node):
-            new_folder(lesson)
+            own_profile(lesson)
     here = course_dir() / (name if lesson is None else lesson.name)
     places = [here, *(folder for folder in folders(course_dir()) if folder != here)]
     profiles = filter(None, map(_profile_in, places))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from graph.data import PROCESS_NUMBERS
 from graph.findings.finding import (
     FORGOTTEN_S,
     SETTLED_S,
@@ -17,7 +19,7 @@ from graph.housekeeping import is_hidden
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
     from graph.data import GraphUpdate, TopicRow
     from graph.findings.finding import GraphNorms
@@ -105,5 +107,11 @@ def namesakes(update: GraphUpdate) -> Iterator[GraphFinding]:
                 "`--ros-args -r __node:=another_name`."
             ),
             (node.name,),
-            FORGOTTEN_S,
+            SETTLED_S if _run_here(node.processes) else FORGOTTEN_S,
         )
+
+
+def _run_here(numbers: Collection[int]) -> bool:
+    """Whether these are several processes of this machine, so that none is only remembered."""
+    here = {int(name) % PROCESS_NUMBERS for name in os.listdir("/proc") if name.isdigit()}  # noqa: PTH208
+    return len(numbers) > 1 and here.issuperset(numbers)

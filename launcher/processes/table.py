@@ -6,6 +6,7 @@ have the same start.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
 from dataclasses import dataclass
@@ -25,6 +26,9 @@ NODE_MARK = "DECK_NODE"
 
 SUPERVISOR_MARK = "DECK_SUPERVISOR"
 """Environment variable of a supervisor: the id of its run, and the descriptor of its folder."""
+
+GUARDIAN_NAME = "deck guardian"
+"""The kernel's short name of every guardian, see `launcher.supervisor.guardian`."""
 
 _EXEC_WITHIN_S = 0.1
 _EXEC_LOOK_EVERY_S = 0.0005
@@ -105,6 +109,15 @@ def processes() -> Iterator[Process]:
         process = read_process(pid)
         if process is not None:
             yield process
+
+
+def own_number(pid: int) -> int:
+    """Return what a process takes for its pid: in a container it is another than out here."""
+    with contextlib.suppress(OSError):
+        for line in _read(pid, "status").splitlines():
+            if line.startswith(b"NSpid:"):
+                return int(line.split()[-1])
+    return pid
 
 
 def read_marks(pid: int) -> Mapping[str, str] | None:

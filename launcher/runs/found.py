@@ -15,8 +15,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.processes.table import SUPERVISOR_MARK, process_numbers, read_marks
-from launcher.run_id import supervisor_of, supervisor_runs
+from launcher.processes.table import (
+    SUPERVISOR_MARK,
+    own_number,
+    process_numbers,
+    read_marks,
+    read_process,
+)
+from launcher.run_id import is_of_supervisor, supervisor_of
 from launcher.runs.record import read_record
 from text.run_path import OWN_RUN_DIR
 
@@ -40,6 +46,7 @@ class FoundSupervisor:
     domain: int
     purpose: str
     """Its `DECK_RUN_DIR`, with which some users keep runs separate; usually empty."""
+    pid: int
 
     @property
     def place(self) -> str:
@@ -67,7 +74,12 @@ class FoundSupervisor:
 
 
 def supervisors() -> Iterator[FoundSupervisor]:
-    """Yield the supervisors of this user that run a session."""
+    """Yield the supervisors of this user that run a session, but for those in containers."""
+    return (one for one in supervisors_everywhere() if one.pid == supervisor_of(one.run_id))
+
+
+def supervisors_everywhere() -> Iterator[FoundSupervisor]:
+    """Yield the same with those that run in containers, where each process has another pid."""
     us = os.getuid()
     for pid in process_numbers():
         with suppress(OSError, ValueError):
@@ -83,8 +95,9 @@ def _supervisor(pid: int) -> FoundSupervisor | None:
     marks = read_marks(pid) or {}
     run_id, *numbers = marks.get(SUPERVISOR_MARK, "").split("/")
     # Processes that a supervisor starts may have copies of its environment.
-    if supervisor_of(run_id) != pid or not supervisor_runs(run_id):
+    process = read_process(pid) if run_id else None
+    if process is None or not is_of_supervisor(run_id, process, own_number(pid)):
         return None
     domain, descriptor = map(int, numbers)
     folder = Path(f"/proc/{pid}/fd/{descriptor}")
-    return FoundSupervisor(run_id, folder, domain, marks.get(OWN_RUN_DIR, ""))
+    return FoundSupervisor(run_id, folder, domain, marks.get(OWN_RUN_DIR, ""), pid)

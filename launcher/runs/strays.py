@@ -1,6 +1,6 @@
-"""Processes that an earlier run left behind: their supervisor is gone, but they still run.
+"""Processes that an earlier run left behind: their supervisor and guardian are gone.
 
-This only happens when a supervisor and its spawn server are killed together. Such processes are
+This only happens when these and the spawn server are killed together. Such processes are
 reported, and ended only on request.
 """
 
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from launcher.processes.signal import send
 from launcher.processes.table import (
+    GUARDIAN_NAME,
     NODE_MARK,
     RUN_MARK,
     TICKS_PER_S,
@@ -29,7 +30,7 @@ from launcher.status import Stray
 from text.run_path import OWN_RUN_DIR
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from launcher.processes.table import Process
@@ -50,8 +51,9 @@ def find_strays(run_dir: Path) -> tuple[Stray, ...]:
     }
     booted = boot_time_s()
     strays = []
-    for process in processes():
-        if process.zombie:
+    table = {process.pid: process for process in processes()}
+    for process in table.values():
+        if process.zombie or _is_guarded(process, table):
             continue
         run_id, node = recorded.get((process.pid, process.started_ticks), ("", ""))
         if not run_id:
@@ -61,6 +63,21 @@ def find_strays(run_dir: Path) -> tuple[Stray, ...]:
             command = command_line(process.pid) or process.name
             strays.append(Stray(process.pid, started_s, node, command, run_id))
     return tuple(strays)
+
+
+def _is_guarded(process: Process, table: Mapping[int, Process]) -> bool:
+    """Whether a guardian is above it, which ends what its supervisor leaves.
+
+    A robot in a container cannot be told by its supervisor: that has another pid in there.
+    """
+    seen: set[int] = set()
+    at: Process | None = process
+    while at is not None and at.pid not in seen:
+        if at.name == GUARDIAN_NAME:
+            return True
+        seen.add(at.pid)
+        at = table.get(at.parent)
+    return False
 
 
 def _marked(process: Process) -> tuple[str, str]:

@@ -16,7 +16,7 @@ from launcher.processes.abandoned import KILLED_AFTER_S, LEFT_AFTER_S
 from launcher.processes.prctl import become_subreaper
 from launcher.processes.shared_memory_held import release_held
 from launcher.processes.signal import send
-from launcher.processes.table import processes
+from launcher.processes.table import GUARDIAN_NAME, processes
 from launcher.processes.title import show_name, show_title
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def _guard(supervisor: int) -> NoReturn:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     show_title("deck: guardian")
-    show_name("deck guardian")
+    show_name(GUARDIAN_NAME)
     nowhere = os.open(os.devnull, os.O_RDWR)
     for fd in range(3):
         # A reader that waits for the end of the supervisor's output must not wait for us.

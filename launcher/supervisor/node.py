@@ -44,8 +44,21 @@ USAGE_WITHIN_S = 10.0
 END_LOOK_EVERY_S = 0.1
 END_LOOKS = 30
 """How often an end is looked up anew of which nobody has told though no process is left."""
+WELL_AFTER_S = 10.0
+"""A node that has been started again after a crash must run for so long until that is forgotten."""
 ASKED_TWICE_S = 0.3
 """Two stop requests closer together than this count as one."""
+
+
+@dataclass
+class _Crash:
+    """Why the process before this one has ended, which is told until this one has proved well."""
+
+    words: str
+    fault: NodeFault | None
+    """That of the learner's own file."""
+    well_s: float | None = None
+    """Since when the node is well again."""
 
 
 @dataclass
@@ -75,6 +88,7 @@ class SupervisedNode:
         self._clash: NodeFault | None = None
         self._suspended: NodeFault | None = None
         """What a signal has done to its process, while that lasts."""
+        self._crash: _Crash | None = None
         self._around = around
         self._policy = RestartPolicy(plan.restart)
         self._restarts = 0
@@ -99,11 +113,13 @@ class SupervisedNode:
     def status(self) -> NodeStatus:
         """Return its current status."""
         now, last, usage = self._now, self._last, self.usage
+        crash = self._recent_crash()
+        fault = self.fault if self._suspended is None else self._suspended
         return NodeStatus(
             name=self.plan.name,
             command=self.plan.command,
             state=self.state,
-            detail=self.detail,
+            detail=self.detail or (crash.words if crash is not None else ""),
             pid=now.process.pid if now else None,
             uptime_s=self._around.clock.now() - now.started if now else None,
             restarts=self._restarts,
@@ -113,8 +129,15 @@ class SupervisedNode:
             memory_bytes=usage.memory_bytes if usage and now else None,
             needs=self.plan.needs,
             file=self.plan.file,
-            fault=self.fault if self._suspended is None else self._suspended,
+            fault=fault or (crash.fault if crash is not None else None),
         )
+
+    def _recent_crash(self) -> _Crash | None:
+        """Return what is still to be told of the process before this one."""
+        crash, now_s = self._crash, self._around.clock.now()
+        if crash is None or (crash.well_s is not None and now_s - crash.well_s > WELL_AFTER_S):
+            return None
+        return crash
 
     def start(self) -> None:
         """Start it; a node that is waiting for others or for its next attempt starts at once."""
@@ -249,6 +272,11 @@ class SupervisedNode:
     def become(self, state: NodeState, detail: str = "", *, serves: bool = False) -> None:
         """Give it another state; `serves`: the nodes that need it may start."""
         self.state, self.detail, self.serves = state, detail, serves and not self._down
+        well = state in (NodeState.READY, NodeState.RUNNING)
+        if self._crash is not None and not well:
+            self._crash.well_s = None
+        elif self._crash is not None and self._crash.well_s is None:
+            self._crash.well_s = self._around.clock.now()
         if state in (NodeState.READY, NodeState.RUNNING) and self._does_not_compile:
             self.fault = None
         self._around.changed(self.plan.name, self.state)
@@ -341,7 +369,7 @@ class SupervisedNode:
         await self._end_all_of_it(now)
         end = await self._end_of(process)
         await process.close()
-        self._now, self._last, self._suspended = None, end, None
+        self._now, self._last, self._suspended, self._crash = None, end, None, None
         asked = self._down or bool(now.failure)
         self._around.say(
             self.plan.name, self._gravity(end, asked=asked), self._end_words(end, asked=asked)
@@ -418,6 +446,8 @@ class SupervisedNode:
         if isinstance(verdict, Again):
             words = say("{why}; again in {seconds:g} s", why=why, seconds=verdict.delay_s)
             self.become(NodeState.BACKOFF, words)
+            fault = self.fault and replace(self.fault, kind="warning")
+            self._crash = _Crash(why, fault)
             again_s = clock.now() + verdict.delay_s
             # It may be nudged by what has just ended as well.
             while not (self._forced or self._down) and (left_s := again_s - clock.now()) > 0:

@@ -39,18 +39,23 @@ def takes_a_second(seen):
 
 
 def never_silent(seen):
-    """/head_state has come all the time, also during the movement, and goes on after it."""
-    if _arrived(seen, 4) is None:
+    """/head_state has come all the time that the movement took."""
+    there_s = _arrived(seen, 4)
+    if there_s is None:
         return NOT_THERE
     times = [time_s for time_s, _ in seen.messages["/head_state"]]
-    silence_s = max(
-        (later - sooner for sooner, later in itertools.pairwise(times)), default=math.inf
+    # What the node did before it turned, or was started anew, is no part of the movement.
+    silent = any(
+        later - sooner >= LONGEST_SILENCE_S
+        and sooner < there_s
+        and later > there_s - SHORTEST_MOVEMENT_S
+        for sooner, later in itertools.pairwise([-math.inf, *times])
     )
-    if silence_s < LONGEST_SILENCE_S:
+    if not silent:
         return None
     return {
-        "en": f"/head_state was silent for {silence_s:.0f} s while the head turned",
-        "ru": f"/head_state молчал {silence_s:.0f} с, пока голова поворачивалась",
+        "en": "/head_state was silent while the head turned",
+        "ru": "/head_state молчал, пока голова поворачивалась",
     }
 
 

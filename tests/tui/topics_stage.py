@@ -16,6 +16,7 @@ from tests.tui.recorded_lesson import colour_bars
 from tests.tui.screen_stage import HOME, ScreenStage, on_stage
 from tests.tui.snapshots import Look
 from tests.waiting import until
+from tui.session.past import SONARS
 from tui.topics.detail import TopicHead
 from tui.topics.screen import TopicsScreen
 
@@ -39,7 +40,7 @@ class TopicsStage(ScreenStage[TopicsScreen]):
         """Choose a topic and wait until it is asked for."""
         self.screen.table.choose(topic)
         await until(
-            lambda: self.graph.watched | self.graph.pictures == {topic},
+            lambda: {*self.graph.watched, *SONARS} | self.graph.pictures == {topic, *SONARS},
             lambda: f"{topic}, but {self.graph.watched}, {self.graph.pictures}",
         )
         await self.pilot.pause()

@@ -29,6 +29,16 @@ class ComposerTarget(Protocol):
         """Whether an answer of a model is under way."""
 
     @property
+    def is_writing(self) -> bool:
+        """Whether the cursor stands in a text field."""
+
+    def write(self) -> None:
+        """Put the cursor into the JSON."""
+
+    def leave(self) -> None:
+        """Take the cursor out of the text field."""
+
+    @property
     def is_auto(self) -> bool:
         """Whether a valid answer is sent by itself."""
 
@@ -113,6 +123,48 @@ class SendAnyway(_SendAction):
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
         target.send(anyway=True)
+
+
+class Write(Action[ComposerTarget]):
+    """Go into the editor."""
+
+    id = "composer.write"
+    key = "enter"
+    title = N_("Edit the JSON")
+    tooltip = N_("Put the cursor into the JSON: from there on keys are typed, until Escape.")
+    footer = True
+    palette = False
+
+    @classmethod
+    def possible(cls, target: ComposerTarget) -> bool | None:
+        """Only outside of the text fields."""
+        return not target.is_writing
+
+    @classmethod
+    async def run(cls, target: ComposerTarget) -> None:
+        """Go there."""
+        target.write()
+
+
+class Leave(ComposerAction):
+    """Come out of the editor."""
+
+    id = "composer.leave"
+    key = "escape"
+    title = N_("Leave the field")
+    tooltip = N_("Take the cursor out of the text field: digits and letters are keys again.")
+    footer = True
+    palette = False
+
+    @classmethod
+    def possible(cls, target: ComposerTarget) -> bool | None:
+        """Only in a text field; while a model answers, the key takes the question back."""
+        return target.is_writing and not target.is_asking
+
+    @classmethod
+    async def run(cls, target: ComposerTarget) -> None:
+        """Leave it."""
+        target.leave()
 
 
 class _WritingAction(ComposerAction):
@@ -287,6 +339,8 @@ class NextProblem(ComposerAction):
 
 
 COMPOSER_ACTIONS = (
+    Write,
+    Leave,
     Send,
     SendAnyway,
     Ask,

@@ -64,10 +64,12 @@ class ComposerScreen(DeckScreen):
         "/llm_raw_json, and the right side shows the result: accepted or refused, what went "
         "to the wheels and to the head, and after how many milliseconds. In the line below the "
         "editor you say in words what the robot should do: a language model answers with the JSON, "
-        "which waits there until you send it. AUTO sends valid answers by itself; the emergency "
+        "which waits there until you send it. Enter puts the cursor into the JSON, Escape takes it "
+        "out again. AUTO sends valid answers by itself; the emergency "
         "stop ends that."
     )
     period_s = 0.1
+    AUTO_FOCUS: ClassVar[str] = ""
     BINDINGS: ClassVar = bindings(*COMPOSER_ACTIONS)
     DEFAULT_CSS = """
     ComposerScreen {
@@ -133,6 +135,11 @@ class ComposerScreen(DeckScreen):
         return self.query_one(AskLine)
 
     @property
+    def is_writing(self) -> bool:
+        """Whether the cursor stands in a text field."""
+        return self.focused in (self.editor, self.line.field)
+
+    @property
     def send_key(self) -> str:
         """The key that sends, as it is written."""
         return self.deck.keys_of(Send)[0]
@@ -162,7 +169,7 @@ class ComposerScreen(DeckScreen):
         return set(WATCHED)
 
     def on_mount(self) -> None:
-        self.editor.focus()
+        # The cursor is nowhere, so that each key does what the top line says.
         self.check()
         self.line.show_mark(auto=False)
         self.set_interval(PROGRESS_S, self.asking.show_progress)
@@ -302,6 +309,14 @@ class ComposerScreen(DeckScreen):
     async def ros2_command(self) -> str:
         """Return what publishes the text once."""
         return ros2_words.pub(LLM_RAW_JSON, TYPE, {"data": self.editor.text})
+
+    def write(self) -> None:
+        """Put the cursor into the JSON."""
+        self.editor.focus()
+
+    def leave(self) -> None:
+        """Take the cursor out of the text field."""
+        self.set_focus(None)
 
     def choose_template(self) -> None:
         """Ask for an example, and replace the text with it."""

@@ -31,6 +31,7 @@ from tui.panels.panel import row_of
 from tui.panels.panel_grid import PanelGrid
 from tui.session.messages import SessionChanged
 from tui.session.node_command import node_command
+from tui.session.past import SONARS
 from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
 from tui.teleop.dock import TeleopDock
 from tui.widgets.fault_words import fault_lines
@@ -325,6 +326,10 @@ class LessonDeck(DeckScreen):
     def keep_topics(self) -> set[str]:
         """The topics whose history a panel shows."""
         return self._panels.kept()
+
+    def past_topics(self) -> set[str]:
+        """The topics of the trends."""
+        return set(SONARS)
 
     def follow_topics(self) -> set[str]:
         """The topics of which the panels need every message."""

@@ -24,6 +24,7 @@ from tui.flow.chains import FlowStep, Lane, StepKind
 from tui.outcome import words as outcome_words
 from tui.outcome.model_usage import COMPOSER, brain_reports, usage_noted
 from tui.panels.voice.reading import LEVELS, heard
+from tui.session.past import FLOW_TOPICS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -32,18 +33,7 @@ if TYPE_CHECKING:
     from launcher.status import LogLine
     from tui.outcome.model_usage import UsageFigures
 
-TOPICS = (
-    MICROPHONE,
-    BRAIN_STATE,
-    LLM_RAW_JSON,
-    AI_COMMAND,
-    DRIVE,
-    DRIVE_SAFE,
-    WHEEL_COMMANDS,
-    HEAD_STATE,
-    SPEAKER,
-)
-"""Causes before effects, which decides the order of messages with the same time."""
+TOPICS = FLOW_TOPICS
 
 SPOKEN_LEVEL = 3
 """Of the eight levels of loudness: a quieter sound is not a voice (about -38 dB)."""

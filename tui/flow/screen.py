@@ -43,8 +43,8 @@ class FlowScreen(DeckScreen):
         "What followed when somebody spoke into the microphone, or sent a command: every message "
         "and log line with its delay from the first. The dot is the moment, the line before it the "
         "time since the step before. The newest utterance is at the top; Enter folds one. What is "
-        "repeated all the time is shown when it changes. Collection starts when this screen is "
-        "first opened and goes on while another is in front."
+        "repeated all the time is shown when it changes. What came since the session was opened "
+        "is here, whatever screen was in front."
     )
     period_s = 0.1
     BINDINGS: ClassVar = bindings(*FLOW_ACTIONS)
@@ -109,6 +109,10 @@ class FlowScreen(DeckScreen):
 
     def follow_topics(self) -> set[str]:
         """All topics that may take part, once this screen has been opened."""
+        return set(TOPICS)
+
+    def past_topics(self) -> set[str]:
+        """The same since the session began."""
         return set(TOPICS)
 
     def on_mount(self) -> None:

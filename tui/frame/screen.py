@@ -111,6 +111,10 @@ class DeckScreen(Screen[None], Acting, Working):
         """Return the topics of which it shows the pictures now."""
         return set()
 
+    def past_topics(self) -> set[str]:
+        """Return the topics of which it shows the past, also that before it was opened."""
+        return set()
+
     def follow_topics(self) -> set[str]:
         """Return the topics of which every message is needed, even while another is in front."""
         return set()

@@ -72,6 +72,8 @@ class FramesScreen(DeckScreen):
     }
     """
 
+    AUTO_FOCUS: ClassVar[str] = "FrameTable"
+
     def __init__(self) -> None:
         super().__init__()
         self._update: GraphUpdate | None = None

@@ -53,6 +53,7 @@ class GraphScreen(DeckScreen):
     """Kinds and filter above a list and the detail of the chosen entry, or above the map."""
 
     tab: ClassVar[str] = "graph"
+    AUTO_FOCUS: ClassVar[str] = "GraphList"
     parts: ClassVar[tuple[str, ...]] = ("GraphDetail",)
     about: ClassVar[str] = N_(
         "Nodes with what they publish, hear, serve and call; services to be called, actions to "

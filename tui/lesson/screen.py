@@ -15,6 +15,7 @@ from textual.widgets import Static
 from launcher.errors import LauncherError
 from text.i18n import N_, _, language, localized
 from text.plain import plain
+from text.program import deck_command
 from text.sentences import reason_of
 from tui.actions import bindings
 from tui.dialogs.choice import ChoiceScreen
@@ -266,7 +267,7 @@ class LessonScreen(DeckScreen):
 
     def _shell_words(self) -> str:
         session = self.feed.session
-        return "" if session is None else f"deck shell {plain(session.name)}"
+        return "" if session is None else f"{deck_command()} shell {plain(session.name)}"
 
     def _show_text(self, lesson: LessonFolder, step: StepDocument) -> None:
         """Show the text of the step, or both files; drawn again only if it is another."""

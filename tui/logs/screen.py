@@ -63,6 +63,7 @@ class LogsScreen(DeckScreen):
     LogsScreen.-compact LogNodes.-open, LogsScreen.-tiny LogNodes.-open { display: block; }
     """
 
+    AUTO_FOCUS: ClassVar[str] = "LogView"
     _counted_s = 0.0
 
     def compose_body(self) -> ComposeResult:

@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 
 STEPS, POINTS = 6, 8
 """Widths of the columns."""
+RUNNING_WITHIN_S = 0.5
+"""From then on the list is shown without what runs; it moves nothing that comes later."""
 OWN = "✎"
 """Marks a lesson for which the learner has files."""
 RUNNING = "running:"
@@ -144,7 +146,7 @@ class PickerScreen(Screen[None], Acting, Working):
         super().__init__()
         self._lessons: list[Lesson] = []
         self._sessions: list[SessionInfo] = []
-        self._offered = ""
+        self._offered = self._left_off = ""
         self._domain: int | None = None
         """The domain to watch without a lesson; None if the configured one is invalid."""
 
@@ -177,9 +179,12 @@ class PickerScreen(Screen[None], Acting, Working):
         """Read the lessons and the running sessions."""
         with suppress(LauncherError):
             self._domain = self.deck.sessions.opener.domain(self.deck.sessions.request.domain)
+        running = asyncio.ensure_future(self.deck.sessions.opener.running())
         self._lessons = self._with_known_scores(await self.deck.sessions.opener.lessons())
-        self._offer()
-        self._sessions = await self.deck.sessions.opener.running()
+        await asyncio.wait({running}, timeout=RUNNING_WITHIN_S)
+        if not running.done():
+            self._offer()
+        self._sessions = await running
         self._offer()
         self._lessons = await self.deck.sessions.opener.scored(self._lessons)
         self.redraw()
@@ -197,22 +202,23 @@ class PickerScreen(Screen[None], Acting, Working):
         ]
 
     def _offer(self) -> None:
-        """Show the list, with the likeliest row chosen unless the user has chosen another."""
-        rows = self.query_one(Rows)
-        untouched = rows.chosen in ("", self._offered)
+        """Show the list, with the likeliest row chosen: at first, and after a session of another.
+
+        Whatever comes later moves the cursor no more.
+        """
         self.redraw()
-        if untouched:
-            self._offered = self._first()
-            rows.choose(self._offered)
+        last = self.deck.sessions.last_lesson
+        if not self._offered or last != self._left_off:
+            self._offered, self._left_off = self._first(), last
+            self.query_one(Rows).choose(self._offered)
 
     def _first(self) -> str:
-        """Return the initial row: a running session, the last lesson, or the first one."""
-        if self._sessions:
-            return f"{RUNNING}{self._sessions[0].name}"
+        """Return the initial row: where one has left off, a running session, the first lesson."""
         last = self.deck.sessions.last_lesson
         named = [_key(lesson) for lesson in self._lessons if lesson.name == last]
         left = [_key(one) for one in self._lessons if one.task is not None and one.task.left_off]
-        return next(iter(named or left or map(_key, self._lessons)), "")
+        running = [f"{RUNNING}{session.name}" for session in self._sessions]
+        return next(iter(named or left or running or map(_key, self._lessons)), "")
 
     def redraw(self) -> None:
         """Redraw everything in the current language."""

@@ -24,6 +24,7 @@ from tui.session.messages import (
     StatusChanged,
 )
 from tui.session.outside import Outside
+from tui.session.past import FLOW_TOPICS, SONARS, Past
 from tui.session.rosout import TOPIC as ROSOUT
 from tui.session.rosout import RosoutReader
 from tui.session.watching import WATCH
@@ -68,6 +69,9 @@ class SessionScreen(Protocol):
     def picture_topics(self) -> set[str]:
         """Return the topics of which it shows the pictures now."""
 
+    def past_topics(self) -> set[str]:
+        """Return the topics of which it shows the past, also that before it was opened."""
+
     def watch_goals(self) -> set[str]:
         """Return the actions whose goals from others are needed while it is in front."""
 
@@ -109,6 +113,8 @@ class Feed:
         self.update: GraphUpdate | None = None
         """The newest update of the graph; None before the first."""
         self.history = LogHistory()
+        self.past = Past()
+        """What has come since the session began; not of a recording, which goes to and fro."""
         self.outside = Outside()
         """Nodes in the domain that Deck did not start."""
         self._rosout = RosoutReader()
@@ -168,6 +174,7 @@ class Feed:
         self.link, self.graph, self.replay = link, graph, replay
         self.update, self.ended, self._ended_nodes = None, "", {}
         self.history.clear()
+        self.past.clear()
         self.outside.forget()
         self._rosout = RosoutReader()
         self.tell(SessionChanged)
@@ -205,6 +212,7 @@ class Feed:
         self.ended, self._ended_nodes = "", {}
         self._screens.clear()
         self.history.clear()
+        self.past.clear()
 
     def log_file(self, node: str) -> str:
         """Return the path of the file with all lines of a node, empty if there is none."""
@@ -244,6 +252,7 @@ class Feed:
             self._tell_status(frozenset(node.name for node in event.nodes))
         elif isinstance(event, LogEvent):
             self.history.add(event.lines)
+            self.outside.note(event.lines)
             self.tell(lambda: LogArrived(event.lines, event.skipped))
         elif isinstance(event, StraysEvent):
             owner.ask_about(event.strays)
@@ -270,6 +279,8 @@ class Feed:
 
     def hand_over(self, update: GraphUpdate) -> None:
         """Send an update to the screens that need it."""
+        if self.replay is None:
+            self.past.take(update)
         self._see_outside(update)
         front = self.front
         for screen in self._screens:
@@ -312,7 +323,7 @@ class Feed:
         if self.history:
             screen.post_message(LogArrived(self.history.all(), {}))
         if self.update is not None:
-            screen.post_message(GraphChanged(self.update))
+            screen.post_message(GraphChanged(self.past.before(self.update, screen.past_topics())))
 
     def forget(self, screen: SessionScreen) -> None:
         """Send nothing more to this screen."""
@@ -329,6 +340,9 @@ class Feed:
             *(screen.follow_topics() for screen in self._screens)
         )
         kept: set[str] = set().union(*(screen.keep_topics() for screen in self._screens))
+        if self.replay is None:
+            followed |= set(FLOW_TOPICS)
+            kept |= set(SONARS)
         graph.watch(kept if front is None else kept | front.watch_topics())
         graph.watch_pictures(set() if front is None else front.picture_topics())
         graph.follow(followed)

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 from graph.data import PROCESS_NUMBERS
 from graph.housekeeping import is_housekeeping
 from text.plain import plain
-from tui.session.rosout import RosoutReader
+from tui import clock
+from tui.session.rosout import RosoutReader, stamp_s
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 KEPT_UNKNOWN = 256
 """Lines from nodes that the graph does not know yet, which is so only for a moment."""
+HELD_S = 1.0
+"""The output of a node of Deck's arrives by so much later than what it says on /rosout."""
 KEPT_HEARD = 4096
 """Lines kept to recognise repetitions; a node keeps its last 1000 for late subscribers."""
 
@@ -53,6 +56,8 @@ class Outside:
         self._reader = RosoutReader()
         self._unknown: deque[Sample] = deque(maxlen=KEPT_UNKNOWN)
         self._heard: dict[tuple[str, ...], None] = {}
+        self._printed: dict[tuple[str, int], None] = {}
+        """Node and time, in microseconds, of what Deck's own nodes have logged by their output."""
 
     def see(self, update: GraphUpdate, nodes: Mapping[str, NodeStatus], run_id: str) -> bool:
         """Examine the graph of a run with these nodes; return whether the outside nodes changed."""
@@ -69,6 +74,14 @@ class Outside:
         self.now = tuple(sorted(name for name in self._speakers.values() if name))
         return self.now != before
 
+    def note(self, lines: Iterable[LogLine]) -> None:
+        """Remember what Deck's own nodes say: all of them say it on /rosout, too."""
+        for line in lines:
+            if line.logger:
+                self._printed[line.node, round(line.time_s * 1e6)] = None
+        while len(self._printed) > KEPT_HEARD:
+            self._printed.pop(next(iter(self._printed)))
+
     def lines(
         self, samples: Iterable[Sample], nodes: Mapping[str, NodeStatus]
     ) -> tuple[LogLine, ...]:
@@ -77,8 +90,13 @@ class Outside:
         waiting = (*self._unknown, *samples)
         self._unknown.clear()
         for sample in waiting:
-            name = self._speaker(str(sample.value.get("name", "")), nodes)
+            name = self._speaker(str(sample.value.get("name", "")))
+            own = nodes.get(name[1:]) if name and name.startswith("/") else None
             if name is None:
+                self._unknown.append(sample)
+            elif own is not None and own.state.alive and self._is_printed(sample, own.name):
+                continue
+            elif own is not None and own.state.alive and _is_fresh(sample):
                 self._unknown.append(sample)
             elif name and self._is_new(sample):
                 found += self._reader.lines((sample,), name)
@@ -94,14 +112,17 @@ class Outside:
             return ""
         return plain(row.name if is_named else name, 200)
 
-    def _speaker(self, logger: str, nodes: Mapping[str, NodeStatus]) -> str | None:
+    def _is_printed(self, sample: Sample, node: str) -> bool:
+        """Whether Deck's node of this name has logged it, not the other one."""
+        time_us = round(stamp_s(sample.value.get("stamp")) * 1e6)
+        # Both are read from decimals, and may be rounded differently.
+        return any((node, time_us + off) in self._printed for off in (0, -1, 1))
+
+    def _speaker(self, logger: str) -> str | None:
         """Return the outside node with this logger, empty for other nodes, None if unknown."""
         while logger:
             if logger in self._speakers:
-                name = self._speakers[logger]
-                own = nodes.get(name.removeprefix("/")) if name.startswith("/") else None
-                # If two nodes have the same name, it is unknown which one logged.
-                return "" if own is not None and own.state.alive else name
+                return self._speakers[logger]
             logger = logger.rpartition(".")[0]
         return None
 
@@ -115,6 +136,11 @@ class Outside:
         if len(self._heard) > KEPT_HEARD:
             self._heard.pop(next(iter(self._heard)))
         return True
+
+
+def _is_fresh(sample: Sample) -> bool:
+    """Whether it came so lately that a node's output may not have come yet."""
+    return clock.now() - sample.received_s < HELD_S
 
 
 def _owner(number: int, run_id: str) -> _Owner:

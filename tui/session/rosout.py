@@ -39,7 +39,7 @@ class RosoutReader:
         node = node or logger
         number = self._numbers[node] = self._numbers.get(node, 0) + 1
         text = plain(str(value["msg"]), LONGEST)
-        time_s = _seconds(value.get("stamp")) or sample.received_s
+        time_s = stamp_s(value.get("stamp")) or sample.received_s
         severity = _severity(value.get("level"))
         return LogLine(node, number, time_s, severity, text, logger=logger, source="rosout")
 
@@ -52,7 +52,7 @@ def _severity(level: object) -> Severity:
     return tuple(Severity)[max(0, min(len(Severity) - 1, rank))]
 
 
-def _seconds(stamp: Any) -> float:  # noqa: ANN401
+def stamp_s(stamp: Any) -> float:  # noqa: ANN401
     """Unix time, 0 if there is none."""
     try:
         seconds = float(stamp["sec"]) + float(stamp["nanosec"]) * 1e-9

@@ -53,6 +53,7 @@ class TopicsScreen(DeckScreen):
         "beside: as a tree that folds, an image as a picture. Where nothing comes, it says why."
     )
     measure_all = True
+    AUTO_FOCUS: ClassVar[str] = "TopicsTable"
     BINDINGS: ClassVar = bindings(*TOPICS_ACTIONS)
     DEFAULT_CSS = """
     TopicsScreen TopicPlot { display: none; border-top: solid $panel; }

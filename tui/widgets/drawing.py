@@ -22,7 +22,7 @@ from text.plain import plain
 from tui.faults import report_fault
 from tui.widgets.one_style import OneStyle
 from tui.widgets.trouble import no_data_words, trouble_words
-from tui.widgets.words import word_strips
+from tui.widgets.words import cut, word_strips
 
 _ONE_CELL_EACH = re.compile("[ -~\u0400-\u0482\u2500-\u25ff\u2800-\u28ff]*")
 """Text whose characters need not be measured individually."""
@@ -201,7 +201,10 @@ class Drawing(OneStyle, Widget):
         if self._fault:
             words = (self._fault, "")
         strips = word_strips(words, width, self.rich_style, self.app.console, centred=True)
-        line = y - max(0, (self.size.height - len(strips)) // 2)
+        height = self.size.height
+        if y == height - 1 and len(strips) > height:
+            return cut([*strips[y], Segment(" ")], width, self.rich_style)
+        line = y - max(0, (height - len(strips)) // 2)
         blank = Strip.blank(width, self.rich_style)
         return strips[line] if 0 <= line < len(strips) else blank
 

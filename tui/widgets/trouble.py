@@ -18,11 +18,12 @@ if TYPE_CHECKING:
 LONGEST = 400
 SHOWN_NODES = 4
 
+# Where there is little room only their beginning is seen: it holds the "no".
 _HEADLINES = {
     Trouble.NO_PUBLISHER: N_("nobody publishes this topic"),
     Trouble.QOS_MISMATCH: N_("QoS is incompatible: not everybody is heard"),
-    Trouble.UNKNOWN_TYPE: N_("message type is not installed"),
-    Trouble.QUIET: N_("there is a publisher, but no message has arrived yet"),
+    Trouble.UNKNOWN_TYPE: N_("unknown type: the message type is not installed"),
+    Trouble.QUIET: N_("no message has arrived yet, though there is a publisher"),
 }
 
 

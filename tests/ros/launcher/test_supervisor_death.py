@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import signal
+import subprocess
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,8 @@ import pytest
 from launcher.client.client import attach, running
 from launcher.events import ClosedEvent
 from launcher.processes.table import command_line, read_process
+from launcher.runs.found import supervisors, supervisors_everywhere
+from launcher.runs.strays import find_strays
 from launcher.status import NodeState, Stray
 from tests.ros.supervised import (
     DEAF,
@@ -215,3 +218,26 @@ async def test_what_an_earlier_run_left_is_told_of_and_ended_on_demand(start: La
     await later.stop_strays(ours())
     assert of_run(run_id) == []
     await until(lambda: not ours(), "the word that nothing is left")
+
+
+@pytest.mark.machine("namespaces")
+def test_a_robot_in_a_container_is_alive_though_its_supervisor_has_another_pid_in_there(
+    tmp_path: Path, ros_domain: int
+) -> None:
+    """Its own run directory and processes, as in Docker; the same user, seen from outside."""
+    profile = write_profile(tmp_path, {"node": {"exec": SLEEPER}})
+    told = f"{sys.executable} -m tests.ros.owner {profile} {ros_domain} foreground"
+    container = ("unshare", "--map-root-user", "--pid", "--kill-child", "--mount-proc")
+    with subprocess.Popen(
+        [*container, "env", f"XDG_RUNTIME_DIR={tmp_path}", *told.split()], stdout=subprocess.PIPE
+    ) as robot:
+        try:
+            assert robot.stdout is not None
+            run_id = json.loads(robot.stdout.readline())["session"]["run_id"]
+            assert of_run(run_id), "they are seen from out here"
+            assert not [stray for stray in find_strays(tmp_path) if stray.run_id == run_id]
+            found = [one.domain for one in supervisors_everywhere() if one.run_id == run_id]
+            assert found == [ros_domain]
+            assert run_id not in [one.run_id for one in supervisors()], "nothing can be sent to it"
+        finally:
+            robot.kill()

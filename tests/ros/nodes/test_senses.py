@@ -77,7 +77,7 @@ def test_somebody_speaks_and_the_loudspeaker_is_heard(peer: Peer, ros_domain: in
 
 def test_nobody_speaks_until_there_is_a_period(peer: Peer, ros_domain: int) -> None:
     params: dict[str, object] = {"first_after": 0.1, "period": 0.0}
-    with NodeProcess("nodes.mock_audio", ros_domain, params=params):
+    with NodeThread("nodes.mock_audio", ros_domain, params=params):
         heard = peer.hear("/audio/mic_raw", ByteMultiArray)
         levels = peer.hear("/audio/level", Float32)
         wait_until(lambda: len(levels) >= 5, "five levels")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from importlib import import_module
 from typing import Any
 
@@ -9,7 +10,8 @@ import pytest
 from textual._ansi_sequences import ANSI_SEQUENCES_KEYS
 from textual.command import CommandPalette
 from textual.pilot import Pilot
-from textual.widgets import OptionList
+from textual.screen import Screen
+from textual.widgets import Input, OptionList, TextArea
 
 from launcher.status import NodeState
 from tests.tui import topics_stage
@@ -18,6 +20,7 @@ from tests.tui.snapshots import opened, seen, settle
 from tests.waiting import until
 from tui.actions import REGISTRY
 from tui.app import DeckApp
+from tui.frame.actions.app import TABS, ShowComposer, ShowWall
 from tui.frame.key_bar import KeyBar
 from tui.help.page import Page
 from tui.help.screen import HelpScreen
@@ -215,3 +218,27 @@ def test_every_action_of_every_screen_has_its_place() -> None:
             action.id for place in PLACES if place.show.screen == name for action in place.actions
         }
         assert name == "picker" or bound <= placed, name
+
+
+def in_front(app: DeckApp, name: str) -> bool:
+    """Whether this screen is."""
+    return getattr(app.screen, "tab", "") == name
+
+
+async def test_no_key_of_the_tabs_is_typed_into_a_field_that_nobody_has_entered(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Not even in the moment in which a screen opens."""
+    focused: list[object] = []
+    focus = Screen.set_focus
+
+    def noted(self: Screen[Any], widget: Any, *more: Any, **others: Any) -> None:
+        focused.append(widget)
+        focus(self, widget, *more, **others)
+
+    monkeypatch.setattr(Screen, "set_focus", noted)
+    async with opened() as (app, pilot):
+        for tab in [*TABS, *reversed(TABS), ShowWall, ShowComposer, ShowWall]:
+            await pilot.press(tab.key.split(",")[0])
+            await until(partial(in_front, app, tab.screen), tab.screen)
+        assert [one for one in focused if isinstance(one, (Input, TextArea))] == []

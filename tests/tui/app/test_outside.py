@@ -8,6 +8,7 @@ import pytest
 from textual.pilot import Pilot
 
 from graph.data import GraphUpdate, NodeRow, Sample
+from launcher.status import LogLine, Severity
 from tests.tui.recorded import NODES, NOW_S, RecordedOpener, lesson_update, sample
 from tests.tui.snapshots import opened, settle
 from tui.app import DeckApp
@@ -148,3 +149,19 @@ def test_a_process_that_deck_has_started_is_its_own_under_any_name(
     assert outside(NodeRow("/far", processes=(10,))) == ("far",)
     # The name of a node may be known a little before its process.
     assert outside(NodeRow("/camera", processes=(STARTED_HERE,)), NodeRow("/new")) == ()
+
+
+def test_of_two_by_one_name_it_is_told_by_what_decks_own_has_not_printed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("launcher.processes.table.process_numbers", lambda: [8])
+    monkeypatch.setattr("launcher.processes.table.read_marks", lambda _pid: {})
+    here = Outside()
+    here.see(lesson_update(nodes=(NodeRow("/camera", processes=(8,)),)), NODES, "run")
+    monkeypatch.setattr("tui.clock.now", lambda: NOW_S)
+    both = (said("Deck's", "camera", at_s=2), said("another's", "camera", at_s=3))
+    assert here.lines(both, NODES) == (), "the output of Deck's may still come"
+    here.note([LogLine("camera", 1, NOW_S // 1 + 2, Severity.INFO, "Deck's", logger="camera")])
+    monkeypatch.setattr("tui.clock.now", lambda: NOW_S + 2)
+    (line,) = here.lines((), NODES)
+    assert (line.node, line.text) == ("/camera", "another's")

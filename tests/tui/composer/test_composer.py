@@ -169,8 +169,18 @@ async def test_without_a_lesson_nothing_is_sent(stage: ComposerStage) -> None:
 
 
 async def test_a_megabyte_is_not_pasted(stage: ComposerStage) -> None:
+    stage.screen.editor.focus()
     await stage.write("")
     for pasted, text in (("x" * 1_000_000, ""), ("[1]", "[1]")):
         stage.app.post_message(Paste(pasted))
         await stage.pilot.pause()
         assert stage.screen.editor.text == text
+
+
+async def test_escape_gives_the_keys_back_that_enter_has_given_to_the_editor(
+    stage: ComposerStage,
+) -> None:
+    await stage.write("")
+    await stage.press("7", "3", "enter", "4", "5", "escape", "4")
+    assert stage.screen.editor.text == "45", "typed only after Enter"
+    assert getattr(stage.app.screen, "tab", "") == "logs"

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from contextlib import AbstractAsyncContextManager
+from dataclasses import replace
 from typing import Any
 
+from graph.data import Sample
 from launcher.events import LogEvent
-from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
+from robot.topics import SONAR_FRONT
+from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession, sample
 from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines
 from tests.tui.screen_stage import ScreenStage, on_stage
+from tests.tui.snapshots import opened, settle
+from tests.waiting import until
 from tui.flow.chains import Lane
 from tui.flow.reading import TOPICS
 from tui.flow.screen import FlowScreen
 from tui.flow.view import FlowView
+from tui.panels.sonar.widget import Sonar
+from tui.session.past import KEPT, Past
+
+
+def came(name: str, value: dict[str, object], at_s: float) -> Sample:
+    """One message, so long after the recording's beginning."""
+    return replace(sample(name, "std_msgs/msg/String", value), received_s=NOW_S + at_s)
 
 
 class FlowStage(ScreenStage[FlowScreen]):
@@ -94,3 +106,39 @@ async def test_paused_it_stands_still_and_loses_nothing() -> None:
         assert "+1" in str(at.screen.query_one("#flow-lanes").render())
         await at.press("p")
         assert len(at.screen.chains) == 2
+
+
+async def test_it_has_what_came_before_it_was_opened_and_the_deck_has_the_trend() -> None:
+    graph = RecordedGraph(update(*BEFORE))
+    opener = RecordedOpener(RecordedSession(lines=()), graph)
+    async with opened(opener, "logs") as (app, pilot):
+        assert graph.followed >= set(TOPICS)
+        assert SONAR_FRONT in graph.watched
+        for at_s in range(30):
+            far = came(SONAR_FRONT, {"data": 2.0}, at_s)
+            graph.show(update(*voice(0.0) if at_s == 3 else (), far))
+            await settle(pilot)
+        await pilot.press("6")
+        await settle(pilot)
+        flow = app.screen
+        assert isinstance(flow, FlowScreen)
+        assert len(flow.chains) == 1
+        await pilot.press("1")
+        await until(lambda: app.screen.query("Sonar#front"), "the gauge")
+        gauge = app.screen.query_one("Sonar#front", Sonar)
+        await until(lambda: len(gauge._times) >= 30, "the trend")
+        assert len(gauge._times) == 30
+
+
+def test_of_the_past_what_is_repeated_is_kept_twice_and_the_rest_is_bounded() -> None:
+    past, now = Past(), update()
+    for at_s in range(500):
+        told: dict[str, object] = {"header": {"stamp": at_s}, "speed": 0.1}
+        past.take(
+            update(came("/drive", told, at_s), came("/ai_command", {"data": str(at_s)}, at_s))
+        )
+    kept = past.before(now, {"/drive", "/ai_command"}).samples
+    assert [one.received_s - NOW_S for one in kept["/drive"]] == [0, 1]
+    newest = [str(number) for number in range(500 - KEPT, 500)]
+    assert [one.value["data"] for one in kept["/ai_command"]] == newest
+    assert past.before(now, set()) is now

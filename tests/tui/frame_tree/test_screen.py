@@ -109,7 +109,7 @@ async def test_n_goes_from_one_finding_to_the_next_and_shows_its_words_first() -
 
 async def test_without_frames_it_says_what_is_missing() -> None:
     silent = (replace(topics()[1], trouble=Trouble.QUIET, publishers=1),)
-    said = "/tf: there is a publisher, but no message has arrived yet"
+    said = "/tf: no message has arrived yet, though there is a publisher"
     async with stage(RecordedOpener(graph=RecordedGraph(frames_update((), silent)))) as at:
         assert at.text("#frames-empty").startswith(said)
         await at.press("y", "enter", "alt+x", "n", "Y")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import pytest
@@ -11,6 +12,7 @@ from graph.data import GraphUpdate, Trouble
 from tests.tui.panel_stage import alone, rows
 from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_samples, lesson_update, sample
 from tests.tui.snapshots import opened, settle
+from text.i18n import set_language
 from tui.panels.sonar.bounds import bounds_of
 from tui.panels.sonar.widget import Sonar
 from tui.panels.sonar.words import COURSE, Bounds, Zone, zone_of
@@ -71,8 +73,8 @@ async def test_an_empty_gauge_says_why() -> None:
             (None, "waiting for the first message"),
             (Trouble.NO_PUBLISHER, "nobody publishes this topic"),
             (Trouble.QOS_MISMATCH, "QoS is incompatible"),
-            (Trouble.UNKNOWN_TYPE, "message type is not installed"),
-            (Trouble.QUIET, "there is a publisher, but no message has arrived yet"),
+            (Trouble.UNKNOWN_TYPE, "unknown type: the message type is not installed"),
+            (Trouble.QUIET, "no message has arrived yet, though there is a publisher"),
         ):
             gauge.show_trouble(trouble, "detail")
             shown = " ".join(" ".join(rows(gauge)).split())
@@ -121,3 +123,17 @@ async def test_the_gauge_stops_where_the_safety_node_does() -> None:
 )
 def test_bounds_are_those_that_the_node_tells(values: dict[str, Any], bounds: Bounds) -> None:
     assert bounds_of(told(**values), COURSE) == bounds
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+@pytest.mark.parametrize(
+    "trouble", [Trouble.NO_PUBLISHER, Trouble.QOS_MISMATCH, Trouble.UNKNOWN_TYPE, Trouble.QUIET]
+)
+async def test_what_is_cut_does_not_say_the_opposite(trouble: Trouble, language: str) -> None:
+    set_language(language)
+    gauge = Sonar("front")
+    async with alone(gauge, 16, 1).run_test(size=(60, 20)):
+        gauge.show_trouble(trouble)
+        (row,) = rows(gauge)
+        assert re.search("^ *(no |nobody |unknown |QoS |ни |неизвестный |никто )", row), row
+        assert row.endswith("…")

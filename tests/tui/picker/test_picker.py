@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,11 +13,12 @@ from textual.widgets import Static
 
 from course.lessons.catalog import SHIPPED
 from launcher.errors import DomainTakenError, ProfileError, ProfileProblem
-from launcher.status import Who
+from launcher.status import SessionInfo, Who
 from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedOpener
 from tests.tui.snapshots import opened, seen, settle
 from tests.waiting import until
 from text.sentences import say
+from tui.app import DeckApp
 from tui.lifecycle.domain_taken import DomainTakenScreen
 from tui.lifecycle.refused import RefusedScreen
 from tui.picker.screen import PickerScreen
@@ -132,3 +134,23 @@ async def test_a_lesson_that_cannot_be_opened_says_why_and_the_picker_is_back() 
         await pilot.press("escape")
         await pilot.pause()
         assert isinstance(app.screen, PickerScreen)
+
+
+async def test_the_cursor_stands_where_one_left_off_whatever_comes_later() -> None:
+    heard = asyncio.Event()
+
+    class Late(RecordedOpener):
+        async def running(self) -> list[SessionInfo]:
+            await heard.wait()
+            return self.sessions
+
+    app = DeckApp(Late(sessions=[RUNNING]), PICK, "deck")
+    app.sessions.last_lesson = "09-brain"
+    async with app.run_test(size=(120, 40)) as pilot:
+        await until(lambda: isinstance(app.screen, PickerScreen), "the list")
+        rows = app.screen.query_one(Rows)
+        await until(lambda: rows.chosen == "profiles/09-brain.yaml", "the lesson")
+        heard.set()
+        await until(lambda: "Already running" in seen(app), "what runs")
+        await settle(pilot)
+        assert rows.chosen == "profiles/09-brain.yaml"

@@ -138,4 +138,4 @@ async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(
     await pilot.pause()
     assert not screen.plot.fields
     assert screen.plotting.place is PlotPlace.NONE
-    assert "/drive" not in graph.followed
+    assert "/drive" not in screen.follow_topics()

@@ -26,6 +26,7 @@ from tests.tui.topics_stage import (
 )
 from tests.waiting import until
 from tui.frame.key_bar import KeyBar
+from tui.session.past import SONARS
 from tui.widgets import newest_picture
 
 ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
@@ -51,7 +52,7 @@ async def test_walking_past_topics_subscribes_none_of_them(
     stage: TopicsStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The one that is chosen first is asked for at first.
-    await until(lambda: stage.graph.watched, "the first topic asked for")
+    await until(lambda: stage.graph.watched - set(SONARS), "the first topic asked for")
     asked: list[set[str]] = []
     monkeypatch.setattr(stage.graph, "watch", lambda topics: asked.append(set(topics)))
     # However long the keys take here, they come before the walk is over.
@@ -61,7 +62,7 @@ async def test_walking_past_topics_subscribes_none_of_them(
     monkeypatch.setattr("tui.topics.screen.SETTLED_S", 0.01)
     await stage.pilot.press("down")
     await until(lambda: asked, "the last topic asked for")
-    assert asked == [{"/drive"}]
+    assert [topics - set(SONARS) for topics in asked] == [{"/drive"}]
 
 
 @pytest.mark.parametrize(

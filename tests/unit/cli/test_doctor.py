@@ -84,6 +84,7 @@ MACHINES: list[tuple[Any, Any, list[str], str]] = [
      ["camera warn", "sound warn"], "/dev/video0 Orbbec"),
     (runs, runs.RunFacts(), [], ""),
     (runs, runs.RunFacts(strays=((77, "sonar"), (78, "camera"))), ["strays warn"], "kill 77 78"),
+    (runs, runs.RunFacts(apart=("robot (domain 5, supervisor 77)",)), [], ""),
     (runs, runs.RunFacts(free=1000), ["folders warn"], ""),
     (runs, runs.RunFacts(error="/tmp/x is not yours"), ["folders fail"], "not yours"),
     (groups, groups.GroupFacts(pi=False, mine=()), [], ""),

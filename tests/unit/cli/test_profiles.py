@@ -89,7 +89,10 @@ def test_what_was_written_is_kept_as_a_copy(
     file = course / "02-sonar-safety" / "mock_sonar.py"
     starter = file.read_text("utf-8")
     file.write_text("mine = 1\n", "utf-8")
-    assert main(["new", "02-sonar-safety"]) == 0
+    assert main(["new", "02-sonar-safety"]) == 2, "what was written stays unless one asks"
+    assert file.read_text("utf-8") == "mine = 1\n"
+    assert "--again" in capsys.readouterr().err
+    assert main(["new", "02-sonar-safety", "--again"]) == 0
     assert file.read_text("utf-8") == starter
     assert file.with_name("mock_sonar.py.1").read_text("utf-8") == "mine = 1\n"
     said = capsys.readouterr().out

@@ -22,7 +22,7 @@ from graph.diagnostics.book import STALE_S, DiagnosticsBook
 from graph.diagnostics.reading import StatusLevel
 from graph.diagnostics.tree import tree
 from graph.findings.examining import examine
-from graph.findings.finding import FORGOTTEN_S, FindingLevel, GraphFinding
+from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, GraphFinding
 from graph.findings.lasting import CHANGING_S, LastingFindings
 from graph.findings.names import meant
 from graph.messages.types import UnknownTypeError
@@ -191,13 +191,21 @@ def test_what_may_be_as_it_is_is_not_told(rows: Rows) -> None:
     assert found(*rows) == []
 
 
-def test_nodes_with_one_name_are_told_by_their_processes_or_by_what_a_node_has_once() -> None:
+def test_nodes_with_one_name_are_told_by_their_processes_or_by_what_a_node_has_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    here = ["3", "4"]
+    monkeypatch.setattr("graph.findings.publishers.os.listdir", lambda _path: here)
     twice = topic("/rosout", "/twin /twin /other", kind="rcl_interfaces/msg/Log")
     rows = (NodeRow("/twin", processes=(3,)), NodeRow("/other", processes=(4, 5)), NodeRow("/one"))
     findings = found(twice, nodes=rows)
     assert [one.place.name for one in findings] == ["/other", "/twin"]
     assert {one.rule for one in findings} == {"namesakes"}
     assert {one.settled_s for one in findings} == {FORGOTTEN_S}
+    here.append("5")
+    assert [one.settled_s for one in found(twice, nodes=rows)] == [SETTLED_S, FORGOTTEN_S], (
+        "two that run are not one that was killed, and its successor"
+    )
 
 
 @pytest.mark.parametrize(

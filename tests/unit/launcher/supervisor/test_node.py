@@ -121,6 +121,36 @@ async def test_a_crash_is_told_and_the_node_started_again_after_a_while(
     assert node.status().exit_code is None
 
 
+@pytest.mark.parametrize("file", ["", "/own/hello.py"])
+async def test_why_it_has_crashed_is_told_until_it_has_been_well_for_a_while(
+    session: FakeSession, file: str
+) -> None:
+    fault = NodeFault("crash", file, 3, exception="ValueError: x") if file else None
+    session.fault = fault
+    node = await started(session, replace(PLAN, file=file))
+    await crash(session)
+    await session.clock.advance(1.1)
+    assert node.state is NodeState.RUNNING
+    assert node.status().detail == (fault.words if fault else "exit code 1: no such port")
+    if fault:
+        assert node.status().fault == replace(fault, kind="warning"), "nothing is wrong now"
+    await session.clock.advance(9.0)
+    assert node.status().fault or node.status().detail
+    await session.clock.advance(2.0)
+    assert (node.status().fault, node.status().detail) == (None, "")
+
+
+async def test_a_node_that_is_started_by_hand_has_no_crash_to_tell_of(
+    session: FakeSession,
+) -> None:
+    node = await started(session)
+    await crash(session)
+    await session.clock.advance(1.1)
+    node.restart()
+    await settle()
+    assert (node.state, node.status().detail) == (NodeState.RUNNING, "")
+
+
 async def test_a_crash_before_it_is_ready_waits_as_long(session: FakeSession) -> None:
     node = await started(session, replace(PLAN, ready=TOPIC))
     await crash(session)
