@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from robot.topics import (
     AI_COMMAND,
@@ -21,8 +24,6 @@ from robot.topics import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from graph.data import GraphUpdate, Sample, Value
 
 FLOW_TOPICS = (
@@ -80,6 +81,15 @@ class Past:
         return replace(update, samples={**update.samples, **past}) if past else update
 
 
-def _said(sample: Sample) -> Mapping[str, Value]:
-    """Return a message without its time stamp."""
-    return {field: value for field, value in sample.value.items() if field != "header"}
+def _said(sample: Sample) -> object:
+    """Return a message without its time stamp, so that it can be compared."""
+    return {name: _comparable(field) for name, field in sample.value.items() if name != "header"}
+
+
+def _comparable(value: Value) -> object:
+    """Return a field with lists in place of arrays."""
+    if isinstance(value, Mapping):
+        return {name: _comparable(field) for name, field in value.items()}
+    if isinstance(value, list):
+        return [_comparable(each) for each in value]
+    return value.tolist() if isinstance(value, np.ndarray) else value

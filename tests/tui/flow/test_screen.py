@@ -6,6 +6,8 @@ from contextlib import AbstractAsyncContextManager
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from graph.data import Sample
 from launcher.events import LogEvent
 from robot.topics import SONAR_FRONT
@@ -133,7 +135,7 @@ async def test_it_has_what_came_before_it_was_opened_and_the_deck_has_the_trend(
 def test_of_the_past_what_is_repeated_is_kept_twice_and_the_rest_is_bounded() -> None:
     past, now = Past(), update()
     for at_s in range(500):
-        told: dict[str, object] = {"header": {"stamp": at_s}, "speed": 0.1}
+        told = {"header": {"stamp": at_s}, "speed": 0.1, "wheels": np.zeros(4)}
         past.take(
             update(came("/drive", told, at_s), came("/ai_command", {"data": str(at_s)}, at_s))
         )
