@@ -31,3 +31,11 @@ def until_interrupted() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def was_interrupted(error: BaseException) -> bool:
+    """Whether it only comes of a signal: rclpy fails to convert what it is just converting."""
+    cause: BaseException | None = error
+    while cause is not None and not isinstance(cause, KeyboardInterrupt):
+        cause = cause.__cause__ or cause.__context__
+    return cause is not None

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from graph.participants.roll import Roll
 from graph.ros import FAST_DDS_VARIABLES, RANGE, announcing
 from launcher.domain.participants import LocalParticipants
+from ros2.ending import was_interrupted
 from ros2.presence import (
     ANSWERED_WITHIN_S,
     NETWORK_S,
@@ -82,7 +83,12 @@ class Guest:
 
     def spin_once(self, timeout_s: float = SPIN_S) -> None:
         """Take in what has come, or wait a moment for it."""
-        self._executor.spin_once(timeout_sec=timeout_s)
+        try:
+            self._executor.spin_once(timeout_sec=timeout_s)
+        except TypeError as error:
+            if was_interrupted(error):
+                raise KeyboardInterrupt from error
+            raise
 
     def finish(
         self,

@@ -165,7 +165,8 @@ class DeckScreen(Screen[None], Acting, Working):
         if before is None or now is not None:
             return
         had, self._focused_before = self._focused_before, None
-        if had is not None and had.is_attached and self.focused in (None, *before.walk_children()):
+        is_there = had is None or had.is_attached
+        if is_there and self.focused in (None, *before.walk_children()):
             self.set_focus(had)
         self.refresh_bindings()
 
