@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from robot.topics import (
     AI_COMMAND,
     BRAIN_STATE,
@@ -87,9 +85,10 @@ def _said(sample: Sample) -> object:
 
 
 def _comparable(value: Value) -> object:
-    """Return a field with lists in place of arrays."""
+    """Return a field with lists in place of arrays; before the first frame there is no numpy."""
     if isinstance(value, Mapping):
         return {name: _comparable(field) for name, field in value.items()}
     if isinstance(value, list):
         return [_comparable(each) for each in value]
-    return value.tolist() if isinstance(value, np.ndarray) else value
+    to_list = getattr(value, "tolist", None)
+    return value if to_list is None else to_list()
