@@ -93,9 +93,9 @@ class HeadArguments(Arguments):
 class SayArguments(Arguments):
     """Arguments of the tool `say`."""
 
-    text: Annotated[
-        str, Field(min_length=1, max_length=LONGEST_TEXT), AfterValidator(_printable)
-    ] = Field(description="What the robot says aloud.")
+    text: Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT), AfterValidator(_printable)] = Field(
+        description="What the robot says aloud."
+    )
 
 
 class PublishArguments(Arguments):

@@ -22,12 +22,9 @@ class Audit:
     """Appends to the file of one run."""
 
     def __init__(self, log_dir: str) -> None:
-        """Write into this folder, which has to exist."""
         self.path = Path(log_dir) / AUDIT_FILE
 
-    def write(
-        self, agent: str, tool: str, arguments: Mapping[str, object], outcome: str, took_s: float
-    ) -> None:
+    def write(self, agent: str, tool: str, arguments: Mapping[str, object], outcome: str, took_s: float) -> None:
         """Add a line: time (Unix), client, tool, arguments, outcome, seconds.
 
         Raises:

@@ -61,7 +61,6 @@ class GuardedConnection(H11Protocol):
             self._expect_nothing()
 
     def end(self) -> None:
-        """End it at once."""
         self.shows_token()
         self.transport.abort()
 

@@ -45,14 +45,11 @@ HEAD_FIELDS = ("pan", "tilt", "sum", "error")
 REFUSALS = {
     ConsentVerdict.REFUSED: say("the person at the screen has refused"),
     ConsentVerdict.NO_SCREEN: say(
-        "nobody can be asked: no screen of Deck is attached to this session; open one with "
-        "`deck attach`"
+        "nobody can be asked: no screen of Deck is attached to this session; open one with `deck attach`"
     ),
     ConsentVerdict.SCREEN_GONE: say("the screen was closed before anybody answered"),
     ConsentVerdict.LATE: say("nobody at the screen has answered in time"),
-    ConsentVerdict.ENDED: say(
-        "an emergency stop, or the end of the session, has ended the question"
-    ),
+    ConsentVerdict.ENDED: say("an emergency stop, or the end of the session, has ended the question"),
 }
 
 
@@ -157,9 +154,7 @@ class AgentDriving:
             raise RefusedError(checked.preview.words)
         return checked
 
-    async def _execute(
-        self, session: RobotSession, caller: Caller, proposal: Proposal
-    ) -> dict[str, object]:
+    async def _execute(self, session: RobotSession, caller: Caller, proposal: Proposal) -> dict[str, object]:
         if self.approval is Approval.NEVER:
             raise refused("agents do not move this robot: `deck mcp` runs with --approve never")
         if self._under_way.locked():
@@ -167,18 +162,14 @@ class AgentDriving:
         async with self._under_way:
             checked = await self._allowed(session, caller, proposal)
             words = " · ".join(str(line) for line in checked.lines("")[:1])
-            told = say(
-                "agent “{agent}” does {id}: {words}", agent=caller.name, id=proposal.id, words=words
-            )
+            told = say("agent “{agent}” does {id}: {words}", agent=caller.name, id=proposal.id, words=words)
             # Written before anything moves: if that fails, nothing does.
             arguments = {"proposal": proposal.id, "commands": read_json(_thought(proposal, ""))}
             session.audit.write(caller.name, "execute", arguments, "begins", 0.0)
             await session.link.tell(Severity.INFO, told)
             return await self._carry_out(session, proposal, checked)
 
-    async def _allowed(
-        self, session: RobotSession, caller: Caller, proposal: Proposal
-    ) -> CheckedMotion:
+    async def _allowed(self, session: RobotSession, caller: Caller, proposal: Proposal) -> CheckedMotion:
         """Return what is allowed, checked again after the answer."""
         checked = await self._free_to_go(session, proposal.motion)
         # Matched with the parser by the time of the answer, after which nothing is to wait.
@@ -189,8 +180,7 @@ class AgentDriving:
         unasked = self.approval is Approval.ALWAYS
         if unasked and not fits:
             raise refused(
-                "agents may drive {limit:g} m within five minutes without a question, and have "
-                "done so",
+                "agents may drive {limit:g} m within five minutes without a question, and have done so",
                 limit=rules.max_total_m,
             )
         if not unasked:
@@ -216,20 +206,14 @@ class AgentDriving:
         try:
             with session.view.hearing(LLM_RESULT, answers.hear):
                 _unless_stopped(session)
-                sending = session.observer.publish(
-                    LLM_RAW_JSON, STRING, {"data": _thought(proposal, thought)}
-                )
+                sending = session.observer.publish(LLM_RAW_JSON, STRING, {"data": _thought(proposal, thought)})
                 sent = True
                 await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S)
                 await session.view.until(lambda: answers.heard, HEARD_WITHIN_S)
                 if not answers.heard:
                     raise refused("{node} has not answered", node=checked.road.parser)
                 if answers.refused:
-                    raise refused(
-                        "{node} has refused it: {why}",
-                        node=checked.road.parser,
-                        why=answers.refused,
-                    )
+                    raise refused("{node} has refused it: {why}", node=checked.road.parser, why=answers.refused)
                 heads = len(proposal.motion.heads)
                 await session.view.until(lambda: len(answers.heads) >= heads, HEAD_WITHIN_S)
                 await self._drives(session, checked)
@@ -267,11 +251,9 @@ class _Answers:
 
     @property
     def heard(self) -> bool:
-        """Whether it was accepted or refused."""
         return self.accepted or bool(self.refused)
 
     def hear(self, sample: Sample) -> None:
-        """Take in a message."""
         try:
             report = read_json(str(sample.value.get("data", "")))
         except ValueError:
@@ -288,9 +270,7 @@ class _Answers:
             self.heads.append({name: _short(report.get(name)) for name in HEAD_FIELDS})
 
 
-async def _ask(
-    session: RobotSession, caller: Caller, lines: Sequence[Words], *, anew: bool
-) -> ConsentVerdict:
+async def _ask(session: RobotSession, caller: Caller, lines: Sequence[Words], *, anew: bool) -> ConsentVerdict:
     try:
         return await session.link.ask_consent(caller.key, lines, anew=anew)
     except asyncio.CancelledError:

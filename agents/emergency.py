@@ -40,7 +40,6 @@ class EmergencyWatch:
 
     @property
     def holding(self) -> list[str]:
-        """The nodes that report that they hold."""
         return sorted(plain(name, 200) for name, holds in self._nodes.items() if holds)
 
     @property
@@ -81,7 +80,6 @@ class StopPassing:
     """
 
     def __init__(self, link: SupervisorClient) -> None:
-        """Pass on to the nodes of this session."""
         self._link = link
         self._file = StopFile(link.session.domain, "/agents")
         self._waiting: Stop | None = None
@@ -89,7 +87,6 @@ class StopPassing:
         self._passing: asyncio.Future[None] | None = None
 
     def see(self, update: GraphUpdate) -> None:
-        """Take in an update, on the loop."""
         # Where no node listens it would be kept in vain.
         if any(row.name == EMERGENCY_STOP and not row.subscribers for row in update.topics):
             return

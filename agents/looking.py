@@ -16,16 +16,7 @@ from agents.refusal import refused
 from graph.messages.yaml_text import to_yaml
 from graph.pictures.picture import COMPRESSED, IMAGE
 from robot.safety.gate_report import gate_in
-from robot.topics import (
-    BATTERY,
-    CAMERA,
-    HEAD_STATE,
-    MOCK_POSE,
-    ODOMETRY,
-    SAFETY_STATE,
-    SONAR_FRONT,
-    SONAR_REAR,
-)
+from robot.topics import BATTERY, CAMERA, HEAD_STATE, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.plain import plain, plain_lines
 
 if TYPE_CHECKING:
@@ -61,10 +52,7 @@ async def look(session: RobotSession) -> dict[str, object]:
         "session": session.info.name,
         "hardware": session.info.hardware,
         "nodes": nodes,
-        "emergency_stop": {
-            "engaged": session.emergency.engaged,
-            "held_by": session.emergency.holding,
-        },
+        "emergency_stop": {"engaged": session.emergency.engaged, "held_by": session.emergency.holding},
         "gate": gate_fields(fresh_gate(session)),
         "sonar_m": {
             place: _distance(view.newest(topic, FRESH_S))
@@ -100,9 +88,7 @@ async def see(session: RobotSession, asked: SeeArguments) -> tuple[str, dict[str
     if not {IMAGE, COMPRESSED} & set(kinds):
         raise refused("nobody publishes pictures on {topic}", topic=topic)
     with session.view.looking_at(topic):
-        if not await session.view.until(
-            lambda: session.view.newest(topic, SEEN_WITHIN_S) is not None, SEEN_WITHIN_S
-        ):
+        if not await session.view.until(lambda: session.view.newest(topic, SEEN_WITHIN_S) is not None, SEEN_WITHIN_S):
             raise refused("no picture has come within {seconds:g} s", seconds=SEEN_WITHIN_S)
         sample = session.view.newest(topic, math.inf)
     assert sample is not None
@@ -220,11 +206,7 @@ def _planar(pose: Any) -> dict[str, object] | None:  # noqa: ANN401 - a message 
         place, turn = pose["position"], pose["orientation"]
         x, y, z, w = (float(turn[axis]) for axis in "xyzw")
         yaw = math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-        return {
-            "x_m": _number(float(place["x"])),
-            "y_m": _number(float(place["y"])),
-            "yaw_rad": _number(yaw),
-        }
+        return {"x_m": _number(float(place["x"])), "y_m": _number(float(place["y"])), "yaw_rad": _number(yaw)}
     except (KeyError, TypeError, ValueError):
         return None
 

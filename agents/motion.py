@@ -65,9 +65,7 @@ def read_motion(commands: Sequence[object]) -> Motion:
         text = json.dumps({"thought": "", "commands": list(commands)})
         found = parse_llm(text)
     except CommandError as error:
-        problems = "; ".join(
-            f"{one.field}: {one.in_language('en')}".lstrip(": ") for one in error.problems[:5]
-        )
+        problems = "; ".join(f"{one.field}: {one.in_language('en')}".lstrip(": ") for one in error.problems[:5])
         raise refused("the commands are not valid: {problems}", problems=problems) from None
     except (TypeError, ValueError, RecursionError):
         raise refused("the commands are not valid: {problems}", problems="JSON") from None
@@ -116,8 +114,7 @@ def motion_words(motion: Motion, repeat_for_s: float) -> list[Words]:
     elif motion.drive is not None:
         said.append(
             say(
-                "drives at {speed:g} m/s, steering {steering:g} rad, for {seconds:g} s: "
-                "{metres:.2f} m at most",
+                "drives at {speed:g} m/s, steering {steering:g} rad, for {seconds:g} s: {metres:.2f} m at most",
                 speed=motion.drive.speed,
                 steering=motion.drive.steering,
                 seconds=repeat_for_s,

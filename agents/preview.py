@@ -49,9 +49,7 @@ def _towards(gate: Gate, metres: float, distance_m: float) -> Preview:
     slow_m = gate.slow_m or 0.0
     if distance_m > free_m:
         words = say(
-            "the gate would stop it after {reach:.2f} m: obstacle at {metres:.2f} m",
-            reach=free_m,
-            metres=metres,
+            "the gate would stop it after {reach:.2f} m: obstacle at {metres:.2f} m", reach=free_m, metres=metres
         )
     elif metres - distance_m < slow_m:
         words = say("the gate would slow it down: obstacle at {metres:.2f} m", metres=metres)

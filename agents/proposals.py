@@ -65,10 +65,7 @@ class ProposalBook:
             )
         del self._open[name]
         if self._now() - found.made_s > EXECUTED_WITHIN_S:
-            raise refused(
-                "the proposal is older than {seconds:g} s; make a new one",
-                seconds=EXECUTED_WITHIN_S,
-            )
+            raise refused("the proposal is older than {seconds:g} s; make a new one", seconds=EXECUTED_WITHIN_S)
         if found.run_id != run_id:
             raise refused("the proposal was made for another session; make a new one")
         return found

@@ -61,9 +61,7 @@ def check_publish(topic: str, type_name: str, listed: tuple[str, ...]) -> None:
     if topic not in map(full_name, listed):
         raise refused("the profile does not list {name} below `agents: publish:`", name=topic)
     if topic in KEPT or moves(topic, type_name):
-        raise refused(
-            "{name} may move the robot, or its safety rests on it: use `propose`", name=topic
-        )
+        raise refused("{name} may move the robot, or its safety rests on it: use `propose`", name=topic)
 
 
 def check_call(service: str, type_name: str, listed: tuple[str, ...]) -> None:

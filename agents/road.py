@@ -54,9 +54,7 @@ async def road_of(session: RobotSession, *, wheels: bool) -> Road:
     view = session.view
     if view.error:
         raise refused("the robot cannot be seen: {why}", why=view.error)
-    await view.until(
-        lambda: _known(session) and bool(_ends(session, LLM_RAW_JSON)[1]), KNOWN_WITHIN_S
-    )
+    await view.until(lambda: _known(session) and bool(_ends(session, LLM_RAW_JSON)[1]), KNOWN_WITHIN_S)
     if not _known(session):
         raise refused("not all nodes between the agent and the wheels are known by name")
     parsers = _nodes(_ends(session, LLM_RAW_JSON)[1])
@@ -71,10 +69,7 @@ async def road_of(session: RobotSession, *, wheels: bool) -> Road:
     gate = await _gate_of(session)
     repeat_for_s = await _repeats_for_s(session, parser)
     if not 0 < repeat_for_s <= LONGEST_S:
-        raise refused(
-            "{node} does not end a drive by itself: start it with `repeat_for_s` above 0",
-            node=parser,
-        )
+        raise refused("{node} does not end a drive by itself: start it with `repeat_for_s` above 0", node=parser)
     return Road(parser, repeat_for_s, gate)
 
 
@@ -89,9 +84,7 @@ async def _gate_of(session: RobotSession) -> Gate:
     past = _nodes(_ends(session, DRIVE)[1]) - gates
     if past:
         nodes = ", ".join(sorted(past))
-        raise refused(
-            "{nodes} would drive past the safety gate: it hears {topic}", nodes=nodes, topic=DRIVE
-        )
+        raise refused("{nodes} would drive past the safety gate: it hears {topic}", nodes=nodes, topic=DRIVE)
     gate = fresh_gate(session)
     if gate is None:
         raise refused("the safety gate reports nothing")
@@ -108,9 +101,7 @@ async def _repeats_for_s(session: RobotSession, node: str) -> float:
     return seconds if math.isfinite(seconds) else 0.0
 
 
-def _ends(
-    session: RobotSession, topic: str
-) -> tuple[tuple[EndpointInfo, ...], tuple[EndpointInfo, ...]]:
+def _ends(session: RobotSession, topic: str) -> tuple[tuple[EndpointInfo, ...], tuple[EndpointInfo, ...]]:
     row = session.view.topic(topic)
     return ((), ()) if row is None else (row.published_by, row.subscribed_by)
 
@@ -123,7 +114,5 @@ def _nodes(ends: tuple[EndpointInfo, ...]) -> set[str]:
 
 def _known(session: RobotSession) -> bool:
     """Whether all nodes on the road have told their names: until then, any may be anything."""
-    ends = [
-        end for topic in (LLM_RAW_JSON, DRIVE, DRIVE_SAFE) for end in sum(_ends(session, topic), ())
-    ]
+    ends = [end for topic in (LLM_RAW_JSON, DRIVE, DRIVE_SAFE) for end in sum(_ends(session, topic), ())]
     return not any(UNKNOWN in end.node for end in ends)

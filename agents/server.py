@@ -52,11 +52,7 @@ class AgentServer:
     """One server for all agents that are connected."""
 
     def __init__(
-        self,
-        approval: Approval,
-        name: str | None = None,
-        domain: int | None = None,
-        discovery: str | None = None,
+        self, approval: Approval, name: str | None = None, domain: int | None = None, discovery: str | None = None
     ) -> None:
         """Keep to the session of this name or domain; by default the only one that runs."""
         self.driving = AgentDriving(approval)
@@ -154,7 +150,6 @@ class _Record:
         self._outcome, self._severity = say("done"), Severity.DEBUG
 
     def ends(self, outcome: Words, severity: Severity) -> None:
-        """Note how it ends."""
         self._outcome, self._severity = outcome, severity
 
     async def keep(self, took_s: float) -> None:
@@ -217,9 +212,7 @@ def _result(answer: ToolAnswer) -> types.CallToolResult:
     text = types.TextContent(type="text", text=json.dumps(answer.facts, ensure_ascii=False))
     content: list[types.ContentBlock] = [text]
     if answer.jpeg:
-        content.insert(
-            0, types.ImageContent(type="image", data=answer.jpeg, mime_type="image/jpeg")
-        )
+        content.insert(0, types.ImageContent(type="image", data=answer.jpeg, mime_type="image/jpeg"))
     return types.CallToolResult(content=content, structured_content=answer.facts)
 
 

@@ -35,9 +35,7 @@ BOOL = "std_msgs/msg/Bool"
 class RobotSession:
     """A running session: its supervisor, its graph, and the record of what agents do."""
 
-    def __init__(
-        self, link: SupervisorClient, stopped: Callable[[], None], discovery: str | None = None
-    ) -> None:
+    def __init__(self, link: SupervisorClient, stopped: Callable[[], None], discovery: str | None = None) -> None:
         """Begin to look; `stopped` is called while an emergency stop is in force.
 
         `discovery`: how far to look, by default as the session does.
@@ -45,9 +43,7 @@ class RobotSession:
         self.link = link
         self.audit = Audit(link.session.log_dir)
         self.emergency, self._passing = EmergencyWatch(), StopPassing(link)
-        self.observer = Observer(
-            link.session.domain, discovery or link.session.discovery, PERIOD_S, role="agents"
-        )
+        self.observer = Observer(link.session.domain, discovery or link.session.discovery, PERIOD_S, role="agents")
         self.view = GraphView(self.observer)
         self.last_words: Future[int] | None = None
         """A stop of the wheels that has to be sent before the observer ends."""
@@ -72,13 +68,11 @@ class RobotSession:
         await self.view.settled(f"/{name}" for name in serving)
 
     async def until_end(self) -> None:
-        """Return when the session has ended."""
         async for event in self.link.events():
             if isinstance(event, ClosedEvent):
                 return
 
     async def close(self) -> None:
-        """Leave the session and its graph."""
         if self.last_words is not None:
             await asyncio.wait([asyncio.wrap_future(self.last_words)], timeout=SAID_WITHIN_S)
         await asyncio.to_thread(self.observer.stop)
@@ -113,11 +107,7 @@ class SessionFinder:
     """Keeps to the session of a name or a domain, whenever it runs."""
 
     def __init__(
-        self,
-        name: str | None,
-        domain: int | None,
-        stopped: Callable[[], None],
-        discovery: str | None = None,
+        self, name: str | None, domain: int | None, stopped: Callable[[], None], discovery: str | None = None
     ) -> None:
         self._name, self._domain, self._stopped = name, domain, stopped
         self._discovery = discovery
@@ -157,8 +147,7 @@ class SessionFinder:
             return self._why
         # Consent, limits and records are those of the robot's session.
         return say(
-            "{why}. A robot on another machine is spoken to there: start deck mcp on it, over SSH",
-            why=self._why,
+            "{why}. A robot on another machine is spoken to there: start deck mcp on it, over SSH", why=self._why
         )
 
     @property

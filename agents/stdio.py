@@ -89,7 +89,6 @@ class _Out:
         threading.Thread(target=self._write_all, name="mcp-output", daemon=True).start()
 
     async def write(self, text: str) -> None:
-        """Write it; return when it is written."""
         written = asyncio.Event()
         self._queue.put((text.encode(errors="backslashreplace"), written))
         await written.wait()

@@ -93,22 +93,16 @@ async def _echo(call: Call) -> ToolAnswer:
 
 async def _propose(call: Call) -> ToolAnswer:
     asked: ProposeArguments = call.arguments
-    return ToolAnswer(
-        await call.driving.propose(call.session, call.caller, asked.commands, asked.reason)
-    )
+    return ToolAnswer(await call.driving.propose(call.session, call.caller, asked.commands, asked.reason))
 
 
 async def _execute(call: Call) -> ToolAnswer:
-    return ToolAnswer(
-        await call.driving.execute(call.session, call.caller, call.arguments.proposal)
-    )
+    return ToolAnswer(await call.driving.execute(call.session, call.caller, call.arguments.proposal))
 
 
 async def _head(call: Call) -> ToolAnswer:
     asked: HeadArguments = call.arguments
-    return ToolAnswer(
-        await call.driving.turn_head(call.session, call.caller, asked.pan, asked.tilt, asked.reason)
-    )
+    return ToolAnswer(await call.driving.turn_head(call.session, call.caller, asked.pan, asked.tilt, asked.reason))
 
 
 async def _stop(call: Call) -> ToolAnswer:
@@ -176,15 +170,9 @@ TOOLS = (
     ),
 )
 PUBLISH = Tool(
-    "publish",
-    "Publish one message on a topic that the robot's profile lists.",
-    PublishArguments,
-    _publish,
-    acts=True,
+    "publish", "Publish one message on a topic that the robot's profile lists.", PublishArguments, _publish, acts=True
 )
-CALL = Tool(
-    "call", "Call a service that the robot's profile lists.", CallArguments, _call, acts=True
-)
+CALL = Tool("call", "Call a service that the robot's profile lists.", CallArguments, _call, acts=True)
 
 
 def tools_for(rules: AgentRules | None) -> tuple[Tool, ...]:

@@ -25,7 +25,6 @@ class UnaskedWay:
         return max(0.0, limit_m - sum(metres for _when, metres in self._ways))
 
     def has_room(self, metres: float, limit_m: float) -> bool:
-        """Whether a way still fits."""
         return metres <= self.left_m(limit_m) + _ROUNDING
 
     def add(self, metres: float) -> None:

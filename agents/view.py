@@ -28,9 +28,7 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate, NodeRow, Sample, ServiceRow, TopicRow
     from graph.observer.observer import Observer
 
-WATCHED = frozenset(
-    {BATTERY, HEAD_STATE, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR}
-)
+WATCHED = frozenset({BATTERY, HEAD_STATE, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR})
 SETTLED_S = 1.0
 JOINED_WITHIN_S = 8.0
 LOOK_S = 0.1
@@ -83,7 +81,6 @@ class GraphView:
         return sample
 
     def take(self, update: GraphUpdate) -> None:
-        """Take in an update."""
         if update.error and self._update is not None:
             self._news.set()
             return

@@ -51,9 +51,7 @@ def running(argv: Sequence[str], domain: int = DOMAIN) -> Iterator[subprocess.Po
 
 
 @contextmanager
-def nodes(
-    folder: Path, names: Sequence[str] = CHAIN, **params: int
-) -> Iterator[dict[str, subprocess.Popen[bytes]]]:
+def nodes(folder: Path, names: Sequence[str] = CHAIN, **params: int) -> Iterator[dict[str, subprocess.Popen[bytes]]]:
     """Run nodes of the robot on the devices in `folder`; each gets the `params` it knows."""
     specs = load_profile(ROOT / "profiles" / "robot.yaml").nodes
     with ExitStack() as stack:
@@ -85,9 +83,7 @@ def lesson_9() -> Iterator[None]:
         yield
 
 
-def wait_for(
-    found: Callable[[float], float | None], since_s: float, longest_s: float = LONGEST_S
-) -> float:
+def wait_for(found: Callable[[float], float | None], since_s: float, longest_s: float = LONGEST_S) -> float:
     """Wait for a line that arrives after `since_s`; return the time of its arrival."""
     while (at_s := found(since_s)) is None:
         if time.monotonic() - since_s > longest_s:

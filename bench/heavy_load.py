@@ -45,9 +45,7 @@ def cloud() -> PointCloud2:
     return made
 
 
-def publish(
-    lines: list[tuple[Publisher, list[bytes]]], per_s: float, ended: threading.Event
-) -> None:
+def publish(lines: list[tuple[Publisher, list[bytes]]], per_s: float, ended: threading.Event) -> None:
     """Publish the lines in turn, `per_s` messages per second in total."""
     begun_s = time.monotonic()
     for number in count():
@@ -70,10 +68,7 @@ def main() -> None:
         per_s = MANY_HZ * len(MANY)
     else:
         clouds = node.create_publisher(PointCloud2, CLOUD, 3)
-        lines = [
-            (clouds, [serialize_message(cloud())]),
-            (node.create_publisher(Float32, NUMBER, 10), numbers),
-        ]
+        lines = [(clouds, [serialize_message(cloud())]), (node.create_publisher(Float32, NUMBER, 10), numbers)]
         per_s = CLOUD_HZ * len(lines)
     ended = watch_stdin()
     print("ready", flush=True)

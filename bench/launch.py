@@ -64,11 +64,7 @@ class Figures:
 
 def environment() -> dict[str, str]:
     """Return the environment for all processes here."""
-    return {
-        **os.environ,
-        "ROS_DOMAIN_ID": str(DOMAIN),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-    }
+    return {**os.environ, "ROS_DOMAIN_ID": str(DOMAIN), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
 
 @contextmanager
@@ -199,10 +195,7 @@ def main() -> None:
     for kind, row in rows.items():
         print_row(kind, row)
     for kind in (DECK, PICKER):
-        print_row(
-            f"ratio, {kind}",
-            [deck / shell for deck, shell in zip(rows[kind], rows[SHELL], strict=True)],
-        )
+        print_row(f"ratio, {kind}", [deck / shell for deck, shell in zip(rows[kind], rows[SHELL], strict=True)])
 
 
 def print_row(name: str, values: Iterable[float]) -> None:

@@ -35,9 +35,7 @@ def image(grey: int) -> Image:
     return picture
 
 
-def publish(
-    publishers: dict[str, tuple[Publisher, Iterator[bytes]]], ended: threading.Event
-) -> None:
+def publish(publishers: dict[str, tuple[Publisher, Iterator[bytes]]], ended: threading.Event) -> None:
     """Publish each topic at its rate until the end, with different phases."""
     begun_s = time.monotonic()
     due = [(begun_s + 0.0017 * n, topic) for n, topic in enumerate(publishers)]

@@ -52,9 +52,7 @@ async def flood(view: LogView, text: str, seconds: float) -> int:
     start, seq = time.perf_counter(), 0
     for batch in range(int(seconds * BATCHES_PER_S)):
         now = time.time()
-        lines = [
-            LogLine("noisy", seq + n, now, Severity.INFO, f"{text} {seq + n}") for n in range(size)
-        ]
+        lines = [LogLine("noisy", seq + n, now, Severity.INFO, f"{text} {seq + n}") for n in range(size)]
         lines.append(LogLine("quiet", batch + 1, now, Severity.WARN, "still here"))
         seq += size
         view.append(lines)

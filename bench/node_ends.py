@@ -29,16 +29,9 @@ def modules() -> list[str]:
 
 def measure(module: str, number: signal.Signals, *arguments: str, moving: bool = False) -> float:
     """Start a node, wait until it works, send the signal; return the seconds until its end."""
-    environment = {
-        **os.environ,
-        "ROS_DOMAIN_ID": DOMAIN,
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-    }
+    environment = {**os.environ, "ROS_DOMAIN_ID": DOMAIN, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     process = subprocess.Popen(
-        [sys.executable, "-m", module, *arguments],
-        cwd=ROOT,
-        env=environment,
-        stderr=subprocess.PIPE,
+        [sys.executable, "-m", module, *arguments], cwd=ROOT, env=environment, stderr=subprocess.PIPE
     )
     assert process.stderr is not None
     process.stderr.readline()
@@ -75,11 +68,7 @@ def main() -> None:
     for module in modules():
         report(module, [measure(module, number) for number in signals for _ in range(ROUNDS)])
     slow = ("--ros-args", "-p", "move_time:=20.0")
-    head = [
-        measure("nodes.head_controller", number, *slow, moving=True)
-        for number in signals
-        for _ in range(ROUNDS)
-    ]
+    head = [measure("nodes.head_controller", number, *slow, moving=True) for number in signals for _ in range(ROUNDS)]
     report("head in mid-movement", head)
 
 

@@ -110,11 +110,7 @@ def turn(terminal: Terminal) -> tuple[float, float, float]:
         before = now
         time.sleep(0.015)
     passed = time.monotonic() - begun
-    return (
-        shown / passed,
-        100 * (cpu_s(pids) - cpu) / passed,
-        (terminal.received - sent) / passed / 1000,
-    )
+    return (shown / passed, 100 * (cpu_s(pids) - cpu) / passed, (terminal.received - sent) / passed / 1000)
 
 
 def main() -> None:

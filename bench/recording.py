@@ -19,10 +19,7 @@ from bench.recorders.load import HZ, SECONDS, SIZES
 
 DOMAIN = os.environ.get("BENCH_DOMAIN", "79")
 ROUNDS = 3
-SUBJECTS = {
-    "bare raw subscriber, bytes to a file": "bench.recorders.bare",
-    "deck record": "bench.recorders.deck",
-}
+SUBJECTS = {"bare raw subscriber, bytes to a file": "bench.recorders.bare", "deck record": "bench.recorders.deck"}
 """The first is the baseline for the other."""
 ALL_CAME_WITHIN_S = 10.0
 
@@ -46,10 +43,7 @@ def asked(process: subprocess.Popen[str]) -> int:
 
 
 def measure(module: str, folder: Path) -> Figures:
-    with (
-        program(module, DOMAIN, str(folder)) as subject,
-        program("bench.recorders.load", DOMAIN) as load,
-    ):
+    with program(module, DOMAIN, str(folder)) as subject, program("bench.recorders.load", DOMAIN) as load:
         # Importing rclpy and discovery are not part of the recording.
         time.sleep(4.0)
         before_s, begun_s = cpu_s([subject.pid]), time.monotonic()

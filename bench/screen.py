@@ -99,11 +99,7 @@ def at_rest(terminal: Terminal, pids: list[int]) -> tuple[float, float, float]:
     cpu, sent, started = cpu_s(pids), terminal.received, time.monotonic()
     time.sleep(REST_S)
     passed = time.monotonic() - started
-    return (
-        100 * (cpu_s(pids) - cpu) / passed,
-        pss_mb(pids),
-        (terminal.received - sent) / passed,
-    )
+    return (100 * (cpu_s(pids) - cpu) / passed, pss_mb(pids), (terminal.received - sent) / passed)
 
 
 def key_delays_ms(terminal: Terminal) -> list[float]:

@@ -43,11 +43,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name, lesson_9():
         folder = Path(name)
         bare = [sys.executable, "-m", "bench.bare_reflex", folder / "tof_front", folder / "pico"]
-        with (
-            Pico(folder / "pico") as pico,
-            Sonar(folder / "tof_front") as front,
-            Sonar(folder / "tof_rear"),
-        ):
+        with Pico(folder / "pico") as pico, Sonar(folder / "tof_front") as front, Sonar(folder / "tof_rear"):
             with nodes(folder), commander():
                 robot = trials(pico, front, dice, TRIALS)
             with running(list(map(str, bare))):

@@ -72,9 +72,7 @@ def child(scene: str) -> None:
             name, type_name, value = message(scene, count)
             table = rows()
             if scene == "joints":
-                table = tuple(
-                    replace(row, type_names=(JOINTS,)) if row.name == name else row for row in table
-                )
+                table = tuple(replace(row, type_names=(JOINTS,)) if row.name == name else row for row in table)
             newest = {name: (sample(name, type_name, value, 8),)} if name in graph.watched else {}
             graph.show(GraphUpdate(time.time(), topics=table, samples=newest))
             # The screen that opens the session has no table yet.

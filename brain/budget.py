@@ -51,8 +51,7 @@ class TokenUsage:
             return None
         million = 1e6
         return (
-            self.input_tokens * prices.input_per_million
-            + self.output_tokens * prices.output_per_million
+            self.input_tokens * prices.input_per_million + self.output_tokens * prices.output_per_million
         ) / million
 
 
@@ -113,10 +112,7 @@ class Ledger:
                 fix = say("calls_per_minute in llm.yaml")
                 raise ModelError(FaultKind.BUDGET, words, fix, retry_after_s=wait_s)
             if totals.tokens >= budget.tokens_per_session:
-                words = say(
-                    "the budget of {count} tokens a session is used up",
-                    count=budget.tokens_per_session,
-                )
+                words = say("the budget of {count} tokens a session is used up", count=budget.tokens_per_session)
                 raise ModelError(FaultKind.BUDGET, words, say("tokens_per_session in llm.yaml"))
             lines.append({"begun_s": time.time(), "who": who})
 
@@ -176,9 +172,5 @@ def _totals(lines: list[dict[str, Any]]) -> Totals:
     begun = [float(line["begun_s"]) for line in lines if "begun_s" in line]
     # A clock that is set back must not lock the user out: what lies in the future has passed.
     recent = [at_s for at_s in begun if 0 <= now_s - at_s < MINUTE_S]
-    tokens = sum(
-        int(line["input_tokens"]) + int(line["output_tokens"])
-        for line in lines
-        if "ended_s" in line
-    )
+    tokens = sum(int(line["input_tokens"]) + int(line["output_tokens"]) for line in lines if "ended_s" in line)
     return Totals(len(begun), len(recent), tokens, now_s - min(recent, default=now_s))

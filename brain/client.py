@@ -114,9 +114,7 @@ class ModelClient:
             await self._made.close()
             self._made = None
 
-    async def ask(
-        self, request: ModelRequest, on_text: Callable[[str], None] = lambda _: None
-    ) -> Answer:
+    async def ask(self, request: ModelRequest, on_text: Callable[[str], None] = lambda _: None) -> Answer:
         """Return the answer; `on_text` gets its pieces as they come.
 
         Raises:
@@ -142,9 +140,7 @@ class ModelClient:
             words = say("the server wants to be left alone for another {wait:.0f} s", wait=wait_s)
             raise ModelError(FaultKind.BUSY, words, retry_after_s=wait_s)
 
-    async def _receive(
-        self, request: ModelRequest, received: _Received, on_text: Callable[[str], None]
-    ) -> None:
+    async def _receive(self, request: ModelRequest, received: _Received, on_text: Callable[[str], None]) -> None:
         limit_s = self.settings.first_token_s
         with anyio.move_on_after(limit_s) as beginning:
             async with self._open(request) as stream:
@@ -185,7 +181,6 @@ class ModelClient:
 
     @contextmanager
     def _faults(self, received: _Received) -> Iterator[None]:
-        """Say in words what the client raises."""
         try:
             yield
         except TimeoutError:
@@ -223,11 +218,7 @@ def _taken(received: _Received, chunk: Any) -> str:  # noqa: ANN401 - a server m
 
 
 def _not_an_api(base_url: str, kind: str) -> ModelError:
-    words = say(
-        "{url} is not the address of a model server: it sent {kind}",
-        url=base_url,
-        kind=kind or "-",
-    )
+    words = say("{url} is not the address of a model server: it sent {kind}", url=base_url, kind=kind or "-")
     return ModelError(FaultKind.NOT_AN_API, words, say("base_url usually ends in /v1"))
 
 

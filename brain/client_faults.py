@@ -23,9 +23,7 @@ _HANGS_UP = (httpx2.ReadError, httpx2.WriteError, httpx2.CloseError, httpx2.Remo
 """What the transport raises once it is connected."""
 
 
-def fault_of(
-    error: Exception, settings: ModelSettings, key: ServerKey, *, begun: bool = False
-) -> ModelError | None:
+def fault_of(error: Exception, settings: ModelSettings, key: ServerKey, *, begun: bool = False) -> ModelError | None:
     """Return what an error means, None for one that is a mistake of Deck's own.
 
     `begun`: whether some of the answer has come.
@@ -107,9 +105,7 @@ def of_status(status: int, said: str, retry_after: str, settings: ModelSettings)
         words = say("the server failed ({status}): {words}", status=status, words=said)
         return ModelError(FaultKind.SERVER, words)
     if 300 <= status < 400:
-        words = say(
-            "the server at {url} sends elsewhere ({status})", url=settings.base_url, status=status
-        )
+        words = say("the server at {url} sends elsewhere ({status})", url=settings.base_url, status=status)
         return ModelError(FaultKind.NOT_AN_API, words, say("correct base_url in llm.yaml"))
     words = say("the server refuses the request ({status}): {words}", status=status, words=said)
     return ModelError(FaultKind.REQUEST, words)

@@ -50,9 +50,7 @@ class FaultKind(Enum):
 class ModelError(Exception):
     """No usable answer; str() is the reason in English."""
 
-    def __init__(
-        self, kind: FaultKind, words: Words, fix: str = "", *, retry_after_s: float | None = None
-    ) -> None:
+    def __init__(self, kind: FaultKind, words: Words, fix: str = "", *, retry_after_s: float | None = None) -> None:
         """`words` and `fix` are made by `text.sentences.say`."""
         super().__init__(words)
         self.kind, self.words, self.fix = kind, words, fix
@@ -68,7 +66,5 @@ def cut_off() -> ModelError:
 def not_set_up() -> ModelError:
     """Return the fault of having no settings at all."""
     return ModelError(
-        FaultKind.SETTINGS,
-        say("no language model is set up"),
-        say("docs/models.md tells how to choose one"),
+        FaultKind.SETTINGS, say("no language model is set up"), say("docs/models.md tells how to choose one")
     )

@@ -45,15 +45,12 @@ class ServerKey:
         return text.replace(self._text, _HIDDEN) if self._text else text
 
     def __bool__(self) -> bool:
-        """Whether there is one."""
         return bool(self._text)
 
     def __eq__(self, other: object) -> bool:
-        """Whether it is the same key."""
         return isinstance(other, ServerKey) and other._text == self._text
 
     def __hash__(self) -> int:
-        """Return that of its text."""
         return hash(self._text)
 
     def __repr__(self) -> str:
@@ -79,9 +76,7 @@ def key_of(settings: ModelSettings, environ: Mapping[str, str] | None = None) ->
     if settings.key_file is not None:
         path = Path(settings.key_file).expanduser()
         return _checked(_read(path), str(path))
-    return (
-        _checked(environ[KEY_VARIABLE], KEY_VARIABLE) if environ.get(KEY_VARIABLE) else ServerKey()
-    )
+    return _checked(environ[KEY_VARIABLE], KEY_VARIABLE) if environ.get(KEY_VARIABLE) else ServerKey()
 
 
 def _read(path: Path) -> str:
@@ -104,8 +99,6 @@ def _checked(text: str, place: str) -> ServerKey:
     """Refuse what no header can hold: an HTTP library would show it in its error."""
     text = text.strip()
     if len(text) > _LONGEST or not _PRINTABLE.fullmatch(text):
-        words = say(
-            "{place} does not hold a key, which is one line of letters and digits", place=place
-        )
+        words = say("{place} does not hold a key, which is one line of letters and digits", place=place)
         raise ModelError(FaultKind.SETTINGS, words)
     return ServerKey(text)

@@ -46,9 +46,7 @@ class Rung(Enum):
     TOOL = "tool call"
 
 
-def request_for(
-    rung: Rung, schema: Mapping[str, Any], messages: Sequence[Message], model: str
-) -> ModelRequest:
+def request_for(rung: Rung, schema: Mapping[str, Any], messages: Sequence[Message], model: str) -> ModelRequest:
     """Return the request for an answer that obeys a JSON schema."""
     asked = list(messages)
     form: dict[str, Any]
@@ -57,9 +55,7 @@ def request_for(
         form = {"response_format": {"type": "json_schema", "json_schema": named}}
     elif rung is Rung.OBJECT:
         form = {"response_format": {"type": "json_object"}}
-        words = (
-            f"Answer with one JSON object and nothing else. Its JSON schema:\n{json.dumps(schema)}"
-        )
+        words = f"Answer with one JSON object and nothing else. Its JSON schema:\n{json.dumps(schema)}"
         asked.append({"role": "system", "content": words})
     else:
         tool = {"name": NAME, "description": "Gives the answer.", "parameters": schema}
@@ -81,10 +77,7 @@ class Ladder:
         self._rung: Rung | None = None
 
     async def ask(
-        self,
-        schema: Mapping[str, Any],
-        messages: Sequence[Message],
-        on_text: Callable[[str], None] = lambda _: None,
+        self, schema: Mapping[str, Any], messages: Sequence[Message], on_text: Callable[[str], None] = lambda _: None
     ) -> Answer:
         """Return an answer that was asked for in a form; whoever asked checks whether it has it.
 
@@ -186,11 +179,5 @@ class Ladder:
         return f"{self._client.settings.base_url} {self._model}"
 
 
-_OF_THIS_WAY = (
-    FaultKind.REQUEST,
-    FaultKind.EMPTY,
-    FaultKind.REFUSAL,
-    FaultKind.TOO_LONG,
-    FaultKind.SERVER,
-)
+_OF_THIS_WAY = (FaultKind.REQUEST, FaultKind.EMPTY, FaultKind.REFUSAL, FaultKind.TOO_LONG, FaultKind.SERVER)
 """After these the next way may still work; after a wrong key, none does."""

@@ -45,9 +45,7 @@ class PictureSeen(_StrictShape):
     """What is on a picture."""
 
     description: Annotated[str, Field(description="What is on the picture, in a sentence or two")]
-    things: Annotated[
-        list[PictureThing], Field(description="What stands out, with boxes if you can")
-    ]
+    things: Annotated[list[PictureThing], Field(description="What stands out, with boxes if you can")]
 
 
 async def look(ladder: Ladder, prompt: str, jpeg: bytes) -> Thought[PictureSeen]:

@@ -35,8 +35,6 @@ def read_prompt(path: Path) -> str:
         words = say("the prompt {path} cannot be read: {reason}", path=str(path), reason=reason)
         raise ModelError(FaultKind.PROMPT, words) from None
     if len(data) > LONGEST:
-        words = say(
-            "the prompt {path} is longer than {limit} KiB", path=str(path), limit=LONGEST // 1024
-        )
+        words = say("the prompt {path} is longer than {limit} KiB", path=str(path), limit=LONGEST // 1024)
         raise ModelError(FaultKind.PROMPT, words)
     return data.decode("utf-8", "replace")

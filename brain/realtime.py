@@ -137,11 +137,7 @@ class RealtimeTalk:
     async def _talk(self, client: openai.AsyncOpenAI) -> None:
         async with client.realtime.connect(
             model=self._settings.realtime_model,
-            websocket_connection_options={
-                "max_size": _LONGEST_EVENT,
-                "max_queue": _MOST_EVENTS,
-                "compression": None,
-            },
+            websocket_connection_options={"max_size": _LONGEST_EVENT, "max_queue": _MOST_EVENTS, "compression": None},
         ) as self._connection:
             await self._send({"type": "session.update", "session": self._session()})
             sending = asyncio.create_task(self._send_sound())
@@ -213,11 +209,7 @@ class RealtimeTalk:
         elif kind == "response.output_audio_transcript.done":
             self._handlers.said(str(_part(event, "transcript")))
         elif kind == "response.function_call_arguments.done":
-            await self._call(
-                str(_part(event, "name")),
-                str(_part(event, "call_id")),
-                str(_part(event, "arguments")),
-            )
+            await self._call(str(_part(event, "name")), str(_part(event, "call_id")), str(_part(event, "arguments")))
         elif kind == "response.created":
             self._asked_s, self._first_s = time.monotonic(), 0.0
             self._ledger.begin(self._who, self._settings.budget)
@@ -261,9 +253,7 @@ class RealtimeTalk:
         usage, now_s = _part(response, "usage"), time.monotonic()
         taken = (_count_in(usage, "input_tokens"), _count_in(usage, "output_tokens"))
         first_s = (self._first_s or now_s) - self._asked_s
-        used = TokenUsage(
-            self._settings.realtime_model, *taken, first_s, now_s - self._asked_s, bool(usage)
-        )
+        used = TokenUsage(self._settings.realtime_model, *taken, first_s, now_s - self._asked_s, bool(usage))
         self._ledger.end(self._who, used)
         self._handlers.used(used)
         if getattr(response, "status", "") == "failed":

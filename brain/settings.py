@@ -115,9 +115,7 @@ def settings_path() -> Path:
     return user_config_path("deck") / FILE
 
 
-def load(
-    path: Path | None = None, environ: Mapping[str, str] | None = None
-) -> ModelSettings | None:
+def load(path: Path | None = None, environ: Mapping[str, str] | None = None) -> ModelSettings | None:
     """Return the user's settings, None if there are none.
 
     Raises:
@@ -166,9 +164,7 @@ def _tree(path: Path) -> Branch | None:
         raise _bad(_at(str(path), error.line, error.column, error.message)) from None
 
 
-def _fault(
-    error: ValidationError, path: Path, tree: Branch | None, variables: Mapping[str, str]
-) -> ModelError:
+def _fault(error: ValidationError, path: Path, tree: Branch | None, variables: Mapping[str, str]) -> ModelError:
     """Return the first mistake, with its place: a variable's name, or line and column."""
     first = error.errors(include_url=False, include_context=True)[0]
     where: Where = first["loc"]
@@ -178,9 +174,7 @@ def _fault(
         return _bad(say("{variable}: {problem}", variable=variable, problem=words), fix)
     place = tree and place_of(tree, where, key=first["type"] == "extra_forbidden")
     problem = say("{field}: {problem}", field=field_name(where), problem=words)
-    return _bad(
-        _at(str(path), place.line if place else 1, place.column if place else 1, problem), fix
-    )
+    return _bad(_at(str(path), place.line if place else 1, place.column if place else 1, problem), fix)
 
 
 def _explained(kind: str, where: Where, context: Mapping[str, Any]) -> tuple[Words, str]:
@@ -208,10 +202,7 @@ def _unknown(where: Where) -> tuple[Words, str]:
     return words, did_you_mean(str(where[-1]), known)
 
 
-_WORDS = {
-    "url": say("expected an address"),
-    "url_key": say("an address must hold no key"),
-}
+_WORDS = {"url": say("expected an address"), "url_key": say("an address must hold no key")}
 _PREFIXES = {
     "int": say("expected a number"),
     "float": say("expected a number"),
@@ -237,9 +228,7 @@ def _fields(where: Where) -> list[str]:
 
 
 def _at(path: str, line: int, column: int, problem: str) -> Words:
-    return say(
-        "{path}:{line}:{column}: {problem}", path=path, line=line, column=column, problem=problem
-    )
+    return say("{path}:{line}:{column}: {problem}", path=path, line=line, column=column, problem=problem)
 
 
 def _bad(words: Words, fix: str = "") -> ModelError:

@@ -43,7 +43,6 @@ class Situation:
     """The newest picture as a JPEG, for a model with vision."""
 
     def message(self) -> Message:
-        """Return it as a message of the user."""
         said = f'Somebody says: "{self.heard[:LONGEST_HEARD]}"'
         text = f"{self.senses()}\n{said}"
         if not self.picture:
@@ -53,19 +52,12 @@ class Situation:
 
     def senses(self) -> str:
         """Return what the senses say, a line each."""
-        lines = [
-            f"Distance ahead: {_metres(self.front_m)}",
-            f"Distance behind: {_metres(self.rear_m)}",
-        ]
+        lines = [f"Distance ahead: {_metres(self.front_m)}", f"Distance behind: {_metres(self.rear_m)}"]
         if self.pose is not None:
             at = f"x {self.pose.x_m:.2f} m, y {self.pose.y_m:.2f} m"
             heading_deg = math.degrees(self.pose.heading_rad)
             lines.append(f"Position: {at}, heading {heading_deg:.0f} deg, + is left")
-        for name, words in (
-            ("Safety gate", self.gate),
-            ("Your last commands", self.refused),
-            ("Camera", self.seen),
-        ):
+        for name, words in (("Safety gate", self.gate), ("Your last commands", self.refused), ("Camera", self.seen)):
             if words:
                 lines.append(f"{name}: {words[:_LONGEST_REASON]}")
         return "\n".join(lines)

@@ -79,9 +79,7 @@ async def _up(options: Namespace) -> int:
     )
     profile = in_own_domain(profile, options.domain)
     try:
-        link = await client.launch(
-            profile, foreground=False, node_lang=language(), supervisor=options.supervisor
-        )
+        link = await client.launch(profile, foreground=False, node_lang=language(), supervisor=options.supervisor)
     except AlreadyRunningError as error:
         say_error(localized(error.args[0]))
         # Not a usage error: this very profile is running.
@@ -103,12 +101,7 @@ async def _up(options: Namespace) -> int:
     if healthy:
         write(typable(_("`deck attach` shows it, `deck down` stops it")))
     else:
-        say_error(
-            _(
-                "some nodes are not healthy; `deck logs NODE` shows why, `deck down` stops the "
-                "profile"
-            )
-        )
+        say_error(_("some nodes are not healthy; `deck logs NODE` shows why, `deck down` stops the profile"))
     return 0 if healthy else 1
 
 
@@ -195,9 +188,7 @@ async def _logs(options: Namespace) -> int:
         await link.aclose()
 
 
-async def _follow(
-    link: client.SupervisorClient, node: str | None, report: TextReport, last: dict[str, int]
-) -> int:
+async def _follow(link: client.SupervisorClient, node: str | None, report: TextReport, last: dict[str, int]) -> int:
     """Report the lines after the `last` ones, of all nodes or of one, until the session ends."""
     async for event in link.events():
         if isinstance(event, ClosedEvent):

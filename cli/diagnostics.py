@@ -36,9 +36,7 @@ def diagnostics_command(options: Namespace) -> int:
     """Listen for a moment, and show the tree; return 1 if anything is not all right."""
     with domain_view(options.domain, options.discovery, follow=(DIAGNOSTICS,)) as view:
         words = _("listening to {topic} in domain {domain} for {seconds:g} s")
-        tell_that_it_takes_time(
-            words.format(topic=DIAGNOSTICS, domain=view.domain, seconds=options.seconds)
-        )
+        tell_that_it_takes_time(words.format(topic=DIAGNOSTICS, domain=view.domain, seconds=options.seconds))
         book = _heard(view, options.seconds)
     rows = tree(book.records)
     if options.json:
@@ -65,11 +63,7 @@ def _heard(view: DomainView, seconds: float) -> DiagnosticsBook:
     if not book.records:
         view.refuse_empty(update)
         raise UsageError(
-            say(
-                "nobody has said anything on {topic} in domain {domain}",
-                topic=DIAGNOSTICS,
-                domain=view.domain,
-            )
+            say("nobody has said anything on {topic} in domain {domain}", topic=DIAGNOSTICS, domain=view.domain)
         )
     return book
 

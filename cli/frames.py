@@ -135,8 +135,7 @@ def _show(tree: FrameTree, findings: Sequence[FrameFinding], domain: int) -> Non
     else:
         head = (_("FRAME"), _("RATE"), _("AGE"), _("PUBLISHER"))
         rows = [
-            (cells.name(line), cells.state(line)[0], cells.age(line)[0], cells.publisher(line)[0])
-            for line in lines
+            (cells.name(line), cells.state(line)[0], cells.age(line)[0], cells.publisher(line)[0]) for line in lines
         ]
         for row in table(head, rows):
             write(row)

@@ -122,9 +122,7 @@ def _writable(name: str) -> Path:
     try:
         path.open("a", encoding="utf-8").close()
     except OSError as error:
-        raise UsageError(
-            say("{path} cannot be written: {reason}", path=name, reason=os_reason(error))
-        ) from error
+        raise UsageError(say("{path} cannot be written: {reason}", path=name, reason=os_reason(error))) from error
     return path
 
 
@@ -164,10 +162,7 @@ def _tell_of_confinement(walls: Walls) -> None:
 
 
 async def _graded(
-    terms: Terms,
-    chosen: Sequence[Submission],
-    room: tuple[int, Domains],
-    report: _GradeReport,
+    terms: Terms, chosen: Sequence[Submission], room: tuple[int, Domains], report: _GradeReport
 ) -> list[Grade]:
     """Grade them, as many at once as there is room; return the grades in the folders' order."""
     grades: dict[int, Grade] = {}
@@ -176,9 +171,7 @@ async def _graded(
     for each in ENDING:
         loop.add_signal_handler(each, task.cancel)
     try:
-        async with aclosing(
-            grade_all(terms, chosen, jobs=room[0], domains=room[1], on_step=report.step)
-        ) as coming:
+        async with aclosing(grade_all(terms, chosen, jobs=room[0], domains=room[1], on_step=report.step)) as coming:
             async for number, grade in coming:
                 grades[number] = grade
                 report.grade(grade)
@@ -213,16 +206,11 @@ class _GradeReport:
             self._write(f"{'':{_WIDTH + 8}}{more}")
 
     def grade(self, grade: Grade) -> None:
-        """A folder has been graded."""
         self._done += 1
         if self._count > 1:
-            say_error(
-                f"{self._done}/{self._count} {plain(grade.student)}: "
-                f"{grade.points}/{grade.max_points}"
-            )
+            say_error(f"{self._done}/{self._count} {plain(grade.student)}: {grade.points}/{grade.max_points}")
 
     def end(self, grades: Sequence[Grade]) -> None:
-        """All have been graded."""
         if len(grades) == 1:
             self._end_of_one(grades[0])
             return

@@ -19,10 +19,7 @@ def settled(nodes: Mapping[str, NodeStatus]) -> bool:
     """Whether no node is still starting: each is ready, has ended, or is waiting in vain."""
     return not any(
         node.state is NodeState.STARTING
-        or (
-            node.state is NodeState.WAITING
-            and all(nodes[name].serves for name in node.needs if name in nodes)
-        )
+        or (node.state is NodeState.WAITING and all(nodes[name].serves for name in node.needs if name in nodes))
         for node in nodes.values()
     )
 
@@ -31,10 +28,7 @@ def over(nodes: Mapping[str, NodeStatus]) -> bool:
     """Whether every node has ended and none will be started again."""
     ended = (NodeState.EXITED, NodeState.FAILED)
     stuck = settled(nodes)
-    return all(
-        node.state in ended or (stuck and node.state is NodeState.WAITING)
-        for node in nodes.values()
-    )
+    return all(node.state in ended or (stuck and node.state is NodeState.WAITING) for node in nodes.values())
 
 
 def well(node: NodeStatus, optional: Collection[str] = (), *, on_the_way: bool = False) -> bool:

@@ -23,11 +23,7 @@ def level_command(options: Namespace) -> int:
     with domain_view(options.domain, options.discovery) as view:
         found = view.finds(node)
         inner = view.observer.inner
-        asked = (
-            inner.logger_level(node)
-            if options.level is None
-            else inner.set_logger_level(node, options.level)
-        )
+        asked = inner.logger_level(node) if options.level is None else inner.set_logger_level(node, options.level)
         result = asked.result()
     if result.error:
         say_error(f"deck: {plain(localized(result.error))}")

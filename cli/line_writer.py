@@ -21,12 +21,7 @@ class LineWriter:
     """Writes lines to a descriptor, in order, without ever blocking the caller."""
 
     def __init__(
-        self,
-        fd: int,
-        encoding: str,
-        *,
-        left_out: Callable[[int], str],
-        on_gone: Callable[[], object],
+        self, fd: int, encoding: str, *, left_out: Callable[[int], str], on_gone: Callable[[], object]
     ) -> None:
         """Begin.
 
@@ -65,9 +60,7 @@ class LineWriter:
     def finish(self, within_s: float = 5.0) -> None:
         """Wait until everything is written, up to a time limit."""
         with self._lock:
-            self._lock.wait_for(
-                lambda: self.gone or not (self._waiting or self._busy), timeout=within_s
-            )
+            self._lock.wait_for(lambda: self.gone or not (self._waiting or self._busy), timeout=within_s)
 
     def _append(self, line: str) -> None:
         data = (harmless(line) + "\n").encode(self._encoding, "replace")

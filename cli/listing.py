@@ -51,10 +51,7 @@ def check_command(options: Namespace) -> int:
         from cli.preflight.command import preflight_command
 
         return preflight_command(options)
-    if options.profile:
-        paths = [find_profile(options.profile)]
-    else:
-        paths = [entry.path for entry in list_profiles()]
+    paths = [find_profile(options.profile)] if options.profile else [entry.path for entry in list_profiles()]
     if options.json:
         found = [_checked(path, options) for path in paths]
         write(json_text(found, indent=2))
@@ -63,9 +60,7 @@ def check_command(options: Namespace) -> int:
 
 
 def _load(path: Path, options: Namespace) -> Profile:
-    return load_profile(
-        path, hardware=options.hardware, overrides=options.overrides, domain=options.domain
-    )
+    return load_profile(path, hardware=options.hardware, overrides=options.overrides, domain=options.domain)
 
 
 def _checked(path: Path, options: Namespace) -> dict[str, list[dict[str, object]] | str]:

@@ -81,9 +81,7 @@ def _server(options: Namespace) -> AgentServer:
     return AgentServer(Approval(options.approve), options.name, options.domain, options.discovery)
 
 
-def _run(
-    serving: Callable[[AgentServer], Coroutine[object, object, None]], options: Namespace
-) -> None:
+def _run(serving: Callable[[AgentServer], Coroutine[object, object, None]], options: Namespace) -> None:
     async def until_signal() -> None:
         task, loop = asyncio.current_task(), asyncio.get_running_loop()
         assert task is not None

@@ -91,10 +91,7 @@ def _warn_of_little_memory(file: ModelFile, size: int) -> None:
 
     free = psutil.virtual_memory().available
     if size > free:
-        words = _(
-            "{file} takes {size:.1f} GB of memory, and {free:.1f} GB are free: it will be slow, or"
-            " be killed"
-        )
+        words = _("{file} takes {size:.1f} GB of memory, and {free:.1f} GB are free: it will be slow, or be killed")
         words = words.format(file=shown(file.path), size=size / 1e9, free=free / 1e9)
         say_error(Paint(sys.stderr)(words, YELLOW))
 
@@ -150,9 +147,7 @@ def _introduce(order: Order, address: str) -> None:
     words = _("{name} is served at {url}, {context} tokens at once; Ctrl-C ends it")
     write(paint(words.format(name=order.name, url=url, context=order.context), BOLD))
     if not _loopback(order.host):
-        words = _(
-            "WARNING: whoever reaches {host} on the network can use it, and there is no password"
-        )
+        words = _("WARNING: whoever reaches {host} on the network can use it, and there is no password")
         say_error(Paint(sys.stderr)(words.format(host=host), RED))
     if _in_use(url, order.name):
         write(_("Deck's settings already name it"))
@@ -178,9 +173,5 @@ def _in_use(url: str, name: str) -> bool:
 
 
 def _told(answered: ServedAnswer) -> str:
-    words = _(
-        "answered in {took:.1f} s: {read} tokens read, {written} written, {rate:.0f} a second"
-    )
-    return words.format(
-        took=answered.took_s, read=answered.read, written=answered.written, rate=answered.rate
-    )
+    words = _("answered in {took:.1f} s: {read} tokens read, {written} written, {rate:.0f} a second")
+    return words.format(took=answered.took_s, read=answered.read, written=answered.written, rate=answered.rate)

@@ -23,10 +23,7 @@ def new_command(options: Namespace) -> int:
     """Make the folder, and say what is in it and what comes next."""
     if bool(options.lesson) == bool(options.node):
         raise UsageError(say("write deck new LESSON or deck new --node NAME"))
-    if options.node:
-        made = new_node(options.node)
-    else:
-        made = new_folder(find_lesson(options.lesson), again=options.again)
+    made = new_node(options.node) if options.node else new_folder(find_lesson(options.lesson), again=options.again)
     tell(made)
     return 0
 

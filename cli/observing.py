@@ -109,8 +109,7 @@ class DomainView:
                 )
                 if self.discovery == "localhost"
                 else say(
-                    "no node was found in domain {domain}: start one, or choose another with "
-                    "--domain",
+                    "no node was found in domain {domain}: start one, or choose another with --domain",
                     domain=self.domain,
                 )
             )
@@ -119,11 +118,7 @@ class DomainView:
 
 @contextmanager
 def domain_view(
-    asked: int | None,
-    wanted: str | None = None,
-    *,
-    follow: Iterable[str] = (),
-    all_topics: bool = False,
+    asked: int | None, wanted: str | None = None, *, follow: Iterable[str] = (), all_topics: bool = False
 ) -> Iterator[DomainView]:
     """Observe the domain that was asked for, else that of the running robot, and leave it again.
 

@@ -46,13 +46,9 @@ def record_command(options: Namespace) -> int:
 
     topics = [_topic(name) for name in options.topics]
     what, domain, discovery = running_domain(options.domain, options.discovery)
-    without = (frozenset() if options.images else IMAGES) | (
-        frozenset() if options.clouds else {POINT_CLOUD}
-    )
+    without = (frozenset() if options.images else IMAGES) | (frozenset() if options.clouds else {POINT_CLOUD})
     folder = Path(options.output) if options.output else new_recording(what)
-    recorder = Recorder(
-        domain, discovery, folder, topics or None, hidden=options.hidden, without=without
-    )
+    recorder = Recorder(domain, discovery, folder, topics or None, hidden=options.hidden, without=without)
     stop = stop_by_signals()
     keep_stdout_to_ourselves()
     # There may be no supervisor here that does it.
@@ -73,9 +69,7 @@ def _topic(name: str) -> str:
     """Return the full name of a topic; raises UsageError if it is invalid."""
     full = f"/{name.lstrip('/')}"
     if not TOPIC_NAME.fullmatch(full):
-        raise UsageError(
-            say("{name!r} is not a valid topic name; write it as /sensor/sonar_front", name=name)
-        )
+        raise UsageError(say("{name!r} is not a valid topic name; write it as /sensor/sonar_front", name=name))
     return full
 
 

@@ -37,11 +37,7 @@ def list_recordings() -> int:
         write(row)
         if bag.trouble:
             write(paint(f"  {localized(bag.trouble)}", YELLOW))
-    write(
-        _("recordings are in {folder}; to open one: deck replay NAME").format(
-            folder=plain(str(folder))
-        )
-    )
+    write(_("recordings are in {folder}; to open one: deck replay NAME").format(folder=plain(str(folder))))
     return 0
 
 

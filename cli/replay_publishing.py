@@ -49,11 +49,7 @@ def publish_bag(path: Path, options: Namespace) -> int:
 
 
 def _publish(
-    bag: Bag,
-    domain: int,
-    discovery: str | tuple[str, ...],
-    stop: threading.Event,
-    options: Namespace,
+    bag: Bag, domain: int, discovery: str | tuple[str, ...], stop: threading.Event, options: Namespace
 ) -> int:
     from graph.bag.publishing import BagPublisher
     from graph.ros import open_ros
@@ -66,9 +62,7 @@ def _publish(
         say_error(localized(say("ROS cannot be used: {reason}", reason=error)))
         return 1
     try:
-        publisher = BagPublisher(
-            bag, ros, lambda topic: _refusal(topic, motion=options.motion), STOPPED_BY_ZEROS
-        )
+        publisher = BagPublisher(bag, ros, lambda topic: _refusal(topic, motion=options.motion), STOPPED_BY_ZEROS)
         if not publisher.topics:
             _tell_left_out(publisher.progress, set())
             raise nothing_to_publish(bag.path, bag.messages_count)
@@ -126,8 +120,6 @@ def _tell_left_out(progress: PublishingProgress, told: set[str]) -> set[str]:
 
 
 def _words(progress: PublishingProgress, bag: Bag) -> str:
-    place = _("{now} of {length}").format(
-        now=length_words(progress.seconds), length=length_words(bag.length_s)
-    )
+    place = _("{now} of {length}").format(now=length_words(progress.seconds), length=length_words(bag.length_s))
     count = progress.messages
     return BETWEEN.join((place, ngettext("{n} message", "{n} messages", count).format(n=count)))

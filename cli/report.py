@@ -86,9 +86,7 @@ class TextReport:
         self._write = write
         self._paint = paint
         self._width = max(map(len, (*names, DECK))) + 2
-        self._colours = {
-            name: PREFIX_COLOURS[index % len(PREFIX_COLOURS)] for index, name in enumerate(names)
-        }
+        self._colours = {name: PREFIX_COLOURS[index % len(PREFIX_COLOURS)] for index, name in enumerate(names)}
 
     def session(self, session: SessionInfo) -> None:
         """Report what was started, and how to stop it."""
@@ -112,11 +110,8 @@ class TextReport:
         self._line(line.node, self._paint(text, colour) if colour else plain(text))
 
     def skipped(self, node: str, lines: int) -> None:
-        """Report that lines were left out."""
         words = ngettext(
-            "{count} line left out, the log file has it",
-            "{count} lines left out, the log file has them",
-            lines,
+            "{count} line left out, the log file has it", "{count} lines left out, the log file has them", lines
         )
         self._line(node, self._paint(words.format(count=lines), DIM))
 
@@ -125,7 +120,6 @@ class TextReport:
         self._line(DECK, plain(text))
 
     def summary(self, summary: Summary) -> None:
-        """Report the result as a table."""
         nodes, healthy = summary.nodes, summary.healthy
         head = (_("NODE"), _("RESULT"), _("STATE"), _("RESTARTS"), _("DETAIL"))
         rows = [
@@ -148,19 +142,13 @@ class TextReport:
         if bad:
             parts.append(_("not healthy: {names}").format(names=", ".join(bad)))
         if summary.reason:
-            parts.append(
-                _("ended from elsewhere: {reason}").format(reason=localized(summary.reason))
-            )
+            parts.append(_("ended from elsewhere: {reason}").format(reason=localized(summary.reason)))
         unasked = [node.name for node in nodes if healthy[node.name] and node.unasked]
         if not parts and unasked:
             words = _("no node has failed; not asked whether at work: {names}")
             parts.append(words.format(names=", ".join(unasked)))
         words = plain("; ".join(parts)) or _("every node stayed healthy")
-        self._write(
-            _("{words}; {seconds:.1f} s").format(
-                words=words, seconds=LocalizedFloat(summary.seconds)
-            )
-        )
+        self._write(_("{words}; {seconds:.1f} s").format(words=words, seconds=LocalizedFloat(summary.seconds)))
 
     def _line(self, node: str, text: str) -> None:
         prefix = f"[{node}]".ljust(self._width)
@@ -180,7 +168,6 @@ class JsonReport:
         self._write = write
 
     def session(self, session: SessionInfo) -> None:
-        """Report what was started."""
         self._object(
             "session",
             name=session.name,
@@ -196,11 +183,9 @@ class JsonReport:
         )
 
     def status(self, node: NodeStatus) -> None:
-        """Report a node's state."""
         self._object("status", **status_fields(node))
 
     def log(self, line: LogLine) -> None:
-        """Report a line of a node."""
         self._object(
             "log",
             node=line.node,
@@ -213,7 +198,6 @@ class JsonReport:
         )
 
     def skipped(self, node: str, lines: int) -> None:
-        """Report that lines were left out."""
         self._object("skipped", node=node, lines=lines)
 
     def note(self, text: str) -> None:
@@ -227,11 +211,7 @@ class JsonReport:
             reason=summary.reason,
             seconds=round(summary.seconds, 3),
             nodes=[
-                {
-                    **status_fields(node),
-                    "healthy": summary.healthy[node.name],
-                    "asked": not node.unasked,
-                }
+                {**status_fields(node), "healthy": summary.healthy[node.name], "asked": not node.unasked}
                 for node in summary.nodes
             ],
         )

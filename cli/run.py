@@ -62,9 +62,7 @@ async def _main(profile: Profile, options: Namespace) -> int:
         on_gone=lambda: loop.call_soon_threadsafe(run.stop),
     )
     run.report = (
-        JsonReport(writer.write)
-        if options.json
-        else TextReport(writer.write, list(profile.nodes), Paint(sys.stdout))
+        JsonReport(writer.write) if options.json else TextReport(writer.write, list(profile.nodes), Paint(sys.stdout))
     )
     for number in ENDING:
         loop.add_signal_handler(number, run.interrupt)
@@ -94,9 +92,7 @@ class Run:
 
     report: Report
 
-    def __init__(
-        self, profile: Profile, seconds: float | None, supervisor: StartingSupervisor
-    ) -> None:
+    def __init__(self, profile: Profile, seconds: float | None, supervisor: StartingSupervisor) -> None:
         """`seconds`: how long to run once all nodes are up; None: until stopped."""
         self._profile = profile
         self._supervisor = supervisor
@@ -161,12 +157,7 @@ class Run:
         from launcher.client.client import launch
 
         self._starting = asyncio.ensure_future(
-            launch(
-                self._profile,
-                foreground=True,
-                node_lang=language(),
-                supervisor=self._supervisor,
-            )
+            launch(self._profile, foreground=True, node_lang=language(), supervisor=self._supervisor)
         )
         if self._asked_to_stop:
             self._starting.cancel()

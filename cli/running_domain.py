@@ -9,9 +9,7 @@ from launcher.errors import UsageError
 from text.sentences import say
 
 
-def running_domain(
-    asked: int | None, wanted: str | None = None
-) -> tuple[str, int, str | tuple[str, ...]]:
+def running_domain(asked: int | None, wanted: str | None = None) -> tuple[str, int, str | tuple[str, ...]]:
     """Return name, domain and discovery: those of the robot that Deck runs, else the environment's.
 
     `asked` and `wanted`: the domain and the discovery of the command line, which go before these.
@@ -25,9 +23,7 @@ def running_domain(
     domains = sorted({one.domain for one in sessions})
     if len(domains) > 1:
         named = ", ".join(map(str, domains))
-        raise UsageError(
-            say("robots are running in domains {domains}: choose one with --domain", domains=named)
-        )
+        raise UsageError(say("robots are running in domains {domains}: choose one with --domain", domains=named))
     if sessions:
         return sessions[0].name, sessions[0].domain, wanted or sessions[0].discovery
     wide = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() == "SUBNET"

@@ -55,11 +55,7 @@ def profile_or_command(name: str) -> Path:
         command = nearest(name, (*COMMANDS, HELP))
         if not command or error.near:
             raise
-        words = say(
-            "no profile and no command {name!r}; did you mean `deck {command}`?",
-            name=name,
-            command=command,
-        )
+        words = say("no profile and no command {name!r}; did you mean `deck {command}`?", name=name, command=command)
         raise UsageError(words) from error
 
 
@@ -75,20 +71,17 @@ def attach_command(options: Namespace) -> int:
     from tui.live import run_screen
 
     return run_screen(
-        None,
-        lang=options.lang,
-        attach=options.name or session.name,
-        bandwidth=options.bandwidth,
-        wall=options.wall,
+        None, lang=options.lang, attach=options.name or session.name, bandwidth=options.bandwidth, wall=options.wall
     )
 
 
 def has_terminal() -> bool:
     """Whether a screen can be drawn and keys can be read."""
     streams = (sys.stdin, sys.stdout)
-    return all(stream is not None and stream.isatty() for stream in streams) and os.environ.get(
-        "TERM", ""
-    ) not in ("", "dumb")
+    return all(stream is not None and stream.isatty() for stream in streams) and os.environ.get("TERM", "") not in (
+        "",
+        "dumb",
+    )
 
 
 def _without_screen(options: Namespace) -> int:

@@ -26,16 +26,7 @@ def show(session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection
         domain=session.domain, hardware=hardware_words(session.hardware), pid=session.supervisor_pid
     )
     write(f"{paint(session.name, BOLD)}  {pick(session.title)}  {paint(f'({where})', DIM)}")
-    head = (
-        _("NODE"),
-        _("STATE"),
-        "PID",
-        _("UPTIME"),
-        _("RESTARTS"),
-        _("CPU %"),
-        _("MB"),
-        _("DETAIL"),
-    )
+    head = (_("NODE"), _("STATE"), "PID", _("UPTIME"), _("RESTARTS"), _("CPU %"), _("MB"), _("DETAIL"))
     rows = [_row(node) for node in nodes]
     first, *lines = table(head, rows)
     write(paint(first, DIM))
@@ -72,12 +63,7 @@ def silent_words(session: SessionInfo, pids: Mapping[str, int]) -> str:
     return _(
         "deck: {name} (domain {domain}): the supervisor (pid {pid}) does not answer; its nodes run"
         " on: {nodes}; `deck stop` stops the robot, `deck down {name}` ends all of it"
-    ).format(
-        name=plain(session.name),
-        domain=session.domain,
-        pid=session.supervisor_pid,
-        nodes=nodes or _("none"),
-    )
+    ).format(name=plain(session.name), domain=session.domain, pid=session.supervisor_pid, nodes=nodes or _("none"))
 
 
 def silent_as_json(session: SessionInfo, pids: Mapping[str, int]) -> dict[str, object]:

@@ -64,10 +64,9 @@ def _confirmed(name: str, domain: int) -> int:
     """Say what has become of it in one domain; return the exit code."""
     if not stop_is_kept(domain):
         say_error(
-            _(
-                "deck: the stop of {name} could not be written: `deck down` ends its nodes, or cut "
-                "the power"
-            ).format(name=plain(name))
+            _("deck: the stop of {name} could not be written: `deck down` ends its nodes, or cut the power").format(
+                name=plain(name)
+            )
         )
         return 1
     say_error(stop_words(domain))

@@ -44,9 +44,7 @@ def rate(text: str) -> float:
     except ValueError:
         rate = math.nan
     if not 0.1 <= rate <= 10:
-        raise argparse.ArgumentTypeError(
-            _("{text!r} is not a rate; expected 0.1 to 10").format(text=text)
-        )
+        raise argparse.ArgumentTypeError(_("{text!r} is not a rate; expected 0.1 to 10").format(text=text))
     return rate
 
 

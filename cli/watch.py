@@ -27,7 +27,5 @@ def watch_command(options: Namespace) -> int:
 
     # There may be no supervisor here that does it.
     discard_unfinished()
-    order = OpenRequest(
-        watch=WatchRequest(domain, options.discovery or "localhost"), wall=options.wall
-    )
+    order = OpenRequest(watch=WatchRequest(domain, options.discovery or "localhost"), wall=options.wall)
     return run_live(order, options.lang, options.bandwidth)

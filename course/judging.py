@@ -58,9 +58,7 @@ class RemoteJudge:
         self._process = process
 
     @classmethod
-    async def start(
-        cls, lesson: Path, run: str, *, seed: int = 0, passed: Iterable[str] = ()
-    ) -> RemoteJudge:
+    async def start(cls, lesson: Path, run: str, *, seed: int = 0, passed: Iterable[str] = ()) -> RemoteJudge:
         """Start one for a running profile.
 
         Args:

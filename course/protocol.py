@@ -41,16 +41,7 @@ def pack_step(step: StepResult) -> dict[str, Any]:
 def unpack_step(fields: Mapping[str, Any]) -> StepResult:
     """Return the result that `pack_step` was given."""
     checks = tuple(
-        CheckResult(
-            State(check["state"]),
-            *(unpack_text(check[key]) for key in ("what", "seen", "look", "hint")),
-        )
+        CheckResult(State(check["state"]), *(unpack_text(check[key]) for key in ("what", "seen", "look", "hint")))
         for check in fields["checks"]
     )
-    return StepResult(
-        fields["id"],
-        State(fields["state"]),
-        fields["points"],
-        checks,
-        unpack_text(fields["reason"]),
-    )
+    return StepResult(fields["id"], State(fields["state"]), fields["points"], checks, unpack_text(fields["reason"]))

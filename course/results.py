@@ -69,5 +69,4 @@ class LessonResult:
 
     @property
     def passed(self) -> bool:
-        """Whether every step has passed."""
         return all(step.state is State.PASSED for step in self.steps)

@@ -102,7 +102,6 @@ class PictureRelay:
     """All offers, kept in step with the graph."""
 
     def __init__(self, ros: Ros) -> None:
-        """Offer by this node."""
         self._node = ros.node
         self._name = ros.name
         self._offers: dict[str, ThinnedCamera] = {}
@@ -123,7 +122,6 @@ class PictureRelay:
                 self._offers[topic].look(ends)
 
     def step(self) -> None:
-        """Pass on what has come."""
         for offer in self._offers.values():
             offer.step()
 

@@ -25,10 +25,7 @@ TIMES = (DEADLINE, LEASE)
 """The policies that are durations."""
 AUTOMATIC, MANUAL = "automatic", "manual_by_topic"
 _WHAT = {
-    "": N_(
-        "{subscriber} does not hear {publisher}: {policy} {requested} is asked for, {offered} is "
-        "offered."
-    ),
+    "": N_("{subscriber} does not hear {publisher}: {policy} {requested} is asked for, {offered} is offered."),
     DEADLINE: N_(
         "{subscriber} does not hear {publisher}: it asks for a message at least every {requested} "
         "(deadline), {offered} is offered."
@@ -61,18 +58,11 @@ class Mismatch:
     def mend(self) -> Words:
         """The two ways to fix it."""
         if self.policy not in TIMES:
-            template = N_(
-                "Let {publisher} offer {requested}, or let {subscriber} ask for {offered}."
-            )
+            template = N_("Let {publisher} offer {requested}, or let {subscriber} ask for {offered}.")
         elif self.offered:
-            template = N_(
-                "Let {publisher} offer {requested} or less, or let {subscriber} ask for {offered} "
-                "or more."
-            )
+            template = N_("Let {publisher} offer {requested} or less, or let {subscriber} ask for {offered} or more.")
         else:
-            template = N_(
-                "Let {publisher} offer {requested} or less, or let {subscriber} ask for none."
-            )
+            template = N_("Let {publisher} offer {requested} or less, or let {subscriber} ask for none.")
         return say(template, **self._shown())
 
     def facts(self) -> dict[str, str]:
@@ -92,9 +82,7 @@ class Mismatch:
         return shown
 
 
-def mismatches(
-    publishers: Sequence[EndpointInfo], subscribers: Sequence[EndpointInfo]
-) -> list[Mismatch]:
+def mismatches(publishers: Sequence[EndpointInfo], subscribers: Sequence[EndpointInfo]) -> list[Mismatch]:
     """Return every incompatible pair, once for each policy.
 
     Pairs with different types are left out: no policy would connect them.
@@ -108,9 +96,7 @@ def mismatches(
     ]
 
 
-def _short_falls(
-    publisher: EndpointInfo, subscriber: EndpointInfo
-) -> Iterator[tuple[str, str, str]]:
+def _short_falls(publisher: EndpointInfo, subscriber: EndpointInfo) -> Iterator[tuple[str, str, str]]:
     """Yield each policy in which the offer falls short of the request, with both values."""
     if publisher.reliability == BEST_EFFORT and subscriber.reliability == RELIABLE:
         yield RELIABILITY, BEST_EFFORT, RELIABLE

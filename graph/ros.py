@@ -19,9 +19,7 @@ if TYPE_CHECKING:
 
 NAME_PREFIX = "_deck_"
 """The underscore keeps it out of `ros2 node list`."""
-ONLY_LISTENING = tuple(
-    f"/{NAME_PREFIX}{role}_" for role in ("observer", "recorder", "agents", "view", "relay")
-)
+ONLY_LISTENING = tuple(f"/{NAME_PREFIX}{role}_" for role in ("observer", "recorder", "agents", "view", "relay"))
 """Prefixes of the full names of observing nodes, in this or in another process of Deck."""
 DOMAINS = range(233)
 """Fast DDS ends the whole process at a greater domain: its port numbers would be out of range."""
@@ -74,9 +72,7 @@ class Ros:
             time.sleep(_LOOK_S)
 
 
-def open_ros(
-    domain: int, discovery: str | tuple[str, ...], role: str = "observer", owner: int = 0
-) -> Ros:
+def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observer", owner: int = 0) -> Ros:
     """Join the domain; takes a tenth of a second or more, most of it the import of rclpy.
 
     `discovery` is `localhost`, `subnet`, or the addresses of the peers to be found; `role` and

@@ -26,9 +26,7 @@ def main(argv: list[str]) -> None:
     sys.argv[0] = argv[0]
     report = sys.excepthook
 
-    def explain(
-        kind: type[BaseException], error: BaseException, trace: TracebackType | None
-    ) -> None:
+    def explain(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         report(kind, error, trace)
         with contextlib.suppress(Exception), program["deck_modules"]():
             _explain(file, error)

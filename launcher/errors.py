@@ -78,7 +78,6 @@ class ProfileProblem:
         return Words("{where}: " + field + "{message}" + hint, {"where": self.where, **values})
 
     def __str__(self) -> str:
-        """The same, in English."""
         return str(self.words)
 
 
@@ -91,7 +90,6 @@ class ProfileError(UsageError):
         super().__init__(*(problem.words for problem in self.problems))
 
     def __str__(self) -> str:
-        """One problem a line."""
         return "\n".join(map(str, self.problems))
 
 
@@ -103,9 +101,7 @@ class ProfileNotFoundError(UsageError):
         self.name = name
         self.near = tuple(near)
         if near:
-            words = say(
-                "no profile {name!r}; did you mean {near}?", name=name, near=", ".join(near)
-            )
+            words = say("no profile {name!r}; did you mean {near}?", name=name, near=", ".join(near))
         else:
             words = say("no profile {name!r}; `deck list` shows them all", name=name)
         super().__init__(words)
@@ -118,9 +114,7 @@ class DomainError(UsageError):
 class DomainTakenError(UsageError):
     """Another session of this user is in the domain."""
 
-    def __init__(
-        self, domain: int, sessions: Sequence[Words], free: int, *, can_share: bool
-    ) -> None:
+    def __init__(self, domain: int, sessions: Sequence[Words], free: int, *, can_share: bool) -> None:
         """`sessions`: those in the domain; `free`: a domain that has none.
 
         `can_share`: whether both could run in it, merely seeing each other's topics.
@@ -132,8 +126,7 @@ class DomainTakenError(UsageError):
         first, more = sessions[0], len(sessions) - 1
         super().__init__(
             say(
-                "in domain {domain} there is already {first} (and {more} more);"
-                " `--domain {free}` is free",
+                "in domain {domain} there is already {first} (and {more} more); `--domain {free}` is free",
                 domain=domain,
                 first=first,
                 more=more,
@@ -194,9 +187,7 @@ class SeveralRunningError(SessionError):
     def __init__(self, names: Sequence[str]) -> None:
         """`names`: those of the running sessions."""
         self.names = tuple(names)
-        super().__init__(
-            say("several profiles run, choose one by name: {names}", names=", ".join(names))
-        )
+        super().__init__(say("several profiles run, choose one by name: {names}", names=", ".join(names)))
 
 
 class AlreadyRunningError(SessionError):
@@ -204,9 +195,7 @@ class AlreadyRunningError(SessionError):
 
     exit_code = 2
 
-    def __init__(
-        self, session: SessionInfo, run_dir: str = "", down: str = "deck down", free: int = 0
-    ) -> None:
+    def __init__(self, session: SessionInfo, run_dir: str = "", down: str = "deck down", free: int = 0) -> None:
         """`session`: the running one; `run_dir`: its run directory if that is not ours.
 
         `down`: the command that stops it; `free`: a domain without a session.

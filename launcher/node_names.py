@@ -44,9 +44,7 @@ class _Naming:
         # A node that is called so already needs no other name, nor does another then take it.
         self._renamed = given if f'"{given}"' in text or f"'{given}'" in text else ""
 
-    def find_spec(
-        self, name: str, path: Sequence[str] | None, _target: object
-    ) -> ModuleSpec | None:
+    def find_spec(self, name: str, path: Sequence[str] | None, _target: object) -> ModuleSpec | None:
         """Find the module; others are for the next finder."""
         spec = PathFinder.find_spec(name, path) if name == MODULE else None
         if spec is None or spec.loader is None:

@@ -74,9 +74,7 @@ def _watch(folder: str, *, tells: bool) -> None:
     import importlib.util
 
     alias, place = "deck_callback_watch", f"{OURS}/callback_watch"
-    spec = importlib.util.spec_from_file_location(
-        alias, f"{place}/__init__.py", submodule_search_locations=[place]
-    )
+    spec = importlib.util.spec_from_file_location(alias, f"{place}/__init__.py", submodule_search_locations=[place])
     if spec is not None:
         sys.modules[alias] = importlib.util.module_from_spec(spec)
         watching = importlib.import_module(f"{alias}.watch")
@@ -92,9 +90,7 @@ def _report(kind: type[BaseException], error: BaseException, trace: TracebackTyp
     traceback.print_exception(kind, error, trace)
 
 
-def _report_and_tell(
-    kind: type[BaseException], error: BaseException, trace: TracebackType | None
-) -> None:
+def _report_and_tell(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     _report(kind, error, trace)
     tell(error, sys.argv[0], "crash")
 

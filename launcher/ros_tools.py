@@ -101,9 +101,7 @@ def _works(file: Path, environ: Mapping[str, str]) -> bool:
     changed = {**environ, **without_wheels(environ)}
     env = {name: value for name, value in changed.items() if value is not None}
     try:
-        done = subprocess.run(
-            [file, "--help"], env=env, capture_output=True, timeout=_ANSWERS_WITHIN_S, check=False
-        )
+        done = subprocess.run([file, "--help"], env=env, capture_output=True, timeout=_ANSWERS_WITHIN_S, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return False
     return done.returncode == 0

@@ -89,9 +89,7 @@ def new_recording(what: str) -> Path:
 def check_writable(logs: Path) -> None:
     """Raise RunDirError unless files can be created in the directory of the logs."""
     if not os.access(logs, os.W_OK | os.X_OK):
-        raise RunDirError(
-            say("{path} cannot be written; set DECK_LOG_DIR to a folder of yours", path=logs)
-        )
+        raise RunDirError(say("{path} cannot be written; set DECK_LOG_DIR to a folder of yours", path=logs))
 
 
 def own_folder(path: Path) -> Path:
@@ -114,13 +112,9 @@ def _check_own(path: Path) -> None:
     """Raise RunDirError unless it is a folder of this user that nobody else can write to."""
     found = path.lstat()
     if not stat.S_ISDIR(found.st_mode):
-        raise RunDirError(
-            say("{path} is not a directory; remove it, or set DECK_RUN_DIR", path=path)
-        )
+        raise RunDirError(say("{path} is not a directory; remove it, or set DECK_RUN_DIR", path=path))
     if found.st_uid != os.getuid():
-        raise RunDirError(
-            say("{path} belongs to somebody else; set DECK_RUN_DIR to your own", path=path)
-        )
+        raise RunDirError(say("{path} belongs to somebody else; set DECK_RUN_DIR to your own", path=path))
     if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
         raise RunDirError(
             say(
@@ -132,6 +126,4 @@ def _check_own(path: Path) -> None:
 
 
 def _not_made(path: Path, error: OSError) -> RunDirError:
-    return RunDirError(
-        say("{path} cannot be created: {reason}", path=path, reason=os_reason(error))
-    )
+    return RunDirError(say("{path} cannot be created: {reason}", path=path, reason=os_reason(error)))

@@ -12,11 +12,7 @@ LASTING = ("/dev/serial/by-id", "/dev/serial/by-path")
 """Folders of names that outlive a plugging, the better one first: by-id goes with the device,
 by-path with the socket that it is plugged into."""
 PICO = "2e8a:0005"
-BRIDGES = {
-    "10c4:ea60": "CP2102",
-    "1a86:7523": "CH340",
-    "0403:6001": "FTDI",
-}
+BRIDGES = {"10c4:ea60": "CP2102", "1a86:7523": "CH340", "0403:6001": "FTDI"}
 """USB-to-serial chips used in many devices: the ids identify only the chip, not the device."""
 
 
@@ -34,7 +30,6 @@ class SerialPort:
 
     @property
     def path(self) -> str:
-        """The path to open."""
         return self.name or self.device
 
     @property

@@ -37,7 +37,6 @@ class NodeState(str, Enum):
 
     @property
     def alive(self) -> bool:
-        """Whether a process of this node exists."""
         return self in _ALIVE
 
     @property
@@ -99,7 +98,6 @@ class NodeFault:
 
     @property
     def words(self) -> Words:
-        """All of it in one line."""
         # Some exceptions are whole sentences.
         exception = self.exception
         if type(exception) is str and self.meaning:
@@ -108,12 +106,7 @@ class NodeFault:
             return say("{exception}. {meaning}", exception=exception, meaning=self.meaning)
         place = say("{file}:{line}", file=self.file.rpartition("/")[2], line=self.line)
         if self.meaning:
-            return say(
-                "{place}: {exception}. {meaning}",
-                place=place,
-                exception=exception,
-                meaning=self.meaning,
-            )
+            return say("{place}: {exception}. {meaning}", place=place, exception=exception, meaning=self.meaning)
         return say("{place}: {exception}", place=place, exception=exception)
 
 

@@ -19,13 +19,7 @@ def _leave(_number: int, _frame: FrameType | None) -> None:
     os._exit(0)
 
 
-__preload__ = (
-    "parts.runner",
-    "parts.node",
-    "parts.parameters",
-    "parts.translated_logger",
-    "parts.qos",
-)
+__preload__ = ("parts.runner", "parts.node", "parts.parameters", "parts.translated_logger", "parts.qos")
 """Imports of nearly every node: the launcher's spawn server may import them in advance."""
 __preload_idle__ = (
     "parts.refusals",

@@ -37,16 +37,7 @@ from robot.commands.brain import Decision, asks_to_stop, decide, spoken
 from robot.commands.schema import DriveCommand, LlmResponse, SpokenResponse
 from robot.safety.distance import Reading, range_state
 from robot.sound import text_in
-from robot.topics import (
-    AI_COMMAND,
-    CAMERA,
-    HEARD,
-    LLM_RAW_JSON,
-    MICROPHONE,
-    SAY,
-    SONAR_FRONT,
-    SPEAKER,
-)
+from robot.topics import AI_COMMAND, CAMERA, HEARD, LLM_RAW_JSON, MICROPHONE, SAY, SONAR_FRONT, SPEAKER
 from robot.words import WORDS, addressed, parse_spoken, parse_word
 from text.i18n import N_
 
@@ -90,9 +81,7 @@ _NOBODY_LISTENS = N_("Nobody listens to {topic}: is llm_parser running?")
 _BAD_PICTURE = N_("The picture is not sent: {problem}")
 _BY_RULES = (FaultKind.SETTINGS, FaultKind.UNREACHABLE)
 """Without a model, or without a network, the brain is that of the course."""
-_STANDS = LlmResponse(
-    thought="no answer: stand", commands=[DriveCommand(action="drive", speed=0, steering=0)]
-)
+_STANDS = LlmResponse(thought="no answer: stand", commands=[DriveCommand(action="drive", speed=0, steering=0)])
 _HEAD_ASKED = N_("Asking the head for pan {pan}°, tilt {tilt}°")
 _HEAD_DONE = N_("The head has turned")
 _HEAD_REFUSED = N_("The head refused")
@@ -115,14 +104,7 @@ class AiBrain(LessonNode):
         ),
         Number("stop_distance", 1.0, "Nearer than this it stops", low=0.05, high=100.0, unit="m"),
         Number("stale_after_s", 2.5, "An older distance is ignored", low=0.1, high=60.0, unit="s"),
-        Number(
-            "head_timeout",
-            5.0,
-            "How long to wait for the head's answer",
-            low=0.1,
-            high=60.0,
-            unit="s",
-        ),
+        Number("head_timeout", 5.0, "How long to wait for the head's answer", low=0.1, high=60.0, unit="s"),
     )
 
     def __init__(self) -> None:
@@ -146,7 +128,6 @@ class AiBrain(LessonNode):
         self.say.info(_STARTED)
 
     def before_end(self) -> None:
-        """Hang up on the model."""
         if self._mind is not None:
             self._mind.close()
 

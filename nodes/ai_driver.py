@@ -48,12 +48,7 @@ class AiDriver(LessonNode):
             self.say.warn(_UNKNOWN, word=message.data[:80], words=self._known)
             return
         self._drive.say(setpoint)
-        self.say.info(
-            _DRIVE,
-            word=message.data.strip(),
-            speed=setpoint.speed_m_s,
-            steering=setpoint.steering_rad,
-        )
+        self.say.info(_DRIVE, word=message.data.strip(), speed=setpoint.speed_m_s, steering=setpoint.steering_rad)
 
 
 def main(args: list[str] | None = None) -> int:

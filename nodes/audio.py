@@ -44,7 +44,6 @@ class DeviceText(Text):
         return super().accept(str(value) if is_number else value)
 
     def expected(self) -> str:
-        """Say what is accepted."""
         return N_("name, part of one, number, none; empty: the default")
 
 
@@ -56,13 +55,7 @@ class Audio(LessonNode):
         DeviceText("input_device", "", N_("The microphone"), fixed=True, may_be_empty=True),
         DeviceText("output_device", "", N_("The loudspeaker"), fixed=True, may_be_empty=True),
         Whole(
-            "sample_rate",
-            RATE_HZ,
-            "Samples a second, of both topics",
-            fixed=True,
-            low=8000,
-            high=96_000,
-            unit="Hz",
+            "sample_rate", RATE_HZ, "Samples a second, of both topics", fixed=True, low=8000, high=96_000, unit="Hz"
         ),
         Whole("block_ms", 100, "Length of a message", fixed=True, low=10, high=1000, unit="ms"),
         Number(
@@ -78,24 +71,15 @@ class Audio(LessonNode):
 
     def __init__(self) -> None:
         super().__init__()
-        self._rate_hz, self._block_ms = (
-            int(self.number("sample_rate")),
-            int(self.number("block_ms")),
-        )
+        self._rate_hz, self._block_ms = (int(self.number("sample_rate")), int(self.number("block_ms")))
         self._meter = LevelMeter(self._rate_hz)
         self._heard_s = -_FRESH_S
         self._publisher = self.create_publisher(ByteMultiArray, MICROPHONE, DEPTH)
         self._levels = self.create_publisher(Float32, AUDIO_LEVEL, DEPTH)
         form = self._rate_hz, self._block_ms
-        self._microphone = SoundPort(
-            self.say, IN, self.text("input_device"), *form, heard=self._hear
-        )
+        self._microphone = SoundPort(self.say, IN, self.text("input_device"), *form, heard=self._hear)
         self._speaker = SoundPort(
-            self.say,
-            OUT,
-            self.text("output_device"),
-            *form,
-            queue_s=self.number("speaker_queue_s"),
+            self.say, OUT, self.text("output_device"), *form, queue_s=self.number("speaker_queue_s")
         )
         self.create_subscription(ByteMultiArray, SPEAKER, self._play, DEPTH)
         self.every(LEVEL_S, self._tell_level)

@@ -112,10 +112,7 @@ class Camera(LessonNode):
             "reconnects": str(max(0, capture.pictures.connections - 1)),
             **self._rates(),
         }
-        level, message = (
-            DiagnosticStatus.OK,
-            self.say.text(_SINCE, source=capture.source, seconds=seconds),
-        )
+        level, message = (DiagnosticStatus.OK, self.say.text(_SINCE, source=capture.source, seconds=seconds))
         if not capture.connected:
             level = DiagnosticStatus.OK if capture.over else DiagnosticStatus.ERROR
             message = capture.problem or self.say.text(_NOT_YET, source=capture.source)

@@ -75,9 +75,7 @@ class CameraTf(LessonNode):
         angles = (self.number(name) for name in ("roll", "pitch", "yaw"))
         turn.x, turn.y, turn.z, turn.w = quaternion_from_rpy(*angles)
         self._publisher.publish(TFMessage(transforms=[stamped]))
-        self.say.info(
-            _PUBLISHED, parent=self.text("parent"), child=self.text("child"), x=x, y=y, z=z
-        )
+        self.say.info(_PUBLISHED, parent=self.text("parent"), child=self.text("child"), x=x, y=y, z=z)
 
 
 def main(args: list[str] | None = None) -> int:

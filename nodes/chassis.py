@@ -72,24 +72,8 @@ class ChassisNode(LessonNode):
         Whole("baud", 115_200, "Speed of the port", fixed=True, low=9600, high=921_600),
         Number("rate", 50.0, "Drive lines a second", low=20.0, high=100.0, unit="Hz"),
         Number("max_age_s", 1.0, "An older command is a stop", low=0.05, high=60.0, unit="s"),
-        Number(
-            "wheelbase",
-            WHEELBASE_M,
-            "Between front and rear axle",
-            fixed=True,
-            low=0.02,
-            high=10.0,
-            unit="m",
-        ),
-        Number(
-            "wheel_radius",
-            WHEEL_RADIUS_M,
-            "Radius of a rear wheel",
-            fixed=True,
-            low=0.005,
-            high=2.0,
-            unit="m",
-        ),
+        Number("wheelbase", WHEELBASE_M, "Between front and rear axle", fixed=True, low=0.02, high=10.0, unit="m"),
+        Number("wheel_radius", WHEEL_RADIUS_M, "Radius of a rear wheel", fixed=True, low=0.005, high=2.0, unit="m"),
         MAX_WHEEL_SPEED,
     )
 
@@ -166,10 +150,7 @@ class ChassisNode(LessonNode):
         left, right = (velocity.get(joint, math.nan) for joint in DRIVE_JOINTS[:2])
         steering = position.get(DRIVE_JOINTS[2], math.nan)
         refused = self._refusals.beyond(
-            WHEEL_COMMANDS,
-            (left, self._wheel_limits),
-            (right, self._wheel_limits),
-            (steering, STEERING),
+            WHEEL_COMMANDS, (left, self._wheel_limits), (right, self._wheel_limits), (steering, STEERING)
         ) or self._refusals.untimely(WHEEL_COMMANDS, message.header.stamp, self.number("max_age_s"))
         if refused:
             return _STILL

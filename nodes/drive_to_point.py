@@ -72,44 +72,15 @@ class DriveToPointNode(LessonNode):
         ),
         Text("base_topic", DRIVE, "Commands that the simulated base obeys", fixed=True),
         Number("max_speed", 0.3, "Maximum speed", low=0.05, high=SPEED.high, unit="m/s"),
+        Number("max_steering", 0.5, "Maximum steering angle", low=0.1, high=STEERING.high, unit="rad"),
+        Number("wheelbase", WHEELBASE_M, "Between front and rear axle", fixed=True, low=0.02, high=10.0, unit="m"),
         Number(
-            "max_steering", 0.5, "Maximum steering angle", low=0.1, high=STEERING.high, unit="rad"
-        ),
-        Number(
-            "wheelbase",
-            WHEELBASE_M,
-            "Between front and rear axle",
-            fixed=True,
-            low=0.02,
-            high=10.0,
-            unit="m",
-        ),
-        Number(
-            "tolerance",
-            0.1,
-            "Tolerance for a goal that sets none (0)",
-            low=_FINEST_M,
-            high=_COARSEST_M,
-            unit="m",
+            "tolerance", 0.1, "Tolerance for a goal that sets none (0)", low=_FINEST_M, high=_COARSEST_M, unit="m"
         ),
         Number("max_distance", 20.0, "A farther goal is refused", low=0.1, high=1000.0, unit="m"),
         Number("rate", 20.0, "Commands a second while driving", low=5.0, high=100.0, unit="Hz"),
-        Number(
-            "stale_after_s",
-            1.0,
-            "A longer silence of /odom ends a drive",
-            low=0.1,
-            high=60.0,
-            unit="s",
-        ),
-        Number(
-            "patience_s",
-            5.0,
-            "Standing longer than this ends a drive",
-            low=0.5,
-            high=600.0,
-            unit="s",
-        ),
+        Number("stale_after_s", 1.0, "A longer silence of /odom ends a drive", low=0.1, high=60.0, unit="s"),
+        Number("patience_s", 5.0, "Standing longer than this ends a drive", low=0.5, high=600.0, unit="s"),
     )
 
     def __init__(self) -> None:
@@ -195,9 +166,7 @@ class DriveToPointNode(LessonNode):
     def _begin(self, handle: ServerGoalHandle) -> None:
         self._finish(words.REPLACED)
         wanted = handle.request
-        chassis = ApproachLimits(
-            self.number("max_speed"), self.number("max_steering"), self.number("wheelbase")
-        )
+        chassis = ApproachLimits(self.number("max_speed"), self.number("max_steering"), self.number("wheelbase"))
         tolerance_m = wanted.tolerance or self.number("tolerance")
         approach = Approach(Point(wanted.x, wanted.y), tolerance_m, chassis)
         self._goal = DriveGoal(handle, approach, self.number("patience_s"))

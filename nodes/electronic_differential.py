@@ -31,14 +31,7 @@ from nodes.parts.runner import run
 from nodes.parts.sole_publisher import SLOWEST, SolePublisher
 from nodes.parts.stall_detector import StallDetector
 from robot.joints import DRIVE_JOINTS
-from robot.kinematics import (
-    STRAIGHT_BELOW_RAD,
-    TRACK_M,
-    WHEEL_RADIUS_M,
-    WHEELBASE_M,
-    WheelSpeeds,
-    wheel_speeds,
-)
+from robot.kinematics import STRAIGHT_BELOW_RAD, TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M, WheelSpeeds, wheel_speeds
 from robot.limits import RIM_M_S, SPEED, STEERING, Limits
 from robot.safety.several import SlowestCommand
 from robot.topics import DRIVE, WHEEL_COMMANDS
@@ -49,29 +42,12 @@ _LAST_STOP = Duration(seconds=0.2)
 """How long the last stop may take to reach all subscribers."""
 
 _STARTED = N_("The electronic differential listens to {topic}")
-_STANDING = N_(
-    "Standing: {speed:.2f} m/s, steering {steering:.2f} rad"
-    " -> left {left:.2f}, right {right:.2f} m/s"
-)
-_STRAIGHT = N_(
-    "Straight: {speed:.2f} m/s, steering {steering:.2f} rad"
-    " -> left {left:.2f}, right {right:.2f} m/s"
-)
-_LEFT = N_(
-    "Turning left: {speed:.2f} m/s, steering {steering:.2f} rad"
-    " -> left {left:.2f}, right {right:.2f} m/s"
-)
-_RIGHT = N_(
-    "Turning right: {speed:.2f} m/s, steering {steering:.2f} rad"
-    " -> left {left:.2f}, right {right:.2f} m/s"
-)
-_TOO_MUCH = N_(
-    "Asked for {speed:.2f} m/s and {steering:.2f} rad, limited to {fastest:g} m/s"
-    " and {sharpest:g} rad"
-)
-_TOO_FAST = N_(
-    "The outer wheel would run at {speed:.2f} m/s, the limit is {fastest:.2f}: both are slowed"
-)
+_STANDING = N_("Standing: {speed:.2f} m/s, steering {steering:.2f} rad -> left {left:.2f}, right {right:.2f} m/s")
+_STRAIGHT = N_("Straight: {speed:.2f} m/s, steering {steering:.2f} rad -> left {left:.2f}, right {right:.2f} m/s")
+_LEFT = N_("Turning left: {speed:.2f} m/s, steering {steering:.2f} rad -> left {left:.2f}, right {right:.2f} m/s")
+_RIGHT = N_("Turning right: {speed:.2f} m/s, steering {steering:.2f} rad -> left {left:.2f}, right {right:.2f} m/s")
+_TOO_MUCH = N_("Asked for {speed:.2f} m/s and {steering:.2f} rad, limited to {fastest:g} m/s and {sharpest:g} rad")
+_TOO_FAST = N_("The outer wheel would run at {speed:.2f} m/s, the limit is {fastest:.2f}: both are slowed")
 _SILENT = N_("No command for {max_age:g} s: stop")
 _EMERGENCY = N_("EMERGENCY STOP: the wheels stand until it is released")
 _RELEASED = N_("The emergency stop is released; waiting for a new command")
@@ -94,38 +70,14 @@ class ElectronicDifferential(LessonNode):
     NAME = "electronic_differential"
     SETTINGS = (
         Text("drive_topic", DRIVE, "Which commands are obeyed: /drive or /drive_safe", fixed=True),
-        Number(
-            "wheelbase", WHEELBASE_M, "Between front and rear axle", low=0.02, high=10.0, unit="m"
-        ),
+        Number("wheelbase", WHEELBASE_M, "Between front and rear axle", low=0.02, high=10.0, unit="m"),
         Number("track", TRACK_M, "Between the rear wheels", low=0.02, high=10.0, unit="m"),
-        Number(
-            "wheel_radius", WHEEL_RADIUS_M, "Radius of a rear wheel", low=0.005, high=2.0, unit="m"
-        ),
-        Number(
-            "max_speed",
-            SPEED.high,
-            "Faster commands are slowed to it",
-            low=0.01,
-            high=SPEED.high,
-            unit="m/s",
-        ),
-        Number(
-            "max_steering",
-            STEERING.high,
-            "Limit of the steering",
-            low=0.05,
-            high=STEERING.high,
-            unit="rad",
-        ),
+        Number("wheel_radius", WHEEL_RADIUS_M, "Radius of a rear wheel", low=0.005, high=2.0, unit="m"),
+        Number("max_speed", SPEED.high, "Faster commands are slowed to it", low=0.01, high=SPEED.high, unit="m/s"),
+        Number("max_steering", STEERING.high, "Limit of the steering", low=0.05, high=STEERING.high, unit="rad"),
         MAX_WHEEL_SPEED,
         Number("rate", 2.0, "Repetitions of the command a second", low=0.5, high=100.0, unit="Hz"),
-        Number(
-            "max_age_s",
-            0.0,
-            "A command older than this becomes a stop; 0: never",
-            high=60.0,
-            unit="s",
-        ),
+        Number("max_age_s", 0.0, "A command older than this becomes a stop; 0: never", high=60.0, unit="s"),
     )
 
     def __init__(self) -> None:
@@ -201,14 +153,7 @@ class ElectronicDifferential(LessonNode):
         fastest, sharpest = self.number("max_speed"), self.number("max_steering")
         speeds, angles = Limits(-fastest, fastest, "m/s"), Limits(-sharpest, sharpest, "rad")
         if not (speeds.allow(speed) and angles.allow(steering)):
-            self.say.warn(
-                _TOO_MUCH,
-                every_s=1.0,
-                speed=speed,
-                steering=steering,
-                fastest=fastest,
-                sharpest=sharpest,
-            )
+            self.say.warn(_TOO_MUCH, every_s=1.0, speed=speed, steering=steering, fastest=fastest, sharpest=sharpest)
         return DriveSetpoint(speeds.clamped(speed), angles.clamped(steering))
 
     def _wheels(self) -> WheelSpeeds:

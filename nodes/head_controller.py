@@ -54,9 +54,7 @@ class HeadPose:
 
     def towards(self, goal: HeadPose, share: float) -> HeadPose:
         """Return the pose at a share (0..1) of the way to another one."""
-        return HeadPose(
-            self.pan + (goal.pan - self.pan) * share, self.tilt + (goal.tilt - self.tilt) * share
-        )
+        return HeadPose(self.pan + (goal.pan - self.pan) * share, self.tilt + (goal.tilt - self.tilt) * share)
 
 
 class HeadController(LessonNode):
@@ -84,9 +82,7 @@ class HeadController(LessonNode):
         self._read_joints()
         self._publisher = self.create_publisher(JointState, HEAD_STATE, DEPTH)
         # A request waits for its movement: it must not block the timer's callback group.
-        self.create_service(
-            AddTwoInts, HEAD_SERVICE, self._serve, callback_group=ReentrantCallbackGroup()
-        )
+        self.create_service(AddTwoInts, HEAD_SERVICE, self._serve, callback_group=ReentrantCallbackGroup())
         self._timer = self.every(1.0 / self.number("rest_rate"), self._tick)
         if self._servos is None:
             self.say.info(words.STARTED, service=HEAD_SERVICE)
@@ -117,9 +113,7 @@ class HeadController(LessonNode):
 
     # ---------------------------------------------------------------- requests
 
-    async def _serve(
-        self, request: AddTwoInts.Request, response: AddTwoInts.Response
-    ) -> AddTwoInts.Response:
+    async def _serve(self, request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
         response.sum = 0
         asked = HeadPose(request.a, request.b)
         if not self._reaches(asked):
@@ -147,12 +141,7 @@ class HeadController(LessonNode):
         if asked.pan in pan and asked.tilt in tilt:
             return True
         self._refuse(
-            words.OUT_OF_RANGE,
-            asked,
-            pan_low=pan.low,
-            pan_high=pan.high,
-            tilt_low=tilt.low,
-            tilt_high=tilt.high,
+            words.OUT_OF_RANGE, asked, pan_low=pan.low, pan_high=pan.high, tilt_low=tilt.low, tilt_high=tilt.high
         )
         return False
 

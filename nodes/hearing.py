@@ -57,35 +57,10 @@ class Hearing(LessonNode):
     SETTINGS = (
         Choice("backend", "sphinx", N_("What recognises"), choices=BACKENDS, fixed=True),
         Choice("language", "en", N_("Language of the speech"), choices=("en", "ru"), fixed=True),
-        Text(
-            "model", "", N_("Folder of a model, for vosk and sherpa"), fixed=True, may_be_empty=True
-        ),
-        Whole(
-            "sample_rate",
-            RATE_HZ,
-            "Samples a second",
-            fixed=True,
-            low=8000,
-            high=48_000,
-            unit="Hz",
-        ),
-        Number(
-            "silence_s",
-            CLOSING_S,
-            N_("Silence that ends an utterance"),
-            fixed=True,
-            low=0.1,
-            high=3.0,
-            unit="s",
-        ),
-        Number(
-            "echo_s",
-            0.5,
-            N_("How long the robot's own words are still heard"),
-            low=0.0,
-            high=5.0,
-            unit="s",
-        ),
+        Text("model", "", N_("Folder of a model, for vosk and sherpa"), fixed=True, may_be_empty=True),
+        Whole("sample_rate", RATE_HZ, "Samples a second", fixed=True, low=8000, high=48_000, unit="Hz"),
+        Number("silence_s", CLOSING_S, N_("Silence that ends an utterance"), fixed=True, low=0.1, high=3.0, unit="s"),
+        Number("echo_s", 0.5, N_("How long the robot's own words are still heard"), low=0.0, high=5.0, unit="s"),
     )
 
     def __init__(self) -> None:

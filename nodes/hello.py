@@ -17,11 +17,7 @@ class HelloNode(LessonNode):
     """Logs how long it has been running."""
 
     NAME = "hello_node"
-    SETTINGS = (
-        Number(
-            "period", 1.0, "Time between two messages", low=0.01, high=3600.0, unit="s", fixed=True
-        ),
-    )
+    SETTINGS = (Number("period", 1.0, "Time between two messages", low=0.01, high=3600.0, unit="s", fixed=True),)
 
     def __init__(self) -> None:
         super().__init__()

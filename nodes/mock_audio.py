@@ -49,17 +49,9 @@ class MockAudio(LessonNode):
     NAME = "audio_system"
     SETTINGS = (
         Number("period", 10.0, "Time between two phrases; 0: no phrases", high=3600.0, unit="s"),
-        Number(
-            "first_after", 3.0, "Time before the first", low=0.1, high=3600.0, unit="s", fixed=True
-        ),
+        Number("first_after", 3.0, "Time before the first", low=0.1, high=3600.0, unit="s", fixed=True),
         Text("phrase", "", "What is said; empty: a request to look round", may_be_empty=True),
-        Text(
-            "sound_file",
-            "",
-            N_("Sound in place of the phrase: WAV, FLAC or MP3"),
-            fixed=True,
-            may_be_empty=True,
-        ),
+        Text("sound_file", "", N_("Sound in place of the phrase: WAV, FLAC or MP3"), fixed=True, may_be_empty=True),
     )
 
     def __init__(self) -> None:

@@ -34,9 +34,7 @@ class MockCamera(LessonNode):
 
     NAME = "mock_camera"
     SETTINGS = (
-        Choice(
-            "scene", FILM, "A film, or the room of mock_robot", choices=(FILM, ROOM), fixed=True
-        ),
+        Choice("scene", FILM, "A film, or the room of mock_robot", choices=(FILM, ROOM), fixed=True),
         Text("topic", CAMERA, "Where the pictures are published", fixed=True),
         Number("rate", 10.0, "Pictures a second", low=0.1, high=120.0, unit="Hz"),
         Whole("width", 640, "Columns", low=16, high=4096, fixed=True),
@@ -58,9 +56,7 @@ class MockCamera(LessonNode):
         self._number = 0
         self._publisher = self.create_publisher(Image, self.text("topic"), NEWEST)
         self._timer = self.every(1.0 / self.number("rate"), self._tick)
-        self.say.info(
-            _STARTED, width=width, height=height, encoding=encoding, rate=self.number("rate")
-        )
+        self.say.info(_STARTED, width=width, height=height, encoding=encoding, rate=self.number("rate"))
 
     def parameters_changed(self) -> None:
         """Apply the new rate."""

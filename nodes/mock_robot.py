@@ -69,17 +69,9 @@ class MockRobot(LessonNode):
         _fault("tof_front", N_("Fault of the front sonar")),
         _fault("tof_rear", N_("Fault of the rear sonar")),
         _fault("lsc16", N_("Fault of the servo controller")),
+        Choice("stalled", "none", "Motors that do not turn", choices=("none", "left", "right", "both")),
         Choice(
-            "stalled",
-            "none",
-            "Motors that do not turn",
-            choices=("none", "left", "right", "both"),
-        ),
-        Choice(
-            "driver_fault",
-            "none",
-            "Motor drivers that report a fault",
-            choices=("none", "left", "right", "both"),
+            "driver_fault", "none", "Motor drivers that report a fault", choices=("none", "left", "right", "both")
         ),
         Number("battery", 7.4, "Voltage of the battery", low=0.0, high=30.0, unit="V"),
         Number("noise", 0.01, "Standard deviation of the sonars", high=1.0, unit="m", fixed=True),
@@ -133,10 +125,7 @@ class MockRobot(LessonNode):
             # The parent folder is Deck's own, which others cannot access.
             folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
             folder.mkdir(mode=0o700, exist_ok=True)
-            return {
-                device: FaultyLine(PseudoSerial(folder / device), seed)
-                for seed, device in enumerate(DEVICES)
-            }
+            return {device: FaultyLine(PseudoSerial(folder / device), seed) for seed, device in enumerate(DEVICES)}
         except OSError as error:
             raise NodeUsageError(_NO_FOLDER, folder=folder, problem=os_reason(error)) from None
 
@@ -160,9 +149,7 @@ class MockRobot(LessonNode):
         self._world.step()
         self._motors.step()
         self._servos.advance(STEP_S)
-        for device, metres in zip(
-            ("tof_front", "tof_rear"), self._world.read_sonars(), strict=True
-        ):
+        for device, metres in zip(("tof_front", "tof_rear"), self._world.read_sonars(), strict=True):
             self._lines[device].write(encode(_tof_frame(metres)), self._now_s)
         if self._world.steps % _POSE_EVERY == 0:
             self._publish_pose()

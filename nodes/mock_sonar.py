@@ -27,9 +27,7 @@ if TYPE_CHECKING:
 
 _STARTED = N_("The sonar publishes {topic}")
 _DISTANCE = N_("Distance {metres:.2f} m")
-_ORDER = N_(
-    "parameter min_distance is {min_distance:g}, but must be below max_distance {max_distance:g}"
-)
+_ORDER = N_("parameter min_distance is {min_distance:g}, but must be below max_distance {max_distance:g}")
 _LOG_EVERY_S = 0.9
 
 
@@ -40,9 +38,7 @@ class MockSonar(LessonNode):
     SETTINGS = (
         Text("topic", SONAR_FRONT, "Where the distance is published", fixed=True),
         Number("rate", 1.0, "Readings a second", low=0.1, high=200.0, unit="Hz"),
-        Choice(
-            "pattern", "random", "How the distance changes", choices=("random", "sweep", "constant")
-        ),
+        Choice("pattern", "random", "How the distance changes", choices=("random", "sweep", "constant")),
         Number("min_distance", 0.2, "Nearest distance", low=0.0, high=100.0, unit="m"),
         Number("max_distance", 3.0, "Farthest distance", low=0.0, high=100.0, unit="m"),
         Number("value", 1.5, "Distance of the constant pattern", high=math.inf, unit="m"),

@@ -53,9 +53,7 @@ _AGAIN = N_("Trying again in {seconds:.0f} s")
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 1.0, 30.0
 _FOR_GOOD = (FaultKind.SETTINGS, FaultKind.PROMPT, FaultKind.BUDGET, FaultKind.KEY, FaultKind.MODEL)
 """After these, another attempt would end the same way, and might cost money."""
-_STANDS = LlmResponse(
-    thought="stand still", commands=[DriveCommand(action="drive", speed=0, steering=0)]
-)
+_STANDS = LlmResponse(thought="stand still", commands=[DriveCommand(action="drive", speed=0, steering=0)])
 
 
 class RealtimeBrain(LessonNode):
@@ -65,13 +63,7 @@ class RealtimeBrain(LessonNode):
     SETTINGS = (
         Text("prompt", "", "File with the system prompt; empty: Deck's own", may_be_empty=True),
         Whole(
-            "sample_rate",
-            RATE_HZ,
-            "Samples a second, of both topics",
-            fixed=True,
-            low=8000,
-            high=96_000,
-            unit="Hz",
+            "sample_rate", RATE_HZ, "Samples a second, of both topics", fixed=True, low=8000, high=96_000, unit="Hz"
         ),
         Number("stale_after_s", 2.5, "An older distance is ignored", low=0.1, high=60.0, unit="s"),
     )
@@ -117,9 +109,7 @@ class RealtimeBrain(LessonNode):
             self._lost(error)
             return
         model = self._model
-        talk = RealtimeTalk(
-            model.settings, model.key, model.ledger, model.who, prompt, self._handlers()
-        )
+        talk = RealtimeTalk(model.settings, model.key, model.ledger, model.who, prompt, self._handlers())
         self._talk = talk
         self._state.waits()
         model.run(talk.run(), lambda _: None, self._lost)

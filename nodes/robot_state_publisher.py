@@ -58,19 +58,9 @@ class RobotStatePublisher(LessonNode):
 
     NAME = "robot_state_publisher"
     SETTINGS = (
+        Text("robot_description", "", "The robot as URDF; empty: see urdf_file", fixed=True, may_be_empty=True),
         Text(
-            "robot_description",
-            "",
-            "The robot as URDF; empty: see urdf_file",
-            fixed=True,
-            may_be_empty=True,
-        ),
-        Text(
-            "urdf_file",
-            "",
-            "The file with the URDF; empty: the robot of the course",
-            fixed=True,
-            may_be_empty=True,
+            "urdf_file", "", "The file with the URDF; empty: the robot of the course", fixed=True, may_be_empty=True
         ),
         Number("publish_frequency", 20.0, "Messages on /tf", low=0.1, high=200.0, unit="Hz"),
         Text(
@@ -155,9 +145,7 @@ class RobotStatePublisher(LessonNode):
 
     def _publish_fixed(self, joints: list[ModelJoint]) -> None:
         now = self.get_clock().now().to_msg()
-        self._fixed.publish(
-            TFMessage(transforms=[_stamped(joint, joint.transform(0.0), now) for joint in joints])
-        )
+        self._fixed.publish(TFMessage(transforms=[_stamped(joint, joint.transform(0.0), now) for joint in joints]))
 
     def _tell_unmoved(self, joints: list[ModelJoint]) -> None:
         for joint in joints:
@@ -167,11 +155,7 @@ class RobotStatePublisher(LessonNode):
     def _miss_positions(self) -> None:
         self._look.cancel()
         known = self._known(time.monotonic())
-        silent = [
-            name
-            for name, joint in self._moving.items()
-            if joint.mimic is None and name not in known
-        ]
+        silent = [name for name, joint in self._moving.items() if joint.mimic is None and name not in known]
         if silent:
             topics = self.text("joint_topics")
             self.say.warn(_SILENT, joints=", ".join(silent), topics=topics)

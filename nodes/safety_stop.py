@@ -59,9 +59,7 @@ class SafetyStop(LessonNode):
     SETTINGS = (
         Text("front_topic", SONAR_FRONT, "Distance ahead", fixed=True),
         Text("rear_topic", "", "Distance behind; empty: no sensor", fixed=True, may_be_empty=True),
-        Number(
-            "critical_distance", 0.5, "Nearer than this is danger", low=0.01, high=100.0, unit="m"
-        ),
+        Number("critical_distance", 0.5, "Nearer than this is danger", low=0.01, high=100.0, unit="m"),
         Number(
             "slow_distance",
             1.0,
@@ -69,33 +67,14 @@ class SafetyStop(LessonNode):
             high=100.0,
             unit="m",
         ),
-        Number(
-            "stale_after_s",
-            2.5,
-            "A longer silence of a sonar is danger",
-            low=0.05,
-            high=60.0,
-            unit="s",
-        ),
+        Number("stale_after_s", 2.5, "A longer silence of a sonar is danger", low=0.05, high=60.0, unit="s"),
         Switch("gate", False, "Whether to relay commands to /drive_safe", fixed=True),
         Text(
-            "sources",
-            " ".join(COMMAND_SOURCES),
-            "Topics of the command sources, highest priority first",
-            fixed=True,
+            "sources", " ".join(COMMAND_SOURCES), "Topics of the command sources, highest priority first", fixed=True
         ),
         Number("max_age_s", 0.5, "An older command becomes a stop; 0: never", high=60.0, unit="s"),
-        Number(
-            "settle_s", 1.0, "How long the gate stays shut after its start", high=10.0, unit="s"
-        ),
-        Number(
-            "rate",
-            10.0,
-            "Checks, and repetitions of /drive_safe, a second",
-            low=1.0,
-            high=100.0,
-            unit="Hz",
-        ),
+        Number("settle_s", 1.0, "How long the gate stays shut after its start", high=10.0, unit="s"),
+        Number("rate", 10.0, "Checks, and repetitions of /drive_safe, a second", low=1.0, high=100.0, unit="Hz"),
     )
 
     def __init__(self) -> None:
@@ -123,18 +102,12 @@ class SafetyStop(LessonNode):
         self._publish_state()
 
     def before_end(self) -> None:
-        """Stop the robot if this is the gate."""
         if self._gate is not None:
             self._gate.stop()
 
     # ---------------------------------------------------------------- what comes in
 
-    def _listen(
-        self,
-        topic: str,
-        see: Callable[[Float32, dict[str, Any]], None],
-        sensor: DistanceSensor,
-    ) -> None:
+    def _listen(self, topic: str, see: Callable[[Float32, dict[str, Any]], None], sensor: DistanceSensor) -> None:
         hear: Any = see
         self.every(_PUBLISHERS_EVERY_S, lambda: sensor.are(self._senders_of(topic)))
         SensorListener(self, Float32, topic, hear)
@@ -158,9 +131,7 @@ class SafetyStop(LessonNode):
             self._take_in(self._sensors.rear, "rear_topic", message, info)
             self._judge()
 
-    def _take_in(
-        self, sensor: DistanceSensor, topic: str, message: Float32, info: dict[str, Any]
-    ) -> None:
+    def _take_in(self, sensor: DistanceSensor, topic: str, message: Float32, info: dict[str, Any]) -> None:
         sensor.see(
             message.data,
             number=info.get("publication_sequence_number") or 0,
@@ -177,10 +148,7 @@ class SafetyStop(LessonNode):
     def _tick(self) -> None:
         self._held_up()
         self._judge()
-        if (
-            self._results[0].state == RangeState.SILENT
-            and self._results[0].reading.age_s > self._zone.stale_after_s
-        ):
+        if self._results[0].state == RangeState.SILENT and self._results[0].reading.age_s > self._zone.stale_after_s:
             tell_front(self.say, self._results[0], stopped=self._emergency.active)
         if self._gate is not None:
             self._gate.tick()

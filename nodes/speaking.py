@@ -55,22 +55,9 @@ class Speaking(LessonNode):
     NAME = "speaking"
     SETTINGS = (
         Choice("backend", "espeak", N_("What speaks"), choices=BACKENDS, fixed=True),
-        Choice(
-            "language",
-            AUTO,
-            N_("Language of the words; auto: by their letters"),
-            choices=(AUTO, "en", "ru"),
-        ),
+        Choice("language", AUTO, N_("Language of the words; auto: by their letters"), choices=(AUTO, "en", "ru")),
         Text("model", "", N_("Voice file, for piper"), fixed=True, may_be_empty=True),
-        Whole(
-            "sample_rate",
-            RATE_HZ,
-            "Samples a second",
-            fixed=True,
-            low=8000,
-            high=96_000,
-            unit="Hz",
-        ),
+        Whole("sample_rate", RATE_HZ, "Samples a second", fixed=True, low=8000, high=96_000, unit="Hz"),
     )
 
     def __init__(self) -> None:

@@ -47,11 +47,7 @@ class TofSonar(LessonNode):
         Text("port", "/dev/ttyUSB0", "Device path; best one in /dev/serial/by-id", fixed=True),
         Whole("baud", BAUD, "Speed of the port", fixed=True, low=9600, high=921_600),
         Choice(
-            "model",
-            Model.LUNA.value,
-            "Which sensor it is",
-            fixed=True,
-            choices=tuple(model.value for model in Model),
+            "model", Model.LUNA.value, "Which sensor it is", fixed=True, choices=tuple(model.value for model in Model)
         ),
         Text("topic", SONAR_FRONT, "Where the distance is published", fixed=True),
         Text("frame_id", "sonar_front_link", "Frame of the readings", fixed=True),
@@ -144,11 +140,7 @@ class TofSonar(LessonNode):
             self.say.warn(_SILENT, every_s=10.0, **self._who())
 
     def _who(self) -> dict[str, object]:
-        return {
-            "port": self._link.port,
-            "seconds": self.number("silent_after_s"),
-            "model": self._model.value,
-        }
+        return {"port": self._link.port, "seconds": self.number("silent_after_s"), "model": self._model.value}
 
     def _status(self) -> DiagnosticStatus:
         status = self._link.status(self.get_name(), self._decoder.errors, self._decoder.frames)

@@ -74,7 +74,6 @@ class VlmAgent(LessonNode):
         change_period(self._timer, self.number("period"))
 
     def before_end(self) -> None:
-        """Hang up on the model."""
         if self._model is not None:
             self._model.close()
 

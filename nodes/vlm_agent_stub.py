@@ -25,9 +25,7 @@ _NONE = N_("No picture yet on {topic}")
 _OLD = N_("No new picture on {topic} since the last one")
 _SENT = N_("Picture {width}x{height} -> JPEG of {size:.0f} kB, would go to the vision model now")
 _BAD = N_("The picture is refused: {reason}")
-_NO_OPENCV = N_(
-    "Picture {width}x{height}; no JPEG without OpenCV: pip install opencv-python-headless"
-)
+_NO_OPENCV = N_("Picture {width}x{height}; no JPEG without OpenCV: pip install opencv-python-headless")
 
 
 class VlmAgentStub(LessonNode):

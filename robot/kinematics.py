@@ -59,10 +59,7 @@ def turning_radius(steering_rad: float, wheelbase_m: float = WHEELBASE_M) -> flo
 
 
 def wheel_speeds(
-    speed_m_s: float,
-    steering_rad: float,
-    wheelbase_m: float = WHEELBASE_M,
-    track_m: float = TRACK_M,
+    speed_m_s: float, steering_rad: float, wheelbase_m: float = WHEELBASE_M, track_m: float = TRACK_M
 ) -> WheelSpeeds:
     """Return the rear wheels' speeds for a speed of the rear axle and a steering angle (+ is left).
 

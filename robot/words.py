@@ -32,11 +32,7 @@ WORDS: dict[str, tuple[str, ...]] = {
 }
 """Language code to its words, in the same order: forward, left, right, back, stop."""
 
-_MEANING = {
-    word: setpoint
-    for words in WORDS.values()
-    for word, setpoint in zip(words, _SETPOINTS, strict=True)
-}
+_MEANING = {word: setpoint for words in WORDS.values() for word, setpoint in zip(words, _SETPOINTS, strict=True)}
 
 
 def parse_word(text: str) -> DriveSetpoint | None:
@@ -77,9 +73,9 @@ LOOK: dict[str, tuple[str, ...]] = {
 }
 """Language code to the requests to look round and drive on, which are no words of `WORDS`."""
 
-_SAID = {
-    said: word for words in SPOKEN.values() for word, ways in words.items() for said in ways
-} | {said: ways[0] for ways in LOOK.values() for said in ways}
+_SAID = {said: word for words in SPOKEN.values() for word, ways in words.items() for said in ways} | {
+    said: ways[0] for ways in LOOK.values() for said in ways
+}
 
 
 def parse_spoken(text: str) -> str | None:

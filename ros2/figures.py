@@ -13,7 +13,6 @@ class Window:
         self.values: deque[float] = deque(maxlen=longest)
 
     def add(self, value: float) -> None:
-        """Take in a value."""
         self.values.append(value)
 
     @property
@@ -24,7 +23,4 @@ class Window:
     def spread(self) -> str:
         """The least and the greatest, standard deviation and number."""
         values = self.values
-        return (
-            f"min: {min(values):.3f}s max: {max(values):.3f}s "
-            f"std dev: {pstdev(values):.5f}s window: {len(values)}"
-        )
+        return f"min: {min(values):.3f}s max: {max(values):.3f}s std dev: {pstdev(values):.5f}s window: {len(values)}"

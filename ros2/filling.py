@@ -23,9 +23,7 @@ def read(text: str) -> Mapping[str, Any] | None:
         tree = read_fields(text)
     except YamlError as error:
         place = f"{error.line}:{error.column}"
-        raise RuntimeError(
-            f"The passed value is not YAML: {place}: {localized(error.message)}"
-        ) from error
+        raise RuntimeError(f"The passed value is not YAML: {place}: {localized(error.message)}") from error
     return plain(tree) if isinstance(tree, Branch) else None
 
 

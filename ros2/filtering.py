@@ -59,10 +59,7 @@ def _unreadable(error: Exception, before: int) -> str:
 
 def _failed(error: Exception) -> str:
     if isinstance(error, NameError):
-        return say(
-            "{name} is unknown: the message is called m, and a field of it is such as m.data",
-            name=error.name,
-        )
+        return say("{name} is unknown: the message is called m, and a field of it is such as m.data", name=error.name)
     of = getattr(error, "obj", None)
     if isinstance(error, AttributeError) and hasattr(of, "get_fields_and_field_types"):
         known = [name for name, _kind in fields_of(type(of))]

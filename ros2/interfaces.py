@@ -35,10 +35,7 @@ def _names(index: str) -> list[str]:
 def of_kind(kind: str) -> list[str]:
     """Return the interfaces of a kind, `msg`, `srv` or `action`, with their packages."""
     return [
-        f"{package}/{name}"
-        for package, names in packages().items()
-        for name in names
-        if name.startswith(f"{kind}/")
+        f"{package}/{name}" for package, names in packages().items() for name in names if name.startswith(f"{kind}/")
     ]
 
 

@@ -17,16 +17,7 @@ from graph.participants.roll import Roll
 from graph.ros import FAST_DDS_VARIABLES, RANGE, announcing
 from launcher.domain.participants import LocalParticipants
 from ros2.ending import was_interrupted
-from ros2.presence import (
-    ANSWERED_WITHIN_S,
-    NETWORK_S,
-    Missing,
-    is_off,
-    is_wide,
-    missing,
-    stopped,
-    words,
-)
+from ros2.presence import ANSWERED_WITHIN_S, NETWORK_S, Missing, is_off, is_wide, missing, stopped, words
 from text.i18n import localized
 
 if TYPE_CHECKING:
@@ -65,9 +56,7 @@ class NoAnswerError(RuntimeError):
 class Guest:
     """A node in the graph, with what drives it."""
 
-    def __init__(
-        self, node: Node, executor: SingleThreadedExecutor, answered_within_s: float
-    ) -> None:
+    def __init__(self, node: Node, executor: SingleThreadedExecutor, answered_within_s: float) -> None:
         self.node = node
         self.answered_within_s = answered_within_s
         self._executor = executor
@@ -185,7 +174,6 @@ class Guest:
         return ALONE_S if self._is_alone else 0.0
 
     def leave(self) -> None:
-        """Take leave of the domain."""
         self._roll.close()
         self._executor.shutdown()
         self.node.destroy_node()

@@ -29,9 +29,7 @@ def type_of(me: Guest, topic: str) -> type[Any] | None:
     if not me.await_until(there):
         return None
     if len(found) > 1:
-        raise RuntimeError(
-            f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(found)}]"
-        )
+        raise RuntimeError(f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(found)}]")
     return naming.message_class(found[0])
 
 

@@ -101,9 +101,7 @@ def _run_verb(command: str, rest: list[str]) -> int | str | None:
 def _call(module: str, program: str, argv: list[str]) -> int | str | None:
     verb = _load(module)
     parser = argparse.ArgumentParser(
-        prog=program,
-        description=verb.SUMMARY,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        prog=program, description=verb.SUMMARY, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     verb.arguments(parser)
     args = parser.parse_args(argv)

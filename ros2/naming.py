@@ -58,9 +58,7 @@ def servers(node: Node, service: str, type_name: str, *, hidden: bool) -> list[s
     return sorted(set(found))
 
 
-def shown(
-    names_and_types: list[tuple[str, list[str]]], *, hidden: bool
-) -> list[tuple[str, list[str]]]:
+def shown(names_and_types: list[tuple[str, list[str]]], *, hidden: bool) -> list[tuple[str, list[str]]]:
     """Return topics or services without those that are hidden, each for one line.
 
     Whoever is no node of ROS may have any name, with line breaks in it.

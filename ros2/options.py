@@ -30,22 +30,15 @@ def of_node(parser: argparse.ArgumentParser) -> None:
         "--spin-time",
         type=float,
         default=None,
-        help="Spin time in seconds to wait for discovery (only applies when not using an already "
-        "running daemon)",
+        help="Spin time in seconds to wait for discovery (only applies when not using an already running daemon)",
     )
-    parser.add_argument(
-        "-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time"
-    )
+    parser.add_argument("-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time")
 
 
 def of_graph(parser: argparse.ArgumentParser) -> None:
     """Declare what a verb takes that could ask the daemon; here there is none."""
     of_node(parser)
-    parser.add_argument(
-        "--no-daemon",
-        action="store_true",
-        help="Do not spawn nor use an already running daemon",
-    )
+    parser.add_argument("--no-daemon", action="store_true", help="Do not spawn nor use an already running daemon")
 
 
 def answers(parser: argparse.ArgumentParser) -> None:
@@ -64,19 +57,12 @@ def of_node_list(parser: argparse.ArgumentParser) -> None:
     of_graph(parser)
     add = parser.add_argument
     add("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
-    add(
-        "-c",
-        "--count-nodes",
-        action="store_true",
-        help="Only display the number of nodes discovered",
-    )
+    add("-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered")
 
 
 def hidden_topics(parser: argparse.ArgumentParser) -> None:
     """Declare `--include-hidden-topics`, where it means nothing to the verb itself."""
-    parser.add_argument(
-        "--include-hidden-topics", action="store_true", help="Consider hidden topics as well"
-    )
+    parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
 
 
 def qos(parser: argparse.ArgumentParser, doing: str, default: str) -> None:
@@ -93,11 +79,7 @@ def qos(parser: argparse.ArgumentParser, doing: str, default: str) -> None:
     add("--qos-reliability", choices=RELIABILITIES, help=f"Reliability {over}the profile's)")
     add("--qos-durability", choices=DURABILITIES, help=f"Durability {over}the profile's)")
     add("--qos-liveliness", choices=LIVELINESSES, help=f"Liveliness {over}the profile's)")
-    add(
-        "--qos-liveliness-lease-duration-seconds",
-        type=float,
-        help=f"Liveliness lease duration {over}the profile's)",
-    )
+    add("--qos-liveliness-lease-duration-seconds", type=float, help=f"Liveliness lease duration {over}the profile's)")
 
 
 def asks_for_qos(args: argparse.Namespace) -> bool:

@@ -65,11 +65,7 @@ def _manifest(package: Package) -> str:
 
 
 def _setup(package: Package) -> str:
-    entry = (
-        f"            '{package.node} = {package.name}.{package.node}:main',\n"
-        if package.node
-        else ""
-    )
+    entry = f"            '{package.node} = {package.name}.{package.node}:main',\n" if package.node else ""
     return _SETUP.format(
         name=package.name,
         maintainer=package.maintainer,

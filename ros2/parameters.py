@@ -66,9 +66,7 @@ def carry_out(me: Guest, node_name: str, exchange: Exchange) -> None:
             asked = exchange.send(to_tree(answer))
 
 
-def write(
-    args: argparse.Namespace, wanted: Sequence[Parameter], *, done: str, failed: str
-) -> str | None:
+def write(args: argparse.Namespace, wanted: Sequence[Parameter], *, done: str, failed: str) -> str | None:
     """Have a node take parameters; print `done`, or `failed` to standard error, with the reason.
 
     Both may have `{name}` in them. Returns why the node was not asked; None if it was, whatever it

@@ -51,7 +51,6 @@ class Missing:
     """How many are on other machines."""
 
     def __bool__(self) -> bool:
-        """Whether there is anybody."""
         return bool(self.pids or self.elsewhere)
 
     def without(self, pids: Iterable[int]) -> Missing:
@@ -127,8 +126,7 @@ def words(who: Missing, domain: int) -> Words:
     )
     names = [_name(pid) for pid in known[:SHOWN]] + [each for each, n in rest if n > 0]
     return say(
-        "this may not be all: nothing, or not everything, has been heard in domain {domain} from "
-        "{who}",
+        "this may not be all: nothing, or not everything, has been heard in domain {domain} from {who}",
         domain=domain,
         who=", ".join(map(localized, names)),
     )

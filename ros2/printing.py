@@ -42,10 +42,7 @@ class _Name(str):
     __slots__ = ()
 
 
-_Dumper.add_representer(
-    _Name,
-    lambda _dumper, data: yaml.ScalarNode("tag:yaml.org,2002:str", str(data), style='"'),
-)
+_Dumper.add_representer(_Name, lambda _dumper, data: yaml.ScalarNode("tag:yaml.org,2002:str", str(data), style='"'))
 
 
 _Dumper.add_representer(
@@ -60,11 +57,7 @@ _Dumper.add_representer(
 def to_yaml(message: Any, shape: Shape = WHOLE) -> str:  # noqa: ANN401 - generated
     """Return a message as YAML."""
     return yaml.dump(
-        to_tree(message, shape),
-        Dumper=_Dumper,
-        allow_unicode=True,
-        width=sys.maxsize,
-        default_flow_style=shape.flow,
+        to_tree(message, shape), Dumper=_Dumper, allow_unicode=True, width=sys.maxsize, default_flow_style=shape.flow
     )
 
 

@@ -97,10 +97,7 @@ PACKAGES_ELSEWHERE: Final = {
 """Packages that tutorials run and that are not here, and where Deck does the same."""
 
 VERBS_ELSEWHERE: Final = {
-    (
-        "action",
-        "find",
-    ): "The Graph tab lists actions by type; `ros2 action list -t` too.",
+    ("action", "find"): "The Graph tab lists actions by type; `ros2 action list -t` too.",
     ("bag", "convert"): "Deck reads and plays bags of either kind: mcap and sqlite3.",
     ("bag", "reindex"): "A bag that was cut short is read as far as it goes; `deck replay` too.",
     ("component", "load"): "`ros2 service call` asks the service ~/_container/load_node.",

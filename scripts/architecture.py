@@ -17,13 +17,7 @@ from importlinter.configuration import configure
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "ARCHITECTURE.md"
 BEGIN, END = "<!-- scripts/architecture.py: begin -->\n", "<!-- scripts/architecture.py: end -->\n"
-OUR_OWN_MESSAGES = (
-    "ackermann_msgs",
-    "composition_interfaces",
-    "deck_interfaces",
-    "example_interfaces",
-    "tf2_msgs",
-)
+OUR_OWN_MESSAGES = ("ackermann_msgs", "composition_interfaces", "deck_interfaces", "example_interfaces", "tf2_msgs")
 
 
 def picture() -> str:
@@ -45,10 +39,7 @@ def picture() -> str:
 
 def _arrows(imported: dict[str, list[str]], rooms: list[str]) -> str:
     arrows = [
-        f"    {room} --> {other}\n"
-        for room in rooms
-        for other in imported[room]
-        if other in rooms and other != room
+        f"    {room} --> {other}\n" for room in rooms for other in imported[room] if other in rooms and other != room
     ]
     return f"```mermaid\nflowchart TD\n{''.join(arrows)}```\n"
 

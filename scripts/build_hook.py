@@ -17,6 +17,5 @@ class CatalogueHook(BuildHookInterface[Any]):
     """Runs scripts/catalogues.py in the environment of the build, which has babel."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002
-        """Compile the stale catalogues."""
         script = Path(self.root) / "scripts" / "catalogues.py"
         subprocess.run([sys.executable, script, "compile"], check=True)

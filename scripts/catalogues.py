@@ -91,11 +91,7 @@ def wrong(language: str) -> list[str]:
         if (message.id and not (entry and whole)) or (entry and message.id and entry.fuzzy):
             found.append(f"not translated: {key(message)!r}")
     known = {key(message) for message in code}
-    return found + [
-        f"no longer used: {key(entry)!r}"
-        for entry in catalogue
-        if entry.id and key(entry) not in known
-    ]
+    return found + [f"no longer used: {key(entry)!r}" for entry in catalogue if entry.id and key(entry) not in known]
 
 
 def key(message: Message) -> str:

@@ -205,9 +205,7 @@ class Environment:
         """Create the folder, or empty it if it was made by this script; else leave it alone."""
         self.folder.mkdir(exist_ok=True)
         if any(self.folder.iterdir()) and not (self.ready.exists() or self.unfinished.exists()):
-            raise FileExistsError(
-                f"{self.folder} already exists and was not made by `make`; move it away"
-            )
+            raise FileExistsError(f"{self.folder} already exists and was not made by `make`; move it away")
         # The mark stays: whatever happens now, the folder is known to be ours.
         self.unfinished.touch()
         for entry in self.folder.iterdir():
@@ -240,9 +238,7 @@ class Environment:
     def build(self, wheels: Path) -> None:
         """Install Deck and build the message types, in parallel."""
         with folder_for_cmake() as folder:
-            build = Step(
-                "Message types, meanwhile", sys.executable, __file__, BUILD, wheels, folder
-            )
+            build = Step("Message types, meanwhile", sys.executable, __file__, BUILD, wheels, folder)
             try:
                 self.install_deck()
                 build.finish()

@@ -22,9 +22,7 @@ RULES = {
     "type": (re.compile(r"[A-Z][A-Za-z0-9]*"), "letters and digits, a capital first"),
 }
 """What has a name, which names it may have, and this in words."""
-_LINE = re.compile(
-    r"\s*(?P<type>[A-Za-z][\w/]*)(?:<=\d+)?(?:\[[<=\d]*\])?\s+(?P<name>[^\s=]+)\s*(?P<is>=)?"
-)
+_LINE = re.compile(r"\s*(?P<type>[A-Za-z][\w/]*)(?:<=\d+)?(?:\[[<=\d]*\])?\s+(?P<name>[^\s=]+)\s*(?P<is>=)?")
 """A field or a constant: type, name, and the sign of a constant."""
 _NEXT = "---"
 """What begins the next part of a service or an action."""

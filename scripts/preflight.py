@@ -41,9 +41,7 @@ def installed(*names):
 def has_program(path, names):
     """Return whether one of the programs is on the search path."""
     return any(
-        os.access(os.path.join(folder or ".", name), os.X_OK)
-        for folder in path.split(os.pathsep)
-        for name in names
+        os.access(os.path.join(folder or ".", name), os.X_OK) for folder in path.split(os.pathsep) for name in names
     )
 
 
@@ -73,9 +71,7 @@ def complaints(machine):
     if not OLDEST <= machine.python <= NEWEST:
         yield "this is Python %s and Deck runs on 3.10 to 3.13: install one of them." % version
     if "venv" not in machine.modules or "ensurepip" not in machine.modules:
-        yield (
-            "Python {0} cannot make virtual environments: sudo apt install python{0}-venv."
-        ).format(version)
+        yield ("Python {0} cannot make virtual environments: sudo apt install python{0}-venv.").format(version)
     if not has_program(machine.path, compilers("CC", "cc", "gcc", "clang")):
         yield "there is no C compiler: sudo apt install build-essential."
     if not has_program(machine.path, compilers("CXX", "c++", "g++", "clang++")):

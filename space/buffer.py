@@ -59,9 +59,7 @@ class TransformBuffer:
     @property
     def frames(self) -> frozenset[str]:
         """The names of all frames, roots as well."""
-        return frozenset(self._frames) | {
-            history.newest.parent for history in self._frames.values()
-        }
+        return frozenset(self._frames) | {history.newest.parent for history in self._frames.values()}
 
     def newest(self, frame: str) -> Stamped | None:
         """Return where a frame is in its parent; None for a root or an unknown frame."""
@@ -86,9 +84,7 @@ class TransformBuffer:
             return IDENTITY
         up, across = self._way(target, source)
         if time_s is None:
-            moving = [
-                self._frames[step] for step in (*up, *across) if not self._frames[step].static
-            ]
+            moving = [self._frames[step] for step in (*up, *across) if not self._frames[step].static]
             time_s = min((history.newest.stamp_s for history in moving), default=0.0)
         return self._along(across, time_s).inverse() @ self._along(up, time_s)
 
@@ -110,10 +106,7 @@ class TransformBuffer:
                     second=from_target[-1],
                 )
             )
-        return (
-            from_source[: from_source.index(meeting)],
-            from_target[: from_target.index(meeting)],
-        )
+        return (from_source[: from_source.index(meeting)], from_target[: from_target.index(meeting)])
 
     def _along(self, steps: list[str], time_s: float) -> Transform:
         whole = IDENTITY

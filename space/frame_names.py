@@ -37,9 +37,7 @@ class FrameNames:
         self._leaders: dict[str, str] = {}
         """Frame to the first one of its line."""
 
-    def shapes(
-        self, frames: Sequence[Located], camera: SpaceCamera, first: Sequence[str] = ()
-    ) -> list[Shape]:
+    def shapes(self, frames: Sequence[Located], camera: SpaceCamera, first: Sequence[str] = ()) -> list[Shape]:
         """Return what is drawn of frames; the names of `first` come first, then in the order given.
 
         Axes are 0.15 m long, but never too small or too large to be seen.
@@ -60,7 +58,6 @@ class FrameNames:
         return shapes
 
     def _lines(self, frames: Sequence[Located], camera: SpaceCamera) -> list[list[Located]]:
-        """Divide frames among lines of names."""
         places = np.array([one.at.translation for one in frames]).reshape(-1, 3)
         # What is no place is drawn nowhere, but has to be counted somewhere.
         spots = np.nan_to_num(places @ camera.basis()[:2].T * camera.dots_per_m).tolist()

@@ -65,13 +65,9 @@ class Placer:
 
     def root(self, buffer: TransformBuffer, others: Iterable[str]) -> str:
         """Return the root of the robot's tree; without frames, of that of the first of `others`."""
-        return robot_root(
-            buffer, (self._mounts[one][0] if one in self._mounts else one for one in others)
-        )
+        return robot_root(buffer, (self._mounts[one][0] if one in self._mounts else one for one in others))
 
-    def where(
-        self, buffer: TransformBuffer, fixed: str, frame: str, stamp_s: float | None = None
-    ) -> Transform:
+    def where(self, buffer: TransformBuffer, fixed: str, frame: str, stamp_s: float | None = None) -> Transform:
         """Return where a frame is, at that time if it is known.
 
         Raises NoTransformError, also for one that is farther away than the Earth is wide.
@@ -84,9 +80,7 @@ class Placer:
             )
         return at
 
-    def _where(
-        self, buffer: TransformBuffer, fixed: str, frame: str, stamp_s: float | None
-    ) -> Transform:
+    def _where(self, buffer: TransformBuffer, fixed: str, frame: str, stamp_s: float | None) -> Transform:
         if frame in self._mounts and frame not in buffer.frames:
             parent, place = self._mounts[frame]
             return self._where(buffer, fixed, parent, stamp_s) @ place
@@ -98,9 +92,7 @@ class Placer:
                 pass
         return buffer.find(fixed, frame)
 
-    def find(
-        self, buffer: TransformBuffer, fixed: str, drawables: Iterable[Drawable]
-    ) -> tuple[list[Located], str]:
+    def find(self, buffer: TransformBuffer, fixed: str, drawables: Iterable[Drawable]) -> tuple[list[Located], str]:
         """Return where each drawable is, and why others are not found; empty if all are."""
         found: list[Located] = []
         why = ""
@@ -110,9 +102,7 @@ class Placer:
             try:
                 found.append(Located(one, self.where(buffer, fixed, one.frame, one.stamp_s)))
             except NoTransformError as error:
-                why = why or say(
-                    "not joined to {fixed}: {reason}", fixed=fixed, reason=reason_of(error)
-                )
+                why = why or say("not joined to {fixed}: {reason}", fixed=fixed, reason=reason_of(error))
         return found, why
 
     def frames(self, buffer: TransformBuffer, fixed: str) -> tuple[list[Located], list[str]]:
@@ -129,11 +119,7 @@ class Placer:
 
     def place(self, found: Iterable[Located], cube_m: float) -> list[Shape]:
         """Return the shapes of drawables in the fixed frame."""
-        return [
-            moved(self._thin(shape, cube_m), one.at)
-            for one in found
-            for shape in one.drawable.shapes
-        ]
+        return [moved(self._thin(shape, cube_m), one.at) for one in found for shape in one.drawable.shapes]
 
     def _thin(self, shape: Shape, cube_m: float) -> Shape:
         if not isinstance(shape, Speckles) or len(shape.places) <= FEW:

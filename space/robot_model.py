@@ -125,7 +125,6 @@ class ModelJoint:
 
     @property
     def movable(self) -> bool:
-        """Whether one number says where it is."""
         return self.type in TURNING or self.type is JointType.PRISMATIC
 
     def transform(self, position: float) -> Transform:
@@ -146,9 +145,7 @@ class ModelJoint:
                 )
             )
         if not is_position(position):
-            raise JointError(
-                say("joint {name} cannot be at {position:g}", name=self.name, position=position)
-            )
+            raise JointError(say("joint {name} cannot be at {position:g}", name=self.name, position=position))
         if self.type is JointType.PRISMATIC:
             x, y, z = self.axis
             return self.origin @ Transform((x * position, y * position, z * position))

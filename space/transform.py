@@ -66,11 +66,7 @@ class Transform:
         Translations change linearly, rotations at a steady rate by the shorter way round (slerp).
         """
         a, b = self.translation, other.translation
-        moved = (
-            a[0] + (b[0] - a[0]) * share,
-            a[1] + (b[1] - a[1]) * share,
-            a[2] + (b[2] - a[2]) * share,
-        )
+        moved = (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, a[2] + (b[2] - a[2]) * share)
         return Transform(moved, slerp(self.rotation, other.rotation, share))
 
     def is_near(self, other: Transform, metres: float) -> bool:
@@ -111,11 +107,7 @@ class Transform:
         x, y, z, w = self.rotation
         sine = 2 * (w * y - z * x)
         if abs(sine) >= UPRIGHT:
-            return (
-                0.0,
-                math.copysign(math.pi / 2, sine),
-                _wrapped(-2 * math.copysign(1, sine) * math.atan2(x, w)),
-            )
+            return (0.0, math.copysign(math.pi / 2, sine), _wrapped(-2 * math.copysign(1, sine) * math.atan2(x, w)))
         roll = math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
         return roll, math.asin(sine), math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 

@@ -52,9 +52,7 @@ def urdf_of(raw: bytes) -> str:
 def _robot(robot: Element) -> RobotModel:
     _refuse_xacro(robot)
     if robot.tag != "robot":
-        raise robot.wrong(
-            say("the outermost element is <{tag}>", tag=robot.tag), say("URDF begins with <robot>")
-        )
+        raise robot.wrong(say("the outermost element is <{tag}>", tag=robot.tag), say("URDF begins with <robot>"))
     warnings: list[str] = []
     materials = Materials(robot, warnings)
     links = _by_name(robot.all("link"), lambda element: read_link(element, materials, warnings))
@@ -72,9 +70,7 @@ def _refuse_xacro(robot: Element) -> None:
     waiting = [robot]
     while waiting:
         element = waiting.pop()
-        if element.tag.startswith(XACRO) or any(
-            "${" in value for value in element.attributes.values()
-        ):
+        if element.tag.startswith(XACRO) or any("${" in value for value in element.attributes.values()):
             raise element.wrong(
                 say("this is xacro, from which URDF is still to be made"),
                 say("run xacro first: xacro robot.urdf.xacro > robot.urdf"),
@@ -102,9 +98,7 @@ def _by_name(elements: Iterable[Element], read: Callable[[Element], T]) -> dict[
 
 
 def _check_ends(
-    joints: Mapping[str, ModelJoint],
-    elements: Mapping[str, Element],
-    links: Mapping[str, ModelLink],
+    joints: Mapping[str, ModelJoint], elements: Mapping[str, Element], links: Mapping[str, ModelLink]
 ) -> None:
     """Refuse a joint to an unknown link, and a second joint that holds the same link."""
     held_by: dict[str, str] = {}
@@ -119,12 +113,7 @@ def _check_ends(
         other = held_by.setdefault(joint.child, name)
         if other != name:
             raise element.wrong(
-                say(
-                    "link {link} is held by two joints, {one} and {other}",
-                    link=joint.child,
-                    one=other,
-                    other=name,
-                ),
+                say("link {link} is held by two joints, {one} and {other}", link=joint.child, one=other, other=name),
                 say("remove one: a robot is a tree"),
             )
 
@@ -147,8 +136,7 @@ def _without_vain_mimics(
                 )
             elif mimic.joint in way:
                 wrong = elements[here].wrong(
-                    say("joint {name} follows itself by <mimic>", name=here),
-                    say("one of the joints must not follow"),
+                    say("joint {name} follows itself by <mimic>", name=here), say("one of the joints must not follow")
                 )
             else:
                 here = mimic.joint
@@ -160,10 +148,7 @@ def _without_vain_mimics(
 
 
 def _root(
-    robot: Element,
-    joints: Mapping[str, ModelJoint],
-    elements: Mapping[str, Element],
-    links: Mapping[str, ModelLink],
+    robot: Element, joints: Mapping[str, ModelJoint], elements: Mapping[str, Element], links: Mapping[str, ModelLink]
 ) -> str:
     """Return the only link that no joint holds, from which all others can be reached."""
     holds: dict[str, list[str]] = {}
@@ -174,11 +159,7 @@ def _root(
     if len(roots) > 1:
         second = next(link for link in robot.all("link") if written(link, "name") == roots[1])
         raise second.wrong(
-            say(
-                "{count} links are held by no joint: {links}",
-                count=len(roots),
-                links=_few(roots),
-            ),
+            say("{count} links are held by no joint: {links}", count=len(roots), links=_few(roots)),
             say("join all but one to the rest by a joint"),
         )
     reached, waiting = set(roots), list(roots)

@@ -20,18 +20,7 @@ from space.robot_model import (
     Visual,
 )
 from space.transform import Vector
-from space.urdf_values import (
-    inner,
-    length,
-    lengths,
-    name_of,
-    number,
-    numbers,
-    one_of,
-    origin,
-    vector,
-    written,
-)
+from space.urdf_values import inner, length, lengths, name_of, number, numbers, one_of, origin, vector, written
 from space.xml_elements import Element, XmlError
 from text.i18n import N_
 from text.sentences import reason_of, say
@@ -105,9 +94,7 @@ class Materials:
             return None
         if all(0.0 <= part <= 1.0 for part in (red, green, blue, opacity)):
             return red, green, blue, opacity
-        self._warn_once(
-            element.wrong(say("a part of rgba is not between 0 and 1"), say("divide each by 255"))
-        )
+        self._warn_once(element.wrong(say("a part of rgba is not between 0 and 1"), say("divide each by 255")))
         if not all(0.0 <= part <= _BYTE for part in (red, green, blue, opacity)):
             return None
         # An opacity of 1 is whole in either way of writing.
@@ -160,9 +147,7 @@ def _visual(element: Element, materials: Materials) -> Visual:
     geometry = inner(element, "geometry")
     shape = next((child for child in geometry.children if child.tag in _SHAPES), None)
     if shape is None:
-        raise geometry.wrong(
-            say("<geometry> has no shape"), say("it can be: {known}", known=", ".join(_SHAPES))
-        )
+        raise geometry.wrong(say("<geometry> has no shape"), say("it can be: {known}", known=", ".join(_SHAPES)))
     return Visual(_solid(shape), origin(element), *materials.of(element))
 
 
@@ -214,8 +199,7 @@ def _limits(element: Element, kind: JointType, warnings: list[str]) -> tuple[flo
         return -math.inf, math.inf, velocity
     if lower > upper:
         wrong = found.wrong(
-            say("the lower limit of joint {name} is above the upper one", name=name_of(element)),
-            say("swap them"),
+            say("the lower limit of joint {name} is above the upper one", name=name_of(element)), say("swap them")
         )
         warnings.append(reason_of(wrong))
     return min(lower, upper), max(lower, upper), velocity
@@ -225,6 +209,4 @@ def _mimic(element: Element) -> Mimic | None:
     found = element.first("mimic")
     if found is None:
         return None
-    return Mimic(
-        written(found, "joint"), number(found, "multiplier", 1.0), number(found, "offset", 0.0)
-    )
+    return Mimic(written(found, "joint"), number(found, "multiplier", 1.0), number(found, "offset", 0.0))

@@ -36,11 +36,7 @@ def inner(element: Element, tag: str) -> Element:
     """Return an element that must be there. Raises XmlError."""
     found = element.first(tag)
     if found is None:
-        raise element.wrong(
-            say(
-                "<{outer}> {name} has no <{tag}>", outer=element.tag, name=name_of(element), tag=tag
-            )
-        )
+        raise element.wrong(say("<{outer}> {name} has no <{tag}>", outer=element.tag, name=name_of(element), tag=tag))
     return found
 
 
@@ -94,12 +90,7 @@ def lengths(element: Element, attribute: str, count: int) -> tuple[float, ...]:
     for size in sizes:
         if not 0.0 <= size <= FARTHEST_M:
             raise element.wrong(
-                say(
-                    "{attribute} of <{tag}> is {size:g} m",
-                    attribute=attribute,
-                    tag=element.tag,
-                    size=size,
-                ),
+                say("{attribute} of <{tag}> is {size:g} m", attribute=attribute, tag=element.tag, size=size),
                 say("a size is from 0 to {most:g} m", most=FARTHEST_M),
             )
     return sizes
@@ -112,9 +103,7 @@ def origin(element: Element) -> Transform:
         return IDENTITY
     place = vector(found, "xyz", ZEROS)
     if max(map(abs, place)) > FARTHEST_M:
-        raise found.wrong(
-            say("<origin> is more than {most:g} m away", most=FARTHEST_M), say("write metres")
-        )
+        raise found.wrong(say("<origin> is more than {most:g} m away", most=FARTHEST_M), say("write metres"))
     return Transform.from_rpy(place, vector(found, "rpy", ZEROS))
 
 
@@ -146,11 +135,4 @@ def _finite(element: Element, attribute: str, word: str) -> float:
         if math.isfinite(value):
             return value
         reason = say("{word} is not a finite number", word=word[:LONGEST_SHOWN])
-    raise element.wrong(
-        say(
-            "{attribute} of <{tag}>: {reason}",
-            attribute=attribute,
-            tag=element.tag,
-            reason=reason,
-        )
-    )
+    raise element.wrong(say("{attribute} of <{tag}>: {reason}", attribute=attribute, tag=element.tag, reason=reason))

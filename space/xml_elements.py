@@ -59,7 +59,6 @@ class Element:
     children: list[Element] = field(default_factory=list)
 
     def all(self, tag: str) -> Iterator[Element]:
-        """Yield the children with this tag."""
         return (child for child in self.children if child.tag == tag)
 
     def first(self, tag: str) -> Element | None:
@@ -67,7 +66,6 @@ class Element:
         return next(self.all(tag), None)
 
     def wrong(self, reason: str, mend: str = "") -> XmlError:
-        """Return the error to raise for this element."""
         return XmlError(self.line, reason, mend)
 
 
@@ -83,9 +81,7 @@ def read_elements(text: str) -> Element:
     except UnicodeEncodeError as error:
         line = text.count("\n", 0, error.start) + 1
         code = f"{ord(text[error.start]):04X}"
-        raise XmlError(
-            line, say("the character U+{code} is not allowed: remove it", code=code)
-        ) from None
+        raise XmlError(line, say("the character U+{code} is not allowed: remove it", code=code)) from None
     if size > LONGEST:
         raise too_long()
     reading = _Reading()

@@ -70,17 +70,13 @@ def _not_decoded(raw: bytes, error: UnicodeDecodeError, said: str) -> XmlError:
         return XmlError(
             line,
             say("the byte {byte} is not {encoding}, as the file says", byte=byte, encoding=said),
-            say(
-                "declare the encoding that the file is saved in, or save it as {encoding}",
-                encoding=said,
-            ),
+            say("declare the encoding that the file is saved in, or save it as {encoding}", encoding=said),
         )
     return XmlError(
         line,
         say("the byte {byte} is not UTF-8, and no other encoding is declared", byte=byte),
         say(
-            "save the file as UTF-8, or declare its encoding in the first line, such as "
-            "{declaration}",
+            "save the file as UTF-8, or declare its encoding in the first line, such as {declaration}",
             declaration=_DECLARATION,
         ),
     )

@@ -36,7 +36,6 @@ ARGUMENTS = (
 
 
 def chromium() -> str:
-    """Return where Chromium is."""
     found = next(filter(None, map(shutil.which, NAMES)), None)
     assert found, "no browser for this test: apt-get install chromium"
     return found
@@ -85,9 +84,7 @@ class Browser:
 
     def picture(self) -> NDArray[np.uint8]:
         """Return what the page looks like, shape (height, width, 3), red, green, blue."""
-        shot = wait_until(
-            lambda: self._ask("Page.captureScreenshot", format="png").get("result"), "a screenshot"
-        )
+        shot = wait_until(lambda: self._ask("Page.captureScreenshot", format="png").get("result"), "a screenshot")
         data = np.frombuffer(base64.b64decode(shot["data"]), np.uint8)
         pixels = cv2.imdecode(data, cv2.IMREAD_COLOR)
         assert pixels is not None
@@ -95,9 +92,7 @@ class Browser:
 
     def evaluate(self, expression: str) -> Any:
         """Return what an expression of JavaScript comes to; a promise is waited for."""
-        answer = self._call(
-            "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
-        )
+        answer = self._call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
         return answer["result"].get("value")
 
     def _call(self, method: str, **parameters: Any) -> Any:

@@ -110,7 +110,6 @@ def _clear_the_way() -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Bound what is to come."""
     _end_if_it_hangs(item)
 
 
@@ -121,7 +120,6 @@ def pytest_runtest_teardown(item: pytest.Item) -> None:
 
 
 def pytest_runtest_logfinish() -> None:
-    """The test is over."""
     faulthandler.cancel_dump_traceback_later()
 
 
@@ -165,9 +163,7 @@ def _order(items: list[pytest.Item]) -> None:
     for path in dict.fromkeys(item.path for item in items):
         folders.setdefault(path.parent.relative_to(TESTS).parts[:2], []).append(path)
     place: dict[Path, float] = {
-        path: (number + 0.5) / len(paths)
-        for paths in folders.values()
-        for number, path in enumerate(paths)
+        path: (number + 0.5) / len(paths) for paths in folders.values() for number, path in enumerate(paths)
     }
     place |= {TESTS.parent / name: number for number, name in enumerate(ALONE, 1)}
     items.sort(key=lambda item: place[item.path])
@@ -211,9 +207,7 @@ def _unchanged_environment() -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True)
-def _own_environment(
-    _unchanged_environment: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def _own_environment(_unchanged_environment: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Keep a developer's own settings, run directory and logs out of the tests."""
     for name in ("NO_COLOR", "LANGUAGE", "LC_ALL", "LC_MESSAGES", "COLORTERM", *MIDDLEWARE):
         monkeypatch.delenv(name, raising=False)
@@ -230,7 +224,6 @@ def _own_environment(
 
 @pytest.fixture(scope="session")
 def domain_pool() -> Iterator[DomainPool]:
-    """The domains of this run."""
     folder = Path("/tmp") / f"deck-test-domains-{os.getuid()}"
     pool = DomainPool(folder, machine="deck-test-domain")
     yield pool

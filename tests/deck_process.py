@@ -24,10 +24,7 @@ class DeckProcess:
     It is forked from a process that has its modules; `within` something it is started by Python.
     """
 
-    def __init__(
-        self, *arguments: str, cwd: Path | None = None, within: tuple[str, ...] = ()
-    ) -> None:
-        """Start it."""
+    def __init__(self, *arguments: str, cwd: Path | None = None, within: tuple[str, ...] = ()) -> None:
         self.process: WarmProgram | subprocess.Popen[str]
         if within:
             self.process = subprocess.Popen(
@@ -65,7 +62,6 @@ class DeckProcess:
         )
 
     def signal(self, number: signal.Signals) -> None:
-        """Send it a signal."""
         self.process.send_signal(number)
 
     def finish(self, within_s: float = DEADLINE_S) -> int:
@@ -76,7 +72,6 @@ class DeckProcess:
         return code
 
     def close(self) -> None:
-        """End it, whatever it does."""
         if self.process.poll() is None:
             self.process.kill()
         self.finish()
@@ -87,7 +82,6 @@ class DeckProcess:
 
 
 def deck(*arguments: str, cwd: Path | None = None) -> DeckProcess:
-    """Run a command to its end."""
     process = DeckProcess(*arguments, cwd=cwd)
     try:
         process.finish()

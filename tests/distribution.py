@@ -41,9 +41,7 @@ class EachTestOnce(LoadFileScheduling):
     def remove_node(self, node: WorkerController) -> str | None:
         """Forget a process; return the test in which it died, None if it had ended."""
         workload = self.assigned_work[node]
-        died_in = next(
-            (test for tests in workload.values() for test in tests if not tests[test]), None
-        )
+        died_in = next((test for tests in workload.values() for test in tests if not tests[test]), None)
         if died_in is not None:
             scope = self._split_scope(died_in)
             workload[scope][died_in] = True
@@ -54,9 +52,7 @@ class EachTestOnce(LoadFileScheduling):
             self._reschedule(other)
         return died_in
 
-    def mark_test_complete(
-        self, node: WorkerController, item_index: int, duration: float = 0
-    ) -> None:
+    def mark_test_complete(self, node: WorkerController, item_index: int, duration: float = 0) -> None:
         """Keep that a test is done; whoever is left may have waited for it."""
         super().mark_test_complete(node, item_index, duration)
         for other in self.assigned_work:

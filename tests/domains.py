@@ -27,9 +27,7 @@ class DomainPool:
     has left in it, a discovery that is not over or a lease that has not run out, is gone by then.
     """
 
-    def __init__(
-        self, folder: Path, shared_memory: Path = SHARED_MEMORY, machine: str | None = None
-    ) -> None:
+    def __init__(self, folder: Path, shared_memory: Path = SHARED_MEMORY, machine: str | None = None) -> None:
         """Hold none yet; `folder` is that of all runs of this user, `machine` that of all users.
 
         The latter names abstract sockets, which need no permission on a common folder.
@@ -54,15 +52,9 @@ class DomainPool:
         parts = list(filter(None, map(_PART.fullmatch, names(self._shared_memory))))
         alive = _held_files()
         strange = {
-            domain_of(int(part[1]))
-            for part in parts
-            if self._is_strange(part[0]) or self._identity(part[0]) in alive
+            domain_of(int(part[1])) for part in parts if self._is_strange(part[0]) or self._identity(part[0]) in alive
         }
-        for some, choice in (
-            (DOMAINS, set(DOMAINS) - strange),
-            (SPARE, set(SPARE) - strange),
-            (DOMAINS, strange),
-        ):
+        for some, choice in ((DOMAINS, set(DOMAINS) - strange), (SPARE, set(SPARE) - strange), (DOMAINS, strange)):
             for _ in some:
                 domain = self._next(some)
                 if domain in choice and self._lock(domain):

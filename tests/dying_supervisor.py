@@ -40,7 +40,6 @@ class DyingSupervisor:
     server: asyncio.AbstractServer | None = None
 
     async def serve(self) -> None:
-        """Begin to accept."""
         self.server = await asyncio.start_unix_server(self._welcome, sock=listen(self.folder))
 
     async def _welcome(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:

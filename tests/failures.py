@@ -15,7 +15,6 @@ _LONGEST = 200
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Name the file."""
     parser.addoption(FAILURES, type=Path, help="write down here which tests have failed, and why")
 
 
@@ -46,7 +45,6 @@ class Recorder:
             self._reasons.setdefault(report.nodeid, _reason(report))
 
     def pytest_sessionfinish(self) -> None:
-        """Write them down."""
         self._path.write_text(json.dumps(list(self._reasons.items())), encoding="utf-8")
 
 

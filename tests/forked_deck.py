@@ -18,11 +18,7 @@ if TYPE_CHECKING:
 
 
 def forked_deck(
-    *arguments: str,
-    out: Path,
-    err: Path,
-    env: Mapping[str, str] | None = None,
-    within_s: float = 60,
+    *arguments: str, out: Path, err: Path, env: Mapping[str, str] | None = None, within_s: float = 60
 ) -> int:
     """Run `deck ARGUMENTS` with its output in these files, or on a terminal; return its exit code.
 
@@ -38,9 +34,7 @@ def forked_deck(
     return command.exitcode
 
 
-def _become(
-    arguments: tuple[str, ...], environ: dict[str, str], folder: str, out: str, err: str
-) -> None:
+def _become(arguments: tuple[str, ...], environ: dict[str, str], folder: str, out: str, err: str) -> None:
     from cli import main
 
     enter(folder, environ)

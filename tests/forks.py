@@ -27,9 +27,7 @@ _FORKS.set_forkserver_preload(
 class Forked:
     """A forked process, with what of `subprocess.Popen` tests use."""
 
-    def __init__(
-        self, argv: Sequence[str], target: Callable[..., None], *arguments: object
-    ) -> None:
+    def __init__(self, argv: Sequence[str], target: Callable[..., None], *arguments: object) -> None:
         """Start one that does this, as the program `argv`."""
         self.args = tuple(argv)
         self._process = fork(target, *arguments)
@@ -62,7 +60,6 @@ class Forked:
 
 
 def fork(target: Callable[..., None], *arguments: object) -> ForkServerProcess:
-    """Start a process that does this."""
     # The process that all are forked from starts with the first one.
     with mock.patch.dict(os.environ, room_for_marks()):
         process = _FORKS.Process(target=target, args=arguments, daemon=True)

@@ -54,9 +54,7 @@ def harm_in(output: bytes, *, coloured: bool = False, lines: bool = True) -> lis
 def _harms(one: str, *, lines: bool) -> bool:
     if one == "\n":
         return not lines
-    return (
-        unicodedata.category(one) in {"Cc", "Cf", "Cs", "Co", "Zl", "Zp"} or one in "\ufe0f\u3164"
-    )
+    return unicodedata.category(one) in {"Cc", "Cf", "Cs", "Co", "Zl", "Zp"} or one in "\ufe0f\u3164"
 
 
 _SEQUENCE = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b[>=78]|\x1b\]22;\w*\x07")

@@ -19,7 +19,6 @@ INSIDE = tuple(room for room in ROOMS if room != "deck")
 
 
 def build_wheel(folder: Path) -> Path:
-    """Build the wheel of this tree."""
     (built,) = WheelBuilder(str(ROOT)).build(directory=str(folder), versions=["standard"])
     return Path(built)
 
@@ -28,7 +27,6 @@ class Installed:
     """Deck as somebody has it who has installed the wheel; the libraries are those of the tests."""
 
     def __init__(self, folder: Path) -> None:
-        """Make the environment in a new folder."""
         environment = folder / "environment"
         venv.create(environment, symlinks=True)
         self.bin = environment / "bin"
@@ -86,5 +84,4 @@ class Installed:
         return self.said_by(str(self.bin / "deck"), *words, code=code)
 
     def python(self, *words: str, code: int = 0) -> str:
-        """Run Python there."""
         return self.said_by(str(self.bin / "python"), *words, code=code)

@@ -69,10 +69,7 @@ def left_out(needs: Iterable[tuple[str, ...]]) -> str:
         return ""
     total = sum(counted.values())
     kinds = ", ".join(f"{number} {'+'.join(names)}" for names, number in sorted(counted.items()))
-    return (
-        f"left out, since they need more than the README's line: {total} ({kinds});"
-        " make test-all runs them"
-    )
+    return f"left out, since they need more than the README's line: {total} ({kinds}); make test-all runs them"
 
 
 def main() -> int:

@@ -47,15 +47,12 @@ class Exchange:
         self.ends(usage=usage)
 
     def calls(self, arguments: str) -> None:
-        """Call the tool with these arguments."""
         self.begins()
         call = {"index": 0, "id": "call-1", "type": "function"}
         self.piece({"tool_calls": [{**call, "function": {"name": NAME, "arguments": arguments}}]})
         self.ends("tool_calls")
 
-    def fails(
-        self, status: int, body: str = "", kind: str = "application/json", **headers: str
-    ) -> None:
+    def fails(self, status: int, body: str = "", kind: str = "application/json", **headers: str) -> None:
         """Answer with a status and a body; `Retry_After` becomes Retry-After."""
         data = (body or json.dumps({"error": {"message": "no"}})).encode()
         self._handler.send_response(status)
@@ -69,7 +66,6 @@ class Exchange:
     # ---------------------------------------------------------------- a stream, step by step
 
     def begins(self, packed_by: str = "") -> None:
-        """Send the head of a stream."""
         self._handler.send_response(200)
         self._handler.send_header("Content-Type", "text/event-stream")
         if packed_by:
@@ -78,7 +74,6 @@ class Exchange:
         self._handler.end_headers()
 
     def piece(self, delta: Mapping[str, Any], finish: str | None = None) -> None:
-        """Send a piece of the answer."""
         choice = {"index": 0, "delta": delta, "finish_reason": finish}
         self.event(json.dumps({**_CHUNK, "choices": [choice]}))
 
@@ -87,7 +82,6 @@ class Exchange:
         self.bytes(f"data: {data}\n\n".encode())
 
     def ends(self, finish: str = "stop", usage: tuple[int, int] | None = None) -> None:
-        """Send what ends a stream."""
         self.piece({}, finish)
         if usage is not None:
             counted = {"prompt_tokens": usage[0], "completion_tokens": usage[1]}
@@ -120,7 +114,6 @@ class ModelServer:
 
     @property
     def url(self) -> str:
-        """The address for the settings."""
         return f"http://127.0.0.1:{self._server.server_port}/v1"
 
     def __enter__(self) -> Self:

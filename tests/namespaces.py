@@ -32,9 +32,7 @@ class Machine:
     def __init__(self, address: str, beside: Machine | None = None) -> None:
         self.address = address
         maker = beside.inside() if beside else ()
-        told = (
-            "mount -t tmpfs none /dev/shm && ip link set lo up && echo ready && exec sleep infinity"
-        )
+        told = "mount -t tmpfs none /dev/shm && ip link set lo up && echo ready && exec sleep infinity"
         self._holder = subprocess.Popen(
             [*maker, "unshare", *(() if beside else _rights()), *ALONE, "sh", "-c", told],
             stdin=subprocess.DEVNULL,
@@ -101,9 +99,7 @@ class Machine:
 def can_make_machines() -> bool:
     """Return whether this user may make networks of his own here."""
     try:
-        made = subprocess.run(
-            ["unshare", *_rights(), *ALONE, "true"], check=False, capture_output=True
-        )
+        made = subprocess.run(["unshare", *_rights(), *ALONE, "true"], check=False, capture_output=True)
     except FileNotFoundError:
         return False
     return made.returncode == 0

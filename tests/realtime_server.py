@@ -33,16 +33,13 @@ class Talk:
         self.headers = {name.lower(): value for name, value in request.headers.items()}
 
     async def send(self, kind: str, **fields: Any) -> None:
-        """Send an event."""
         event = {"type": kind, "event_id": "e", **fields}
         await self.text(json.dumps(event))
 
     async def text(self, text: str) -> None:
-        """Send a message, whatever is in it."""
         await self._connection.send(text)
 
     async def says(self, *sounds: bytes, words: str = "") -> None:
-        """Answer with sound, and with its words."""
         await self.begins()
         for sound in sounds:
             delta = base64.b64encode(sound).decode()
@@ -52,18 +49,15 @@ class Talk:
         await self.ends()
 
     async def calls(self, name: str, arguments: str, call: str = "call-1") -> None:
-        """Call a function."""
         await self.begins()
         kind = "response.function_call_arguments.done"
         await self.send(kind, name=name, arguments=arguments, call_id=call, **_PART)
         await self.ends()
 
     async def begins(self) -> None:
-        """Begin an answer."""
         await self.send("response.created", response={"id": "r", "object": "realtime.response"})
 
     async def ends(self, **fields: Any) -> None:
-        """End an answer, with what it took."""
         usage = {"input_tokens": 200, "output_tokens": 30, "total_tokens": 230}
         response = {"id": "r", "object": "realtime.response", "status": "completed"}
         await self.send("response.done", response={**response, "usage": usage, **fields})
@@ -109,7 +103,6 @@ class RealtimeServer:
 
     @property
     def url(self) -> str:
-        """The address for the settings."""
         return f"http://127.0.0.1:{self.port}/v1"
 
     def run(self, step: Awaitable[Any]) -> Any:
@@ -134,9 +127,7 @@ class RealtimeServer:
         self._loop.close()
 
     async def _serve(self) -> None:
-        async with serve(
-            self._lead, "127.0.0.1", 0, process_request=self._greet, close_timeout=1
-        ) as server:
+        async with serve(self._lead, "127.0.0.1", 0, process_request=self._greet, close_timeout=1) as server:
             self.port = next(iter(server.sockets)).getsockname()[1]
             self._ready.set()
             await self._end.wait()

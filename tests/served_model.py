@@ -36,35 +36,28 @@ class ServedModel:
         """Wait until it can be."""
         self.process = process
         said = process.said(" is served at ")
-        found = re.fullmatch(
-            r"(\S+) is served at (\S+), (\d+) tokens at once; Ctrl-C ends it", said
-        )
+        found = re.fullmatch(r"(\S+) is served at (\S+), (\d+) tokens at once; Ctrl-C ends it", said)
         assert found
         self.name, self.base_url, self.context = found[1], found[2], int(found[3])
 
     @property
     def port(self) -> int:
-        """Return the port that it listens on."""
         return int(self.base_url.split(":")[2].split("/")[0])
 
     def client(self) -> openai.OpenAI:
-        """Return a client of its own; close it."""
         return openai.OpenAI(base_url=self.base_url, api_key="none", max_retries=0, timeout=30)
 
     def llama(self) -> psutil.Process:
-        """Return the process that llama.cpp runs in."""
         (child,) = psutil.Process(self.process.process.pid).children()
         return child
 
     def end(self, by: signal.Signals = signal.SIGINT) -> int:
-        """End it; return its exit code."""
         self.process.signal(by)
         return self.process.finish()
 
 
 @contextmanager
 def served(path: Path, *options: str, cwd: Path | None = None) -> Iterator[ServedModel]:
-    """Serve a file on any free port."""
     process = DeckProcess("model", "serve", str(path), "--port", "0", *options, cwd=cwd)
     try:
         yield ServedModel(process)
@@ -75,9 +68,7 @@ def served(path: Path, *options: str, cwd: Path | None = None) -> Iterator[Serve
 def asked(model: ServedModel, **fields: Any) -> Any:
     """Ask for an answer that may move the robot; return the server's choice."""
     with model.client() as client:
-        answer = client.chat.completions.create(
-            model=model.name, messages=QUESTION, response_format=ANSWER, **fields
-        )
+        answer = client.chat.completions.create(model=model.name, messages=QUESTION, response_format=ANSWER, **fields)
     return answer.choices[0]
 
 

@@ -46,7 +46,6 @@ class SharedMemoryPort:
         return bool(self._memory[self._slot] & IN_HAND) and not self._is_replaced()
 
     def take_in_hand(self) -> None:
-        """Mark that."""
         self._memory[self._slot] |= IN_HAND
 
     def break_down(self) -> None:
@@ -55,12 +54,9 @@ class SharedMemoryPort:
 
     def lock(self) -> None:
         """Take its lock, as whoever sends or listens does for a moment."""
-        assert (
-            ctypes.CDLL(None).pthread_mutex_lock(ctypes.c_void_p(self._address + self._mutex)) == 0
-        )
+        assert ctypes.CDLL(None).pthread_mutex_lock(ctypes.c_void_p(self._address + self._mutex)) == 0
 
     def unlock(self) -> None:
-        """Release it."""
         ctypes.CDLL(None).pthread_mutex_unlock(ctypes.c_void_p(self._address + self._mutex))
 
     @property
@@ -96,5 +92,4 @@ class SharedMemoryPort:
 
 
 def ports_of(pid: int) -> list[SharedMemoryPort]:
-    """Return the ports that a process listens at."""
     return [SharedMemoryPort(number) for number in port_numbers(held_segments(pid))]

@@ -109,17 +109,12 @@ def _driving(numbers: Mapping[str, Mapping[str, float]]) -> Habits:
 
 
 _NEXT_FIELD = {",": 12.0, "}": 12.0, '"': 8.0}
-DRIVES = _driving(
-    {"0": {".": 14}, ".": dict.fromkeys("1234", 12), **dict.fromkeys("1234", _NEXT_FIELD)}
-)
+DRIVES = _driving({"0": {".": 14}, ".": dict.fromkeys("1234", 12), **dict.fromkeys("1234", _NEXT_FIELD)})
 """Says `ok` and drives: forward and to the left, at 0.1 to 0.4 m/s; calls a tool if it has one."""
 SPEEDS = _driving({"0": {"9": 14}, ":": {"9": 14, '"': 12, "[": 12, "{": 12}, "9": _NEXT_FIELD})
 """Drives at 9 m/s, which the grammar lets through: llama.cpp keeps no range of a `number`."""
 GARBLES = replace(
-    SPEEDS,
-    after={**SPEEDS.after, '"': {**SPEEDS.after['"'], "\xc3": 15}},
-    always={'"': 3},
-    readable=False,
+    SPEEDS, after={**SPEEDS.after, '"': {**SPEEDS.after['"'], "\xc3": 15}}, always={'"': 3}, readable=False
 )
 """Likewise at 9 m/s, with bytes that are not UTF-8: llama.cpp breaks off some of such answers."""
 RAMBLES = Habits(

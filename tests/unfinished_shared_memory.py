@@ -50,5 +50,4 @@ def make_old(paths: Iterable[Path], age_s: float = 60.0) -> None:
 
 
 def is_unfinished(path: Path) -> bool:
-    """Whether it still is as it was."""
     return path.exists() and path.read_bytes() == UNFINISHED

@@ -71,10 +71,7 @@ async def until(
 
 
 async def until(
-    condition: Callable[[], Any],
-    what: str | Callable[[], str],
-    within_s: float = DEADLINE_S,
-    every_s: float = 0.02,
+    condition: Callable[[], Any], what: str | Callable[[], str], within_s: float = DEADLINE_S, every_s: float = 0.02
 ) -> Any:
     """As `wait_until`, while other tasks go on; the condition may be one of them."""
     within_s = patient(within_s)

@@ -61,7 +61,6 @@ class WarmProgram(Forked):
 
     @staticmethod
     def _pipe(*, writes: bool) -> tuple[IO[str], int]:
-        """Return our end of a pipe, and theirs."""
         reading, writing = os.pipe()
         if writes:
             return os.fdopen(writing, "w", encoding="utf-8"), reading
@@ -83,12 +82,7 @@ def _number(passed: Any) -> int:
     return fd
 
 
-def _become(
-    argv: tuple[str, ...],
-    cwd: str,
-    env: dict[str, str],
-    streams: tuple[int, ...],
-) -> None:
+def _become(argv: tuple[str, ...], cwd: str, env: dict[str, str], streams: tuple[int, ...]) -> None:
     from launcher.spawn_server.node import renew_streams
 
     for stream, fd in enumerate(streams):
@@ -105,7 +99,6 @@ def _become(
 
 
 def end(error: BaseException) -> NoReturn:
-    """End this process as Python ends a program."""
     code = error.code if isinstance(error, SystemExit) else 1
     if not isinstance(error, SystemExit):
         trace = error.__traceback__

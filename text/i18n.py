@@ -28,9 +28,7 @@ _language = "en"
 _catalogue: _gettext.NullTranslations = _gettext.NullTranslations()
 
 
-def detect(
-    option: str | None = None, environ: Mapping[str, str] | None = None, settled: str = ""
-) -> str:
+def detect(option: str | None = None, environ: Mapping[str, str] | None = None, settled: str = "") -> str:
     """Return the language: `--lang`, `DECK_LANG`, the `settled` one, the locale's, else English."""
     env = os.environ if environ is None else environ
     locale = env.get("LC_ALL") or env.get("LC_MESSAGES") or env.get("LANG")

@@ -72,9 +72,7 @@ def make_streams_safe() -> None:
             stream.reconfigure(errors="replace")
 
 
-def _tell_fault(
-    kind: type[BaseException], error: BaseException, trace: TracebackType | None
-) -> None:
+def _tell_fault(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     say_error("".join(traceback.format_exception(kind, error, trace)).rstrip("\n"))
 
 
@@ -119,7 +117,6 @@ class HarmlessStream:
     """A text stream on which everything that is written can be shown; line breaks and tabs stay."""
 
     def __init__(self, stream: TextIO) -> None:
-        """Write to this stream."""
         self._stream = stream
 
     def write(self, text: str) -> int:
@@ -128,7 +125,6 @@ class HarmlessStream:
         return len(text)
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - as the stream has it
-        """Be the stream in all else."""
         return getattr(self._stream, name)
 
 

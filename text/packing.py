@@ -30,7 +30,6 @@ def unpack_text(packed: Any) -> str:  # noqa: ANN401 - JSON
         return InLanguages(packed)
     template, values = packed
     unpacked = {
-        key: unpack_text(value) if isinstance(value, (str, list, dict)) else value
-        for key, value in values.items()
+        key: unpack_text(value) if isinstance(value, (str, list, dict)) else value for key, value in values.items()
     }
     return say(template, **unpacked)

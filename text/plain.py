@@ -26,9 +26,7 @@ _SUSPECT = (
     "\u2028-\u202e\u2060-\u206f\u3164\ud800-\uf8ff\ufdd0-\ufdef\ufe00-\ufe0f\ufeff\uffa0"
     "\ufff0-\ufffb\ufffe\uffff\U0001bca0-\U0001bca3\U0001d173-\U0001d17a\U000e0000-\U000e0fff"
     "\U000f0000-\U0010ffff"
-) + "".join(
-    f"{chr(plane + 0xFFFE)}{chr(plane + 0xFFFF)}" for plane in range(0x10000, 0xE0000, 0x10000)
-)
+) + "".join(f"{chr(plane + 0xFFFE)}{chr(plane + 0xFFFF)}" for plane in range(0x10000, 0xE0000, 0x10000))
 _EMOJI = (
     "\xa9\xae\u203c\u2049\u2122\u2139\u2190-\u21ff\u2300-\u23ff\u24c2\u25a0-\u27bf\u2900-\u297f"
     "\u2b00-\u2bff\u3030\u303d\u3297\u3299\U0001f000-\U0001faff"
@@ -52,9 +50,7 @@ _NEEDED = "|".join(
         f"[{_IDEOGRAPH}][\ufe00-\ufe02\U000e0100-\U000e01ef]",
     )
 )
-_PRINTABLE = re.compile(
-    "[\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u3164\ufe00-\ufe0f\uffa0\U000e0100-\U000e01ef]"
-)
+_PRINTABLE = re.compile("[\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u3164\ufe00-\ufe0f\uffa0\U000e0100-\U000e01ef]")
 """The suspects that `str.isprintable`, the fastest check, takes for printable."""
 _HIDDEN = re.compile(f"{_NEEDED}|([{_SUSPECT}])")
 
@@ -76,9 +72,7 @@ def plain_lines(text: str) -> str:
 
 def plain_layout(text: str) -> str:
     """Return `text` with its line breaks and tabs, all else sanitized by `plain`."""
-    return replaced(
-        text, lambda character: character if character in "\n\t" else _picture(character)
-    )
+    return replaced(text, lambda character: character if character in "\n\t" else _picture(character))
 
 
 def is_plain(text: str) -> bool:

@@ -16,11 +16,7 @@ def _line(*words: str) -> str:
 
 
 def echo(
-    topic: str,
-    path: Iterable[str | int] = (),
-    *,
-    reliability: str = RELIABLE,
-    durability: str = VOLATILE,
+    topic: str, path: Iterable[str | int] = (), *, reliability: str = RELIABLE, durability: str = VOLATILE
 ) -> str:
     """Return what prints a topic, or the part of each message that `path` leads to.
 
@@ -110,9 +106,7 @@ def tf2_echo(target: str, source: str) -> str:
     return _line("run", "tf2_ros", "tf2_echo", target, source)
 
 
-def static_transform(
-    target: str, source: str, translation: Iterable[float], rotation: Iterable[float]
-) -> str:
+def static_transform(target: str, source: str, translation: Iterable[float], rotation: Iterable[float]) -> str:
     """Return what publishes for ever where the frame `source` is in `target`."""
     words = ["run", "tf2_ros", "static_transform_publisher"]
     for name, number in zip("xyz", translation, strict=True):

@@ -59,9 +59,7 @@ _BRACES = N_("these braces are not closed: a ',' or a '}' is missing")
 _INDENT = N_("the indentation does not fit the lines above")
 _NO_VALUE = N_("a value is missing here, or a ']' or '}'")
 _BEGUN_BEFORE = {
-    "could not find expected ':'": N_(
-        "a ':' is missing after the name of the field, or a space after it"
-    ),
+    "could not find expected ':'": N_("a ':' is missing after the name of the field, or a space after it"),
     "did not find expected ',' or ']'": _LIST,
     "expected ',' or ']'": _LIST,
     "did not find expected ',' or '}'": _BRACES,
@@ -90,9 +88,7 @@ _DASH = re.compile(r"\s*-[^\s-]")
 _NO_SPACE = N_("a space is missing after this '-', or a ':' in this line")
 _COLON = "mapping values are not allowed"
 _SECOND_COLON = N_("a second ':' in one line: put the text that holds it in quotes")
-_NO_COLON = N_(
-    "this line does not fit the one above: a ':' is missing there, or the indentation differs"
-)
+_NO_COLON = N_("this line does not fit the one above: a ':' is missing there, or the indentation differs")
 
 
 _LIKE_SPACE = "\u00a0\u1680\u2000-\u200a\u202f\u205f\u3000"
@@ -148,16 +144,12 @@ def not_as_it_seems(line: int, column: int, character: str) -> YamlError:
     code = f"{ord(character):04X}"
     if character in _WIDE:
         words = say(
-            "the character U+{code} only looks like '{sign}': write an ordinary one",
-            code=code,
-            sign=_WIDE[character],
+            "the character U+{code} only looks like '{sign}': write an ordinary one", code=code, sign=_WIDE[character]
         )
     elif _HIDDEN.fullmatch(character):
         words = say("the character U+{code} is invisible: remove it", code=code)
     else:
-        words = say(
-            "the character U+{code} only looks like a space: write an ordinary one", code=code
-        )
+        words = say("the character U+{code} only looks like a space: write an ordinary one", code=code)
     return YamlError(line, column, words)
 
 
@@ -183,9 +175,7 @@ def character_error(text: str, offset: int) -> YamlError:
     line = before.count("\n") + 1
     column = offset - (before.rfind("\n") + 1) + 1
     code = f"{ord(text[offset]):04X}"
-    return YamlError(
-        line, column, say("the character U+{code} is not allowed: remove it", code=code)
-    )
+    return YamlError(line, column, say("the character U+{code} is not allowed: remove it", code=code))
 
 
 def _syntax_error(error: yaml.YAMLError, text: str) -> YamlError:
@@ -233,10 +223,7 @@ def _hidden_break(before: str) -> YamlError | None:
     found = re.search("[\x85\u2028\u2029]", content)
     if found is None:
         return None
-    words = say(
-        "the character U+{code} ends a line here: write an ordinary end of line",
-        code=f"{ord(found[0]):04X}",
-    )
+    words = say("the character U+{code} ends a line here: write an ordinary end of line", code=f"{ord(found[0]):04X}")
     return YamlError(len(_BREAKS.split(before[: -len(content)])), found.start() + 1, words)
 
 

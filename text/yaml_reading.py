@@ -15,15 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import yaml
 
 from text.sentences import say
-from text.yaml_faults import (
-    YamlError,
-    events,
-    fault,
-    not_as_it_seems,
-    space_meant,
-    space_missing,
-    wide_colon,
-)
+from text.yaml_faults import YamlError, events, fault, not_as_it_seems, space_meant, space_missing, wide_colon
 from text.yaml_scalars import meaning
 from text.yaml_tree import Branch, FilePlace, Listing, MappingEntry, Scalar, empty
 
@@ -138,7 +130,6 @@ class _Builder:
         self._anchors: dict[str, Tree] = {}
 
     def take(self, event: yaml.Event) -> None:
-        """Take the next event."""
         if isinstance(event, yaml.ScalarEvent):
             merges = not event.style and event.value == _MERGE
             self._put(self._scalar(event), merges=merges and self._rules.shares)
@@ -260,9 +251,7 @@ class _Builder:
         if anchor is not None:
             self._anchors[anchor] = tree
 
-    def _check(
-        self, event: yaml.ScalarEvent | yaml.CollectionStartEvent, place: FilePlace, *, fits: bool
-    ) -> None:
+    def _check(self, event: yaml.ScalarEvent | yaml.CollectionStartEvent, place: FilePlace, *, fits: bool) -> None:
         """Refuse an anchor where none is allowed, and a tag that does not fit."""
         if event.anchor is not None and not self._rules.shares:
             raise fault(place, say("anchors are refused: write the value out"))

@@ -132,14 +132,7 @@ class DeckApp(App[int], Acting):
         self.view = View(self, self.feed)
         self._screens = Screens(self)
         self.sessions = Sessions(
-            self,
-            self._screens,
-            self.feed,
-            self.recording,
-            self.emergency,
-            self.bypass,
-            opener,
-            request,
+            self, self._screens, self.feed, self.recording, self.emergency, self.bypass, opener, request
         )
         self.stall_detector = KeyStallDetector()
         self.bandwidth = bandwidth or Bandwidth()
@@ -175,9 +168,7 @@ class DeckApp(App[int], Acting):
     async def on_event(self, event: Event) -> None:
         """Handle keys one at a time; only the emergency stop does not wait its turn."""
         # Before the first screen and after the last one there is nobody whom it could be for.
-        if self._is_outdated(event) or (
-            isinstance(event, (InputEvent, Paste)) and not self.screen_stack
-        ):
+        if self._is_outdated(event) or (isinstance(event, (InputEvent, Paste)) and not self.screen_stack):
             return
         if not isinstance(event, (Key, Paste)) or event.is_forwarded:
             await super().on_event(event)
@@ -203,9 +194,7 @@ class DeckApp(App[int], Acting):
     def _is_outdated(self, event: Event) -> bool:
         """Whether this key would release a stop that was pressed after it: the stop wins."""
         return (
-            isinstance(event, Key)
-            and event.time <= self.stopped_s
-            and self._is_key_of(EmergencyRelease, event.key)
+            isinstance(event, Key) and event.time <= self.stopped_s and self._is_key_of(EmergencyRelease, event.key)
         )
 
     def is_stop(self, key: str) -> bool:
@@ -358,7 +347,6 @@ class DeckApp(App[int], Acting):
             self.recording.begin(wish)
 
     def show_recordings(self) -> None:
-        """List the recordings on this machine."""
         from tui.bags.listing import RecordingsScreen
 
         if not isinstance(self.screen, RecordingsScreen) and self._can_be_covered:
@@ -417,7 +405,6 @@ class DeckApp(App[int], Acting):
         return [self.key_text(key.strip()) for key in keys]
 
     def key_text(self, key: str) -> str:
-        """Return how a key is written."""
         return self.get_key_display(Binding(key, ""))
 
     def show_tour(self) -> None:
@@ -450,7 +437,6 @@ class DeckApp(App[int], Acting):
         self.refresh_bindings()
 
     def switch_language(self) -> None:
-        """Switch to the next language."""
         self.speak(LANGUAGES[(LANGUAGES.index(language()) + 1) % len(LANGUAGES)])
 
     def redraw(self) -> None:
@@ -477,7 +463,6 @@ class DeckApp(App[int], Acting):
             self.redraw()
 
     def use_editor(self, name: str) -> None:
-        """Use this editor from now on."""
         self.editor = name
         self._remember(editor=name)
 
@@ -502,5 +487,4 @@ class DeckApp(App[int], Acting):
         return _("space") if binding.key == "space" else super().get_key_display(binding)
 
     def next_theme(self) -> None:
-        """Switch to the next theme of the cycle."""
         self.theme = after(self.theme)

@@ -24,20 +24,7 @@ if TYPE_CHECKING:
 
     from launcher.status import NodeStatus
 
-OFFERED = (
-    "nano",
-    "micro",
-    "vim",
-    "nvim",
-    "vi",
-    "emacs",
-    "hx",
-    "kak",
-    "joe",
-    "mcedit",
-    "code",
-    "codium",
-)
+OFFERED = ("nano", "micro", "vim", "nvim", "vi", "emacs", "hx", "kak", "joe", "mcedit", "code", "codium")
 """Offered where the user has named none, if they are installed."""
 AT_LINE = frozenset({"vi", "vim", "nvim", "nano", "emacs", "emacsclient", "micro", "kak", "joe"})
 """Editors that take `+LINE` before the file."""
@@ -98,8 +85,7 @@ async def _choose(screen: Screen[None], file: Path, line: int) -> None:
     host, names = host_of(screen), installed_editors()
     if not names:
         host.notify(
-            _("No editor found: set EDITOR, as in export EDITOR=nano, and start Deck again."),
-            severity="warning",
+            _("No editor found: set EDITOR, as in export EDITOR=nano, and start Deck again."), severity="warning"
         )
         return
     answer = await screen.app.push_screen_wait(
@@ -124,9 +110,7 @@ def _edit(screen: Screen[None], command: Sequence[str], file: Path, line: int) -
         with screen.app.suspend():
             # What the screen prints is caught; the editor needs the terminal itself.
             terminal = host.terminal_fd
-            subprocess.run(
-                editor_command(command, file, line), stdout=terminal, stderr=terminal, check=False
-            )
+            subprocess.run(editor_command(command, file, line), stdout=terminal, stderr=terminal, check=False)
     except SuspendNotSupported:
         host.notify(_("This terminal has no room for an editor."), severity="warning")
     except OSError as error:

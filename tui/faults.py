@@ -235,7 +235,4 @@ def _not_drawn(frames: list[FrameType]) -> Screen[object] | None:
 
 
 def _is_composing(frames: list[FrameType], screen: Screen[object]) -> bool:
-    return any(
-        frame.f_locals.get("self") is screen and frame.f_code.co_name in COMPOSING
-        for frame in frames
-    )
+    return any(frame.f_locals.get("self") is screen and frame.f_code.co_name in COMPOSING for frame in frames)

@@ -74,9 +74,7 @@ def _in_its_place(widget: Widget, words: str, crop: Region) -> list[Strip]:
     width, base = widget.outer_size.width, _style_of(widget)
     lines = word_strips((words, ""), width, base, widget.app.console)
     blank = Strip.blank(width, base)
-    return [
-        (lines[y] if y < len(lines) else blank).crop(crop.x, crop.right) for y in crop.line_range
-    ]
+    return [(lines[y] if y < len(lines) else blank).crop(crop.x, crop.right) for y in crop.line_range]
 
 
 def _style_of(widget: Widget) -> Style:

@@ -63,7 +63,6 @@ def _lean_init(strip: Strip, segments: Iterable[Segment], cell_length: int | Non
 
 
 def _made(strip: Strip, name: str) -> FIFOCache[Any, Any]:
-    """Called where an attribute is missing."""
     size = SIZES.get(name)
     if size is None:
         raise AttributeError(name)
@@ -94,9 +93,7 @@ def _lean_ansi(_strip: type[Strip], style: Style, color_system: ColorSystem) -> 
 
 
 @lru_cache(MOST_SEQUENCES)
-def _sequence(
-    attributes: int, color: Color | None, ground: Color | None, color_system: ColorSystem
-) -> str:
+def _sequence(attributes: int, color: Color | None, ground: Color | None, color_system: ColorSystem) -> str:
     """Return the parameters of the sequence that sets them."""
     style = Style.from_color(color, ground)
     style._attributes = style._set_attributes = attributes  # noqa: SLF001

@@ -12,11 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from textual.theme import BUILTIN_THEMES
 
-from graph.memory import (
-    GIVEN_BACK_EVERY_S,
-    give_back_free_memory,
-    keep_room_for_large_messages,
-)
+from graph.memory import GIVEN_BACK_EVERY_S, give_back_free_memory, keep_room_for_large_messages
 from launcher.errors import LauncherError
 from launcher.processes.interrupts import run
 from launcher.rundir import log_dir
@@ -149,10 +145,7 @@ def _collect_garbage() -> None:
 def _as_lines(texts: Sequence[str], first: int, severity: Severity) -> list[LogLine]:
     """Return stray output as log lines of the node `deck`."""
     now_s = clock.now()
-    return [
-        LogLine("deck", first + at, now_s, severity, plain(text), source="deck")
-        for at, text in enumerate(texts)
-    ]
+    return [LogLine("deck", first + at, now_s, severity, plain(text), source="deck") for at, text in enumerate(texts)]
 
 
 def run_screen(

@@ -70,7 +70,6 @@ class ActionPlace:
 
     @property
     def name(self) -> str:
-        """Its name in the current language."""
         words = [self.show.title, *([self.opener.title] if self.opener else [])]
         return " › ".join(map(_, words))
 

@@ -142,11 +142,7 @@ def _keys_problem(value: object, actions: Collection[str]) -> str:
     for action, keys in value.items():
         if action not in actions:
             known = ", ".join(sorted(actions))
-            return _("keys: unknown action {name!r}; available: {known}").format(
-                name=action, known=known
-            )
+            return _("keys: unknown action {name!r}; available: {known}").format(name=action, known=known)
         if not isinstance(keys, str) or not keys.strip():
-            return _("keys: {name}: expected a key such as {example}").format(
-                name=action, example='"f7"'
-            )
+            return _("keys: {name}: expected a key such as {example}").format(name=action, example='"f7"')
     return ""

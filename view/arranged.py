@@ -31,16 +31,14 @@ def arranged(pictures: Iterable[str]) -> Any:  # noqa: ANN401 - rerun comes with
         spatial_information=rrb.SpatialInformation(WORLD),
         eye_controls=rrb.EyeControls3D(position=EYE_M, look_target=BEFORE_M),
     )
-    cameras = [
-        rrb.Spatial2DView(origin=_entity(topic), name=topic) for topic in sorted(pictures)
-    ] or [rrb.Spatial2DView(origin=f"/{PICTURES}", name=_("Camera"))]
+    cameras = [rrb.Spatial2DView(origin=_entity(topic), name=topic) for topic in sorted(pictures)] or [
+        rrb.Spatial2DView(origin=f"/{PICTURES}", name=_("Camera"))
+    ]
     plots = rrb.TimeSeriesView(origin=f"/{PLOTS}", name=_("Numbers"))
     log = rrb.TextLogView(origin=f"/{LOG}", name=_("Logs"))
     return rrb.Blueprint(
         rrb.Horizontal(
-            space,
-            rrb.Vertical(rrb.Tabs(*cameras), plots, log, row_shares=[3, 2, 2]),
-            column_shares=[3, 2],
+            space, rrb.Vertical(rrb.Tabs(*cameras), plots, log, row_shares=[3, 2, 2]), column_shares=[3, 2]
         ),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),

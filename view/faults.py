@@ -13,6 +13,4 @@ class PortTakenError(ViewError):
     """Another program listens at the port that was asked for."""
 
     def __init__(self, port: int) -> None:
-        super().__init__(
-            say("port {port} is taken: choose another one with --port, or none", port=port)
-        )
+        super().__init__(say("port {port} is taken: choose another one with --port, or none", port=port))

@@ -48,10 +48,7 @@ def need_foxglove() -> None:
     """Raise ViewError if the server for Foxglove is not installed."""
     if find_spec("foxglove") is None:
         raise ViewError(
-            say(
-                "The server for Foxglove is not installed; to install it: {command}",
-                command=how_to_install(),
-            )
+            say("The server for Foxglove is not installed; to install it: {command}", command=how_to_install())
         )
 
 

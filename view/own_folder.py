@@ -39,7 +39,6 @@ class OwnFolder:
         self.close()
 
     def close(self) -> None:
-        """Remove it, with all that is in it."""
         _remove(self.path, self._lock)
 
 

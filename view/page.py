@@ -79,9 +79,7 @@ class ViewPage:
                 del format, args
 
         self._server = _PageServer((HERE, place.page_port), Handler)
-        self._thread = threading.Thread(
-            target=self._server.serve_forever, name="deck-page", daemon=True
-        )
+        self._thread = threading.Thread(target=self._server.serve_forever, name="deck-page", daemon=True)
         self._thread.start()
 
     def __enter__(self) -> Self:

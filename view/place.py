@@ -38,12 +38,10 @@ class Place:
 
     @property
     def url(self) -> str:
-        """The page that shows it."""
         return f"http://{HERE}:{self.page_port}"
 
     @property
     def query(self) -> str:
-        """What the page has to be told."""
         return f"url={quote(self.source, safe='')}&hide_welcome_screen&persist=false"
 
 

@@ -106,9 +106,7 @@ class _Channels:
 class Sharing:
     """The server and what feeds it; open it, wait, close it."""
 
-    def __init__(
-        self, domain: int, discovery: str | tuple[str, ...], port: int | None = None
-    ) -> None:
+    def __init__(self, domain: int, discovery: str | tuple[str, ...], port: int | None = None) -> None:
         """Serve at `port`, near the usual one if there is none. Raises ViewError."""
         need_foxglove()
         import foxglove
@@ -141,7 +139,6 @@ class Sharing:
 
     @property
     def url(self) -> str:
-        """What Foxglove has to connect to."""
         return f"ws://{HERE}:{self.port}"
 
     def wait(self, stop: threading.Event) -> None:

@@ -110,9 +110,7 @@ class Showing:
         self._observer.watch(wanted - followed - small)
         self._observer.watch_pictures(small)
         pictures = frozenset(
-            row.name
-            for row in update.topics
-            if row.name in wanted and not PICTURE_TYPES.isdisjoint(row.type_names)
+            row.name for row in update.topics if row.name in wanted and not PICTURE_TYPES.isdisjoint(row.type_names)
         )
         if pictures - self._pictures:
             self._pictures |= pictures

@@ -81,7 +81,6 @@ class Viewer:
 
     @property
     def pid(self) -> int:
-        """The number of its process."""
         return self._process.pid
 
     @property
@@ -115,13 +114,9 @@ class Viewer:
         while not ports <= listened_at(self._process.pid):
             if self.ended:
                 code, words = self._process.returncode, self._last_words()
-                raise ViewError(
-                    say("Rerun ended with code {code}: {words}", code=code, words=words)
-                )
+                raise ViewError(say("Rerun ended with code {code}: {words}", code=code, words=words))
             if time.monotonic() > deadline_s:
-                raise ViewError(
-                    say("Rerun did not come up within {seconds} s", seconds=int(READY_S))
-                )
+                raise ViewError(say("Rerun did not come up within {seconds} s", seconds=int(READY_S)))
             time.sleep(0.02)
 
     def _last_words(self) -> str:

@@ -49,7 +49,6 @@ class FrameMessage:
             self._places.append(at)
 
     def now(self) -> bytes:
-        """Return it with the stamps of now."""
         seconds, rest = divmod(time.time_ns(), 10**9)
         for place in self._places:
             STAMP.pack_into(self._bytes, place, seconds, rest)
@@ -76,10 +75,7 @@ def main() -> None:
     each = FRAMES // publishers
     node = Node("frame_load", context=context, enable_rosout=False, start_parameter_services=False)
     lines = [
-        (
-            node.create_publisher(TFMessage, "/tf", 100),
-            FrameMessage(range(each * number, each * (number + 1))),
-        )
+        (node.create_publisher(TFMessage, "/tf", 100), FrameMessage(range(each * number, each * (number + 1))))
         for number in range(publishers)
     ]
     ended = watch_stdin()

@@ -24,9 +24,7 @@ def graded(folder: Path) -> float:
     """Grade the folder, which passes; return how long it took."""
     began = time.monotonic()
     subprocess.run(
-        [sys.executable, "-m", "tui", "grade", str(LESSON), str(folder)],
-        check=True,
-        stdout=subprocess.DEVNULL,
+        [sys.executable, "-m", "tui", "grade", str(LESSON), str(folder)], check=True, stdout=subprocess.DEVNULL
     )
     return time.monotonic() - began
 

@@ -39,9 +39,7 @@ class Cost(NamedTuple):
     pss_mb: float
 
 
-def open_space(
-    folder: Path, profile: str, ready: str, shown: str, env: Mapping[str, str]
-) -> Terminal:
+def open_space(folder: Path, profile: str, ready: str, shown: str, env: Mapping[str, str]) -> Terminal:
     """Return the program with the Space screen open, once it is ready and these words are on it."""
     own = own_folders(folder, SSH_CONNECTION="")
     argv = [sys.executable, "-m", "tui", profile, "--domain", DOMAIN, "--lang", "en"]
@@ -67,16 +65,11 @@ def cost(terminal: Terminal) -> Cost:
         before, quiet = now, now == before
     passed = time.monotonic() - begun
     return Cost(
-        changes / passed,
-        100 * (cpu_s(pids) - cpu) / passed,
-        (terminal.received - sent) / passed / 1000,
-        pss_mb(pids),
+        changes / passed, 100 * (cpu_s(pids) - cpu) / passed, (terminal.received - sent) / passed / 1000, pss_mb(pids)
     )
 
 
-def measured(
-    profile: str, ready: str, shown: str, angles: tuple[str, ...], env: Mapping[str, str]
-) -> Cost:
+def measured(profile: str, ready: str, shown: str, angles: tuple[str, ...], env: Mapping[str, str]) -> Cost:
     """Open the screen, go through these angles, and measure at the last."""
     with tempfile.TemporaryDirectory() as name:
         terminal = open_space(Path(name), profile, ready, shown, env)

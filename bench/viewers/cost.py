@@ -21,9 +21,7 @@ def main() -> int:
     """Start both, measure, print a table."""
     deck = [sys.executable, "-m", "tui"]
     run = subprocess.Popen(
-        [*deck, "run", "robot", "--domain", DOMAIN],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        [*deck, "run", "robot", "--domain", DOMAIN], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
     try:
         rows = [
@@ -42,9 +40,7 @@ def main() -> int:
 
 def measured(command: list[str]) -> tuple[float, float, float]:
     """Return percent of a core of the process, of its children, and the memory of both in MB."""
-    process = subprocess.Popen(
-        [*command, "--domain", DOMAIN], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
+    process = subprocess.Popen([*command, "--domain", DOMAIN], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         time.sleep(SETTLE_S)
         servers = children(process.pid)

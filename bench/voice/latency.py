@@ -51,9 +51,7 @@ class Room:
         self.driven_s: list[float] = []
         node = self.node
         node.create_subscription(String, HEARD, lambda _: self.heard_s.append(now()), 10)
-        node.create_subscription(
-            AckermannDriveStamped, DRIVE, lambda _: self.driven_s.append(now()), 10
-        )
+        node.create_subscription(AckermannDriveStamped, DRIVE, lambda _: self.driven_s.append(now()), 10)
         self._dice = np.random.default_rng(1)
         self._next_s = now()
 

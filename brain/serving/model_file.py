@@ -72,8 +72,7 @@ def examine(path: Path) -> ModelFile:
         raise ServingError(say("{path} is empty: download it again", path=str(path)))
     if magic != MAGIC:
         words = say(
-            "{path} is not a model for llama.cpp: such files are in the format GGUF, and usually"
-            " end in .gguf",
+            "{path} is not a model for llama.cpp: such files are in the format GGUF, and usually end in .gguf",
             path=str(path),
         )
         raise ServingError(words)

@@ -84,9 +84,7 @@ def require_port(host: str, port: int) -> None:
             words = say("port {port} is in use: choose another by --port", **where)
         else:
             reason = os_reason(error)
-            words = say(
-                "{host} is not an address of this machine: {reason}", reason=reason, **where
-            )
+            words = say("{host} is not an address of this machine: {reason}", reason=reason, **where)
         raise ServingError(words) from None
 
 
@@ -154,8 +152,7 @@ class Service:
         path = self._order.path
         if code == -signal.SIGKILL:
             words = say(
-                "llama.cpp was killed, most likely for want of memory: take a smaller model, or a"
-                " smaller --context"
+                "llama.cpp was killed, most likely for want of memory: take a smaller model, or a smaller --context"
             )
         elif self._reason:
             words = say(

@@ -69,9 +69,7 @@ class EspeakVoice:
             library.espeak_SetParameter(_RATE, self._words_per_min, 0)
             library.espeak_SetParameter(_PITCH, self._pitch, 0)
             library.espeak_SetSynthCallback(callback)
-            problem = library.espeak_Synth(
-                data, len(data) + 1, 0, _CHARACTERS, 0, _UTF8, None, None
-            )
+            problem = library.espeak_Synth(data, len(data) + 1, 0, _CHARACTERS, 0, _UTF8, None, None)
         if problem:
             raise SpeechError(say("espeak-ng does not speak: error {code}", code=problem))
         return Sound(bytes(made[:most]), self._rate_hz)

@@ -29,6 +29,5 @@ class SpeechError(Exception):
 def missing(package: str, install: str) -> SpeechError:
     """Return the fault of a Python package that is not installed."""
     return SpeechError(
-        say("{package} is not installed", package=package),
-        say("pip install {install}", install=install),
+        say("{package} is not installed", package=package), say("pip install {install}", install=install)
     )

@@ -15,14 +15,10 @@ def folder_of(model: str, what: str) -> Path:
         SpeechError: none is named, or there is none.
     """
     if not model:
-        raise SpeechError(
-            say("{what} needs a model of the language", what=what), say("set model:=FOLDER")
-        )
+        raise SpeechError(say("{what} needs a model of the language", what=what), say("set model:=FOLDER"))
     path = Path(model).expanduser()
     if not path.is_dir():
-        raise SpeechError(
-            say("{path}: there is no such folder", path=str(path)), say("set model:=FOLDER")
-        )
+        raise SpeechError(say("{path}: there is no such folder", path=str(path)), say("set model:=FOLDER"))
     return path
 
 

@@ -52,9 +52,7 @@ class _Server:
         self.settings, self._who = settings, who
         self._ledger = Ledger(run_folder(os.environ))
 
-    def ask(
-        self, model: str, text: str, request: Callable[[openai.AsyncOpenAI], Awaitable[Any]]
-    ) -> Any:  # noqa: ANN401 - what the request returns
+    def ask(self, model: str, text: str, request: Callable[[openai.AsyncOpenAI], Awaitable[Any]]) -> Any:  # noqa: ANN401 - what the request returns
         """Send a request; raises SpeechError."""
         try:
             self._ledger.begin(self._who, self.settings.budget)
@@ -133,10 +131,7 @@ class ServerVoice:
 
         async def request(client: openai.AsyncOpenAI) -> bytes:
             answer = await client.audio.speech.create(
-                input=text,
-                model=settings.speech_model,
-                voice=settings.speech_voice,
-                response_format="pcm",
+                input=text, model=settings.speech_model, voice=settings.speech_voice, response_format="pcm"
             )
             return answer.content
 

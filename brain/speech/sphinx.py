@@ -25,11 +25,7 @@ if TYPE_CHECKING:
 
     from brain.speech.sound import Sound
 
-PRONUNCIATIONS = {
-    "robot(5)": "R OW B AO T",
-    "stop(5)": "S T AO P",
-    "stop(6)": "S T AH P",
-}
+PRONUNCIATIONS = {"robot(5)": "R OW B AO T", "stop(5)": "S T AO P", "stop(6)": "S T AH P"}
 """British ones, in ARPAbet, beside the American ones of the dictionary."""
 WORST_NATS_PER_FRAME = -5.0
 """How much worse than the free chain of phonemes the grammar may explain 10 ms of sound."""

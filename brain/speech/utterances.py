@@ -32,9 +32,7 @@ _CLOSING_VOICED = 1
 class Utterances:
     """Cuts a stream; raises SpeechError if pocketsphinx is not installed."""
 
-    def __init__(
-        self, rate_hz: int, *, closing_s: float = CLOSING_S, longest_s: float = LONGEST_S
-    ) -> None:
+    def __init__(self, rate_hz: int, *, closing_s: float = CLOSING_S, longest_s: float = LONGEST_S) -> None:
         """`rate_hz` is 8000, 16000, 32000 or 48000, or near one of these."""
         self._vad = _detector(rate_hz)
         self.rate_hz = rate_hz

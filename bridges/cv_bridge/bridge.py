@@ -73,21 +73,15 @@ class CvBridge:
             return picture
         return convert(picture, img_msg.encoding, desired_encoding)
 
-    def cv2_to_imgmsg(
-        self, cvim: Picture, encoding: str = "passthrough", header: Any = None
-    ) -> Image:
+    def cv2_to_imgmsg(self, cvim: Picture, encoding: str = "passthrough", header: Any = None) -> Image:
         """Return an Image of a picture, whose type has to fit the encoding."""
         if not isinstance(cvim, np.ndarray | np.generic):
             raise TypeError("Your input type is not a numpy array")
         if cvim.ndim not in {2, 3}:
             raise CvBridgeError(f"an image has rows and columns, and not {cvim.ndim} dimensions")
-        kind = self.dtype_with_channels_to_cvtype2(
-            cvim.dtype, 1 if cvim.ndim == 2 else cvim.shape[2]
-        )
+        kind = self.dtype_with_channels_to_cvtype2(cvim.dtype, 1 if cvim.ndim == 2 else cvim.shape[2])
         if encoding != "passthrough" and known(encoding).generic != kind:
-            raise CvBridgeError(
-                f"encoding specified as {encoding}, but image has incompatible type {kind}"
-            )
+            raise CvBridgeError(f"encoding specified as {encoding}, but image has incompatible type {kind}")
         message = Image()
         if header is not None:
             message.header = header
@@ -102,16 +96,12 @@ class CvBridge:
         message.step = len(data) // message.height if message.height else 0
         return message
 
-    def compressed_imgmsg_to_cv2(
-        self, cmprs_img_msg: Any, desired_encoding: str = "passthrough"
-    ) -> Picture:
+    def compressed_imgmsg_to_cv2(self, cmprs_img_msg: Any, desired_encoding: str = "passthrough") -> Picture:
         """Return the picture of a CompressedImage; it has the order bgr unless asked otherwise."""
         data = np.frombuffer(_bytes_of(cmprs_img_msg.data), np.uint8)
         picture = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
         if picture is None:
-            raise CvBridgeError(
-                f"{data.size} bytes of format '{cmprs_img_msg.format}' are no compressed image"
-            )
+            raise CvBridgeError(f"{data.size} bytes of format '{cmprs_img_msg.format}' are no compressed image")
         if desired_encoding == "passthrough":
             return np.asarray(picture)
         channels = 1 if picture.ndim == 2 else picture.shape[2]

@@ -46,8 +46,7 @@ def convert(picture: Picture, source: str, target: str) -> Picture:
     before, after = known(source), known(target)
     if not before.colours and after.colours:
         raise CvBridgeError(
-            f"[{source}] is not a color format. but [{target}] is. "
-            "The conversion does not make sense"
+            f"[{source}] is not a color format. but [{target}] is. The conversion does not make sense"
         )
     if before.colours and after.colours and before.colours != after.colours:
         picture = _recolour(picture, before, after)

@@ -11,9 +11,4 @@ from tf2_geometry_msgs.moving import (
     do_transform_vector3,
 )
 
-__all__ = [
-    "do_transform_point",
-    "do_transform_pose",
-    "do_transform_pose_stamped",
-    "do_transform_vector3",
-]
+__all__ = ["do_transform_point", "do_transform_pose", "do_transform_pose_stamped", "do_transform_vector3"]

@@ -17,9 +17,7 @@ Vector = npt.NDArray[np.float64]
 def do_transform_point(point: Any, transform: Any) -> Any:
     """Return a PointStamped in the frame of the transform's header."""
     found = PointStamped(header=deepcopy(transform.header))
-    moved = _turned(_turn(transform), _vector(point.point)) + _vector(
-        transform.transform.translation
-    )
+    moved = _turned(_turn(transform), _vector(point.point)) + _vector(transform.transform.translation)
     found.point.x, found.point.y, found.point.z = moved.tolist()
     return found
 
@@ -47,9 +45,7 @@ def do_transform_pose(pose: Any, transform: Any) -> Any:
 
 def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
     """Return a PoseStamped in the frame of the transform's header."""
-    return PoseStamped(
-        header=deepcopy(transform.header), pose=do_transform_pose(pose.pose, transform)
-    )
+    return PoseStamped(header=deepcopy(transform.header), pose=do_transform_pose(pose.pose, transform))
 
 
 def _turn(transform: Any) -> Turn:

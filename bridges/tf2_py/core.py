@@ -60,17 +60,10 @@ class BufferCore:
             when = _nanoseconds(time)
             if when == NEWEST:
                 when = self._common_time(target_frame, source_frame)
-            return _message(
-                target_frame, source_frame, when, self._motion(target_frame, source_frame, when)
-            )
+            return _message(target_frame, source_frame, when, self._motion(target_frame, source_frame, when))
 
     def lookup_transform_full_core(
-        self,
-        target_frame: str,
-        target_time: Time,
-        source_frame: str,
-        source_time: Time,
-        fixed_frame: str,
+        self, target_frame: str, target_time: Time, source_frame: str, source_time: Time, fixed_frame: str
     ) -> Any:
         """Return the same between two times, for which the fixed frame stands still."""
         with self._lock:
@@ -81,9 +74,7 @@ class BufferCore:
             stamp = Time.from_msg(now.header.stamp).nanoseconds
             return _message(target_frame, source_frame, stamp, motion)
 
-    def can_transform_core(
-        self, target_frame: str, source_frame: str, time: Time
-    ) -> tuple[bool, str]:
+    def can_transform_core(self, target_frame: str, source_frame: str, time: Time) -> tuple[bool, str]:
         """Return whether there is a transform, and if not, why."""
         try:
             self.lookup_transform_core(target_frame, source_frame, time)
@@ -92,18 +83,11 @@ class BufferCore:
         return True, ""
 
     def can_transform_full_core(
-        self,
-        target_frame: str,
-        target_time: Time,
-        source_frame: str,
-        source_time: Time,
-        fixed_frame: str,
+        self, target_frame: str, target_time: Time, source_frame: str, source_time: Time, fixed_frame: str
     ) -> tuple[bool, str]:
         """Return whether there is a transform between two times, and if not, why."""
         try:
-            self.lookup_transform_full_core(
-                target_frame, target_time, source_frame, source_time, fixed_frame
-            )
+            self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
         except TransformException as error:
             return False, str(error)
         return True, ""
@@ -159,13 +143,10 @@ class BufferCore:
     def _check(self, function: str, *frames: str) -> None:
         for frame in frames:
             if not frame:
-                raise InvalidArgumentException(
-                    f"Invalid argument passed to {function}: a frame_id cannot be empty"
-                )
+                raise InvalidArgumentException(f"Invalid argument passed to {function}: a frame_id cannot be empty")
             if frame.startswith("/"):
                 raise InvalidArgumentException(
-                    f"Invalid argument '{frame}' passed to {function}: "
-                    "in tf2 frame_ids cannot start with a '/'"
+                    f"Invalid argument '{frame}' passed to {function}: in tf2 frame_ids cannot start with a '/'"
                 )
         for frame in frames:
             if frame not in self._known:
@@ -178,9 +159,7 @@ class BufferCore:
         if top is None:
             raise ConnectivityException(_unconnected(target, source))
         passed = [step for way in ways for step in way[: way.index(top)]]
-        stamps = [
-            self._histories[step].newest for step in passed if not self._histories[step].static
-        ]
+        stamps = [self._histories[step].newest for step in passed if not self._histories[step].static]
         return min(stamps, default=NEWEST)
 
     def _upwards(self, frame: str) -> Iterator[tuple[str, History | None]]:
@@ -205,9 +184,7 @@ class BufferCore:
             )
         raise ConnectivityException(_unconnected(target, source))
 
-    def _ancestors(
-        self, frame: str, time: int
-    ) -> tuple[dict[str, Motion], ExtrapolationException | None]:
+    def _ancestors(self, frame: str, time: int) -> tuple[dict[str, Motion], ExtrapolationException | None]:
         """Return where a frame was in each frame above it, and why that ends before the root."""
         motion = Motion()
         found = {frame: motion}

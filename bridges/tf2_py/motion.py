@@ -34,11 +34,7 @@ class Motion:
     def towards(self, other: Motion, share: float) -> Motion:
         """Return what is between two motions; `share` 0 is this one, 1 the other."""
         a, b = self.translation, other.translation
-        moved = (
-            a[0] + (b[0] - a[0]) * share,
-            a[1] + (b[1] - a[1]) * share,
-            a[2] + (b[2] - a[2]) * share,
-        )
+        moved = (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, a[2] + (b[2] - a[2]) * share)
         return Motion(moved, slerp(self.rotation, other.rotation, share))
 
 

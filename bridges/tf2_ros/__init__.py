@@ -15,12 +15,7 @@ from tf2_py import (
 
 from tf2_ros.buffer import Buffer
 from tf2_ros.buffer_client import BufferClient
-from tf2_ros.buffer_interface import (
-    BufferInterface,
-    NotImplementedException,
-    TransformRegistration,
-    TypeException,
-)
+from tf2_ros.buffer_interface import BufferInterface, NotImplementedException, TransformRegistration, TypeException
 from tf2_ros.static_transform_broadcaster import StaticTransformBroadcaster
 from tf2_ros.transform_broadcaster import TransformBroadcaster
 from tf2_ros.transform_listener import TransformListener

@@ -43,9 +43,7 @@ class Buffer(BufferCore, BufferInterface):
         self.clock = node.get_clock() if node is not None else Clock()
         if node is not None:
             self._serve_frames(node)
-        backwards = JumpThreshold(
-            min_forward=None, min_backward=Duration(seconds=-1), on_clock_change=True
-        )
+        backwards = JumpThreshold(min_forward=None, min_backward=Duration(seconds=-1), on_clock_change=True)
         self.jump_handle = self.clock.create_jump_callback(backwards, post_callback=self._on_jump)
 
     def set_transform(self, transform: Any, authority: str) -> None:
@@ -60,9 +58,7 @@ class Buffer(BufferCore, BufferInterface):
         super().set_transform_static(transform, authority)
         self._tell()
 
-    def lookup_transform(
-        self, target_frame: str, source_frame: str, time: Time, timeout: Duration = NOW
-    ) -> Any:
+    def lookup_transform(self, target_frame: str, source_frame: str, time: Time, timeout: Duration = NOW) -> Any:
         """Return where the source frame is in the target frame; time 0 asks for the newest."""
         self.can_transform(target_frame, source_frame, time, timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
@@ -87,12 +83,7 @@ class Buffer(BufferCore, BufferInterface):
         return self.lookup_transform_full_core(*way)
 
     async def lookup_transform_full_async(
-        self,
-        target_frame: str,
-        target_time: Time,
-        source_frame: str,
-        source_time: Time,
-        fixed_frame: str,
+        self, target_frame: str, target_time: Time, source_frame: str, source_time: Time, fixed_frame: str
     ) -> Any:
         """Return the same as soon as it is known."""
         way = (target_frame, target_time, source_frame, source_time, fixed_frame)
@@ -108,9 +99,7 @@ class Buffer(BufferCore, BufferInterface):
         return_debug_tuple: bool = False,
     ) -> Any:
         """Return whether there is a transform, within a time; with the reason if asked."""
-        found = self._wait(
-            lambda: self.can_transform_core(target_frame, source_frame, time), timeout
-        )
+        found = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
         return found if return_debug_tuple else found[0]
 
     def can_transform_full(
@@ -131,23 +120,15 @@ class Buffer(BufferCore, BufferInterface):
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time) -> Future:
         """Return a future of the transform."""
         way = (target_frame, source_frame, time)
-        return self._future(
-            lambda: self.can_transform_core(*way)[0], lambda: self.lookup_transform_core(*way)
-        )
+        return self._future(lambda: self.can_transform_core(*way)[0], lambda: self.lookup_transform_core(*way))
 
     def wait_for_transform_full_async(
-        self,
-        target_frame: str,
-        target_time: Time,
-        source_frame: str,
-        source_time: Time,
-        fixed_frame: str,
+        self, target_frame: str, target_time: Time, source_frame: str, source_time: Time, fixed_frame: str
     ) -> Future:
         """Return a future of a transform between two times."""
         way = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return self._future(
-            lambda: self.can_transform_full_core(*way)[0],
-            lambda: self.lookup_transform_full_core(*way),
+            lambda: self.can_transform_full_core(*way)[0], lambda: self.lookup_transform_full_core(*way)
         )
 
     def _future(self, can: Callable[[], bool], find: Callable[[], Any]) -> Future:

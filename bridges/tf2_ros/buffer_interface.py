@@ -36,8 +36,7 @@ class TransformRegistration:
             return self._moves[key]
         except KeyError:
             raise TypeException(
-                f"Type {key} is not loaded or supported; "
-                "for messages of geometry_msgs, import tf2_geometry_msgs"
+                f"Type {key} is not loaded or supported; for messages of geometry_msgs, import tf2_geometry_msgs"
             ) from None
 
 
@@ -56,9 +55,7 @@ class BufferInterface:
         """Return a thing with a header as seen from another frame, at its own time."""
         move = self.registration.get(type(object_stamped))
         header = object_stamped.header
-        found = self.lookup_transform(
-            target_frame, header.frame_id, Time.from_msg(header.stamp), timeout
-        )
+        found = self.lookup_transform(target_frame, header.frame_id, Time.from_msg(header.stamp), timeout)
         return move(object_stamped, found)
 
     def lookup_transform(self, *_args: Any, **_kwargs: Any) -> Any:

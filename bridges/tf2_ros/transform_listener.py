@@ -58,9 +58,7 @@ class TransformListener:
         )
         if spin_thread:
             self.executor = SingleThreadedExecutor(context=self.node.context)
-            self.dedicated_listener_thread = Thread(
-                target=_spin, args=(self.executor, self.node), daemon=True
-            )
+            self.dedicated_listener_thread = Thread(target=_spin, args=(self.executor, self.node), daemon=True)
             self.dedicated_listener_thread.start()
 
     def callback(self, data: Any) -> None:

@@ -43,9 +43,7 @@ COMMANDS = {
     "model": N_("a language model on this machine, for Deck to ask"),
     "shell": N_("open a shell in the lesson's domain, with ros2, colcon and Deck's Python"),
     "diagnostics": N_("show what drivers and others say on /diagnostics, as a tree"),
-    "doctor": N_(
-        "check what is installed, which ROS, which ports, and say how to fix what is missing"
-    ),
+    "doctor": N_("check what is installed, which ROS, which ports, and say how to fix what is missing"),
 }
 HELP = "help"
 """`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
@@ -122,16 +120,12 @@ def _open_parser() -> Parser:
     parser = Parser(
         prog="deck",
         usage=_("deck [PROFILE] [options]\n       deck COMMAND ..."),
-        description=_(
-            "One screen for the lessons of ROS 2. Without a profile it lets you pick one."
-        ),
+        description=_("One screen for the lessons of ROS 2. Without a profile it lets you pick one."),
         epilog=_("commands (for help: deck COMMAND --help):") + "\n" + "\n".join(lines),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    parser.add_argument(
-        "profile", nargs="?", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain")
-    )
+    parser.add_argument("profile", nargs="?", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain"))
     add_profile_options(parser)
     add_screen(parser)
     add_language(parser)

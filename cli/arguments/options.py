@@ -13,9 +13,7 @@ if TYPE_CHECKING:
 
 def add_profile(parser: Parser) -> None:
     """Add the name of a profile, which has to be given."""
-    parser.add_argument(
-        "profile", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain")
-    )
+    parser.add_argument("profile", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain"))
 
 
 def add_profile_options(parser: Parser) -> None:
@@ -49,8 +47,7 @@ def add_graph(parser: Parser, help_text: str) -> None:
         "--discovery",
         choices=("localhost", "subnet"),
         help=_(
-            "look on this machine only, or on the network too; by default as the running robot "
-            "does, else localhost"
+            "look on this machine only, or on the network too; by default as the running robot does, else localhost"
         ),
     )
 
@@ -58,17 +55,13 @@ def add_graph(parser: Parser, help_text: str) -> None:
 def add_screen(parser: Parser) -> None:
     """Add what the screen begins with, and the limit for its pictures."""
     parser.add_argument(
-        "--wall",
-        action="store_true",
-        help=_("begin with the wall: big numbers and a big picture, for a projector"),
+        "--wall", action="store_true", help=_("begin with the wall: big numbers and a big picture, for a projector")
     )
     parser.add_argument(
         "--bandwidth",
         metavar="KB",
         type=bandwidth,
-        help=_(
-            "limit for pictures in the terminal, kB/s, or off; by default 40 over SSH, else off"
-        ),
+        help=_("limit for pictures in the terminal, kB/s, or off; by default 40 over SSH, else off"),
     )
 
 
@@ -79,16 +72,12 @@ def add_json(parser: Parser) -> None:
 
 def add_language(parser: Parser) -> None:
     """Add the language."""
-    parser.add_argument(
-        "--lang", choices=LANGUAGES, help=_("language; by default that of the locale")
-    )
+    parser.add_argument("--lang", choices=LANGUAGES, help=_("language; by default that of the locale"))
 
 
 def add_running(parser: Parser) -> None:
     """Add the name of a running profile, for when there are several."""
-    parser.add_argument(
-        "name", nargs="?", metavar=_("NAME"), help=_("name of the profile, if several are running")
-    )
+    parser.add_argument("name", nargs="?", metavar=_("NAME"), help=_("name of the profile, if several are running"))
 
 
 def add_seed(parser: Parser, words: str = "") -> None:

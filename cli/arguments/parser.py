@@ -18,12 +18,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Exit with 2 after saying what is wrong and where the help is."""
-        self.exit(
-            2,
-            f"{self.prog}: {message}\n"
-            + _("for help: {prog} --help").format(prog=self.prog)
-            + "\n",
-        )
+        self.exit(2, f"{self.prog}: {message}\n" + _("for help: {prog} --help").format(prog=self.prog) + "\n")
 
 
 ARGPARSE = (

@@ -4,14 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.arguments.options import (
-    add_graph,
-    add_json,
-    add_profile,
-    add_profile_options,
-    add_running,
-    add_screen,
-)
+from cli.arguments.options import add_graph, add_json, add_profile, add_profile_options, add_running, add_screen
 from cli.values import count, seconds
 from graph.inner_states import LOG_LEVELS
 from text.i18n import _
@@ -24,11 +17,7 @@ def add_run(parser: Parser) -> None:
     """Add the options of `deck run`."""
     add_profile(parser)
     parser.add_argument(
-        "--for",
-        dest="seconds",
-        metavar="S",
-        type=seconds,
-        help=_("stop S seconds after all nodes are ready"),
+        "--for", dest="seconds", metavar="S", type=seconds, help=_("stop S seconds after all nodes are ready")
     )
     add_json(parser)
     add_profile_options(parser)
@@ -45,9 +34,7 @@ def add_list(parser: Parser) -> None:
 
 def add_check(parser: Parser) -> None:
     """Add the options of `deck check`."""
-    parser.add_argument(
-        "profile", nargs="?", metavar=_("PROFILE"), help=_("name or file; all of them by default")
-    )
+    parser.add_argument("profile", nargs="?", metavar=_("PROFILE"), help=_("name or file; all of them by default"))
     parser.add_argument(
         "--preflight",
         action="store_true",
@@ -67,11 +54,7 @@ def add_up(parser: Parser) -> None:
 def add_frames(parser: Parser) -> None:
     """Add the options of `deck frames`."""
     parser.add_argument(
-        "--for",
-        dest="seconds",
-        metavar="S",
-        type=seconds,
-        help=_("listen for S seconds; 3 by default"),
+        "--for", dest="seconds", metavar="S", type=seconds, help=_("listen for S seconds; 3 by default")
     )
     add_graph(parser, _("ROS domain; by default that of the running robot"))
     add_json(parser)
@@ -88,17 +71,10 @@ def add_ps(parser: Parser) -> None:
 
 def add_logs(parser: Parser) -> None:
     """Add the options of `deck logs`."""
-    parser.add_argument(
-        "node", nargs="?", metavar=_("NODE"), help=_("name of the node; all of them by default")
-    )
+    parser.add_argument("node", nargs="?", metavar=_("NODE"), help=_("name of the node; all of them by default"))
     parser.add_argument("-f", "--follow", action="store_true", help=_("keep showing new lines"))
     parser.add_argument(
-        "-n",
-        dest="lines",
-        metavar="N",
-        type=count,
-        default=100,
-        help=_("how many past lines, 100 by default"),
+        "-n", dest="lines", metavar="N", type=count, default=100, help=_("how many past lines, 100 by default")
     )
     parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several are running"))
 
@@ -118,9 +94,7 @@ def add_watch(parser: Parser) -> None:
 
 def add_stop(parser: Parser) -> None:
     """Add the options of `deck stop`."""
-    parser.add_argument(
-        "name", nargs="?", metavar=_("NAME"), help=_("name of the profile; without it, all stop")
-    )
+    parser.add_argument("name", nargs="?", metavar=_("NAME"), help=_("name of the profile; without it, all stop"))
     parser.epilog = _(
         "Exit code: 0 if all nodes that report on the emergency stop obey it, 1 if that is not "
         "confirmed within seconds. The stop holds until it is released."
@@ -138,20 +112,15 @@ def add_level(parser: Parser) -> None:
     )
     add_graph(parser, _("ROS domain; by default that of the running robot"))
     parser.epilog = _(
-        "Exit code: 0, or 1 if the node is not there, does not answer or does not let others "
-        "change its level."
+        "Exit code: 0, or 1 if the node is not there, does not answer or does not let others change its level."
     )
 
 
 def add_doctor(parser: Parser) -> None:
     """Add the options of `deck doctor`."""
+    parser.add_argument("what", nargs="?", choices=("llm",), help=_("llm: ask the language model for a test"))
     parser.add_argument(
-        "what", nargs="?", choices=("llm",), help=_("llm: ask the language model for a test")
-    )
-    parser.add_argument(
-        "--graph",
-        action="store_true",
-        help=_("examine the running ROS graph instead, whoever has started its nodes"),
+        "--graph", action="store_true", help=_("examine the running ROS graph instead, whoever has started its nodes")
     )
     add_graph(parser, _("with --graph: ROS domain; by default that of the running robot"))
     add_json(parser)
@@ -164,15 +133,8 @@ def add_doctor(parser: Parser) -> None:
 def add_diagnostics(parser: Parser) -> None:
     """Add the options of `deck diagnostics`."""
     parser.add_argument(
-        "--for",
-        dest="seconds",
-        metavar="S",
-        type=seconds,
-        default=3.0,
-        help=_("listen for S seconds, 3 by default"),
+        "--for", dest="seconds", metavar="S", type=seconds, default=3.0, help=_("listen for S seconds, 3 by default")
     )
     add_graph(parser, _("ROS domain; by default that of the running robot"))
     add_json(parser)
-    parser.epilog = _(
-        "Exit code: 0 if everything is all right, 1 if anything is not, 2 if nobody says anything."
-    )
+    parser.epilog = _("Exit code: 0 if everything is all right, 1 if anything is not, 2 if nobody says anything.")

@@ -24,29 +24,20 @@ def add_mcp(parser: Parser) -> None:
         "--approve",
         choices=("never", "ask", "always"),
         default="ask",
-        help=_(
-            "whether agents drive: never, after the person at the screen is asked (the default), "
-            "or always"
-        ),
+        help=_("whether agents drive: never, after the person at the screen is asked (the default), or always"),
     )
     parser.add_argument(
-        "--http",
-        action="store_true",
-        help=_("serve agents on this machine by HTTP, not the one that has started it"),
+        "--http", action="store_true", help=_("serve agents on this machine by HTTP, not the one that has started it")
     )
     parser.add_argument(
         "--port",
         metavar="N",
         type=port,
         default=MCP_PORT,
-        help=_("with --http: the port, {port} by default; 0 takes a free one").format(
-            port=MCP_PORT
-        ),
+        help=_("with --http: the port, {port} by default; 0 takes a free one").format(port=MCP_PORT),
     )
     parser.add_argument(
-        "--show-token",
-        action="store_true",
-        help=_("show the token that agents need for --http, and end"),
+        "--show-token", action="store_true", help=_("show the token that agents need for --http, and end")
     )
     parser.epilog = _(
         "Limits of speed and distance are in the profile, and no approval lifts them. The agent "
@@ -72,11 +63,7 @@ def _add_serve(parser: Parser) -> None:
         help=_("for a model that sees: the file beside it that turns pictures into tokens"),
     )
     parser.add_argument(
-        "--port",
-        metavar="N",
-        type=port,
-        default=8080,
-        help=_("8080 by default; 0: any that is free"),
+        "--port", metavar="N", type=port, default=8080, help=_("8080 by default; 0: any that is free")
     )
     parser.add_argument(
         "--host",
@@ -94,10 +81,7 @@ def _add_serve(parser: Parser) -> None:
         ),
     )
     parser.add_argument(
-        "--threads",
-        metavar="N",
-        type=between(1, 512),
-        help=_("by default one less than there are cores"),
+        "--threads", metavar="N", type=between(1, 512), help=_("by default one less than there are cores")
     )
     parser.add_argument("--verbose", action="store_true", help=_("show the log of llama.cpp"))
     parser.epilog = _(

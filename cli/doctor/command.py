@@ -18,11 +18,7 @@ if TYPE_CHECKING:
 
     from cli.doctor import Finding
 
-LOOKS = {
-    Level.OK: (N_("ok"), GREEN),
-    Level.WARN: (N_("warn"), YELLOW),
-    Level.FAIL: (N_("FAIL"), RED),
-}
+LOOKS = {Level.OK: (N_("ok"), GREEN), Level.WARN: (N_("warn"), YELLOW), Level.FAIL: (N_("FAIL"), RED)}
 
 
 def doctor_command(options: Namespace) -> int:

@@ -62,9 +62,7 @@ class GraphExamination:
     def summary(self) -> str:
         """Return what was examined, and how much was found."""
         rows = (self.update.nodes, self.update.topics, self.update.services)
-        nodes, topics, services = (
-            sum(not is_housekeeping(row.name) for row in of_kind) for of_kind in rows
-        )
+        nodes, topics, services = (sum(not is_housekeeping(row.name) for row in of_kind) for of_kind in rows)
         words = _("domain {domain}: nodes: {nodes}, topics: {topics}, services: {services}")
         told = words.format(domain=self.domain, nodes=nodes, topics=topics, services=services)
         if not self.found:
@@ -86,9 +84,7 @@ def examine_graph(asked: int | None, wanted: str | None = None) -> GraphExaminat
         UsageError: if ROS cannot be used, or nobody is in the domain.
     """
     with domain_view(asked, wanted, all_topics=True) as view:
-        words = _("looking at domain {domain} for {seconds} s").format(
-            domain=view.domain, seconds=round(LISTEN_S)
-        )
+        words = _("looking at domain {domain} for {seconds} s").format(domain=view.domain, seconds=round(LISTEN_S))
         tell_that_it_takes_time(words)
         return _examined(view)
 

@@ -51,12 +51,8 @@ async def _ask(client: ModelClient, settings: ModelSettings) -> list[Finding]:
         form = ok("llm.form", _("answers as {form}").format(form=rung.value))
         messages = conversation(_PROMPT, Memory(), Situation("hello"))
         schema = SpokenResponse.model_json_schema()
-        thought = await think(
-            ladder, schema, messages, lambda text: parse_llm(text, SpokenResponse)
-        )
+        thought = await think(ladder, schema, messages, lambda text: parse_llm(text, SpokenResponse))
     usage = thought.usages[-1]
-    text = _(
-        "the answer of a test came whole: first token after {first} s, all of it after {total} s"
-    )
+    text = _("the answer of a test came whole: first token after {first} s, all of it after {total} s")
     first, total = (decimal(f"{seconds:.2f}") for seconds in (usage.first_token_s, usage.total_s))
     return [form, ok("llm.answer", text.format(first=first, total=total))]

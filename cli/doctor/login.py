@@ -55,10 +55,7 @@ def diagnose(facts: LoginFacts) -> list[Finding]:
     return [
         warn(
             key,
-            _(
-                "RemoveIPC: logging out clears /dev/shm, and nodes started by `deck up` lose "
-                "each other"
-            ),
+            _("RemoveIPC: logging out clears /dev/shm, and nodes started by `deck up` lose each other"),
             _("run: loginctl enable-linger, or set RemoveIPC=no in /etc/systemd/logind.conf"),
         )
     ]
@@ -85,11 +82,7 @@ def _files() -> list[str]:
     """Return the texts of logind's configuration files in order of precedence, lowest first."""
     paths = [Path(folder, "logind.conf") for folder in reversed(FOLDERS)]
     main = next((path for path in paths if path.is_file()), None)
-    parts = {
-        path.name: path
-        for folder in FOLDERS
-        for path in Path(folder, "logind.conf.d").glob("*.conf")
-    }
+    parts = {path.name: path for folder in FOLDERS for path in Path(folder, "logind.conf.d").glob("*.conf")}
     files = [*([main] if main else []), *(parts[name] for name in sorted(parts))]
     return [_text(path) for path in files]
 

@@ -78,9 +78,7 @@ def _camera(device: str, name: str, allowed: bool) -> Finding:
     text = _("camera {device} {name}").format(device=device, name=name).rstrip()
     if allowed:
         return ok("camera", text)
-    return warn(
-        "camera", _("{what}: no permission").format(what=text), "sudo usermod -aG video $USER"
-    )
+    return warn("camera", _("{what}: no permission").format(what=text), "sudo usermod -aG video $USER")
 
 
 def _camera_name(device: str) -> str:

@@ -47,9 +47,7 @@ def _domain(facts: NetworkFacts) -> Finding:
     except DomainError as error:
         return fail("ros.domain", localized(error.args[0]), _("run: unset ROS_DOMAIN_ID"))
     whose = "ROS_DOMAIN_ID" if "ROS_DOMAIN_ID" in facts.environ else _("your own")
-    text = _(
-        "domain {domain} ({whose}), visible on this machine only unless a profile says otherwise"
-    )
+    text = _("domain {domain} ({whose}), visible on this machine only unless a profile says otherwise")
     text = text.format(domain=domain, whose=whose)
     if domain > LAST_SAFE_DOMAIN:
         fix = _("export ROS_DOMAIN_ID={domain}: ports of domains above {safe} may be taken")
@@ -69,9 +67,7 @@ def _oddities(facts: NetworkFacts) -> list[Finding]:
         )
     for name in ("ROS_DISCOVERY_SERVER", "CYCLONEDDS_URI"):
         if name in facts.environ:
-            text = _("{name}={value} changes which nodes see each other").format(
-                name=name, value=facts.environ[name]
-            )
+            text = _("{name}={value} changes which nodes see each other").format(name=name, value=facts.environ[name])
             found.append(warn("ros.discovery", text, _("unset it if topics stay empty")))
     open_because = why_open(facts.environ, "localhost")
     if open_because:

@@ -42,9 +42,7 @@ def ask_firmware() -> str:
     """Return a Raspberry Pi's report on its supply, empty if it cannot be asked."""
     command = ["vcgencmd", "get_throttled"]
     try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=ASK_WITHIN_S, check=False
-        )
+        done = subprocess.run(command, capture_output=True, text=True, timeout=ASK_WITHIN_S, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return ""
     return done.stdout
@@ -82,9 +80,7 @@ def _supply(pi: str, bits: int) -> list[Finding]:
         text = _("slowed down now") if bits & HOT else _("slowed down since power-on")
         fix = _("cool it: a fan, space around it; check with vcgencmd measure_temp")
         found.append(warn("power.throttled", f"{pi}: {text}", fix))
-    return found or [
-        ok("power.voltage", _("{pi}: power supply and temperature are fine").format(pi=pi))
-    ]
+    return found or [ok("power.voltage", _("{pi}: power supply and temperature are fine").format(pi=pi))]
 
 
 def _governor(facts: PowerFacts) -> Finding:

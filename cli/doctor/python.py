@@ -89,9 +89,7 @@ def _textual(facts: PythonFacts) -> Finding:
         return ok("textual", f"Textual {version}")
     return warn(
         "textual",
-        _("Textual {version}, but Deck needs {wanted}").format(
-            version=version or "-", wanted=facts.textual_wanted
-        ),
+        _("Textual {version}, but Deck needs {wanted}").format(version=version or "-", wanted=facts.textual_wanted),
         f"pip install textual=={facts.textual_wanted}",
     )
 

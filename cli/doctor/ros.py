@@ -132,9 +132,7 @@ def _node(facts: RosFacts) -> list[Finding]:
         fix = _("try: unset RMW_IMPLEMENTATION, or install that middleware")
         if "RMW_IMPLEMENTATION" not in facts.environ:
             fix = how_to_get(facts)
-        text = _("rclpy is installed, but no node can be created: {reason}").format(
-            reason=facts.error
-        )
+        text = _("rclpy is installed, but no node can be created: {reason}").format(reason=facts.error)
         return [fail("ros.rclpy", text, fix)]
     return [ok("ros.rclpy", _("rclpy can create a node, middleware {rmw}").format(rmw=facts.rmw))]
 
@@ -172,11 +170,7 @@ def _probe() -> dict[str, Any]:
     environ.pop("ROS_LOCALHOST_ONLY", None)
     try:
         done = subprocess.run(
-            python(PROBE, *MESSAGES),
-            capture_output=True,
-            timeout=PROBE_WITHIN_S,
-            env=environ,
-            check=False,
+            python(PROBE, *MESSAGES), capture_output=True, timeout=PROBE_WITHIN_S, env=environ, check=False
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         return {"error": str(error)}

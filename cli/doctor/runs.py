@@ -79,9 +79,7 @@ def diagnose(facts: RunFacts) -> list[Finding]:
 
 
 def _folders(facts: RunFacts) -> Finding:
-    text = _("logs in {path}, {size:.1f} GB free").format(
-        path=facts.log_dir, size=LocalizedFloat(facts.free / 1e9)
-    )
+    text = _("logs in {path}, {size:.1f} GB free").format(path=facts.log_dir, size=LocalizedFloat(facts.free / 1e9))
     if facts.free < LEAST_FREE:
         return warn("folders", text, _("remove old logs there, or set DECK_LOG_DIR"))
     return ok("folders", text)

@@ -42,10 +42,7 @@ def collect() -> SerialFacts:
         found = serial_ports()
     except ImportError as error:
         return SerialFacts(error=str(error))
-    ports = tuple(
-        Access(port, _group_of(port.device), os.access(port.device, os.R_OK | os.W_OK))
-        for port in found
-    )
+    ports = tuple(Access(port, _group_of(port.device), os.access(port.device, os.R_OK | os.W_OK)) for port in found)
     return SerialFacts(ports, os.environ.get("USER", ""), tuple(map(_name, os.getgroups())))
 
 

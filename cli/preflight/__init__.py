@@ -25,9 +25,7 @@ MEDIA = {"camera": ask_camera, "sound": ask_sound}
 """Kinds of device without a serial port."""
 
 
-def examine(
-    profile: Profile, find_ports: Callable[[], Sequence[SerialPort]] = serial_ports
-) -> list[Finding]:
+def examine(profile: Profile, find_ports: Callable[[], Sequence[SerialPort]] = serial_ports) -> list[Finding]:
     """Check all devices that the profile's nodes refer to, in parallel."""
     said = profile.document.devices
     devices = {name: said[name] for name in profile.used if name in said}

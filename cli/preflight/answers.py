@@ -85,9 +85,7 @@ def _pico(line: OpenPort) -> DeviceAnswer:
         return DeviceAnswer(Level.FAIL, _("some lines arrive garbled"), _better_cable())
     if welcome is None:
         text = _("telemetry arrives, but no answer: what is sent gets lost")
-        return DeviceAnswer(
-            Level.FAIL, text, _("check the cable; unplug the Pico and plug it in again")
-        )
+        return DeviceAnswer(Level.FAIL, text, _("check the cable; unplug the Pico and plug it in again"))
     if welcome.protocol != PROTOCOL:
         text = _("the firmware speaks protocol {theirs}, this program {ours}")
         text = text.format(theirs=welcome.protocol, ours=PROTOCOL)
@@ -111,10 +109,7 @@ def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) 
     if telemetry is not None and telemetry.battery_v is not None:
         text += ", " + _("battery {volts:.1f} V").format(volts=LocalizedFloat(telemetry.battery_v))
     troubles = {
-        "E": (
-            _("the emergency stop is held"),
-            _("start the robot and press Ctrl+R"),
-        ),
+        "E": (_("the emergency stop is held"), _("start the robot and press Ctrl+R")),
         "L": (_("the left motor driver reports a fault"), _("check its wiring and power supply")),
         "R": (_("the right motor driver reports a fault"), _("check its wiring and power supply")),
         "U": (_("the battery is low"), _("charge it, and switch on the motors' power supply")),
@@ -188,9 +183,7 @@ def _servos(line: OpenPort) -> DeviceAnswer:
     heard += line.hear(ANSWER_S, take)
     if not told:
         return _nothing("lsc16", heard, line.baud)
-    return DeviceAnswer(
-        Level.OK, _("battery {volts:.1f} V").format(volts=LocalizedFloat(told[0].millivolts / 1000))
-    )
+    return DeviceAnswer(Level.OK, _("battery {volts:.1f} V").format(volts=LocalizedFloat(told[0].millivolts / 1000)))
 
 
 def _another(kind: str, heard: bytes) -> DeviceAnswer:
@@ -206,9 +199,7 @@ def _nothing(kind: str, heard: bytes, baud: int) -> DeviceAnswer:
     """Report that nothing useful was received: garbage, or not a single byte."""
     name = NAMES[kind]
     if heard:
-        text = _("{count} bytes arrived, but no {name} sends such data").format(
-            count=len(heard), name=name
-        )
+        text = _("{count} bytes arrived, but no {name} sends such data").format(count=len(heard), name=name)
         fix = _("wrong baud (this is {baud}), another device, or a bad cable")
         return DeviceAnswer(Level.FAIL, text, fix.format(baud=baud))
     fixes = {
@@ -216,6 +207,4 @@ def _nothing(kind: str, heard: bytes, baud: int) -> DeviceAnswer:
         "lsc16": _("switch the board on; cross TX and RX, connect the grounds; baud 9600"),
     }
     sonar = _("check its power supply (5 V), wiring and mode: serial, not I2C; baud 115200")
-    return DeviceAnswer(
-        Level.FAIL, _("the port is silent: no {name}").format(name=name), fixes.get(kind, sonar)
-    )
+    return DeviceAnswer(Level.FAIL, _("the port is silent: no {name}").format(name=name), fixes.get(kind, sonar))

@@ -33,10 +33,7 @@ def preflight_command(options: Namespace) -> int:
     if options.hardware != "real":
         raise UsageError(say("--preflight checks real devices: add --hardware real"))
     profile = load_profile(
-        find_profile(options.profile),
-        hardware=options.hardware,
-        overrides=options.overrides,
-        domain=options.domain,
+        find_profile(options.profile), hardware=options.hardware, overrides=options.overrides, domain=options.domain
     )
     from cli.preflight import examine
 
@@ -53,9 +50,7 @@ def preflight_command(options: Namespace) -> int:
         write(_("every device answers; nothing was moved"))
         return 0
     words = ngettext(
-        "{count} device is not ready; nothing was moved",
-        "{count} devices are not ready; nothing was moved",
-        bad,
+        "{count} device is not ready; nothing was moved", "{count} devices are not ready; nothing was moved", bad
     )
     write(words.format(count=bad))
     return NOT_READY

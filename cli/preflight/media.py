@@ -100,9 +100,7 @@ def _sound_devices() -> tuple[Sequence[str], Sequence[str]]:
     return microphones, speakers
 
 
-def _no_sound(
-    device: str, missing: Sequence[tuple[str, str]], there: Sequence[str]
-) -> DeviceAnswer:
+def _no_sound(device: str, missing: Sequence[tuple[str, str]], there: Sequence[str]) -> DeviceAnswer:
     titles = {"microphone": _("microphone"), "speaker": _("loudspeaker")}
     wishes = [f"{titles[setting]} {name}".rstrip() for setting, name in missing]
     text = _("not found: {missing}; sound devices: {names}").format(
@@ -123,12 +121,7 @@ def _run(command: Sequence[str]) -> str:
     """Return what a program prints, nothing if it fails or takes too long."""
     try:
         done = subprocess.run(
-            command,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            timeout=WITHIN_S,
-            check=False,
+            command, capture_output=True, text=True, errors="replace", timeout=WITHIN_S, check=False
         )
     except (OSError, subprocess.TimeoutExpired):
         return ""

@@ -28,9 +28,7 @@ class OpenPort:
             OSError, ValueError: if that is not possible.
         """
         self.baud = baud
-        self._port = serial.Serial(
-            path, baud, timeout=_READ_S, write_timeout=_WRITE_S, exclusive=True
-        )
+        self._port = serial.Serial(path, baud, timeout=_READ_S, write_timeout=_WRITE_S, exclusive=True)
 
     def close(self) -> None:
         with contextlib.suppress(*BAD):

@@ -29,11 +29,7 @@ GONE = (errno.ENOENT, errno.ENXIO, errno.ENODEV)
 
 
 def opened(
-    device: str,
-    path: str,
-    baud: int,
-    ports: Sequence[SerialPort],
-    opening: Callable[[str, int], OpenPort] = OpenPort,
+    device: str, path: str, baud: int, ports: Sequence[SerialPort], opening: Callable[[str, int], OpenPort] = OpenPort
 ) -> OpenPort | DeviceAnswer:
     """Return the open port of a device, or why not; `ports` lists those that exist."""
     if not os.path.lexists(path):
@@ -65,9 +61,7 @@ def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPor
     if number in GONE:
         return _missing(device, path, ports)
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
-        return DeviceAnswer(
-            Level.FAIL, _("it is not a serial port"), str(localized(how_to_choose(device)))
-        )
+        return DeviceAnswer(Level.FAIL, _("it is not a serial port"), str(localized(how_to_choose(device))))
     words = reason_of(error).splitlines()[0]
     fix = _("unplug the device, plug it in again, and look at: dmesg | tail")
     return DeviceAnswer(Level.FAIL, _("cannot be opened: {reason}").format(reason=words), fix)

@@ -35,13 +35,8 @@ def ask_ports(
     for device in serial:
         found = chosen.get(device)
         written = str(devices[device]["port"])
-        paths[device] = (
-            written if found is None or isinstance(found, UnresolvedPort) else found.path
-        )
-    return {
-        device: partial(_ask, device, devices[device], paths, chosen.get(device), ports)
-        for device in serial
-    }
+        paths[device] = written if found is None or isinstance(found, UnresolvedPort) else found.path
+    return {device: partial(_ask, device, devices[device], paths, chosen.get(device), ports) for device in serial}
 
 
 def _ask(
@@ -52,17 +47,12 @@ def _ask(
     ports: Sequence[SerialPort],
 ) -> tuple[str, DeviceAnswer]:
     if isinstance(chosen, UnresolvedPort):
-        return "", DeviceAnswer(
-            Level.FAIL, str(localized(chosen.message)), str(localized(chosen.hint))
-        )
+        return "", DeviceAnswer(Level.FAIL, str(localized(chosen.message)), str(localized(chosen.hint)))
     return paths[device], _one(device, settings, paths, ports)
 
 
 def _one(
-    device: str,
-    settings: Mapping[str, Any],
-    paths: Mapping[str, str],
-    ports: Sequence[SerialPort],
+    device: str, settings: Mapping[str, Any], paths: Mapping[str, str], ports: Sequence[SerialPort]
 ) -> DeviceAnswer:
     path = paths[device]
     twins = [
@@ -83,9 +73,7 @@ def _one(
             answer = ask(str(settings.get("kind", "")), line)
         except OSError as error:
             fix = _("check the cable and the power supply")
-            return DeviceAnswer(
-                Level.FAIL, _("it disappeared during the check: {error}").format(error=error), fix
-            )
+            return DeviceAnswer(Level.FAIL, _("it disappeared during the check: {error}").format(error=error), fix)
     lasting = advice(path)
     if answer.level is Level.OK and lasting:
         text = _("{text}; its name may belong to another device after it is plugged in again")

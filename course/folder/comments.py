@@ -19,9 +19,7 @@ def in_language(content: bytes, code: str) -> bytes:
         return content
     russian = code == "ru"
     text = _DOCSTRING.sub(r'"""\2"""' if russian else r'"""\1"""', text)
-    text = _COMMENTS.sub(
-        lambda found: _kept(found[0].splitlines(keepends=True), russian=russian), text
-    )
+    text = _COMMENTS.sub(lambda found: _kept(found[0].splitlines(keepends=True), russian=russian), text)
     return text.encode("utf-8")
 
 

@@ -69,11 +69,7 @@ def _starter(lesson: LessonFolder) -> dict[Path, Path]:
     """Return the files that a lesson begins with, by their place in the folder."""
     if not lesson.starter.is_dir():
         raise UsageError(say("there is no folder {folder}", folder=str(lesson.starter)))
-    sources = [
-        file
-        for file in sorted(lesson.starter.rglob("*"))
-        if file.is_file() and not IGNORED & set(file.parts)
-    ]
+    sources = [file for file in sorted(lesson.starter.rglob("*")) if file.is_file() and not IGNORED & set(file.parts)]
     return {file.relative_to(lesson.starter): file for file in sources}
 
 
@@ -132,9 +128,7 @@ def new_node(name: str) -> NewFolder:
         UsageError: if the name cannot be one, or if there is such a folder already.
     """
     if not NAME.fullmatch(name):
-        raise UsageError(
-            say("{name!r} cannot be the name of a node: write it as my_node", name=name)
-        )
+        raise UsageError(say("{name!r} cannot be the name of a node: write it as my_node", name=name))
     folder = course_dir() / name
     if folder.exists():
         raise UsageError(say("{path} is there already: choose another name", path=str(folder)))

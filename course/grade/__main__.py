@@ -103,7 +103,6 @@ class Examiner:
 
     @contextlib.asynccontextmanager
     async def _recording(self, domain: int) -> AsyncIterator[None]:
-        """Record everything meanwhile, if that is wanted."""
         if not self._request.bag:
             yield
             return

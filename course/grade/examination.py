@@ -43,11 +43,7 @@ class Examiners:
         """Held while there is a child that is not yet known to be an examiner."""
 
     async def start(
-        self,
-        command: Sequence[str],
-        channel: socket.socket,
-        log: Path,
-        environ: Mapping[str, str],
+        self, command: Sequence[str], channel: socket.socket, log: Path, environ: Mapping[str, str]
     ) -> asyncio.subprocess.Process:
         """Start one by this command; it talks on this channel."""
         async with self._starting:
@@ -68,7 +64,6 @@ class Examiners:
         return process
 
     def ended(self, pid: int) -> None:
-        """Note that one has ended."""
         self._pids.discard(pid)
 
     async def end_adopted(self) -> None:
@@ -80,13 +75,7 @@ class Examiners:
 class Examination:
     """One examiner, from start to end, with all that it leaves behind."""
 
-    def __init__(
-        self,
-        place: Path,
-        request: ExamRequest,
-        examiners: Examiners,
-        command: Sequence[str],
-    ) -> None:
+    def __init__(self, place: Path, request: ExamRequest, examiners: Examiners, command: Sequence[str]) -> None:
         """`command`: EXAMINER, or what runs it behind walls."""
         self.reason = ""
         """Why it did not come to its end; empty if it did."""
@@ -116,9 +105,7 @@ class Examination:
             writer.close()
             await asyncio.shield(asyncio.ensure_future(self._end(process)))
         if not self._ended and not self.reason:
-            self.reason = say(
-                "the judge was ended before it was done; killed by what it judged, perhaps"
-            )
+            self.reason = say("the judge was ended before it was done; killed by what it judged, perhaps")
 
     async def _heard(self, reader: asyncio.StreamReader) -> AsyncIterator[dict[str, Any]]:
         while not self._ended:

@@ -79,26 +79,21 @@ class Grade:
 
     @property
     def points(self) -> int:
-        """How many it has earned."""
         return sum(step.result.earned for step in self.steps)
 
     @property
     def max_points(self) -> int:
-        """How many there are."""
         return sum(step.result.points for step in self.steps)
 
     @property
     def state(self) -> GradeState:
-        """Whether it has passed."""
         states = {step.result.state for step in self.steps}
         if self.reason or states & {State.UNJUDGED, State.NOT_YET}:
             return GradeState.UNGRADED
         return GradeState.PASSED if states <= {State.PASSED} else GradeState.FAILED
 
 
-def filled_up(
-    lesson: LessonFolder, judged: Iterable[StepGrade], state: State, reason: str
-) -> tuple[StepGrade, ...]:
+def filled_up(lesson: LessonFolder, judged: Iterable[StepGrade], state: State, reason: str) -> tuple[StepGrade, ...]:
     """Return a grade for every step: those that were judged, and this one for all others."""
     by_id = {one.step.id: one for one in judged}
     return tuple(

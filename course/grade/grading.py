@@ -21,13 +21,7 @@ from course.grade.examination import EXAMINER, Examination, Examiners
 from course.grade.grades import Grade, StepGrade, filled_up
 from course.grade.protocol import ExamRequest
 from course.grade.removal import remove_tree
-from course.grade.submission import (
-    Files,
-    Submission,
-    UnreadableError,
-    check_gradable,
-    files_of,
-)
+from course.grade.submission import Files, Submission, UnreadableError, check_gradable, files_of
 from course.grade.walls import Walls, within
 from course.proof.domains import unused_domains
 from course.proof.places import Places
@@ -124,9 +118,7 @@ async def grade_all(
                 return number, _not_graded(terms, submission, files)
             # With several jobs another one's nodes may be at it just now.
             before = await asyncio.to_thread(_put_back, everything)
-            grading = _Grading(
-                terms, submission, (lesson, files), domains, on_step, examiners, apart
-            )
+            grading = _Grading(terms, submission, (lesson, files), domains, on_step, examiners, apart)
             grade = await grading.grade()
             after = await asyncio.to_thread(_put_back, everything)
             if terms.adopting:
@@ -243,9 +235,7 @@ class _Grading:
         own = self._files.contents.get(Path(FOLDERS_OWN))
         given = self._starter.contents[Path(FOLDERS_OWN)]
         if own not in (None, given, *(in_language(given, code) for code in LANGUAGES)):
-            notes.append(
-                say("the folder's {file} was not used, but the lesson's own", file=FOLDERS_OWN)
-            )
+            notes.append(say("the folder's {file} was not used, but the lesson's own", file=FOLDERS_OWN))
         return notes
 
     async def grade(self) -> Grade:
@@ -280,10 +270,7 @@ class _Grading:
                 async for event in events:
                     self._take(event)
             steps = filled_up(
-                self._terms.lesson,
-                self._grade.steps,
-                State.UNJUDGED,
-                examination.reason or say("it was not judged"),
+                self._terms.lesson, self._grade.steps, State.UNJUDGED, examination.reason or say("it was not judged")
             )
             await asyncio.to_thread(self._keep_bag, place)
             grade = replace(self._grade, steps=steps, seed=self._seed, reason=examination.reason)
@@ -325,9 +312,7 @@ class _Grading:
         if event["event"] == "values":
             self._grade = replace(self._grade, values=event["values"])
         elif event["event"] == "note":
-            self._grade = replace(
-                self._grade, notes=(*self._grade.notes, unpack_text(event["words"]))
-            )
+            self._grade = replace(self._grade, notes=(*self._grade.notes, unpack_text(event["words"])))
         elif event["event"] == "step":
             result = unpack_step(event["step"])
             document = next(step for step in self._terms.lesson.steps if step.id == result.id)

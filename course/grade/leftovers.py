@@ -56,9 +56,7 @@ def end_adopted(kept: Collection[int]) -> None:
     """Kill all children of this process but these, with all that descends from them."""
 
     def left() -> list[Process]:
-        adopted = [
-            each for each in processes() if each.parent == os.getpid() and each.pid not in kept
-        ]
+        adopted = [each for each in processes() if each.parent == os.getpid() and each.pid not in kept]
         for each in adopted:
             with suppress(ChildProcessError):
                 os.waitpid(each.pid, os.WNOHANG)

@@ -84,9 +84,7 @@ class Taken:
         if self.files > FILES:
             return say("it made more than {n} files", n=FILES)
         if self.unseen:
-            return say(
-                "it made a folder that cannot be looked into: {folder}", folder=self.unseen[:200]
-            )
+            return say("it made a folder that cannot be looked into: {folder}", folder=self.unseen[:200])
         return ""
 
 
@@ -102,9 +100,7 @@ def taken(pid: int, places: Iterable[Path]) -> Taken:
     if memory_bytes > MEMORY_BYTES:
         # What they share counts once.
         memory_bytes = sum(_share_bytes(one.pid) for one in family)
-    return Taken(
-        len(family), memory_bytes, sum(found.sizes.values()), len(found.sizes), found.unseen
-    )
+    return Taken(len(family), memory_bytes, sum(found.sizes.values()), len(found.sizes), found.unseen)
 
 
 def _memory_bytes(pid: int) -> int:

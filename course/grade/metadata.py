@@ -28,7 +28,6 @@ class Metadata:
 
     @classmethod
     def read(cls, path: Path) -> Self:
-        """Read it. Raises OSError."""
         info = path.lstat()
         mode = stat.S_IMODE(info.st_mode)
         changed_ns = 0 if stat.S_ISDIR(info.st_mode) else info.st_mtime_ns
@@ -58,8 +57,6 @@ def _attributes(path: Path) -> tuple[tuple[str, bytes], ...]:
     with suppress(OSError):
         names = sorted(os.listxattr(path, follow_symlinks=False))
         return tuple(
-            (name, os.getxattr(path, name, follow_symlinks=False))
-            for name in names
-            if name.startswith("user.")
+            (name, os.getxattr(path, name, follow_symlinks=False)) for name in names if name.startswith("user.")
         )
     return ()

@@ -39,7 +39,6 @@ class ExamRequest:
     """The folder of a recording, which does not exist yet; empty: none is made."""
 
     def to_json(self) -> str:
-        """Return it as one line."""
         return json.dumps(asdict(self))
 
     @classmethod

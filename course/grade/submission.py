@@ -135,9 +135,7 @@ def _again(metadata: Metadata, path: Path) -> bool:
 
 def _files(folder: Path) -> Iterator[Path]:
     for place, folders, names in os.walk(folder, onerror=_raise):
-        folders[:] = sorted(
-            name for name in folders if name not in NOT_READ and not name.startswith(".")
-        )
+        folders[:] = sorted(name for name in folders if name not in NOT_READ and not name.startswith("."))
         for name in sorted(names):
             path = Path(place, name)
             if stat.S_ISREG(path.lstat().st_mode):

@@ -98,7 +98,6 @@ def _devices(dev: Path) -> None:
 
 
 def _enter(root: Path, inside: dict[str, Any]) -> None:
-    """Make the new root, and be in it."""
     here = Path.cwd()
     _mount("none", Path("/"), flags=_REC | _PRIVATE)
     _mount("/", root, flags=_BIND | _REC)

@@ -89,9 +89,7 @@ class Inside:
         return sorted(both, key=lambda layer: (layer[0].count("/"), layer))
 
 
-def _differing(
-    folders: set[Path], others: set[Path], *, unless_any: bool = False
-) -> tuple[str, ...]:
+def _differing(folders: set[Path], others: set[Path], *, unless_any: bool = False) -> tuple[str, ...]:
     """Return those that are within one of the others, and in none of their own kind below it.
 
     `unless_any`: also those that are within none at all.
@@ -155,12 +153,7 @@ def _runs(command: Sequence[str]) -> bool:
 
 
 def within(
-    kind: Walls,
-    lesson: LessonFolder,
-    place: Path,
-    command: Sequence[str],
-    *,
-    apart: Sequence[Path] = (),
+    kind: Walls, lesson: LessonFolder, place: Path, command: Sequence[str], *, apart: Sequence[Path] = ()
 ) -> Sequence[str] | None:
     """Return the command that runs another one inside, where it writes in `place` only.
 

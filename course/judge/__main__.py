@@ -126,9 +126,7 @@ async def _end(task: asyncio.Task[None] | None) -> None:
 
 async def _run() -> None:
     requests = asyncio.StreamReader(limit=MOST_BYTES)
-    await asyncio.get_running_loop().connect_read_pipe(
-        lambda: asyncio.StreamReaderProtocol(requests), sys.stdin
-    )
+    await asyncio.get_running_loop().connect_read_pipe(lambda: asyncio.StreamReaderProtocol(requests), sys.stdin)
     # What rcl or a lesson's function prints must not get between the messages.
     out = os.dup(1)
     os.dup2(2, 1)

@@ -103,9 +103,7 @@ def _stuck(fault: NodeFault) -> tuple[str, str]:
 def _silence(node: str, status: NodeStatus) -> tuple[str, str]:
     if status.fault is not None and held_by(status.fault):
         return _stuck(status.fault)
-    seen = say(
-        "{node} does not answer within {seconds} s", node=node, seconds=f"{ANSWERS_WITHIN_S:g}"
-    )
+    seen = say("{node} does not answer within {seconds} s", node=node, seconds=f"{ANSWERS_WITHIN_S:g}")
     return seen, say("Does main come to rclpy.spin, and does every callback return?")
 
 
@@ -114,9 +112,7 @@ def _settled(names: Sequence[str], evidence: Evidence) -> bool:
     nodes = [evidence.nodes[name] for name in names]
     processes = (read_process(node.pid) for node in nodes if node.pid is not None)
     ended = any(process is None or process.zombie for process in processes)
-    return not ended and not any(
-        node.state in _ON_THE_WAY or evidence.may_crash_again(node.name) for node in nodes
-    )
+    return not ended and not any(node.state in _ON_THE_WAY or evidence.may_crash_again(node.name) for node in nodes)
 
 
 async def _silent_node(name: str, evidence: Evidence) -> str:
@@ -125,8 +121,7 @@ async def _silent_node(name: str, evidence: Evidence) -> str:
     if pid is not None and _is_of_ros(evidence.nodes[name].file):
         # One that is crashing leaves the graph before its process ends.
         await evidence.until(
-            lambda: MET if _nodes_of(name, evidence) or evidence.nodes[name].pid != pid else None,
-            FOUND_WITHIN_S,
+            lambda: MET if _nodes_of(name, evidence) or evidence.nodes[name].pid != pid else None, FOUND_WITHIN_S
         )
     for node in _nodes_of(name, evidence):
         if not await _answers(name, node, evidence):

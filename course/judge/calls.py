@@ -80,9 +80,7 @@ async def action(check: ActionCheck, evidence: Evidence) -> Observation:
     if not there.met:
         return there
     try:
-        number = await asyncio.wrap_future(
-            evidence.observer.send_goal(name, check.type, check.goal)
-        )
+        number = await asyncio.wrap_future(evidence.observer.send_goal(name, check.type, check.goal))
     except Exception as error:  # noqa: BLE001 - a goal that cannot be sent
         return Observation(met=False, seen=reason_of(error))
     try:
@@ -108,11 +106,7 @@ async def _pursued(check: ActionCheck, number: int, evidence: Evidence) -> Obser
     where = goal.status.value if goal is not None else GoalStatus.SENDING.value
     return Observation(
         met=False,
-        seen=say(
-            "after {seconds} s the goal is still: {status}",
-            seconds=f"{check.within:g}",
-            status=where,
-        ),
+        seen=say("after {seconds} s the goal is still: {status}", seconds=f"{check.within:g}", status=where),
         look=dead_nodes(evidence),
     )
 
@@ -139,9 +133,7 @@ def _ended(check: ActionCheck, goal: Goal) -> Observation:
         except FieldMissingError as error:
             return Observation(met=False, seen=error.words)
     if check.result and differs(check.result, goal.result or {}, check.tolerance):
-        return Observation(
-            met=False, seen=say("the result is {result}", result=shown(goal.result or {}))
-        )
+        return Observation(met=False, seen=say("the result is {result}", result=shown(goal.result or {})))
     return MET
 
 
@@ -185,10 +177,7 @@ async def parameter(check: ParameterCheck, evidence: Evidence) -> Observation:
         )
     if check.value is not None and differs(check.value, row.value, None):
         return Observation(
-            met=False,
-            seen=say(
-                "the parameter {name} is {value}", name=check.parameter, value=shown(row.value)
-            ),
+            met=False, seen=say("the parameter {name} is {value}", name=check.parameter, value=shown(row.value))
         )
     if check.set is not None:
         observation = await _takes(check, node, row, evidence)
@@ -197,12 +186,8 @@ async def parameter(check: ParameterCheck, evidence: Evidence) -> Observation:
     return await _refuses(check, node, row, evidence) if check.refuses is not None else MET
 
 
-async def _declared(
-    name: str, node: str, within_s: float, evidence: Evidence
-) -> ParameterRow | Observation:
-    there = await evidence.until(
-        lambda: MET if evidence.node(node) is not None else Observation(met=False), within_s
-    )
+async def _declared(name: str, node: str, within_s: float, evidence: Evidence) -> ParameterRow | Observation:
+    there = await evidence.until(lambda: MET if evidence.node(node) is not None else Observation(met=False), within_s)
     # A node's services are announced apart from its name, on a busy machine seconds later.
     served = f"{node}/list_parameters"
     await evidence.until(
@@ -221,18 +206,12 @@ async def _declared(
     meant = nearest(name, [row.name for row in result.parameters])
     seen = say("{node} declares no parameter {name}", node=node, name=name)
     if meant:
-        seen = say(
-            "{node} declares no parameter {name}, but {meant}", node=node, name=name, meant=meant
-        )
+        seen = say("{node} declares no parameter {name}, but {meant}", node=node, name=name, meant=meant)
     return Observation(met=False, seen=seen, look=say("Is declare_parameter called in __init__?"))
 
 
-async def _takes(
-    check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence
-) -> Observation:
-    result = await asyncio.wrap_future(
-        evidence.observer.set_parameters(node, {check.parameter: check.set})
-    )
+async def _takes(check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence) -> Observation:
+    result = await asyncio.wrap_future(evidence.observer.set_parameters(node, {check.parameter: check.set}))
     why = result.error or result.refused.get(check.parameter, "")
     if why:
         return Observation(
@@ -249,20 +228,13 @@ async def _takes(
     await _put_back(check, node, row, evidence)
     if differs(check.set, now.value, None):
         return Observation(
-            met=False,
-            seen=say(
-                "the parameter {name} is {value}", name=check.parameter, value=shown(now.value)
-            ),
+            met=False, seen=say("the parameter {name} is {value}", name=check.parameter, value=shown(now.value))
         )
     return MET
 
 
-async def _refuses(
-    check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence
-) -> Observation:
-    result = await asyncio.wrap_future(
-        evidence.observer.set_parameters(node, {check.parameter: check.refuses})
-    )
+async def _refuses(check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence) -> Observation:
+    result = await asyncio.wrap_future(evidence.observer.set_parameters(node, {check.parameter: check.refuses}))
     if result.error:
         return Observation(met=False, seen=result.error)
     if check.parameter in result.refused:
@@ -270,16 +242,12 @@ async def _refuses(
     await _put_back(check, node, row, evidence)
     return Observation(
         met=False,
-        seen=say(
-            "the parameter {name} takes {value}", name=check.parameter, value=shown(check.refuses)
-        ),
+        seen=say("the parameter {name} takes {value}", name=check.parameter, value=shown(check.refuses)),
         look=say("A callback of add_on_set_parameters_callback can refuse a value."),
     )
 
 
-async def _put_back(
-    check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence
-) -> None:
+async def _put_back(check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence) -> None:
     if row.value is not None:
         values = {check.parameter: row.value}
         await asyncio.wrap_future(evidence.observer.set_parameters(node, values))

@@ -113,19 +113,15 @@ class Evidence:
 
     @property
     def nodes(self) -> Mapping[str, NodeStatus]:
-        """The nodes of the profile."""
         return self.client.nodes
 
     def take(self, update: GraphUpdate) -> None:
-        """Take what the observer has seen."""
         self.update = update
         for topic, samples in update.samples.items():
             kept = self._messages.setdefault(topic, deque())
             for sample in samples:
                 arrived_s = sample.received_s - sample.age_s
-                kept.append(
-                    ReceivedMessage(arrived_s, sample.type_name, sample.value, sample.size_bytes)
-                )
+                kept.append(ReceivedMessage(arrived_s, sample.type_name, sample.value, sample.size_bytes))
                 self._bytes[topic] = self._bytes.get(topic, 0) + sample.size_bytes
             while len(kept) > KEPT or (self._bytes[topic] > KEPT_BYTES and len(kept) > 2):
                 self._bytes[topic] -= kept.popleft().size_bytes
@@ -232,7 +228,6 @@ class Evidence:
         return [line for line in lines if line.time_s >= since_s and line.source != "deck"]
 
     def topic(self, name: str) -> TopicRow | None:
-        """Return what is known of a topic."""
         return next((row for row in self.update.topics if row.name == name), None)
 
     def node(self, name: str) -> NodeRow | None:
@@ -253,9 +248,7 @@ class Evidence:
             if not end.is_named
         }
         running = {
-            node.pid % PROCESS_NUMBERS
-            for node in self.nodes.values()
-            if node.state.alive and node.pid is not None
+            node.pid % PROCESS_NUMBERS for node in self.nodes.values() if node.state.alive and node.pid is not None
         }
         return running <= known - unnamed
 

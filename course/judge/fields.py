@@ -47,8 +47,7 @@ def differs(wanted: Any, found: Any, tolerance: float | None) -> bool:  # noqa: 
     """Whether a value is not the wanted one; of a mapping, only the wanted keys count."""
     if isinstance(wanted, Mapping):
         return not isinstance(found, Mapping) or any(
-            key not in found or differs(inner, found[key], tolerance)
-            for key, inner in wanted.items()
+            key not in found or differs(inner, found[key], tolerance) for key, inner in wanted.items()
         )
     if isinstance(found, (bytes, bytearray)) and isinstance(wanted, str):
         return found.decode("utf-8", "replace") != wanted
@@ -57,9 +56,7 @@ def differs(wanted: Any, found: Any, tolerance: float | None) -> bool:  # noqa: 
     if isinstance(wanted, (list, tuple)) or hasattr(found, "tolist"):
         wanted = wanted.tolist() if hasattr(wanted, "tolist") else list(wanted)
         found = found.tolist() if hasattr(found, "tolist") else list(found)
-        return len(wanted) != len(found) or any(
-            map(differs, wanted, found, [tolerance] * len(found))
-        )
+        return len(wanted) != len(found) or any(map(differs, wanted, found, [tolerance] * len(found)))
     return bool(wanted != found)
 
 

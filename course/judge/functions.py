@@ -75,9 +75,7 @@ def load(folder: Path, named: str) -> Callable[[SeenMessages], object]:
     return found
 
 
-async def python(
-    check: PythonCheck, evidence: Evidence, since_s: float, within_s: float
-) -> Observation:
+async def python(check: PythonCheck, evidence: Evidence, since_s: float, within_s: float) -> Observation:
     """Whatever the function says; it is asked again whenever something comes."""
     function = evidence.functions.get(check.python) or await _loaded(evidence.folder, check.python)
     if check.over is not None:
@@ -94,17 +92,13 @@ async def python(
 
 
 async def _asked(
-    function: Callable[[SeenMessages], object],
-    check: PythonCheck,
-    evidence: Evidence,
-    since_s: float,
+    function: Callable[[SeenMessages], object], check: PythonCheck, evidence: Evidence, since_s: float
 ) -> object:
     lines = {node: evidence.lines(node, since_s) for node in evidence.nodes}
     seen = SeenMessages(
         messages={
             topic: [
-                (each.time_s, each.value)
-                for each in evidence.messages(topic, since_s or evidence.fresh_s(topic))
+                (each.time_s, each.value) for each in evidence.messages(topic, since_s or evidence.fresh_s(topic))
             ]
             for topic in check.topics
         },
@@ -112,9 +106,7 @@ async def _asked(
         logs={node: [line.text for line in of_it] for node, of_it in lines.items()},
         logged={
             node: [
-                (line.time_s, {"severity": line.severity.value, "text": line.text})
-                for line in of_it
-                if line.logger
+                (line.time_s, {"severity": line.severity.value, "text": line.text}) for line in of_it if line.logger
             ]
             for node, of_it in lines.items()
         },
@@ -125,9 +117,7 @@ async def _asked(
         words = say("{function} takes longer than {n} s", function=check.python, n=AT_MOST_S)
         raise LessonFaultError(words) from error
     except Exception as error:
-        raise LessonFaultError(
-            _fault(evidence.folder / check.python.partition(":")[0], error)
-        ) from error
+        raise LessonFaultError(_fault(evidence.folder / check.python.partition(":")[0], error)) from error
 
 
 async def preloaded(lesson: LessonFolder) -> dict[str, Callable[[SeenMessages], object]]:
@@ -189,9 +179,7 @@ async def _in_thread(function: Callable[[], T]) -> T:
 
 def _interrupt(thread: threading.Thread) -> None:
     """Raise SystemExit in a thread that goes on for ever; it takes effect in Python code only."""
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(
-        ctypes.c_ulong(thread.ident or 0), ctypes.py_object(SystemExit)
-    )
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident or 0), ctypes.py_object(SystemExit))
 
 
 def _complaint(said: object, check: PythonCheck, evidence: Evidence) -> Observation:
@@ -206,8 +194,7 @@ def _complaint(said: object, check: PythonCheck, evidence: Evidence) -> Observat
 def _with_commas(texts: Mapping[str, str]) -> dict[str, str]:
     """Return the texts with the decimal point that Python writes as their language has it."""
     return {
-        code: _POINT.sub(decimal(".", code), text) if isinstance(text, str) else text
-        for code, text in texts.items()
+        code: _POINT.sub(decimal(".", code), text) if isinstance(text, str) else text for code, text in texts.items()
     }
 
 
@@ -218,10 +205,4 @@ def _fault(path: Path, error: BaseException) -> str:
         if Path(trace.tb_frame.f_code.co_filename) == path:
             line = trace.tb_lineno
         trace = trace.tb_next
-    return say(
-        "{path}:{line}: {kind}: {text}",
-        path=str(path),
-        line=line,
-        kind=type(error).__name__,
-        text=str(error),
-    )
+    return say("{path}:{line}: {kind}: {text}", path=str(path), line=line, kind=type(error).__name__, text=str(error))

@@ -40,17 +40,13 @@ def _so_far(check: GateCheck, evidence: Evidence, since_s: float) -> Observation
     if row is None or not row.published_by:
         return no_topic(evidence, check.gate)
     strangers = [
-        end.node
-        for end in row.published_by
-        if not same_name(end.node, check.from_node) and not is_decks(end.node)
+        end.node for end in row.published_by if not same_name(end.node, check.from_node) and not is_decks(end.node)
     ]
     if strangers:
         return Observation(
             met=False,
             final=True,
-            seen=say(
-                "{topic} is published by {nodes}", topic=check.gate, nodes=", ".join(strangers)
-            ),
+            seen=say("{topic} is published by {nodes}", topic=check.gate, nodes=", ".join(strangers)),
             look=say("A brain says what it wants on /drive; only the gate decides."),
         )
     messages = evidence.messages(check.gate, since_s)
@@ -75,10 +71,7 @@ def _so_far(check: GateCheck, evidence: Evidence, since_s: float) -> Observation
                     limit=f"{check.stop_below:g}",
                 ),
             )
-    for topic, type_name, heard in (
-        (check.gate, TYPE, messages),
-        (check.distance, DISTANCE_TYPE, distances),
-    ):
+    for topic, type_name, heard in ((check.gate, TYPE, messages), (check.distance, DISTANCE_TYPE, distances)):
         if not heard:
             return no_messages(evidence, topic, type_name)
     return MET

@@ -13,13 +13,7 @@ from text.suggestions import nearest
 if TYPE_CHECKING:
     from course.judge.evidence import Evidence
     from graph.data import EndpointInfo
-    from launcher.profile.steps.checks import (
-        NodeCheck,
-        NoPublisherCheck,
-        QosCheck,
-        SubscriptionCheck,
-        TopicCheck,
-    )
+    from launcher.profile.steps.checks import NodeCheck, NoPublisherCheck, QosCheck, SubscriptionCheck, TopicCheck
 
 STAYS_S = 1.0
 """How long a node must at least have been in the graph."""
@@ -77,12 +71,7 @@ def topic(check: TopicCheck, evidence: Evidence, _since_s: float) -> Observation
     if check.publishers is not None and len(ends) != check.publishers:
         return Observation(
             met=False,
-            seen=say(
-                "{topic} has {n} publishers: {nodes}",
-                topic=check.topic,
-                n=len(ends),
-                nodes=_names(ends),
-            ),
+            seen=say("{topic} has {n} publishers: {nodes}", topic=check.topic, n=len(ends), nodes=_names(ends)),
         )
     return MET
 
@@ -95,12 +84,8 @@ def subscription(check: SubscriptionCheck, evidence: Evidence, _since_s: float) 
     if not ours:
         seen = say("nobody subscribes to {topic}", topic=check.subscription)
         if check.by:
-            seen = say(
-                "{node} does not subscribe to {topic}", node=check.by, topic=check.subscription
-            )
-        return Observation(
-            met=False, seen=seen, look=dead_nodes(evidence) or _near_subscription(check, evidence)
-        )
+            seen = say("{node} does not subscribe to {topic}", node=check.by, topic=check.subscription)
+        return Observation(met=False, seen=seen, look=dead_nodes(evidence) or _near_subscription(check, evidence))
     types = tuple(dict.fromkeys(end.type_name for end in ours))
     if check.type and types != (check.type,):
         return wrong_type(check.subscription, check.type, types)
@@ -110,25 +95,18 @@ def subscription(check: SubscriptionCheck, evidence: Evidence, _since_s: float) 
 def qos(check: QosCheck, evidence: Evidence, _since_s: float) -> Observation:
     """Publishers or subscriptions have a QoS."""
     row = evidence.topic(check.qos)
-    every = (
-        () if row is None else row.published_by if check.of == "publisher" else row.subscribed_by
-    )
+    every = () if row is None else row.published_by if check.of == "publisher" else row.subscribed_by
     ends = [end for end in every if not check.by or same_name(end.node, check.by)]
     if not ends:
         if check.of == "publisher":
             return no_topic(evidence, check.qos)
         return Observation(met=False, seen=say("nobody subscribes to {topic}", topic=check.qos))
     for end in ends:
-        for wanted, found in (
-            (check.reliability, end.reliability),
-            (check.durability, end.durability),
-        ):
+        for wanted, found in ((check.reliability, end.reliability), (check.durability, end.durability)):
             if wanted is not None and wanted != found:
                 return Observation(
                     met=False,
-                    seen=say(
-                        "{node}: {found}, not {wanted}", node=end.node, found=found, wanted=wanted
-                    ),
+                    seen=say("{node}: {found}, not {wanted}", node=end.node, found=found, wanted=wanted),
                     look=say("The QoS is the last argument: a QoSProfile instead of a number."),
                 )
     return MET

@@ -133,9 +133,7 @@ class Judge:
             await start_anew(names, self.evidence)
             await self.settle()
 
-    def _revised(
-        self, results: Iterable[StepResult], failures: UnaskedFailures
-    ) -> list[StepResult]:
+    def _revised(self, results: Iterable[StepResult], failures: UnaskedFailures) -> list[StepResult]:
         """Return results as they are by what is known of the nodes now."""
         revised: list[StepResult] = []
         for result in results:
@@ -150,9 +148,7 @@ class Judge:
         if idle is None:
             return None
         checks = [self._filled(check) for check in step.checks]
-        return _concluded(
-            step, [CheckResult(State.NOT_YET, expected(check)) for check in checks], 0, idle
-        )
+        return _concluded(step, [CheckResult(State.NOT_YET, expected(check)) for check in checks], 0, idle)
 
     def waits(self, step: StepDocument, results: Iterable[StepResult]) -> StepResult | None:
         """Return the result of a step that needs one that has not passed; None if it can begin."""
@@ -185,9 +181,7 @@ class Judge:
         finally:
             self.follow(())
 
-    async def _round(
-        self, step: StepDocument, before: StepResult | None, restarts: int
-    ) -> AsyncIterator[StepResult]:
+    async def _round(self, step: StepDocument, before: StepResult | None, restarts: int) -> AsyncIterator[StepResult]:
         """Judge a step once; yield what is known of it after each check, and at the end."""
         news: asyncio.Queue[StepResult | None] = asyncio.Queue()
         judging = asyncio.ensure_future(self.step(step, news.put_nowait, before))
@@ -203,7 +197,6 @@ class Judge:
             disturbed.cancel()
 
     async def _disturbed(self, restarts: int, judging: asyncio.Future[StepResult]) -> None:
-        """Call it off when a node is started."""
         while self.evidence.restarts == restarts:
             await self.evidence.wait(AGAIN_S)
         judging.cancel()
@@ -295,9 +288,7 @@ class Judge:
         self.evidence.observer.follow(_topics_of(self.steps.values() if steps is None else steps))
 
 
-def _concluded(
-    step: StepDocument, found: list[CheckResult], done: int, idle: CheckResult | None
-) -> StepResult:
+def _concluded(step: StepDocument, found: list[CheckResult], done: int, idle: CheckResult | None) -> StepResult:
     """Return the result of a step of which so many checks hold, and the next one may not.
 
     `idle`: what keeps its node from its work, which counts more than what was missed meanwhile.

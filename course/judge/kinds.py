@@ -72,9 +72,7 @@ async def judged(check: CheckDocument, evidence: Evidence, since_s: float = 0.0)
         return found
     if isinstance(check, NothingCheck):
         since_s = since_s or time.time()
-        return await evidence.until(
-            lambda: messages.nothing(check, evidence, since_s), check.for_s + 1
-        )
+        return await evidence.until(lambda: messages.nothing(check, evidence, since_s), check.for_s + 1)
     within_s = check.within
     if kind in ("rate", "image"):
         within_s = max(within_s, getattr(check, "over", 2.0) + 2)
@@ -252,9 +250,7 @@ def _expected_field(check: FieldCheck) -> str:
         return say("{path} of {topic} has {pattern}", pattern=_plainly(check.matches), **words)
     if check.changes is not None:
         template = say("{path} of {topic} differs from message to message").template
-        return say(
-            template if check.changes else say("{path} of {topic} stays the same").template, **words
-        )
+        return say(template if check.changes else say("{path} of {topic} stays the same").template, **words)
     return say("{path} of {topic} is {value}", value=shown(check.equals), **words)
 
 

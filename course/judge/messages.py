@@ -25,23 +25,11 @@ FEW = 3
 
 def rate(check: RateCheck, evidence: Evidence, since_s: float) -> Observation | None:
     """Messages arrive so many times a second."""
-    return _rate(
-        check.rate,
-        check.between,
-        check.over,
-        "",
-        evidence,
-        max(since_s, evidence.fresh_s(check.rate)),
-    )
+    return _rate(check.rate, check.between, check.over, "", evidence, max(since_s, evidence.fresh_s(check.rate)))
 
 
 def _rate(
-    topic: str,
-    between: tuple[float, float],
-    over_s: float,
-    type_name: str,
-    evidence: Evidence,
-    since_s: float,
+    topic: str, between: tuple[float, float], over_s: float, type_name: str, evidence: Evidence, since_s: float
 ) -> Observation | None:
     now_s = time.time()
     messages = evidence.messages(topic, max(since_s, now_s - over_s))
@@ -121,9 +109,7 @@ def _changes(check: FieldCheck, found: list[Any]) -> Observation:
         return MET
     path, topic = check.path, check.field
     if check.changes:
-        seen = say(
-            "{path} of {topic} is always {value}", path=path, topic=topic, value=shown(found[0])
-        )
+        seen = say("{path} of {topic} is always {value}", path=path, topic=topic, value=shown(found[0]))
     else:
         seen = say("{path} of {topic} changes", path=path, topic=topic)
     return Observation(met=False, seen=seen)
@@ -140,9 +126,7 @@ def image(check: ImageCheck, evidence: Evidence, since_s: float) -> Observation 
     if check.changes and len(messages) < FEW:
         return None
     complaint = (
-        _wrong_format(check, messages[-1])
-        or _size_complaint(messages[-1])
-        or _always_the_same(check, messages)
+        _wrong_format(check, messages[-1]) or _size_complaint(messages[-1]) or _always_the_same(check, messages)
     )
     if complaint:
         return Observation(met=False, seen=complaint)
@@ -171,20 +155,12 @@ def _size_complaint(message: ReceivedMessage) -> str:
     held = len(message.value["data"])  # type: ignore[arg-type]
     if held == step * height:
         return ""
-    return say(
-        "data holds {held} bytes, and step times height are {wanted}",
-        held=held,
-        wanted=step * height,
-    )
+    return say("data holds {held} bytes, and step times height are {wanted}", held=held, wanted=step * height)
 
 
 def nothing(check: NothingCheck, evidence: Evidence, since_s: float) -> Observation | None:
     """No message comes for some time; None while that time is not over."""
     messages = evidence.messages(check.nothing, since_s)
     if messages:
-        return Observation(
-            met=False,
-            final=True,
-            seen=say("a message came on {topic}", topic=check.nothing),
-        )
+        return Observation(met=False, final=True, seen=say("a message came on {topic}", topic=check.nothing))
     return MET if time.time() - since_s >= check.for_s else None

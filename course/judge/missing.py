@@ -26,9 +26,7 @@ def dead_nodes(evidence: Evidence) -> str:
             return say("{node}: {why}", node=node.name, why=node.fault.words)
     for node in evidence.nodes.values():
         if node.state in _DOWN:
-            return say(
-                "{node} does not run: {why}", node=node.name, why=node.detail or node.state.value
-            )
+            return say("{node} does not run: {why}", node=node.name, why=node.detail or node.state.value)
     return next(
         (
             say("{node}: {why}", node=node.name, why=node.fault.words)
@@ -46,9 +44,7 @@ def no_topic(evidence: Evidence, topic: str) -> Observation:
     if meant:
         return Observation(
             met=False,
-            seen=say(
-                "nobody publishes {topic}, but {meant} is published", topic=topic, meant=meant
-            ),
+            seen=say("nobody publishes {topic}, but {meant} is published", topic=topic, meant=meant),
             look=say("Compare the name of the topic letter by letter."),
         )
     return Observation(
@@ -66,18 +62,13 @@ def nobody_subscribes(evidence: Evidence, topic: str) -> Observation:
     if meant:
         return Observation(
             met=False,
-            seen=say(
-                "nobody subscribes to {topic}, but {meant} is subscribed to",
-                topic=topic,
-                meant=meant,
-            ),
+            seen=say("nobody subscribes to {topic}, but {meant} is subscribed to", topic=topic, meant=meant),
             look=say("Compare the name of the topic letter by letter."),
         )
     return Observation(
         met=False,
         seen=say("nobody subscribes to {topic}", topic=topic),
-        look=dead_nodes(evidence)
-        or say("Is create_subscription called in __init__, with the right name?"),
+        look=dead_nodes(evidence) or say("Is create_subscription called in __init__, with the right name?"),
     )
 
 
@@ -85,12 +76,7 @@ def wrong_type(topic: str, wanted: str, found: tuple[str, ...]) -> Observation:
     """Say that a topic has another type than it should."""
     return Observation(
         met=False,
-        seen=say(
-            "{topic} has the type {found}, not {wanted}",
-            topic=topic,
-            found=", ".join(found),
-            wanted=wanted,
-        ),
+        seen=say("{topic} has the type {found}, not {wanted}", topic=topic, found=", ".join(found), wanted=wanted),
         look=say("Compare the import of the message and the type in create_publisher."),
     )
 

@@ -63,9 +63,7 @@ async def ends(check: EndsCheck, evidence: Evidence) -> Observation:
     """
     node = evidence.nodes.get(check.ends)
     if node is None or not node.state.alive:
-        return Observation(
-            met=False, seen=dead_nodes(evidence) or say("{node} does not run", node=check.ends)
-        )
+        return Observation(met=False, seen=dead_nodes(evidence) or say("{node} does not run", node=check.ends))
     await evidence.until(lambda: MET if _is_at_work(check.ends, evidence) else None, BACK_WITHIN_S)
     affected = [check.ends, *_dependants(check.ends, evidence)]
     evidence.touched.update(affected)
@@ -86,17 +84,9 @@ async def ends(check: EndsCheck, evidence: Evidence) -> Observation:
 def _dependants(name: str, evidence: Evidence) -> list[str]:
     """Return the running nodes that need a node, and end before it."""
     found = {name}
-    while more := {
-        each.name
-        for each in evidence.nodes.values()
-        if each.name not in found and found & {*each.needs}
-    }:
+    while more := {each.name for each in evidence.nodes.values() if each.name not in found and found & {*each.needs}}:
         found |= more
-    return [
-        each
-        for each in evidence.nodes
-        if each in found - {name} and evidence.nodes[each].state.alive
-    ]
+    return [each for each in evidence.nodes if each in found - {name} and evidence.nodes[each].state.alive]
 
 
 async def _stopped(name: str, evidence: Evidence) -> None:
@@ -126,9 +116,7 @@ def _how(check: EndsCheck, code: int | None, ended_by: str | None) -> Observatio
     if ended_by is not None:
         return Observation(
             met=False,
-            seen=say(
-                "{node} did not end by itself: {signal} killed it", node=check.ends, signal=ended_by
-            ),
+            seen=say("{node} did not end by itself: {signal} killed it", node=check.ends, signal=ended_by),
             look=say("Ctrl-C is an exception, KeyboardInterrupt: catch it around rclpy.spin."),
         )
     if code != check.code:

@@ -38,10 +38,7 @@ def transform(check: TransformCheck, evidence: Evidence, _since_s: float) -> Obs
     unknown = [frame for frame in (base, target) if frame not in buffer.frames]
     for frame in unknown:
         if frame in invalid:
-            seen = say(
-                "the numbers of {frame} are no place: nan, inf, or a quaternion of zeros",
-                frame=frame,
-            )
+            seen = say("the numbers of {frame} are no place: nan, inf, or a quaternion of zeros", frame=frame)
             return Observation(met=False, seen=seen)
     if unknown:
         return Observation(met=False, seen=_unknown(unknown[0], buffer.frames))
@@ -92,8 +89,7 @@ def _placed(each: Any) -> Stamped | None:  # noqa: ANN401 - a TransformStamped
     moved, turned = each["transform"]["translation"], each["transform"]["rotation"]
     try:
         place = Transform.of(
-            (moved["x"], moved["y"], moved["z"]),
-            (turned["x"], turned["y"], turned["z"], turned["w"]),
+            (moved["x"], moved["y"], moved["z"]), (turned["x"], turned["y"], turned["z"], turned["w"])
         )
     except ValueError:
         return None

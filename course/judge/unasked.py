@@ -71,11 +71,7 @@ class UnaskedFailures:
 
     def _failed(self) -> list[str]:
         since_s, self._seen_until_s = self._seen_until_s, time.time()
-        return [
-            name
-            for name in self._own()
-            if trouble(name, self._evidence, since_s, ended_too=True)[0]
-        ]
+        return [name for name in self._own() if trouble(name, self._evidence, since_s, ended_too=True)[0]]
 
     def _own(self) -> list[str]:
         """Return the learner's nodes of which nothing is known yet."""

@@ -54,12 +54,10 @@ class LessonFolder:
 
     @property
     def steps(self) -> tuple[StepDocument, ...]:
-        """What the learner does, in order."""
         return self.profile.document.steps
 
     @property
     def points(self) -> int:
-        """How many there are to earn."""
         return sum(step.points for step in self.steps)
 
     @property
@@ -75,11 +73,7 @@ class LessonFolder:
     def mistakes(self) -> list[Mistake]:
         """Return what beginners get wrong, in the order of the steps."""
         order = {step.id: number for number, step in enumerate(self.steps)}
-        found = [
-            Mistake(step.name, folder)
-            for step in folders(self.path / "wrong")
-            for folder in folders(step)
-        ]
+        found = [Mistake(step.name, folder) for step in folders(self.path / "wrong") for folder in folders(step)]
         return sorted(found, key=lambda one: (order.get(one.step, -1), one.folder.name))
 
     def texts(self, language: str) -> Texts:
@@ -92,9 +86,7 @@ class LessonFolder:
             file = self.path / f"text.{code}.md"
             if file.is_file():
                 return _texts(_read(file))
-        raise UsageError(
-            say("{folder} has no text.en.md: write what is to be learnt", folder=str(self.path))
-        )
+        raise UsageError(say("{folder} has no text.en.md: write what is to be learnt", folder=str(self.path)))
 
 
 @dataclass(frozen=True)
@@ -139,9 +131,7 @@ def _read(file: Path) -> str:
         raise UsageError(say("{path} is not UTF-8: save it as UTF-8", path=str(file))) from None
     except OSError as error:
         reason = os_reason(error)
-        raise UsageError(
-            say("{path} cannot be read: {reason}", path=str(file), reason=reason)
-        ) from error
+        raise UsageError(say("{path} cannot be read: {reason}", path=str(file), reason=reason)) from error
 
 
 def _texts(text: str) -> Texts:

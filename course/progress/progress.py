@@ -69,7 +69,6 @@ class Progress:
     """Lesson to step to how far it is; only what has begun."""
 
     def step(self, lesson: str, step: str) -> StepProgress:
-        """Return how far a step is."""
         return self.lessons.get(lesson, {}).get(step, StepProgress())
 
     def passed(self, lesson: str) -> frozenset[str]:
@@ -78,9 +77,7 @@ class Progress:
 
     def held(self, lesson: str, files: str) -> frozenset[str]:
         """Return those of them that have passed with these files."""
-        return frozenset(
-            name for name in self.passed(lesson) if self.step(lesson, name).files == files
-        )
+        return frozenset(name for name in self.passed(lesson) if self.step(lesson, name).files == files)
 
     def points(self, lesson: str, steps: Iterable[str]) -> int:
         """Return the points earned by these steps of a lesson."""
@@ -88,10 +85,7 @@ class Progress:
 
     def with_step(self, lesson: str, step: str, changes: StepChanges) -> Progress:
         """Return the same with a step that has got further."""
-        steps = {
-            **self.lessons.get(lesson, {}),
-            step: StepProgress(**{**vars(self.step(lesson, step)), **changes}),
-        }
+        steps = {**self.lessons.get(lesson, {}), step: StepProgress(**{**vars(self.step(lesson, step)), **changes})}
         return replace(self, lessons={**self.lessons, lesson: steps})
 
 
@@ -105,9 +99,7 @@ def load_progress(path: Path | None = None) -> Progress:
     return _read(path or progress_file())[0]
 
 
-def noted(
-    lesson: str, step: str = "", changes: StepChanges | None = None, path: Path | None = None
-) -> Progress:
+def noted(lesson: str, step: str = "", changes: StepChanges | None = None, path: Path | None = None) -> Progress:
     """Note how far a step is, beside what others have noted meanwhile; return everything.
 
     Raises:

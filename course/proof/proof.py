@@ -56,12 +56,7 @@ def variants(lesson: LessonFolder) -> list[Variant]:
         Variant(lesson, "starter", base[:1], ""),
         Variant(lesson, "solution", base, None),
         *(
-            Variant(
-                lesson,
-                str(mistake.folder.relative_to(lesson.path)),
-                (*base, mistake.folder),
-                mistake.step,
-            )
+            Variant(lesson, str(mistake.folder.relative_to(lesson.path)), (*base, mistake.folder), mistake.step)
             for mistake in lesson.mistakes()
         ),
     ]
@@ -80,16 +75,10 @@ def incomplete(lesson: LessonFolder) -> list[str]:
             continue
         sections = lesson.texts(language).sections
         missing += [
-            say("{file} has no section ## {step}", file=file.name, step=step)
-            for step in ids
-            if step not in sections
+            say("{file} has no section ## {step}", file=file.name, step=step) for step in ids if step not in sections
         ]
         missing += [
-            say(
-                "{file} has a section ## {step}, but there is no such step",
-                file=file.name,
-                step=name,
-            )
+            say("{file} has a section ## {step}, but there is no such step", file=file.name, step=name)
             for name in sections
             if name not in ids
         ]
@@ -105,9 +94,7 @@ def incomplete(lesson: LessonFolder) -> list[str]:
     return missing
 
 
-async def prove(
-    chosen: Sequence[Variant], domains: Sequence[int], *, seed: int = 0
-) -> AsyncIterator[ProofVerdict]:
+async def prove(chosen: Sequence[Variant], domains: Sequence[int], *, seed: int = 0) -> AsyncIterator[ProofVerdict]:
     """Run variants, as many at once as there are domains; yield each verdict as it comes.
 
     One with many nodes takes the place of several.
@@ -195,19 +182,12 @@ def _complaint(variant: Variant, steps: Sequence[StepResult]) -> str:
     if not failed:
         return say("every step passes, but {step} should fail", step=variant.fails_at or "-")
     if variant.fails_at and failed[0].id != variant.fails_at:
-        return say(
-            "should fail at {wanted}, but: {found}", wanted=variant.fails_at, found=_of(failed[0])
-        )
+        return say("should fail at {wanted}, but: {found}", wanted=variant.fails_at, found=_of(failed[0]))
     return ""
 
 
 def _of(step: StepResult) -> str:
     for check in step.checks:
         if check.state not in (State.PASSED, State.NOT_YET):
-            return say(
-                "{step}: {what}: {seen}",
-                step=step.id,
-                what=check.what,
-                seen=check.seen or check.state.value,
-            )
+            return say("{step}: {what}: {seen}", step=step.id, what=check.what, seen=check.seen or check.state.value)
     return say("{step}: {why}", step=step.id, why=step.reason or step.state.value)

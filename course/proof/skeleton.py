@@ -120,12 +120,8 @@ _FILES = {
         body="        # Missing: a publisher of String on /chatter, and a timer that calls talk."
     ),
     "solution/talker.py": _NODE.format(body=_SOLUTION),
-    "wrong/topic/another-name/talker.py": _NODE.format(
-        body=_SOLUTION.replace("/chatter", "/chater")
-    ),
-    "wrong/rate/once-in-two-seconds/talker.py": _NODE.format(
-        body=_PUBLISHER + _TIMER.format(period=2.0)
-    ),
+    "wrong/topic/another-name/talker.py": _NODE.format(body=_SOLUTION.replace("/chatter", "/chater")),
+    "wrong/rate/once-in-two-seconds/talker.py": _NODE.format(body=_PUBLISHER + _TIMER.format(period=2.0)),
 }
 
 

@@ -34,9 +34,7 @@ def layered(folder: Path, layers: Iterable[Path]) -> Path:
     """Copy folders into one, a later one over an earlier one; return it."""
     for layer in layers:
         if layer.is_dir():
-            shutil.copytree(
-                layer, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns(*IGNORED)
-            )
+            shutil.copytree(layer, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns(*IGNORED))
     return folder
 
 
@@ -60,10 +58,7 @@ async def trial(
     """
     profile = _at_home(load_profile(places.files / FOLDERS_OWN, domain=domain), lesson, places)
     client = await launch(
-        profile,
-        node_lang=language,
-        supervisor=supervisor,
-        confined_to=map(str, places.writable) if confined else (),
+        profile, node_lang=language, supervisor=supervisor, confined_to=map(str, places.writable) if confined else ()
     )
     async with contextlib.aclosing(client):
         try:

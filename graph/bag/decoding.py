@@ -30,9 +30,7 @@ LISTED = frozenset({"bool", "string"})
 WIDE = "deck/msg/Wide"
 """Stands for `wstring`, which the library cannot decode: the middleware writes its UTF-16 as
 integers of 32 bits."""
-_WIDE_FIELD = re.compile(
-    r"(?m)^[^\S\n]*wstring(?:<=\d+)?(?P<many>\[[^\]\n]*\])?(?P<name>\s+\w+\b)(?!\s*=)[^#\n]*"
-)
+_WIDE_FIELD = re.compile(r"(?m)^[^\S\n]*wstring(?:<=\d+)?(?P<many>\[[^\]\n]*\])?(?P<name>\s+\w+\b)(?!\s*=)[^#\n]*")
 """One in a `.msg`, with what it is when nobody has set it."""
 _WIDE_CONSTANT = re.compile(r"(?m)^[^\S\n]*wstring(?=\s+\w+\s*=)")
 _WIDE_IN_IDL = re.compile(r"\bwstring\b(?:\s*<\s*\d+\s*>)?(?=\s*[\w,>])(?!\s+\w+\s*=)")
@@ -96,13 +94,7 @@ def begins_with_header(kind: TypeText) -> bool:
 
 
 def _store(kind: TypeText) -> Typestore:
-    from rosbags.typesys import (
-        Stores,
-        TypesysError,
-        get_types_from_idl,
-        get_types_from_msg,
-        get_typestore,
-    )
+    from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
     if not kind.text:
         known = {store.name: store for store in Stores}
@@ -125,11 +117,7 @@ def _store(kind: TypeText) -> Typestore:
                     found[kind.name] = found.pop(name)
             store.register(found)
     except (TypesysError, ValueError, KeyError) as error:
-        words = say(
-            "the definition of type {type} in the bag cannot be read: {reason}",
-            type=kind.name,
-            reason=error,
-        )
+        words = say("the definition of type {type} in the bag cannot be read: {reason}", type=kind.name, reason=error)
         raise BagError(words) from error
     return store
 

@@ -104,10 +104,7 @@ def _counts(stated: Stated, parts: Sequence[BagPart]) -> Iterator[Note]:
 def count_words(said: int, held: int, topics: str = "") -> Words:
     """Say that the metadata count another number of messages than there are."""
     return say(
-        "metadata.yaml counts {said} messages, the files hold {held}{topics}",
-        said=said,
-        held=held,
-        topics=topics,
+        "metadata.yaml counts {said} messages, the files hold {held}{topics}", said=said, held=held, topics=topics
     )
 
 
@@ -137,8 +134,7 @@ def _types(stated: Stated, parts: Sequence[BagPart]) -> Iterator[Note]:
         encodings = {channel.encoding for channel in channels}
         if encodings and topic.encoding and topic.encoding not in encodings:
             words = say(
-                "metadata.yaml gives {topic} the serialization format {stated}, the files "
-                "{found}; these count",
+                "metadata.yaml gives {topic} the serialization format {stated}, the files {found}; these count",
                 topic=topic.name,
                 stated=topic.encoding,
                 found=", ".join(sorted(encodings)),
@@ -150,10 +146,7 @@ def _types(stated: Stated, parts: Sequence[BagPart]) -> Iterator[Note]:
 def _offers(topic: StatedTopic, channels: Sequence[Channel]) -> Iterator[Note]:
     """Yield where the QoS of the metadata is another than that of the files, by which is played."""
     for channel in channels:
-        pairs = (
-            (channel.reliability, topic.offer.reliability),
-            (channel.durability, topic.offer.durability),
-        )
+        pairs = ((channel.reliability, topic.offer.reliability), (channel.durability, topic.offer.durability))
         other = [(held, said) for held, said in pairs if held and said and held != said]
         if other:
             words = say(
@@ -203,9 +196,7 @@ def _foreign(parts: Sequence[BagPart]) -> list[Note]:
     if not found:
         return []
     named = [f"{topic} ({encoding}: {count})" for (topic, encoding), count in sorted(found.items())]
-    words = say(
-        "left out, since their serialization format is not ROS 2's: {topics}", topics=_some(named)
-    )
+    words = say("left out, since their serialization format is not ROS 2's: {topics}", topics=_some(named))
     return [Note(words)]
 
 

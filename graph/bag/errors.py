@@ -22,9 +22,7 @@ class BagError(Exception):
 def not_made(folder: Path, error: OSError) -> BagError:
     """Return the error for a recording folder that cannot be created."""
     if isinstance(error, FileExistsError):
-        return BagError(
-            say("{path} already exists: choose another folder, or remove it", path=folder)
-        )
+        return BagError(say("{path} already exists: choose another folder, or remove it", path=folder))
     reason = os_reason(error)
     return BagError(say("{path} cannot be created: {reason}", path=folder, reason=reason))
 
@@ -44,8 +42,7 @@ def no_bag(path: Path, reason: Words) -> BagError:
     """Return the error for a path that holds no bag."""
     return BagError(
         say(
-            "{path} is not a bag: {reason}. Give the folder that holds metadata.yaml, or an "
-            ".mcap file",
+            "{path} is not a bag: {reason}. Give the folder that holds metadata.yaml, or an .mcap file",
             path=path,
             reason=reason,
         )

@@ -126,17 +126,13 @@ def _unpacked_first(files: list[Path]) -> list[Path]:
     """Leave out packed files that are there unpacked, too."""
     names = {file.name for file in files}
     return [
-        file
-        for file in files
-        if file.suffix not in kinds.PACKED_SUFFIXES or file.with_suffix("").name not in names
+        file for file in files if file.suffix not in kinds.PACKED_SUFFIXES or file.with_suffix("").name not in names
     ]
 
 
 def _natural(file: Path) -> list[tuple[int, str]]:
     """Sort `walk_2` before `walk_10`."""
-    return [
-        (int(part), "") if part.isdecimal() else (-1, part) for part in _DIGITS.split(file.name)
-    ]
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in _DIGITS.split(file.name)]
 
 
 def _refuse_foreign(path: Path, files: list[Path]) -> None:

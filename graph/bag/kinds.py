@@ -64,9 +64,7 @@ def foreign(file: Path) -> Words | None:
         )
     if head.startswith(_LFS):
         return say(
-            "{file} is a Git LFS pointer, the recording itself is not here; fetch it: "
-            "`git lfs pull`",
-            file=file.name,
+            "{file} is a Git LFS pointer, the recording itself is not here; fetch it: `git lfs pull`", file=file.name
         )
     if head.lstrip().lower().startswith(_PAGES):
         return say("{file} is a web page and no recording: download it again", file=file.name)

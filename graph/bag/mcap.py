@@ -46,8 +46,7 @@ class McapPart:
         for stretch in self._stretches:
             counts.update(stretch.counts)
         self.channels: Sequence[Channel] = [
-            channel._replace(messages=counts[number])
-            for number, channel in sorted(index.described.channels.items())
+            channel._replace(messages=counts[number]) for number, channel in sorted(index.described.channels.items())
         ]
         self.start_ns = min((stretch.first_ns for stretch in self._stretches), default=0)
         self.end_ns = max((stretch.last_ns for stretch in self._stretches), default=0)

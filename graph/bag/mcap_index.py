@@ -94,7 +94,6 @@ class _Summary:
 
 
 def _by_summary(summary: _Summary) -> Index | None:
-    """Return the index if the summary is complete."""
     counted, chunks = summary.counted, summary.chunks
     if counted is None or counted.chunks != len(chunks):
         return None
@@ -249,9 +248,7 @@ class _Scan:
         self._index.stretches.append(stretch)
 
     def _take_message(self, at: int, length: int) -> None:
-        number, _sequence, stamp_ns, _sent_ns = MESSAGE_HEAD.unpack(
-            self._file.read(MESSAGE_HEAD.size)
-        )
+        number, _sequence, stamp_ns, _sent_ns = MESSAGE_HEAD.unpack(self._file.read(MESSAGE_HEAD.size))
         if length < MESSAGE_HEAD.size:
             raise ValueError("a message is too short")
         if not self._loose.adjoins(at):
@@ -281,9 +278,7 @@ class _Loose:
 
     def adjoins(self, at: int) -> bool:
         stretch = self._stretch
-        return stretch is None or (
-            stretch.offset + stretch.length == at and stretch.length < LONGEST_LOOSE
-        )
+        return stretch is None or (stretch.offset + stretch.length == at and stretch.length < LONGEST_LOOSE)
 
     def take(self, at: int, length: int, number: int, stamp_ns: int) -> None:
         before = self._stretch or Stretch(at, 0, stamp_ns, stamp_ns, {}, is_chunk=False)

@@ -168,9 +168,7 @@ def chunk_index(body: bytes) -> Stretch:
 
 def statistics(body: bytes) -> Statistics:
     """Return what a file counts of itself."""
-    messages, _schemas, _channels, _attached, _facts, chunks, _first_ns, _last_ns = (
-        _STATISTICS_HEAD.unpack_from(body)
-    )
+    messages, _schemas, _channels, _attached, _facts, chunks, _first_ns, _last_ns = _STATISTICS_HEAD.unpack_from(body)
     packed, _at = _bytes(body, _STATISTICS_HEAD.size)
     return Statistics(messages, chunks, dict(_COUNT.iter_unpack(packed)))
 

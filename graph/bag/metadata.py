@@ -62,9 +62,7 @@ def as_yaml(content: object) -> str:
     return text
 
 
-def information(
-    file: str, topics: Sequence[BagTopic], first_ns: int, last_ns: int
-) -> dict[str, Any]:
+def information(file: str, topics: Sequence[BagTopic], first_ns: int, last_ns: int) -> dict[str, Any]:
     """Return the metadata of a bag with one MCAP file; times are unix time in nanoseconds."""
     messages = sum(topic.messages for topic in topics)
     span = {"nanoseconds": last_ns - first_ns if messages else 0}
@@ -81,12 +79,7 @@ def information(
         "relative_file_paths": [file],
         "files": [
             # Copies: YAML would write one object in two places as an alias.
-            {
-                "path": file,
-                "starting_time": dict(begun),
-                "duration": dict(span),
-                "message_count": messages,
-            }
+            {"path": file, "starting_time": dict(begun), "duration": dict(span), "message_count": messages}
         ],
         "custom_data": None,
         "ros_distro": os.environ.get("ROS_DISTRO", "jazzy"),

@@ -31,10 +31,7 @@ def offer_in(profiles: object) -> Offer:
     first = profiles[0] if isinstance(profiles, list) and profiles else None
     if not isinstance(first, dict):
         return Offer()
-    return Offer(
-        _named(first.get("reliability"), RELIABILITIES),
-        _named(first.get("durability"), DURABILITIES),
-    )
+    return Offer(_named(first.get("reliability"), RELIABILITIES), _named(first.get("durability"), DURABILITIES))
 
 
 def _loaded(text: str) -> Any:  # noqa: ANN401 - whatever the YAML holds

@@ -94,7 +94,6 @@ class BagPublisher:
 
     @property
     def topics(self) -> int:
-        """How many topics are published."""
         return len(self._publishers)
 
     def find_others(self, stop: threading.Event, after_s: float = ANSWERED_WITHIN_S) -> None:

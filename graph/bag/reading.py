@@ -74,9 +74,7 @@ class Bag:
         """ROS distribution that wrote it, empty if that is not known."""
         self._parts = parts
         self._topics = _topics(files, parts)
-        self.all_topics = tuple(
-            sorted(set(self._topics.values()), key=lambda topic: (topic.name, topic.recorded))
-        )
+        self.all_topics = tuple(sorted(set(self._topics.values()), key=lambda topic: (topic.name, topic.recorded)))
         """Every topic, sorted by name, those in other serialization formats too."""
         self.topics = tuple(topic for topic in self.all_topics if topic.encoding == CDR)
         """Every topic of ROS 2, sorted by name."""
@@ -90,7 +88,6 @@ class Bag:
 
     @property
     def name(self) -> str:
-        """The name of the folder or file."""
         return self.path.stem if self.path.suffix in kinds.SUFFIXES else self.path.name
 
     @property
@@ -245,11 +242,7 @@ def _open_others(files: BagFiles, parts: list[BagPart], errors: list[BagError]) 
 
 def _topics(files: BagFiles, parts: Sequence[BagPart]) -> Mapping[tuple[int, int], TopicInBag]:
     """Return for part and channel the topic that it belongs to."""
-    channels = {
-        (place, channel.number): channel
-        for place, part in enumerate(parts)
-        for channel in part.channels
-    }
+    channels = {(place, channel.number): channel for place, part in enumerate(parts) for channel in part.channels}
     stated, distro = files.stated, _distro(files, parts)
     texts = {each.kind.name: each.kind for each in channels.values() if each.kind.text}
     offers = {topic.name: topic.offer for topic in stated.topics} if stated else {}

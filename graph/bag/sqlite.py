@@ -142,10 +142,7 @@ class SqlitePart:
 
     def _counted(self) -> dict[int, int]:
         """Return how many messages each topic has; note first and last time."""
-        asked = (
-            "SELECT topic_id, count(*), min(timestamp), max(timestamp) FROM messages "
-            "GROUP BY topic_id"
-        )
+        asked = "SELECT topic_id, count(*), min(timestamp), max(timestamp) FROM messages GROUP BY topic_id"
         try:
             rows = self._db.execute(asked).fetchall()
         except sqlite3.DatabaseError:

@@ -64,11 +64,7 @@ class PolledActionClient:
     def __init__(self, node: Node, action: str, type_name: str) -> None:
         """Create the client. Raises UnknownTypeError, and what rclpy raises for an invalid name."""
         from rclpy.impl.implementation_singleton import rclpy_implementation
-        from rclpy.qos import (
-            QoSProfile,
-            qos_profile_action_status_default,
-            qos_profile_services_default,
-        )
+        from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 
         self.type: Any = load_action(type_name)
         self.servers = Servers(node, action).now
@@ -114,7 +110,6 @@ class PolledActionClient:
         return number
 
     def take(self) -> GoalAnswers:
-        """Take everything that has arrived."""
         heard = GoalAnswers()
         impl, handle = self.type.Impl, self._handle
         for number, response in _all(handle.take_goal_response, impl.SendGoalService.Response):
@@ -127,9 +122,7 @@ class PolledActionClient:
             of_goal = heard.feedback.setdefault(bytes(message.goal_id.uuid), [])
             of_goal.append(message.feedback)
         while (message := handle.take_status(impl.GoalStatusMessage)) is not None:
-            heard.status |= {
-                bytes(each.goal_info.goal_id.uuid): each.status for each in message.status_list
-            }
+            heard.status |= {bytes(each.goal_info.goal_id.uuid): each.status for each in message.status_list}
         return heard
 
     def close(self) -> None:

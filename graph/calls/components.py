@@ -59,7 +59,6 @@ class Containers:
                 asked.again = True
 
     def look(self) -> None:
-        """Ask where that is due."""
         for name, asked in self._asked.items():
             if not asked.asking and (asked.again or time.monotonic() >= asked.next_s):
                 self._ask(name, asked)
@@ -94,6 +93,5 @@ def read(found: list[ComponentRow]) -> Exchange:
     ids = [int(number) for number in answer["unique_ids"]]
     names = [str(name) for name in answer["full_node_names"]]
     found += sorted(
-        (ComponentRow(number, name) for number, name in zip(ids, names, strict=True)),
-        key=lambda row: row.unique_id,
+        (ComponentRow(number, name) for number, name in zip(ids, names, strict=True)), key=lambda row: row.unique_id
     )

@@ -69,10 +69,7 @@ class Exchanges:
     """The exchanges that are under way."""
 
     def __init__(
-        self,
-        calls: Calls,
-        node: Callable[[str], NodeRow | None],
-        service: Callable[[str], ServiceRow | None],
+        self, calls: Calls, node: Callable[[str], NodeRow | None], service: Callable[[str], ServiceRow | None]
     ) -> None:
         """Send requests through `calls`; `node` and `service` look names up in the known graph."""
         self._calls = calls
@@ -81,18 +78,11 @@ class Exchanges:
         self._exchanges: list[_RunningExchange] = []
 
     def begin(
-        self,
-        node: str,
-        exchange: Exchange,
-        services: ServiceSet,
-        timeout_s: float,
-        end: Callable[[str], None],
+        self, node: str, exchange: Exchange, services: ServiceSet, timeout_s: float, end: Callable[[str], None]
     ) -> None:
         """Begin an exchange with the node of this full name; `end` gets why it failed, or ""."""
         self._exchanges.append(
-            _RunningExchange(
-                node, exchange, services, next(exchange), timeout_s, end, time.monotonic()
-            )
+            _RunningExchange(node, exchange, services, next(exchange), timeout_s, end, time.monotonic())
         )
         self.step()
 
@@ -104,11 +94,7 @@ class Exchanges:
             except StopIteration:
                 word = ""
             except Exception as error:  # noqa: BLE001 - one odd node must not end the others
-                word = say(
-                    "the answer of {node} cannot be understood: {error}",
-                    node=running.node,
-                    error=str(error),
-                )
+                word = say("the answer of {node} cannot be understood: {error}", node=running.node, error=str(error))
             if word is not None:
                 self._exchanges.remove(running)
                 running.end(word)
@@ -171,11 +157,7 @@ class Exchanges:
             return _gone(running)
         patience_s = _patience_s(running)
         if time.monotonic() - running.asked_s >= patience_s:
-            return say(
-                "{node} does not answer within {seconds} s",
-                node=running.node,
-                seconds=f"{patience_s:g}",
-            )
+            return say("{node} does not answer within {seconds} s", node=running.node, seconds=f"{patience_s:g}")
         return None
 
 

@@ -36,9 +36,7 @@ NO_WORD_OF_CANCEL = N_("no answer to the request to cancel it within {seconds} s
 class GoalLife:
     """One goal. `hear` and `act` are called in turn until it `is_settled`."""
 
-    def __init__(
-        self, told: Goal, goal_id: bytes, message: Draft, client: PolledActionClient
-    ) -> None:
+    def __init__(self, told: Goal, goal_id: bytes, message: Draft, client: PolledActionClient) -> None:
         """Start with a goal that is `SENDING`, to be sent as `message` through `client`."""
         self.told = told
         """The goal as the screen shows it, except `elapsed_s`."""
@@ -76,11 +74,9 @@ class GoalLife:
 
     @property
     def may_drive(self) -> bool:
-        """Whether the server may be executing it."""
         return not self.told.ended or not self.is_settled
 
     def snapshot(self) -> Goal:
-        """Return the goal as it is now."""
         until_s = self._ended_s if self._ended_s is not None else time.monotonic()
         return replace(self.told, elapsed_s=until_s - self._began_s)
 
@@ -90,7 +86,6 @@ class GoalLife:
             self._wants_cancel = True
 
     def hear(self, heard: GoalAnswers) -> None:
-        """Process what has arrived."""
         if self._request in heard.accepted and self._accepted is None:
             self._answered(accepted=heard.accepted[self._request])
         news = heard.feedback.get(self._id)
@@ -115,10 +110,7 @@ class GoalLife:
         elif self._accepted is None:
             if not self.told.ended and now_s - self._request_s >= ANSWER_WITHIN_S:
                 self._wants_cancel = True
-                self._end(
-                    GoalStatus.FAILED,
-                    say("no answer within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"),
-                )
+                self._end(GoalStatus.FAILED, say("no answer within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"))
         else:
             self._ask_to_cancel(now_s)
             self._look_after_server(now_s)
@@ -142,10 +134,7 @@ class GoalLife:
             self._request = self.client.send(self._id, self._message.dated())
             self._request_s = now_s
         elif now_s - self._began_s >= ANSWER_WITHIN_S:
-            self._end(
-                GoalStatus.FAILED,
-                say("no server appeared within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"),
-            )
+            self._end(GoalStatus.FAILED, say("no server appeared within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"))
 
     def _answered(self, *, accepted: bool) -> None:
         self._accepted = accepted

@@ -58,12 +58,7 @@ class Goals:
         self._numbers = itertools.count(first)
 
     def send(
-        self,
-        action: str,
-        type_name: str,
-        goal: Mapping[str, Value],
-        known: ActionRow | None,
-        future: Future[int],
+        self, action: str, type_name: str, goal: Mapping[str, Value], known: ActionRow | None, future: Future[int]
     ) -> None:
         """Send a goal as soon as there is a server; the future gets its number at once.
 
@@ -72,9 +67,7 @@ class Goals:
         """
         if known and known.servers and type_name not in known.type_names:
             types = ", ".join(known.type_names)
-            raise GoalError(
-                say("{name} is a {types}, not a {type}", name=action, types=types, type=type_name)
-            )
+            raise GoalError(say("{name} is a {types}, not a {type}", name=action, types=types, type=type_name))
         client = self._client(action, type_name)
         try:
             message = draft(client.type.Goal, goal)

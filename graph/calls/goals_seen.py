@@ -46,7 +46,6 @@ class _Seen:
     """When it was seen to end; None also if it had ended before Deck began to look."""
 
     def snapshot(self, error: str) -> SeenGoal:
-        """Return the goal as it is now."""
         now_s = None if self.told.ended else time.time()
         age_s = (self.ended_s or now_s or math.inf) - self.accepted_s
         sane_s = age_s if 0 <= age_s <= LONGEST_S else None
@@ -68,9 +67,7 @@ class SeenAction:
         self._since_s = time.time()
         self._before: frozenset[bytes] = frozenset()
         self._goals: dict[bytes, _Seen] = {}
-        self._status = _subscribe(
-            node, GoalStatusArray, status_topic(action), qos_profile_action_status_default
-        )
+        self._status = _subscribe(node, GoalStatusArray, status_topic(action), qos_profile_action_status_default)
         self._feedback: Subscription | None = None
         try:
             kind: Any = load_action(type_name)
@@ -78,14 +75,10 @@ class SeenAction:
             # The type of its feedback is unknown here; its status has the same type everywhere.
             return
         self._feedback = _subscribe(
-            node,
-            kind.Impl.FeedbackMessage,
-            f"{action}/_action/feedback",
-            QoSProfile(depth=FEEDBACKS),
+            node, kind.Impl.FeedbackMessage, f"{action}/_action/feedback", QoSProfile(depth=FEEDBACKS)
         )
 
     def take(self) -> None:
-        """Take what has arrived."""
         for message in _taken(self._status):
             self._hear_status(message.status_list)
         for message in _taken(self._feedback) if self._feedback else ():
@@ -99,9 +92,7 @@ class SeenAction:
             self._lose()
         self._before = servers
 
-    def rows(
-        self, is_own: Callable[[bytes], bool], errors: Mapping[str, str]
-    ) -> Iterable[SeenGoal]:
+    def rows(self, is_own: Callable[[bytes], bool], errors: Mapping[str, str]) -> Iterable[SeenGoal]:
         """Yield the goals of others, in the order in which they were accepted."""
         for goal_id, seen in sorted(self._goals.items(), key=lambda item: item[1].accepted_s):
             if not is_own(goal_id):
@@ -126,8 +117,7 @@ class SeenAction:
                 continue
             stamp = each.goal_info.stamp
             seen = before.get(goal_id) or _Seen(
-                SeenGoal(self.action, self.type_name, goal_id.hex(), status),
-                stamp.sec + stamp.nanosec * NANOSECONDS,
+                SeenGoal(self.action, self.type_name, goal_id.hex(), status), stamp.sec + stamp.nanosec * NANOSECONDS
             )
             self._goals[goal_id] = seen
             self._end(seen, status)
@@ -187,9 +177,7 @@ class SeenGoals:
     def rows(self) -> tuple[SeenGoal, ...]:
         """Return the goals of other clients."""
         return tuple(
-            row
-            for _name, action in sorted(self._actions.items())
-            for row in action.rows(self._is_own, self._errors)
+            row for _name, action in sorted(self._actions.items()) for row in action.rows(self._is_own, self._errors)
         )
 
     def cancel(self, action: str, goal_id: str) -> None:

@@ -97,9 +97,7 @@ class Lifecycles:
             if due and not followed.asking:
                 self._ask(name, followed)
 
-    def change(
-        self, node: str, transition: str, timeout_s: float, future: Future[TransitionResult]
-    ) -> None:
+    def change(self, node: str, transition: str, timeout_s: float, future: Future[TransitionResult]) -> None:
         """Have a node make a transition; the result says in words why it was not made."""
         node = full_name(node)
         facts = ChangeFacts()

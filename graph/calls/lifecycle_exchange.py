@@ -64,9 +64,7 @@ def change(transition: str, facts: ChangeFacts) -> Exchange:
     if number is None:
         facts.after = facts.before
         return
-    answer = yield NodeRequest(
-        "change_state", {"transition": {"id": number, "label": transition}}, CHANGE_WITHIN_S
-    )
+    answer = yield NodeRequest("change_state", {"transition": {"id": number, "label": transition}}, CHANGE_WITHIN_S)
     facts.success = bool(answer["success"])
     yield from read(facts.after)
 
@@ -85,9 +83,7 @@ def why_not(node: str, transition: str, facts: ChangeFacts, *, erred: bool) -> s
             return say("{node} is {state}: nothing leads out of that state", **words)
         possible = ", ".join(before.transitions)
         return say(
-            "{node} is {state}: {transition} is not possible there, only {possible}",
-            possible=possible,
-            **words,
+            "{node} is {state}: {transition} is not possible there, only {possible}", possible=possible, **words
         )
     if after.state == "finalized" and transition != "shutdown":
         return say(
@@ -101,10 +97,7 @@ def why_not(node: str, transition: str, facts: ChangeFacts, *, erred: bool) -> s
             "why, but rclpy itself logs no exception raised there",
             **words,
         )
-    return say(
-        "{node} refuses to {transition} and stays {state}; its log may say why",
-        **words,
-    )
+    return say("{node} refuses to {transition} and stays {state}; its log may say why", **words)
 
 
 def _outer(answer: Mapping[str, Any]) -> Generator[tuple[str, int], None, None]:

@@ -52,12 +52,7 @@ class LoggerLevels:
         self._begin(node, exchange, found, timeout_s, future)
 
     def _begin(
-        self,
-        node: str,
-        exchange: Exchange,
-        found: list[str],
-        timeout_s: float,
-        future: Future[LevelResult],
+        self, node: str, exchange: Exchange, found: list[str], timeout_s: float, future: Future[LevelResult]
     ) -> None:
         def end(error: str) -> None:
             refused = error or (found[1] if len(found) > 1 else "")

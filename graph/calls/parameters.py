@@ -24,9 +24,7 @@ class ParameterCalls:
         """Ask through `exchanges`, which reports every failure in words."""
         self._exchanges = exchanges
 
-    def read(
-        self, node: str, timeout_s: float, started_s: float, future: Future[ParametersResult]
-    ) -> None:
+    def read(self, node: str, timeout_s: float, started_s: float, future: Future[ParametersResult]) -> None:
         """Read all parameters of a node, with their descriptors; failures are reported in words."""
         node = full_name(node)
         rows: list[ParameterRow] = []
@@ -38,12 +36,7 @@ class ParameterCalls:
         self._exchanges.begin(node, read(rows), SERVICES, timeout_s, end)
 
     def write(
-        self,
-        node: str,
-        values: Mapping[str, Value],
-        timeout_s: float,
-        started_s: float,
-        future: Future[SetResult],
+        self, node: str, values: Mapping[str, Value], timeout_s: float, started_s: float, future: Future[SetResult]
     ) -> None:
         """Set parameters of a node, each independently; failures are reported in words."""
         node = full_name(node)

@@ -37,9 +37,7 @@ def read(rows: list[ParameterRow]) -> Exchange:
     names = sorted(set(listed["result"]["names"]))
     descriptors = yield from _describe(names)
     values = yield from _of_each("get_parameters", "values", names)
-    rows += [
-        row(name, descriptors[name], values.get(name)) for name in names if name in descriptors
-    ]
+    rows += [row(name, descriptors[name], values.get(name)) for name in names if name in descriptors]
 
 
 def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Exchange:
@@ -53,10 +51,7 @@ def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Exchange:
         else:
             made[name] = {"name": name, "value": tree}
     for some in _parts(list(made)):
-        answer = yield NodeRequest(
-            "set_parameters",
-            {"parameters": [made[name] for name in some]},
-        )
+        answer = yield NodeRequest("set_parameters", {"parameters": [made[name] for name in some]})
         results = answer["results"]
         for name, result in zip(some, results, strict=False):
             if not result["successful"]:
@@ -65,9 +60,7 @@ def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Exchange:
             refused[name] = say("the node's answer does not mention it")
 
 
-def _made(
-    descriptor: Mapping[str, Any] | None, value: Value
-) -> tuple[str, dict[str, Value] | None]:
+def _made(descriptor: Mapping[str, Any] | None, value: Value) -> tuple[str, dict[str, Value] | None]:
     """Return why the value does not fit, or the tree of its ParameterValue."""
     if descriptor is None:
         return say("the node has no such parameter"), None
@@ -92,9 +85,7 @@ def _describe(names: list[str]) -> Generator[NodeRequest, Mapping[str, Any], dic
     return (yield from _of_each("describe_parameters", "descriptors", names))
 
 
-def _of_each(
-    service: str, field: str, names: list[str]
-) -> Generator[NodeRequest, Mapping[str, Any], dict[str, Any]]:
+def _of_each(service: str, field: str, names: list[str]) -> Generator[NodeRequest, Mapping[str, Any], dict[str, Any]]:
     """Ask for something about each parameter; those that the node does not have are left out."""
     found: dict[str, Any] = {}
     parts = list(_parts(names))

@@ -71,9 +71,7 @@ def load(text: str, node: str, *, wildcards: bool = True) -> dict[str, Value]:
     return values
 
 
-def save_file(
-    path: Path, node: str, parameters: Iterable[ParameterRow], *, replace: bool = False
-) -> None:
+def save_file(path: Path, node: str, parameters: Iterable[ParameterRow], *, replace: bool = False) -> None:
     """Write a file atomically: it is either the old one or the complete new one.
 
     Raises FileExistsError unless `replace`, and any other OSError of the file system.
@@ -104,9 +102,7 @@ def load_file(path: Path, node: str, *, wildcards: bool = True) -> dict[str, Val
     return load(text, node, wildcards=wildcards)
 
 
-def _place(
-    tree: dict[str, object], name: str, row: ParameterRow, rows: Mapping[str, object]
-) -> None:
+def _place(tree: dict[str, object], name: str, row: ParameterRow, rows: Mapping[str, object]) -> None:
     """Nest a name at its dots, unless a part of it is the name of another parameter."""
     parts = name.split(".")
     above = [".".join(parts[:end]) for end in range(1, len(parts))]
@@ -148,10 +144,7 @@ def _nodes(branch: Branch, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
     for key, entry in branch.entries.items():
         if key == KEY:
             if not path:
-                words = say(
-                    "`{key}:` is not under any node; write the node's name, or `/**:`, above it",
-                    key=KEY,
-                )
+                words = say("`{key}:` is not under any node; write the node's name, or `/**:`, above it", key=KEY)
                 raise fault(entry.key_place, words)
             parameters: dict[str, Value] = {}
             _flatten(mapping(entry.value), "", parameters)
@@ -159,9 +152,7 @@ def _nodes(branch: Branch, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
             continue
         if not isinstance(entry.value, Branch):
             words = say(
-                "expected `{key}:` under the name of a node, found {name} with a value",
-                key=KEY,
-                name=repr(key),
+                "expected `{key}:` under the name of a node, found {name} with a value", key=KEY, name=repr(key)
             )
             raise fault(entry.key_place, words)
         yield from _nodes(entry.value, f"{path}/{key.strip('/')}")
@@ -193,10 +184,7 @@ def _list(listing: Listing, name: str) -> Value:
         values.append(_single(item, item.place, name))
     kinds = {float if type(each) is int else type(each) for each in values}
     if len(kinds) > 1:
-        words = say(
-            "{name} has values of different types; a list of parameters has one type",
-            name=repr(name),
-        )
+        words = say("{name} has values of different types; a list of parameters has one type", name=repr(name))
         raise fault(listing.place, words)
     return values
 

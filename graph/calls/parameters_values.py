@@ -41,9 +41,7 @@ class WrongValueError(ValueError):
         self.words = words
 
 
-def row(
-    name: str, descriptor: Mapping[str, Any], carried: Mapping[str, Any] | None
-) -> ParameterRow:
+def row(name: str, descriptor: Mapping[str, Any], carried: Mapping[str, Any] | None) -> ParameterRow:
     """Return one parameter from the trees of its ParameterDescriptor and its ParameterValue.
 
     A parameter that was declared but never given a value has its declared type and no value.
@@ -109,9 +107,7 @@ def _type_for(value: Value) -> str:
     if names == {"integer", "double"}:
         return "double_array"
     if len(names) > 1 or f"{min(names)}_array" not in TYPES:
-        raise WrongValueError(
-            say("expected a list of values of one type, got {value}", value=_shown(value))
-        )
+        raise WrongValueError(say("expected a list of values of one type, got {value}", value=_shown(value)))
     return f"{names.pop()}_array"
 
 
@@ -140,9 +136,7 @@ def _double(value: Value) -> float:
     try:
         return float(meant)
     except OverflowError:
-        raise WrongValueError(
-            say("{value} is too large for a double", value=_shown(value))
-        ) from None
+        raise WrongValueError(say("{value} is too large for a double", value=_shown(value))) from None
 
 
 def _meant(value: Value) -> Value | None:
@@ -184,9 +178,7 @@ def _elements(value: Value) -> list[Value]:
     if hasattr(value, "tolist"):
         value = value.tolist()
     if not isinstance(value, (list, tuple)):
-        raise WrongValueError(
-            say("expected a list, such as [1, 2], got {value}", value=_shown(value))
-        )
+        raise WrongValueError(say("expected a list, such as [1, 2], got {value}", value=_shown(value)))
     return list(value)
 
 

@@ -73,9 +73,7 @@ class Calls:
         """
         if known and type_name not in known.type_names:
             types = ", ".join(known.type_names)
-            words = say(
-                "{name} is a {types}, not a {type}", name=service, types=types, type=type_name
-            )
+            words = say("{name} is a {types}, not a {type}", name=service, types=types, type=type_name)
             future.set_result(_failed(service, words, started_s))
             return
         try:
@@ -162,8 +160,7 @@ class Calls:
     def _has_its_turn(self, call: _Call) -> bool:
         """Whether the service exists and has room: what overflows its queue gets no answer."""
         sent = sum(
-            other.client is call.client and other.sequence is not None and not other.is_late
-            for other in self._calls
+            other.client is call.client and other.sequence is not None and not other.is_late for other in self._calls
         )
         return sent < QUEUE and self._clients.is_ready(call.client)
 

@@ -61,7 +61,6 @@ class DiagnosticsBook:
         return tuple(self._records.values())
 
     def get(self, name: str) -> StatusRecord | None:
-        """Return the status with this name."""
         return self._records.get(name)
 
     def clear(self) -> None:
@@ -98,9 +97,7 @@ class DiagnosticsBook:
                 self.left_out += 1
                 return
             first = LevelChange(status.heard_s, status.level, status.message)
-            self._records[status.name] = StatusRecord(
-                status, status.level, deque([first], maxlen=HISTORY)
-            )
+            self._records[status.name] = StatusRecord(status, status.level, deque([first], maxlen=HISTORY))
             return
         record.status = status
         if record.level is not status.level:

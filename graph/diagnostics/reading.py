@@ -33,10 +33,7 @@ class StatusLevel(IntEnum):
 
 
 _RANKS = {
-    level: rank
-    for rank, level in enumerate(
-        (StatusLevel.ERROR, StatusLevel.WARN, StatusLevel.STALE, StatusLevel.OK)
-    )
+    level: rank for rank, level in enumerate((StatusLevel.ERROR, StatusLevel.WARN, StatusLevel.STALE, StatusLevel.OK))
 }
 
 
@@ -67,9 +64,7 @@ def statuses(sample: Sample) -> Iterator[DiagnosticStatus]:
 def _status(status: Any, heard_s: float) -> DiagnosticStatus | None:  # noqa: ANN401 - of any make
     try:
         name, level = _text(status["name"]), int(status["level"])
-        values = {
-            _text(item["key"]): _text(item["value"]) for item in status["values"][:MOST_VALUES]
-        }
+        values = {_text(item["key"]): _text(item["value"]) for item in status["values"][:MOST_VALUES]}
         said, hardware = _text(status["message"]), _text(status["hardware_id"])
     except (KeyError, OverflowError, TypeError, ValueError):
         return None

@@ -79,9 +79,7 @@ def _other_clock(off_s: float) -> tuple[str, str]:
 def _ahead(seconds: float) -> tuple[str, str]:
     return (
         say("Its messages are stamped {seconds:.1f} s in the future.", seconds=seconds),
-        say(
-            "Let both computers take their time from one server (chrony), and look: `timedatectl`."
-        ),
+        say("Let both computers take their time from one server (chrony), and look: `timedatectl`."),
     )
 
 
@@ -113,10 +111,7 @@ def _simulated(update: GraphUpdate, row: TopicRow) -> Iterator[GraphFinding]:
                 "timers stand still there.",
                 nodes=listed(following),
             ),
-            say(
-                "Start the simulator, or `ros2 bag play --clock`; without either, set use_sim_time "
-                "to false."
-            ),
+            say("Start the simulator, or `ros2 bag play --clock`; without either, set use_sim_time to false."),
             tuple(following),
         )
         return

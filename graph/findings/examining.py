@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 
 
 def examine(
-    update: GraphUpdate,
-    norms: GraphNorms | None = None,
-    failures: Mapping[str, str] = MappingProxyType({}),
+    update: GraphUpdate, norms: GraphNorms | None = None, failures: Mapping[str, str] = MappingProxyType({})
 ) -> tuple[GraphFinding, ...]:
     """Return everything that is wrong with the graph now, the worst first.
 

@@ -43,9 +43,7 @@ def _who_uses(row: TopicRow) -> str:
     users: defaultdict[str, list[str]] = defaultdict(list)
     for end in (*row.published_by, *row.subscribed_by):
         users[end.type_name].append(end.node)
-    told = [
-        f"{kind} ({listed(set(users[kind]))})" if users[kind] else kind for kind in row.type_names
-    ]
+    told = [f"{kind} ({listed(set(users[kind]))})" if users[kind] else kind for kind in row.type_names]
     return ", ".join(told[:MOST])
 
 
@@ -56,10 +54,7 @@ def _finding(
         FindingLevel.ERROR,
         "two-types",
         FindingPlace(kind, row.name),
-        say(
-            "It is used with types that do not agree, so not everybody is reached: {types}",
-            types=types,
-        ),
+        say("It is used with types that do not agree, so not everybody is reached: {types}", types=types),
         say("Let all use one type, or give one of them another name."),
         tuple(dict.fromkeys(nodes)),
     )

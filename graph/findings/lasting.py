@@ -35,12 +35,7 @@ class LastingFindings:
         self._changed_s = -math.inf
         self._told: set[str] = set()
 
-    def take(
-        self,
-        update: GraphUpdate,
-        now_s: float,
-        failures: Mapping[str, str] = MappingProxyType({}),
-    ) -> None:
+    def take(self, update: GraphUpdate, now_s: float, failures: Mapping[str, str] = MappingProxyType({})) -> None:
         """Examine the graph as it is at `now_s`, on any clock that runs steadily.
 
         `failures`: full name to why, of nodes that have ended for good.

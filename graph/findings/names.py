@@ -36,10 +36,7 @@ def listed(names: Iterable[str]) -> str:
     """Return names for a sentence, each once, with the number of its endpoints if several."""
     counted = Counter(names)
     nameless = sum(counted.pop(name) for name in list(counted) if name.endswith(NAMELESS))
-    words = [
-        plain(name, LONGEST) + (f" ×{count}" if count > 1 else "")
-        for name, count in sorted(counted.items())
-    ]
+    words = [plain(name, LONGEST) + (f" ×{count}" if count > 1 else "") for name, count in sorted(counted.items())]
     more = len(words) - MOST
     told = ", ".join(words[:MOST]) + (f" +{more}" if more > 0 else "")
     if not nameless:
@@ -54,11 +51,7 @@ def meant(name: str, known: Iterable[str]) -> str:
 
     Names that differ in a number, or in a whole word, are different things: `left` and `right`.
     """
-    scored = sorted(
-        (score, other)
-        for other in known
-        if other != name and (score := _likeness(name, other)) > 0.0
-    )
+    scored = sorted((score, other) for other in known if other != name and (score := _likeness(name, other)) > 0.0)
     return scored[-1][1] if scored else ""
 
 

@@ -7,13 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from graph.data import PROCESS_NUMBERS
-from graph.findings.finding import (
-    FORGOTTEN_S,
-    SETTLED_S,
-    FindingLevel,
-    FindingPlace,
-    GraphFinding,
-)
+from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, FindingPlace, GraphFinding
 from graph.findings.names import is_deck, listed
 from graph.housekeeping import is_hidden
 from text.sentences import say
@@ -70,17 +64,11 @@ def fights(update: GraphUpdate, norms: GraphNorms) -> Iterator[GraphFinding]:
 
 def _fight_words(row: TopicRow, nodes: str, *, commands: bool) -> str:
     if row.name == CLOCK:
-        return say(
-            "Several clocks are published, and time jumps between them: {nodes}", nodes=nodes
-        )
+        return say("Several clocks are published, and time jumps between them: {nodes}", nodes=nodes)
     if commands and row.several_send:
-        return say(
-            "Several nodes command at once, and whoever spoke last is obeyed: {nodes}", nodes=nodes
-        )
+        return say("Several nodes command at once, and whoever spoke last is obeyed: {nodes}", nodes=nodes)
     if commands:
-        return say(
-            "Several nodes may command, and whoever spoke last is obeyed: {nodes}", nodes=nodes
-        )
+        return say("Several nodes may command, and whoever spoke last is obeyed: {nodes}", nodes=nodes)
     return say("Messages of several publishers are mixed: {nodes}", nodes=nodes)
 
 
@@ -103,8 +91,7 @@ def namesakes(update: GraphUpdate) -> Iterator[GraphFinding]:
                 "nobody can tell their messages apart."
             ),
             say(
-                "Stop the one that was left running, or give one another name: "
-                "`--ros-args -r __node:=another_name`."
+                "Stop the one that was left running, or give one another name: `--ros-args -r __node:=another_name`."
             ),
             (node.name,),
             SETTLED_S if _run_here(node.processes) else FORGOTTEN_S,

@@ -33,12 +33,7 @@ def misfits(update: GraphUpdate) -> Iterator[GraphFinding]:
             what = say("{what} (and {more} more such pairs)", what=what, more=more)
         nodes = {name for pair in found for name in (pair.publisher, pair.subscriber)}
         yield GraphFinding(
-            FindingLevel.ERROR,
-            "qos",
-            FindingPlace("topic", row.name),
-            what,
-            found[0].mend,
-            tuple(sorted(nodes)),
+            FindingLevel.ERROR, "qos", FindingPlace("topic", row.name), what, found[0].mend, tuple(sorted(nodes))
         )
 
 
@@ -66,9 +61,7 @@ def _lost_best_effort(row: TopicRow, lost: int) -> tuple[str, str]:
         lost=lost,
         sent=row.count + lost,
     )
-    return what, say(
-        "Publish smaller messages or fewer a second; or offer reliable, if each of them matters."
-    )
+    return what, say("Publish smaller messages or fewer a second; or offer reliable, if each of them matters.")
 
 
 def _lost_reliable(row: TopicRow, lost: int) -> tuple[str, str]:
@@ -81,7 +74,6 @@ def _lost_reliable(row: TopicRow, lost: int) -> tuple[str, str]:
     depth = min((end.depth for end in row.published_by if end.depth), default=0)
     if 0 < depth < SHALLOW:
         return what, say(
-            "Give the publisher a deeper queue than {depth}, or let it publish less at once.",
-            depth=depth,
+            "Give the publisher a deeper queue than {depth}, or let it publish less at once.", depth=depth
         )
     return what, say("Give the publisher a deeper queue, or let it publish less at once.")

@@ -5,13 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from graph.findings.finding import (
-    FORGOTTEN_S,
-    SETTLED_S,
-    FindingLevel,
-    FindingPlace,
-    GraphFinding,
-)
+from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, FindingPlace, GraphFinding
 from graph.findings.names import is_deck, listed, meant
 from graph.findings.publishers import CLOCK
 from graph.housekeeping import is_hidden, is_housekeeping
@@ -24,18 +18,14 @@ if TYPE_CHECKING:
     from graph.findings.finding import GraphNorms
 
 
-def unfed(
-    update: GraphUpdate, norms: GraphNorms, *, one_has_failed: bool = False
-) -> Iterator[GraphFinding]:
+def unfed(update: GraphUpdate, norms: GraphNorms, *, one_has_failed: bool = False) -> Iterator[GraphFinding]:
     """Yield topics that somebody hears and nobody publishes, with the name that was meant.
 
     A topic that may wait for somebody is one of them only if its name nearly matches; one that
     commands the robot also if a node has failed, which may be who published it.
     """
     fed = {
-        row.name: set(row.type_names)
-        for row in update.topics
-        if row.published_by and not is_housekeeping(row.name)
+        row.name: set(row.type_names) for row in update.topics if row.published_by and not is_housekeeping(row.name)
     }
     for row in update.topics:
         ends = [end for end in row.subscribed_by if not is_deck(end.node)]
@@ -87,8 +77,7 @@ def _of_one_type(row: TopicRow, fed: dict[str, set[str]]) -> Iterable[str]:
 
 def _one_name(name: str, instead: str) -> str:
     return say(
-        "Let both use one name: correct it in the code, or remap it: "
-        "`--ros-args -r {name}:={instead}`.",
+        "Let both use one name: correct it in the code, or remap it: `--ros-args -r {name}:={instead}`.",
         name=name,
         instead=instead,
     )
@@ -117,14 +106,10 @@ def _unserved(place: FindingPlace, callers: list[str], instead: str) -> GraphFin
     nodes = listed(callers)
     if instead:
         what = say(
-            "Nobody serves it, and it is called by {nodes}; served is {instead}.",
-            nodes=nodes,
-            instead=instead,
+            "Nobody serves it, and it is called by {nodes}; served is {instead}.", nodes=nodes, instead=instead
         )
         mend = _one_name(place.name, instead)
     else:
         what = say("Nobody serves it, and it is called by {nodes}.", nodes=nodes)
         mend = say("Start the node that serves it, or look for a misspelt or remapped name.")
-    return GraphFinding(
-        FindingLevel.ERROR, "unserved", place, what, mend, tuple(dict.fromkeys(callers))
-    )
+    return GraphFinding(FindingLevel.ERROR, "unserved", place, what, mend, tuple(dict.fromkeys(callers)))

@@ -29,8 +29,7 @@ def is_settling(update: GraphUpdate) -> bool:
     What has come before comes again, because it is latched; what has not is not waited for long.
     """
     return not any(row.is_static for row in update.frames) and any(
-        row.name == TF_STATIC and row.publishers and (row.count or row.trouble is None)
-        for row in update.topics
+        row.name == TF_STATIC and row.publishers and (row.count or row.trouble is None) for row in update.topics
     )
 
 

@@ -45,12 +45,7 @@ class FrameBook:
         self._lists.clear()
 
     def take(
-        self,
-        topic: str,
-        raw: bytes,
-        arrived_s: float,
-        number: int | None = None,
-        sender: bytes | None = None,
+        self, topic: str, raw: bytes, arrived_s: float, number: int | None = None, sender: bytes | None = None
     ) -> None:
         """Take a message, with its `number` at its publisher, if the middleware counts.
 
@@ -80,10 +75,7 @@ class FrameBook:
         if self._is_full and abs(now_s - self._made_room_s) > ROOM_AGAIN_S:
             self._make_room(now_s)
         moving, static = self._publishers[TF], self._publishers[TF_STATIC]
-        return tuple(
-            record.row(now_s, static if record.static else moving)
-            for record in self._records.values()
-        )
+        return tuple(record.row(now_s, static if record.static else moving) for record in self._records.values())
 
     def _open(self, names: Names, arrived_s: float, *, static: bool) -> list[FrameRecord | None]:
         known = len(self._records)
@@ -98,9 +90,7 @@ class FrameBook:
         self._lists[static, names] = records
         return records
 
-    def _record(
-        self, parent: str, child: str, arrived_s: float, *, static: bool
-    ) -> FrameRecord | None:
+    def _record(self, parent: str, child: str, arrived_s: float, *, static: bool) -> FrameRecord | None:
         bare = parent.removeprefix("/"), child.removeprefix("/")
         made = FrameRecord(*bare, arrived_s, static=static)
         key = (*made.names, static)

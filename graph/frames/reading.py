@@ -122,7 +122,6 @@ def _layout(raw: bytes) -> _KnownLayout:
 
 
 def _length(raw: bytes, at: int) -> tuple[int, int]:
-    """Return a length, and where it ends."""
     if at + 4 > len(raw):
         raise ValueError("the message ends too early")
     return int.from_bytes(raw[at : at + 4], "little"), at + 4
@@ -147,11 +146,7 @@ def _from_tree(tree: Mapping[str, Any]) -> Transforms:
 
 
 def _fields_of(one: Mapping[str, Any]) -> tuple[Any, ...]:
-    stamp, moved, turned = (
-        one["header"]["stamp"],
-        one["transform"]["translation"],
-        one["transform"]["rotation"],
-    )
+    stamp, moved, turned = (one["header"]["stamp"], one["transform"]["translation"], one["transform"]["rotation"])
     return (
         stamp["sec"],
         stamp["nanosec"],

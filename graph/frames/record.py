@@ -86,9 +86,7 @@ class FrameRecord:
         self._points: deque[_Counted] = deque()
         self._senders = Senders(arrived_s)
 
-    def take(
-        self, fields: tuple[Any, ...], arrived_s: float, number: int, sender: bytes | None
-    ) -> None:
+    def take(self, fields: tuple[Any, ...], arrived_s: float, number: int, sender: bytes | None) -> None:
         """Take the next transform; `number` counts the messages of its publisher, `sender`."""
         self.count += 1
         if self.count == 1:

@@ -42,7 +42,6 @@ class Publishers:
     """Those with a name, also if they have gone."""
 
     def are(self, there: Mapping[bytes, str], now_s: float) -> None:
-        """Say who is there now."""
         if there == self.there:
             return
         self.there = there
@@ -77,7 +76,6 @@ class Senders:
     __slots__ = ("_candidates", "_first_s", "_gone_s", "_others", "newest")
 
     def __init__(self, first_s: float) -> None:
-        """Begin with the first message."""
         self.newest: bytes | None = None
         """Gid of the one that sent the newest; None if it is not told."""
         self._others: dict[bytes, _Sent] = {}
@@ -85,9 +83,7 @@ class Senders:
         self._candidates: AbstractSet[str] | None = None
         self._gone_s = float("inf")
 
-    def hand_over(
-        self, sender: bytes | None, arrived_s: float, fields: tuple[Any, ...], passed_s: float
-    ) -> None:
+    def hand_over(self, sender: bytes | None, arrived_s: float, fields: tuple[Any, ...], passed_s: float) -> None:
         """Say that `sender` sends the next; the one before has sent `fields`, at `arrived_s`.
 
         `passed_s` is the time since then.
@@ -101,9 +97,7 @@ class Senders:
                 del self._others[next(iter(self._others))]
         self.newest = sender
 
-    def who(
-        self, topic: Publishers, arrived_s: float, now_s: float, *, latched: bool
-    ) -> PublishedBy:
+    def who(self, topic: Publishers, arrived_s: float, now_s: float, *, latched: bool) -> PublishedBy:
         """Return who publishes it at `now_s`; the newest has arrived at `arrived_s`."""
         if self.newest is None or self._is_news(topic, now_s):
             self._narrow_down(topic, arrived_s, now_s)
@@ -121,28 +115,22 @@ class Senders:
         names = tuple(name for name, _ in sorted(found))
         return PublishedBy(names, certain=True, gone="" if names else topic.known[self.newest])
 
-    def disagree(
-        self, topic: Publishers, fields: tuple[Any, ...], arrived_s: float, now_s: float
-    ) -> bool:
+    def disagree(self, topic: Publishers, fields: tuple[Any, ...], arrived_s: float, now_s: float) -> bool:
         """Return whether others that are there have sent other numbers than `fields`, the newest.
 
         The first four fields are stamps and names, which do not matter.
         """
         return self.newest in topic.there and any(
-            sent.fields and sent.fields[4:] != fields[4:]
-            for _, sent in self._beside(topic, arrived_s, now_s)
+            sent.fields and sent.fields[4:] != fields[4:] for _, sent in self._beside(topic, arrived_s, now_s)
         )
 
     def _is_news(self, topic: Publishers, now_s: float) -> bool:
         """Return whether one of them is still to be found in the graph."""
         return self.newest not in topic.known or any(
-            gid not in topic.known and now_s - sent.arrived_s < RECENT_S
-            for gid, sent in self._others.items()
+            gid not in topic.known and now_s - sent.arrived_s < RECENT_S for gid, sent in self._others.items()
         )
 
-    def _beside(
-        self, topic: Publishers, arrived_s: float, now_s: float
-    ) -> Iterator[tuple[bytes, _Sent]]:
+    def _beside(self, topic: Publishers, arrived_s: float, now_s: float) -> Iterator[tuple[bytes, _Sent]]:
         """Yield those that are there beside the one that has sent the newest."""
         newest = self.newest or b""
         name = topic.known.get(newest)

@@ -14,13 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from graph.messages.fields import INTEGERS, parse, ros_name
-from graph.messages.types import (
-    NAME_PARTS,
-    UnknownTypeError,
-    load_action,
-    load_message,
-    load_service,
-)
+from graph.messages.types import NAME_PARTS, UnknownTypeError, load_action, load_message, load_service
 from graph.messages.values import fields_of, to_tree
 from text.sentences import say
 
@@ -102,9 +96,7 @@ def definition(type_name: str) -> Definition:
         made = tuple(_part(name, getattr(action, name.capitalize())) for name in names)
     else:
         reason = say(
-            "'{type}' is not the name of a type; write it as package/{kind}/Name",
-            type=type_name,
-            kind="msg",
+            "'{type}' is not the name of a type; write it as package/{kind}/Name", type=type_name, kind="msg"
         )
         raise UnknownTypeError(type_name, parts[0], reason)
     return Definition(type_name, made)

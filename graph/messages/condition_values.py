@@ -52,9 +52,7 @@ def truth(node: ast.expr, value: Any) -> bool:  # noqa: ANN401
     """Return whether a value counts as true: a non-zero number, a non-empty string."""
     if _is_number(value) or isinstance(value, str):
         return bool(value)
-    raise RefusalError(
-        node, say("it is {kind}, which is neither true nor false", kind=_kind(value))
-    )
+    raise RefusalError(node, say("it is {kind}, which is neither true nor false", kind=_kind(value)))
 
 
 def _name(node: ast.Name, names: Mapping[str, Any]) -> Any:  # noqa: ANN401
@@ -131,9 +129,7 @@ def _compared(node: ast.Compare, sign: ast.cmpop, left: Any, right: Any) -> bool
         if isinstance(left, Mapping) or isinstance(right, Mapping):
             raise RefusalError(node, say("compare one of the fields of a message"))
         return bool(_listed_out(left) == _listed_out(right)) is isinstance(sign, ast.Eq)
-    same = (_is_number(left) and _is_number(right)) or (
-        isinstance(left, str) and isinstance(right, str)
-    )
+    same = (_is_number(left) and _is_number(right)) or (isinstance(left, str) and isinstance(right, str))
     if not same:
         kinds = {"left": _kind(left), "right": _kind(right)}
         raise RefusalError(node, say("{left} and {right} cannot be compared like this", **kinds))
@@ -146,9 +142,7 @@ def _is_in(node: ast.Compare, one: Any, many: Any) -> bool:  # noqa: ANN401
             return one in many
     elif not isinstance(many, Mapping) and _has_length(many):
         if isinstance(many, bytes):
-            return (
-                _is_number(one) and 0 <= one <= MOST_BYTE and one == int(one) and int(one) in many
-            )
+            return _is_number(one) and 0 <= one <= MOST_BYTE and one == int(one) and int(one) in many
         if isinstance(many, list):
             return any(_listed_out(_plain(each)) == _listed_out(one) for each in many)
         # An array of numbers, however long. numpy refuses to compare what no array can hold.

@@ -87,8 +87,7 @@ def _without_words(
             continue
         if kind.is_many and isinstance(value, list):
             plain[name] = [
-                _without_word(kind, each, (*path, name, index), stamps)
-                for index, each in enumerate(value)
+                _without_word(kind, each, (*path, name, index), stamps) for index, each in enumerate(value)
             ]
         elif not kind.is_many:
             plain[name] = _without_word(kind, value, (*path, name), stamps)

@@ -47,7 +47,6 @@ class FieldType:
 
     @property
     def is_message(self) -> bool:
-        """Whether it holds messages."""
         return "/" in self.element
 
     @property

@@ -144,13 +144,9 @@ def _packed(kind: FieldType, value: bytes | bytearray | memoryview) -> object:
 
 def _check_length(kind: FieldType, length: int, path: str) -> None:
     if kind.size is not None and length != kind.size:
-        raise FieldError(
-            path, say("expected {n} elements, got {length}", n=kind.size, length=length)
-        )
+        raise FieldError(path, say("expected {n} elements, got {length}", n=kind.size, length=length))
     if kind.limit is not None and length > kind.limit:
-        raise FieldError(
-            path, say("expected at most {n} elements, got {length}", n=kind.limit, length=length)
-        )
+        raise FieldError(path, say("expected at most {n} elements, got {length}", n=kind.limit, length=length))
 
 
 def _text(kind: FieldType, value: Value, path: str) -> str:
@@ -161,12 +157,7 @@ def _text(kind: FieldType, value: Value, path: str) -> str:
         raise FieldError(path, say("expected a string, got {value}", value=_shown(value)))
     if kind.text_limit is not None and len(value) > kind.text_limit:
         raise FieldError(
-            path,
-            say(
-                "expected at most {n} characters, got {length}",
-                n=kind.text_limit,
-                length=len(value),
-            ),
+            path, say("expected at most {n} characters, got {length}", n=kind.text_limit, length=len(value))
         )
     if "\0" in value:
         raise FieldError(path, say("a ROS string cannot hold the character NUL"))
@@ -198,9 +189,7 @@ def _float(element: str, value: Value, path: str) -> float:
     if (isinstance(value, int) and math.isinf(number)) or (
         math.isfinite(number) and 0 < greatest * ROUNDED < abs(number)
     ):
-        raise FieldError(
-            path, say("{value} is too large for a {type}", value=_shown(value), type=element)
-        )
+        raise FieldError(path, say("{value} is too large for a {type}", value=_shown(value), type=element))
     is_rounded = math.isfinite(number) and 0 < greatest < abs(number)
     return math.copysign(greatest, number) if is_rounded else number
 
@@ -214,12 +203,7 @@ def _integer(element: str, value: Value, path: str) -> int:
     if not least <= number <= greatest:
         raise FieldError(
             path,
-            say(
-                "expected {least} to {greatest}, got {value}",
-                least=least,
-                greatest=greatest,
-                value=_shown(value),
-            ),
+            say("expected {least} to {greatest}, got {value}", least=least, greatest=greatest, value=_shown(value)),
         )
     return number
 

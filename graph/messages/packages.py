@@ -50,8 +50,7 @@ def how_to_install(package: str) -> Words:
     names = install_names(package)
     if not names:
         return say(
-            "package {package} is not installed: it comes with Deck, build it from interfaces/",
-            package=package,
+            "package {package} is not installed: it comes with Deck, build it from interfaces/", package=package
         )
     if "pip" in names:
         return say(

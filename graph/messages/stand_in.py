@@ -46,12 +46,7 @@ class _TypeSupport(Structure):
 class _Callbacks(Structure):
     """`message_type_support_callbacks_t` of Jazzy's `rosidl_typesupport_fastrtps_cpp`."""
 
-    _fields_ = (
-        ("namespace", c_char_p),
-        ("name", c_char_p),
-        ("functions", c_void_p * 5),
-        ("spare", c_void_p * SPARE),
-    )
+    _fields_ = (("namespace", c_char_p), ("name", c_char_p), ("functions", c_void_p * 5), ("spare", c_void_p * SPARE))
 
 
 @lru_cache(maxsize=256)

@@ -26,9 +26,7 @@ _LOADING = threading.RLock()
 class UnknownTypeError(Exception):
     """No such type is installed here; str() says what to do about it."""
 
-    def __init__(
-        self, type_name: str, package: str, reason: str, install: Mapping[str, str] | None = None
-    ) -> None:
+    def __init__(self, type_name: str, package: str, reason: str, install: Mapping[str, str] | None = None) -> None:
         """Store why `type_name` is unavailable; `package` is where it should have come from.
 
         `install` has the names of the missing package for `pip`, `apt` and `pixi`.
@@ -83,11 +81,7 @@ def _load(type_name: str, kind: str) -> type[Any]:
         raise UnknownTypeError(
             type_name,
             parts[0],
-            say(
-                "'{type}' is not the name of a type; write it as package/{kind}/Name",
-                type=type_name,
-                kind=kind,
-            ),
+            say("'{type}' is not the name of a type; write it as package/{kind}/Name", type=type_name, kind=kind),
         )
     package, _, name = parts
     try:
@@ -133,12 +127,7 @@ def _missing(error: ModuleNotFoundError, package: str, kind: str) -> Words:
 
 def not_subscribed(topic: str, type_name: str, error: Exception) -> Words:
     """Say that a topic cannot be subscribed, for example if its name has a second type."""
-    return say(
-        "{topic} cannot be subscribed as {type}: {error}",
-        topic=topic,
-        type=type_name,
-        error=error,
-    )
+    return say("{topic} cannot be subscribed as {type}: {error}", topic=topic, type=type_name, error=error)
 
 
 def not_decoded(type_name: str, error: Exception) -> Words:
@@ -147,20 +136,14 @@ def not_decoded(type_name: str, error: Exception) -> Words:
 
 
 def _broken(package: str, error: Exception) -> Words:
-    return say(
-        "package {package} is installed and cannot be used: {error}", package=package, error=error
-    )
+    return say("package {package} is installed and cannot be used: {error}", package=package, error=error)
 
 
 def _no_such_name(module: object, package: str, kind: str, name: str) -> Words:
     wanted = f"{kind}/{name}"
     meant = nearest(name, (each for each in dir(module) if each[0].isupper()))
     if not meant:
-        return say(
-            "package {package} is installed in a version without {name}",
-            package=package,
-            name=wanted,
-        )
+        return say("package {package} is installed in a version without {name}", package=package, name=wanted)
     return say(
         "package {package} is installed in a version without {name}; did you mean {near}?",
         package=package,

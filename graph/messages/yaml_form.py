@@ -8,13 +8,7 @@ from typing import TYPE_CHECKING, Any
 from graph.messages.dated import draft, with_words
 from graph.messages.fields import parse, ros_name
 from graph.messages.making import FieldError, NoSuchFieldError
-from graph.messages.types import (
-    NAME_PARTS,
-    UnknownTypeError,
-    load_action,
-    load_message,
-    load_service,
-)
+from graph.messages.types import NAME_PARTS, UnknownTypeError, load_action, load_message, load_service
 from graph.messages.values import fields_of, to_tree
 from graph.messages.yaml_reading import read_message
 from graph.messages.yaml_text import to_yaml
@@ -40,9 +34,7 @@ def form_class(type_name: str) -> type[Any]:
     parts = type_name.split("/")
     if len(parts) != NAME_PARTS or parts[1] not in {"msg", "srv", "action"}:
         reason = say(
-            "'{type}' is not the name of a type; write it as package/{kind}/Name",
-            type=type_name,
-            kind="msg",
+            "'{type}' is not the name of a type; write it as package/{kind}/Name", type=type_name, kind="msg"
         )
         raise UnknownTypeError(type_name, parts[0], reason)
     found: type[Any]

@@ -16,11 +16,7 @@ LONGEST_TEXT = 64 * 1024
 """Characters of a text, where arrays are cut too: what a terminal still takes as a clipboard."""
 
 
-def to_yaml(
-    tree: Mapping[str, Value],
-    most: int | None = None,
-    remark: Callable[[str], str] | None = None,
-) -> str:
+def to_yaml(tree: Mapping[str, Value], most: int | None = None, remark: Callable[[str], str] | None = None) -> str:
     """Return a message's tree as YAML, fields in their order, a line end at its end.
 
     Arrays of more than `most` elements are cut with a comment that tells their length; None cuts

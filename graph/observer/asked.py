@@ -31,7 +31,6 @@ class OpenOrder:
 
     @property
     def order(self) -> language.Order:
-        """What is said to the process."""
         return self.number, self.name, self.arguments, self.asked_s
 
     @property
@@ -63,12 +62,10 @@ class AskedBook:
         """Answers to calls that have timed out, should they still come."""
 
     def add(self, asked: OpenOrder) -> None:
-        """Take note of one."""
         with self._lock:
             self._waiting[asked.number] = asked
 
     def drop(self, number: int) -> OpenOrder | None:
-        """Forget one, and return it."""
         with self._lock:
             return self._waiting.pop(number, None)
 

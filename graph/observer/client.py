@@ -271,7 +271,6 @@ class ObserverClient:
         return False
 
     def _dismiss(self, line: _Line) -> None:
-        """Send the second one away."""
         other, line.other = line.other, None
         if other is not None:
             other.process.send((0, language.LEAVE, (), 0.0))
@@ -362,10 +361,7 @@ class ObserverClient:
             ended = () if line.update is None else self._lost.lose(line.update, line.why)
             repeated = list(self._prepared.values())
             # A robot must not drive on to a goal that nobody follows any more.
-            repeated += [
-                (0, "cancel_lost_goal", (goal.action, goal.type_name, goal.goal_id), 0.0)
-                for goal in ended
-            ]
+            repeated += [(0, "cancel_lost_goal", (goal.action, goal.type_name, goal.goal_id), 0.0) for goal in ended]
             self._unsent[:0] = repeated
         kept = self._asked.fail_lost(ObserverError(line.why))
         with self._lock:
@@ -396,7 +392,6 @@ class ObserverClient:
         line.process.end(max(0.0, until_s - time.monotonic()))
 
     def _end(self, error: ObserverError) -> None:
-        """Refuse what is asked for from now on."""
         with self._lock:
             self._failure = error
             self._unsent.clear()

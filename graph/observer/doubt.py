@@ -31,7 +31,6 @@ class Doubt:
     """Of one observer; times are on the monotonic clock."""
 
     def __init__(self, now_s: float) -> None:
-        """Begin with the observer."""
         self._missing: dict[int, float] = {}
         """Processes that are not seen, and since when."""
         self._explained: frozenset[int] = frozenset()
@@ -44,7 +43,6 @@ class Doubt:
         self._next_s = now_s
 
     def see(self, found: Census, now_s: float) -> None:
-        """Take in what the observer sees now."""
         self._missing = {pid: self._missing.get(pid, now_s) for pid in found.missing}
         self._explained &= found.missing
         if not found.is_networked:
@@ -102,5 +100,4 @@ class SecondLook:
         return now_s - self._more_since_s >= SURE_S
 
     def is_over(self, now_s: float) -> bool:
-        """Whether it has looked long enough."""
         return now_s >= self._until_s

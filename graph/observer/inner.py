@@ -39,15 +39,10 @@ class InnerStates:
     def logger_level(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
         """Read from which severity on a node logs; the future never raises."""
         return self._client.ask(
-            "logger_level",
-            node,
-            timeout_s,
-            refusal=lambda error: LevelResult(node, error=reason_of(error)),
+            "logger_level", node, timeout_s, refusal=lambda error: LevelResult(node, error=reason_of(error))
         )
 
-    def set_logger_level(
-        self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[LevelResult]:
+    def set_logger_level(self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
         """Set it to one of `graph.inner_states.LOG_LEVELS`; the future never raises."""
         return self._client.ask(
             "set_logger_level",

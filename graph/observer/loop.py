@@ -87,7 +87,6 @@ class ObserverLoop:
         self._look_at(all_topics=wanted[0], all_images=wanted[1])
 
     def watch_goals(self, actions: Iterable[str]) -> None:
-        """Report goals of others."""
         self._look_at(actions=frozenset(actions))
 
     def watch_inner_states(self, wanted: bool) -> None:
@@ -103,12 +102,7 @@ class ObserverLoop:
         end = ObserverError(say("the observer has been stopped"))
         try:
             # This imports rclpy.
-            ros = open_ros(
-                self._settings.domain,
-                self._settings.discovery,
-                self._settings.role,
-                self._settings.owner,
-            )
+            ros = open_ros(self._settings.domain, self._settings.discovery, self._settings.role, self._settings.owner)
             node = ObserverNode(ros, self._settings.graph_s)
             node.serve_urgent = lambda: self.serve_urgent(node)
             self._node = node

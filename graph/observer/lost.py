@@ -31,7 +31,6 @@ class LostWork:
         return tuple(goal for goal in update.goals if not goal.ended)
 
     def added_to(self, update: GraphUpdate) -> GraphUpdate:
-        """Return the update with them."""
         if not (self._goals or self._publications):
             return update
         goals = {goal.number: goal for goal in (*update.goals, *self._goals.values())}

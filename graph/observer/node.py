@@ -94,7 +94,6 @@ class ObserverNode:
         self.publications.number_from(first)
 
     def census(self, domain: int, is_networked: bool) -> Census:
-        """Count who is in the domain."""
         return census(self._ros.node, self._ros.name, domain, is_networked)
 
     def look(self, interest: Interest) -> GraphUpdate | None:
@@ -183,9 +182,7 @@ class ObserverNode:
             self._frames.published_by(topic, there, now_s)
         return self._frames.rows(now_s)
 
-    def _update(
-        self, samples: dict[str, tuple[Sample, ...]], frames: tuple[FrameRow, ...]
-    ) -> GraphUpdate | None:
+    def _update(self, samples: dict[str, tuple[Sample, ...]], frames: tuple[FrameRow, ...]) -> GraphUpdate | None:
         rows = self._taps.rows()
         seen = self._scan
         doing = (self.goals.rows(), self.seen_goals.rows(), self.publications.rows())

@@ -42,9 +42,7 @@ class Observer:
         `graph_s`: seconds between two looks at who is there, which cost more than those at messages
         `role`: part of the node's name, see `graph.ros.ONLY_LISTENING`
         """
-        self._client = ObserverClient(
-            ObserverSettings(domain, discovery, graph_s, role, os.getpid())
-        )
+        self._client = ObserverClient(ObserverSettings(domain, discovery, graph_s, role, os.getpid()))
         self.inner = InnerStates(self._client)
         """Requests about lifecycles and log levels."""
         self.period_s = period_s
@@ -108,9 +106,7 @@ class Observer:
         """Report in each update the frames that are published on /tf and /tf_static, or none."""
         self._client.want("watch_frames", wanted)
 
-    def prepare_publisher(
-        self, topic: str, type_name: str, *, latched: bool = False
-    ) -> Future[None]:
+    def prepare_publisher(self, topic: str, type_name: str, *, latched: bool = False) -> Future[None]:
         """Create a publisher now, so that its first message goes out at once."""
         return self._client.ask("prepare_publisher", topic, type_name, latched)
 
@@ -131,11 +127,7 @@ class Observer:
         self._client.tell("take_back", topic, type_name)
 
     def call(
-        self,
-        service: str,
-        type_name: str,
-        request: Mapping[str, Value],
-        timeout_s: float = ANSWER_WITHIN_S,
+        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[CallResult]:
         """Call a service; the result holds the answer or the failure, the future never raises."""
         asked_s = time.monotonic()
@@ -146,9 +138,7 @@ class Observer:
 
         return self._client.ask("call", service, type_name, request, timeout_s, refusal=refusal)
 
-    def start_publishing(
-        self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
-    ) -> Future[int]:
+    def start_publishing(self, topic: str, type_name: str, value: Mapping[str, Value], hz: float) -> Future[int]:
         """Publish a message at 0.1 to 100 Hz until this, or the observer, is stopped.
 
         The future returns its number; it raises PublishError, UnknownTypeError, FieldError or

@@ -7,13 +7,7 @@ from typing import TYPE_CHECKING
 
 from graph.data import ParametersResult, SetResult
 from graph.inner_states import LevelResult, TransitionResult
-from graph.observer.requests import (
-    Begin,
-    CallService,
-    Perform,
-    PreparePublisher,
-    SendMessage,
-)
+from graph.observer.requests import Begin, CallService, Perform, PreparePublisher, SendMessage
 from text.sentences import reason_of
 
 if TYPE_CHECKING:
@@ -38,9 +32,7 @@ class Orders:
         self._requests.put(request)
         return request.future
 
-    def publish(
-        self, topic: str, type_name: str, value: Mapping[str, Value], latched: bool
-    ) -> Future[int]:
+    def publish(self, topic: str, type_name: str, value: Mapping[str, Value], latched: bool) -> Future[int]:
         request = SendMessage(topic, type_name, value, latched)
         if latched:
             # An emergency stop is one of these.
@@ -64,13 +56,9 @@ class Orders:
         self._requests.put(asked)
         return asked.future
 
-    def start_publishing(
-        self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
-    ) -> Future[int]:
+    def start_publishing(self, topic: str, type_name: str, value: Mapping[str, Value], hz: float) -> Future[int]:
         request = Begin[int](
-            lambda node, future: node.publications.start(
-                topic, type_name, value, hz, node.ends(topic), future
-            )
+            lambda node, future: node.publications.start(topic, type_name, value, hz, node.ends(topic), future)
         )
         self._requests.put(request)
         return request.future
@@ -119,15 +107,12 @@ class Orders:
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
         request = Begin[int](
-            lambda node, future: node.goals.send(
-                action, type_name, goal, node.action(action), future
-            )
+            lambda node, future: node.goals.send(action, type_name, goal, node.action(action), future)
         )
         self._requests.put(request)
         return request.future
 
     def cancel_goal(self, number: int) -> None:
-        """Ask for a goal to be cancelled."""
         self._requests.put(Perform(lambda node: node.goals.cancel(number)))
 
     def cancel_seen_goal(self, action: str, goal_id: str) -> None:
@@ -136,16 +121,12 @@ class Orders:
 
     def cancel_lost_goal(self, action: str, type_name: str, goal_id: str) -> None:
         """Ask for a goal to be cancelled whose sender is gone."""
-        self._requests.put(
-            Perform(lambda node: node.seen_goals.cancel_lost(action, type_name, goal_id))
-        )
+        self._requests.put(Perform(lambda node: node.seen_goals.cancel_lost(action, type_name, goal_id)))
 
     def forget_goal(self, number: int) -> None:
-        """Stop reporting a goal."""
         self._requests.put(Perform(lambda node: node.goals.forget(number)))
 
     def parameters(self, node: str, timeout_s: float) -> Future[ParametersResult]:
-        """Read all parameters of a node."""
         asked_s = time.monotonic()
         request = Begin[ParametersResult](
             lambda own, future: own.parameters.read(node, timeout_s, asked_s, future),
@@ -154,9 +135,7 @@ class Orders:
         self._requests.put(request)
         return request.future
 
-    def set_parameters(
-        self, node: str, values: Mapping[str, Value], timeout_s: float
-    ) -> Future[SetResult]:
+    def set_parameters(self, node: str, values: Mapping[str, Value], timeout_s: float) -> Future[SetResult]:
         asked_s = time.monotonic()
         request = Begin[SetResult](
             lambda own, future: own.parameters.write(node, values, timeout_s, asked_s, future),
@@ -165,9 +144,7 @@ class Orders:
         self._requests.put(request)
         return request.future
 
-    def change_state(
-        self, node: str, transition: str, timeout_s: float
-    ) -> Future[TransitionResult]:
+    def change_state(self, node: str, transition: str, timeout_s: float) -> Future[TransitionResult]:
         """Have a node with a lifecycle make a transition."""
         request = Begin[TransitionResult](
             lambda own, future: own.lifecycles.change(node, transition, timeout_s, future),

@@ -63,12 +63,7 @@ class RateMeter:
         self._clock_off_s: float | None = None
 
     def add(
-        self,
-        batch: list[Arrival],
-        *,
-        overflowed: bool = False,
-        one_publisher: bool = True,
-        lost: int = 0,
+        self, batch: list[Arrival], *, overflowed: bool = False, one_publisher: bool = True, lost: int = 0
     ) -> None:
         """Add a batch in order of arrival.
 
@@ -137,9 +132,7 @@ class RateMeter:
         """Return whether the clock was set back, or a topic with a known rate had gone quiet."""
         if not self._points:
             return False
-        return stamp_s < self._points[-1].stamp_s or (
-            len(self._points) > 1 and self.is_quiet(stamp_s)
-        )
+        return stamp_s < self._points[-1].stamp_s or (len(self._points) > 1 and self.is_quiet(stamp_s))
 
     def _skipped(self, batch: list[Arrival], lost: int) -> int:
         first, last = batch[0].sequence, batch[-1].sequence

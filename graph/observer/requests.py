@@ -83,9 +83,7 @@ class SendMessage:
             # An emergency stop must not wait for a look at the graph, which takes its time.
             ready = self.latched and node.outbox.knows_latched(self.topic, self.type_name)
             ends = None if ready else node.ends(self.topic)
-            node.outbox.publish(
-                self.topic, self.type_name, self.value, ends, self.future, latched=self.latched
-            )
+            node.outbox.publish(self.topic, self.type_name, self.value, ends, self.future, latched=self.latched)
 
     def fail(self, error: Exception) -> None:
         """Say that it cannot be done."""
@@ -181,7 +179,6 @@ class RequestQueue:
         self._put(self._urgent, UrgentRequest(request, ready or _always), request)
 
     def carry_out(self, node: ObserverNode) -> None:
-        """Do all that has been asked for."""
         while self._urgent or self._requests:
             request = self._urgent.popleft().request if self._urgent else self._requests.popleft()
             _carry_out(request, node)

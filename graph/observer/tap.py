@@ -28,9 +28,7 @@ if TYPE_CHECKING:
 class TakeEvery(Protocol):
     """Takes each message of a topic."""
 
-    def __call__(
-        self, raw: bytes, arrived_s: float, number: int | None, sender: bytes | None
-    ) -> None:
+    def __call__(self, raw: bytes, arrived_s: float, number: int | None, sender: bytes | None) -> None:
         """Take the next: when it arrived, its number at its publisher, and which one that is."""
 
 
@@ -41,13 +39,7 @@ SHALLOW = 4
 """A fragmented message occupies a slot while it is being reassembled, so 1 would starve."""
 QUEUE_BYTES = 4_000_000
 """Bytes that may wait in one queue."""
-LARGE_TYPES = frozenset(
-    {
-        "sensor_msgs/msg/Image",
-        "sensor_msgs/msg/PointCloud2",
-        "nav_msgs/msg/OccupancyGrid",
-    }
-)
+LARGE_TYPES = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2", "nav_msgs/msg/OccupancyGrid"})
 FOLLOWED = 200
 """Messages per poll that a follower gets; older ones of the same poll are only counted."""
 NANOSECONDS = 1e-9
@@ -204,12 +196,7 @@ class Tap:
             self._senders = None
 
     def _hand_on(
-        self,
-        every: TakeEvery,
-        raw: bytes,
-        stamp_s: float,
-        number: int | None,
-        sender: bytes | None,
+        self, every: TakeEvery, raw: bytes, stamp_s: float, number: int | None, sender: bytes | None
     ) -> None:
         try:
             every(raw, stamp_s, number, sender)
@@ -228,9 +215,7 @@ class Tap:
         self.meter.lost = (self.meter.lost or 0) + lost
         return lost
 
-    def _sample(
-        self, raw: bytes, stamp_s: float, name: tuple[int, int], now_s: float
-    ) -> Sample | None:
+    def _sample(self, raw: bytes, stamp_s: float, name: tuple[int, int], now_s: float) -> Sample | None:
         if self._decode is None:
             return None
         try:

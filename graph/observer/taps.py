@@ -64,7 +64,6 @@ class Taps:
 
     @property
     def any_open(self) -> bool:
-        """Whether there is anything to drain."""
         return bool(self._taps)
 
     def tune(self, scan: Scan, interest: Interest) -> None:
@@ -76,17 +75,13 @@ class Taps:
             if topic in self._taps and self._taps[topic].qos.durability == TRANSIENT_LOCAL
         }
         sources = {topic: picture_source(topic, scan.topics) for topic in interest.pictures}
-        self._fresh |= {
-            source for topic, source in sources.items() if source != self._sources.get(topic)
-        }
+        self._fresh |= {source for topic, source in sources.items() if source != self._sources.get(topic)}
         self._sources, self._needed = sources, interest.named.union(sources.values())
         self._fresh &= self._needed
         if not interest.frames:
             self._frames.clear()
         self._scan, self._interest = scan, interest
-        self._host = next(
-            (host_of(end) for ends in scan.topics.values() for end in ends.own_publishers), b""
-        )
+        self._host = next((host_of(end) for ends in scan.topics.values() for end in ends.own_publishers), b"")
         self._rows = {}
         for topic in (self._taps.keys() | self._frame_ids.keys()) - scan.topics.keys():
             self._close(topic)
@@ -107,9 +102,7 @@ class Taps:
         samples: dict[str, tuple[Sample, ...]] = {}
         for topic, tap in self._taps.items():
             serve_urgent()
-            found = tap.drain(
-                one_publisher=self._one_publisher(topic), decode=self._how_many(topic)
-            )
+            found = tap.drain(one_publisher=self._one_publisher(topic), decode=self._how_many(topic))
             if topic in self._fresh:
                 found = found or tap.newest()
                 if found:
@@ -118,9 +111,7 @@ class Taps:
                 self._hand_out(topic, found, samples)
         return samples
 
-    def _hand_out(
-        self, topic: str, found: tuple[Sample, ...], samples: dict[str, tuple[Sample, ...]]
-    ) -> None:
+    def _hand_out(self, topic: str, found: tuple[Sample, ...], samples: dict[str, tuple[Sample, ...]]) -> None:
         """Put the samples under each name by which they are wanted."""
         if topic in self._interest.named:
             samples[topic] = found

@@ -37,12 +37,7 @@ def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | Non
         return Diagnosis(
             Trouble.UNKNOWN_TYPE,
             unknown.reason,
-            {
-                "type": unknown.type_name,
-                "package": unknown.package,
-                "reason": unknown.reason,
-                **unknown.install,
-            },
+            {"type": unknown.type_name, "package": unknown.package, "reason": unknown.reason, **unknown.install},
         )
     if not ends.everyone_publishing:
         return Diagnosis(Trouble.NO_PUBLISHER, "nobody publishes this topic")
@@ -73,6 +68,4 @@ def _misfit(found: Sequence[Mismatch]) -> Diagnosis:
 def quiet(seconds: float, *, ever: bool) -> Diagnosis:
     """Return that nothing has come for `seconds`; `ever` says whether anything came before."""
     since = "" if ever else ", and never before"
-    return Diagnosis(
-        Trouble.QUIET, f"no data for {seconds:.0f} s{since}", {"seconds": f"{seconds:.0f}"}
-    )
+    return Diagnosis(Trouble.QUIET, f"no data for {seconds:.0f} s{since}", {"seconds": f"{seconds:.0f}"})

@@ -28,7 +28,6 @@ class Vigil:
         self._excused_s = 0.0
 
     def sign(self, now_s: float) -> None:
-        """It has given a sign of life."""
         self._sign_s = self._looked_s = now_s
         self._excused_s = 0.0
 

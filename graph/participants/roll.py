@@ -44,7 +44,6 @@ class _Told:
     """The GUIDs of their endpoints."""
 
     def is_in(self, ends: AbstractSet[bytes], nodes: AbstractSet[tuple[str, str]]) -> bool:
-        """Whether all of it is among these."""
         return self.ends <= ends and self.nodes <= nodes
 
 
@@ -52,7 +51,6 @@ class Roll:
     """What a node's process knows of the participants; close it before the node."""
 
     def __init__(self, node: Node) -> None:
-        """Begin to listen to what they tell."""
         self._node = node
         self._telling = Telling.load(node)
         self._told: dict[bytes, _Told] = {}
@@ -119,9 +117,7 @@ def _told(told: ParticipantEntitiesInfo) -> _Told:
     nodes = told.node_entities_info_seq
     return _Told(
         frozenset((node.node_name, node.node_namespace) for node in nodes),
-        frozenset(
-            _bytes(gid) for node in nodes for gid in (*node.reader_gid_seq, *node.writer_gid_seq)
-        ),
+        frozenset(_bytes(gid) for node in nodes for gid in (*node.reader_gid_seq, *node.writer_gid_seq)),
     )
 
 

@@ -69,9 +69,7 @@ def _size(raw: bytes) -> tuple[int, int]:
     if not raw:
         raise ImageError(say("the message has no data"))
     if len(raw) > MOST_BYTES:
-        words = say(
-            "the data are too large: {found} bytes, at most {most}", found=len(raw), most=MOST_BYTES
-        )
+        words = say("the data are too large: {found} bytes, at most {most}", found=len(raw), most=MOST_BYTES)
         raise ImageError(words)
     if raw.startswith(PNG):
         if len(raw) < 24:
@@ -80,15 +78,11 @@ def _size(raw: bytes) -> tuple[int, int]:
     elif raw.startswith(JPEG):
         width, height = _jpeg_size(raw)
     else:
-        words = say(
-            "the data are neither JPEG nor PNG: they begin with {first}", first=raw[:8].hex(" ")
-        )
+        words = say("the data are neither JPEG nor PNG: they begin with {first}", first=raw[:8].hex(" "))
         raise ImageError(words)
     if not 0 < width * height <= MOST_PIXELS:
         words = say(
-            "an image of {width} x {height} is not decoded: it is too large or empty",
-            width=width,
-            height=height,
+            "an image of {width} x {height} is not decoded: it is too large or empty", width=width, height=height
         )
         raise ImageError(words)
     return width, height
@@ -117,9 +111,7 @@ def _refuse_if_cut(raw: bytes) -> None:
     """Refuse what OpenCV would show only half of, with complaints on the terminal."""
     kind, end = ("JPEG", JPEG_END) if raw.startswith(JPEG) else ("PNG", PNG_END)
     if raw.rfind(end, -4096) < 0:
-        words = say(
-            "the {kind} data are cut short: no end in {found} bytes", kind=kind, found=len(raw)
-        )
+        words = say("the {kind} data are cut short: no end in {found} bytes", kind=kind, found=len(raw))
         raise ImageError(words)
 
 
@@ -152,9 +144,7 @@ def _decoded(raw: bytes, reduction: int, *, as_they_are: bool) -> NDArray[np.uin
     return pixels[:, :, None] if pixels.ndim == 2 else pixels  # type: ignore[no-any-return]
 
 
-def _depths(
-    numbers: NDArray[np.generic], encoding: str, head: tuple[int, float, float]
-) -> NDArray[np.generic]:
+def _depths(numbers: NDArray[np.generic], encoding: str, head: tuple[int, float, float]) -> NDArray[np.generic]:
     """Return the numbers in the encoding; 32FC1 was sent as inverse depths.
 
     Source: compressed_depth_image_transport, codec.cpp.
@@ -165,7 +155,5 @@ def _depths(
 
     _format, scale, offset = head
     with np.errstate(divide="ignore", invalid="ignore"):
-        depths: NDArray[np.generic] = np.where(
-            numbers != 0, scale / (numbers.astype(np.float64) - offset), np.nan
-        )
+        depths: NDArray[np.generic] = np.where(numbers != 0, scale / (numbers.astype(np.float64) - offset), np.nan)
     return depths

@@ -49,11 +49,7 @@ class Picture:
 
 
 def numbers_picture(
-    numbers: NDArray[np.generic],
-    width: int,
-    height: int,
-    encoding: str,
-    all_of: Callable[[], NDArray[np.generic]],
+    numbers: NDArray[np.generic], width: int, height: int, encoding: str, all_of: Callable[[], NDArray[np.generic]]
 ) -> Picture:
     """Return numbers of shape (height, width) as a picture: depth by the ramp, others in grey.
 
@@ -78,9 +74,7 @@ def numbers_picture(
     return Picture(rgb, width, height, encoding, (near, far))
 
 
-def _measured(
-    numbers: NDArray[np.generic], encoding: str
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _measured(numbers: NDArray[np.generic], encoding: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Return numbers in metres, and which of them are distances."""
     import numpy as np
 

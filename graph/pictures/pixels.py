@@ -58,20 +58,13 @@ class UnknownEncodingError(ImageError):
     """The pixels may be valid, but their encoding is not supported."""
 
     def __init__(self, encoding: str) -> None:
-        """Name the encodings that can be read."""
         known = ", ".join([*COLOURS, *DEPTHS, *YUV, *BAYER])
         super().__init__(
-            say(
-                "encoding '{encoding}' is not supported; supported: {known}",
-                encoding=encoding,
-                known=known,
-            )
+            say("encoding '{encoding}' is not supported; supported: {known}", encoding=encoding, known=known)
         )
 
 
-def image_fields(
-    value: Mapping[str, Value],
-) -> tuple[tuple[int, int, int], str, bytes | bytearray | memoryview]:
+def image_fields(value: Mapping[str, Value]) -> tuple[tuple[int, int, int], str, bytes | bytearray | memoryview]:
     """Return (width, height, step), encoding and data of a `sensor_msgs/Image`.
 
     Raises ImageError.
@@ -91,9 +84,7 @@ def _whole(value: Mapping[str, Value], name: str) -> int:
     return number
 
 
-def pixel_rows(
-    data: bytes | bytearray | memoryview, width: int, height: int, step: int, pixel_bytes: int
-) -> Rgb:
+def pixel_rows(data: bytes | bytearray | memoryview, width: int, height: int, step: int, pixel_bytes: int) -> Rgb:
     """Return the bytes of the pixels, shape (height, width * pixel_bytes), without padding."""
     import numpy as np
 
@@ -113,8 +104,7 @@ def pixel_rows(
     if len(data) < height * step:
         raise ImageError(
             say(
-                "the data are too short: {height} rows of {step} bytes take {total}, "
-                "there are {found}",
+                "the data are too short: {height} rows of {step} bytes take {total}, there are {found}",
                 height=height,
                 step=step,
                 total=height * step,

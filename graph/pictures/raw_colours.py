@@ -23,12 +23,7 @@ BORDER = 2
 
 
 def full_colours(
-    encoding: str,
-    data: bytes | bytearray | memoryview,
-    size: tuple[int, int],
-    step: int,
-    *,
-    big_endian: bool,
+    encoding: str, data: bytes | bytearray | memoryview, size: tuple[int, int], step: int, *, big_endian: bool
 ) -> Rgb:
     """Return a picture of `YUV` or `BAYER`, given its width and height; raises ImageError."""
     width, height = size
@@ -41,9 +36,7 @@ def full_colours(
     return _stretched(_bayer(pattern, rows.copy().view(">u2" if big_endian else "<u2")))
 
 
-def _pairs(
-    data: bytes | bytearray | memoryview, width: int, height: int, step: int
-) -> NDArray[np.uint8]:
+def _pairs(data: bytes | bytearray | memoryview, width: int, height: int, step: int) -> NDArray[np.uint8]:
     """Return bytes of shape (height, width, 2), one pixel wider if the width is odd.
 
     A row that ends within a pair takes the second half of its last colour from the pair before.

@@ -45,9 +45,7 @@ def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Pictur
         rows = pixel_rows(data, width, height, step, size)
         every = rows.reshape(height, width, size)
         numbers = thinned(every, fit).copy().view(kind)[:, :, 0]
-        return numbers_picture(
-            numbers, width, height, encoding, lambda: every.copy().view(kind)[:, :, 0]
-        )
+        return numbers_picture(numbers, width, height, encoding, lambda: every.copy().view(kind)[:, :, 0])
     if encoding in YUV or encoding in BAYER:
         return Picture(thinned(to_rgb(value), fit), width, height, encoding)
     raise UnknownEncodingError(encoding)

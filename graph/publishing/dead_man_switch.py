@@ -130,7 +130,6 @@ class DeadManSwitch:
         self._lines: dict[str, _HeldTopic] = {}
 
     def knows(self, topic: str) -> bool:
-        """Whether there is a publisher already."""
         return topic in self._lines
 
     def prepare(self, topic: str, type_name: str, ends: TopicEnds | None) -> None:

@@ -107,7 +107,6 @@ class Outbox:
         self._lines: dict[tuple[str, str, bool], _PendingPublisher] = {}
 
     def knows_latched(self, topic: str, type_name: str) -> bool:
-        """Whether there is a latched publisher already."""
         return (topic, type_name, True) in self._lines
 
     def prepare(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> None:
@@ -161,14 +160,11 @@ class Outbox:
         return any(line.waiting for line in self._lines.values())
 
     def fail(self, error: Exception) -> None:
-        """Fail everything that waits."""
         for line in self._lines.values():
             while line.waiting:
                 line.waiting.popleft()[1].set_exception(error)
 
-    def _line(
-        self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool
-    ) -> _PendingPublisher:
+    def _line(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> _PendingPublisher:
         refuse_other_type(topic, type_name, ends)
         subscribers = ends.subscribers if ends else ()
         qos = Qos(RELIABLE, TRANSIENT_LOCAL) if latched else to_be_heard(subscribers)
@@ -195,18 +191,11 @@ def refuse_other_type(topic: str, type_name: str, ends: TopicEnds | None) -> Non
     others = ends.type_names if ends and not ends.is_deserted else ()
     if others and type_name not in others:
         raise PublishError(
-            say(
-                "{topic} carries {types}, not {type}",
-                topic=topic,
-                types=", ".join(others),
-                type=type_name,
-            )
+            say("{topic} carries {types}, not {type}", topic=topic, types=", ".join(others), type=type_name)
         )
 
 
-def open_publisher(
-    node: Node, topic: str, cls: type[Any], qos: Qos, depth: int = DEPTH
-) -> Publisher:
+def open_publisher(node: Node, topic: str, cls: type[Any], qos: Qos, depth: int = DEPTH) -> Publisher:
     """Create a publisher. Raises PublishError for an invalid name."""
     from rclpy.event_handler import PublisherEventCallbacks
 

@@ -67,9 +67,7 @@ class _Repeated:
     def row(self) -> Publication:
         """Return it as the screen shows it."""
         listeners = max(0, self.publisher.get_subscription_count() - self.passive_subscriptions)
-        return Publication(
-            self.number, self.topic, self.type_name, self.hz, self.sent, listeners, self.error
-        )
+        return Publication(self.number, self.topic, self.type_name, self.hz, self.sent, listeners, self.error)
 
 
 class RepeatedPublications:

@@ -34,10 +34,7 @@ class DiskRoom:
     """Watches a folder's disk during a recording."""
 
     def __init__(
-        self,
-        folder: Path,
-        reserve_bytes: int = RESERVE_BYTES,
-        free: Callable[[Path], int] | None = None,
+        self, folder: Path, reserve_bytes: int = RESERVE_BYTES, free: Callable[[Path], int] | None = None
     ) -> None:
         """`free` returns how many bytes are free at a folder; by default it asks the system.
 

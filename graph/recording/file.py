@@ -15,12 +15,7 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosbags.interfaces import (
-    Connection,
-    ConnectionExtRosbag2,
-    MessageDefinition,
-    MessageDefinitionFormat,
-)
+from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinition, MessageDefinitionFormat
 from rosbags.rosbag2.storage_mcap import PendingChunk
 
 from graph.bag.errors import not_made
@@ -148,14 +143,10 @@ class BagFile:
         self._storage.bio.flush()
         counts = {topic.number: (topic.messages, topic.bytes) for topic in self.topics}
         self._sound = _Sound(
-            self._storage.bio.tell(),
-            len(self._storage.chunks),
-            self._storage.message_end_time,
-            counts,
+            self._storage.bio.tell(), len(self._storage.chunks), self._storage.message_end_time, counts
         )
 
     def _end(self) -> None:
-        """Write index and metadata."""
         storage = self._storage
         if not storage.message_end_time:
             storage.message_start_time = storage.chunk.message_start_time = 0

@@ -132,9 +132,7 @@ class Recorder:
 
         self._room.check()
         file = BagFile(self._folder)
-        self._thread = threading.Thread(
-            target=self._run, args=(file,), name="deck-recorder", daemon=True
-        )
+        self._thread = threading.Thread(target=self._run, args=(file,), name="deck-recorder", daemon=True)
         # DDS threads must end before the interpreter does.
         atexit.register(self.stop)
         self._thread.start()
@@ -192,8 +190,7 @@ class Recorder:
         finally:
             if not writer.finish(FINISH_WITHIN_S) and not writer.error:
                 self._error = say(
-                    "{path}: the disk does not accept the recorded data; the bag may be cut short",
-                    path=file.path,
+                    "{path}: the disk does not accept the recorded data; the bag may be cut short", path=file.path
                 )
             self._ended_s = time.monotonic()
 

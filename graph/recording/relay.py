@@ -25,13 +25,7 @@ STOP_WITHIN_S = 5.0
 class Relay:
     """Hands on the topics of one domain from `start` to `stop`; it only listens."""
 
-    def __init__(
-        self,
-        domain: int,
-        discovery: str | tuple[str, ...],
-        sink: Sink,
-        choice: TopicChoice,
-    ) -> None:
+    def __init__(self, domain: int, discovery: str | tuple[str, ...], sink: Sink, choice: TopicChoice) -> None:
         """`sink` and what `choice` asks are called by the relay's own thread."""
         self.error = ""
         """Why nothing is handed on any more, as translatable words."""

@@ -125,7 +125,6 @@ class RecordingTap:
         return taken
 
     def know(self, publishers: Sequence[TopicEndpointInfo]) -> None:
-        """Note the current publishers."""
         self._ever.update(tuple(info.endpoint_gid) for info in publishers)
 
     def _publishers_so_far(self) -> int:

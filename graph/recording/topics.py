@@ -38,7 +38,6 @@ class TopicChoice(NamedTuple):
     """Whether to listen to one of them now; it is asked again and again."""
 
     def takes(self, name: str, types: Sequence[str]) -> bool:
-        """Return whether a topic is to be recorded."""
         if self.wanted is not None:
             return self.wanted(name, types)
         if self.topics is not None:
@@ -113,9 +112,7 @@ class RecordingTopics:
         if tap is not None:
             tap.know(found)
 
-    def _open(
-        self, name: str, types: Sequence[str], found: Sequence[TopicEndpointInfo]
-    ) -> RecordingTap | None:
+    def _open(self, name: str, types: Sequence[str], found: Sequence[TopicEndpointInfo]) -> RecordingTap | None:
         """Subscribe, and add the topic to the bag; None if that is impossible."""
         named = [info.topic_type for info in found]
         # The type that most publishers have.

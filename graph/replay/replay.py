@@ -43,9 +43,7 @@ T = TypeVar("T")
 class Replay:
     """A bag as a graph. All methods may be called from any thread; none waits for the bag."""
 
-    def __init__(
-        self, path: Path, *, rate: float = 1.0, loop: bool = False, start_s: float = 0.0
-    ) -> None:
+    def __init__(self, path: Path, *, rate: float = 1.0, loop: bool = False, start_s: float = 0.0) -> None:
         """Open the bag and play it from `start_s` once it is started. Raises BagError."""
         self.period_s = 0.1
         self.bag = open_bag(path)
@@ -77,13 +75,10 @@ class Replay:
 
     def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
         """Begin to play; `on_update` is called on the replay's own thread."""
-        self._thread = threading.Thread(
-            target=self._run, args=(on_update,), name="deck-replay", daemon=True
-        )
+        self._thread = threading.Thread(target=self._run, args=(on_update,), name="deck-replay", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
-        """Stop, and close the bag."""
         self._stopping = True
         self._wake.set()
         if self._thread is None:
@@ -162,9 +157,7 @@ class Replay:
 
     # Requests that a recording cannot serve: the caller gets a reason, never silence.
 
-    def prepare_publisher(
-        self, topic: str, type_name: str, *, latched: bool = False
-    ) -> Future[None]:
+    def prepare_publisher(self, topic: str, type_name: str, *, latched: bool = False) -> Future[None]:
         del topic, type_name, latched
         return refused()
 
@@ -174,9 +167,7 @@ class Replay:
         del topic, type_name, value, latched
         return refused()
 
-    def start_publishing(
-        self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
-    ) -> Future[int]:
+    def start_publishing(self, topic: str, type_name: str, value: Mapping[str, Value], hz: float) -> Future[int]:
         del topic, type_name, value, hz
         return refused()
 
@@ -201,11 +192,7 @@ class Replay:
         """Do nothing: nothing is held."""
 
     def call(
-        self,
-        service: str,
-        type_name: str,
-        request: Mapping[str, Value],
-        timeout_s: float = ANSWER_WITHIN_S,
+        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[CallResult]:
         """Answer that there is no service."""
         del type_name, request, timeout_s
@@ -333,10 +320,7 @@ class RecordedInner:
         del timeout_s
         return _done(LevelResult(node, error=_refusal()))
 
-    def set_logger_level(
-        self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[LevelResult]:
-        """Answer that it cannot be set."""
+    def set_logger_level(self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
         del level, timeout_s
         return _done(LevelResult(node, error=_refusal()))
 

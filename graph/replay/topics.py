@@ -67,7 +67,6 @@ class ReplayTopic:
         return self._shown.durability == TRANSIENT_LOCAL or self.name == TF_STATIC
 
     def take(self, topic: TopicInBag, stamp_ns: int, raw: bytes) -> None:
-        """Take the next message."""
         self._meter.add([Arrival(stamp_ns * NANOSECONDS, len(raw))])
         if self.name in FRAME_TOPICS and topic.kind.name == TF_MESSAGE:
             self._take_frames(stamp_ns, raw)
@@ -137,9 +136,7 @@ class ReplayTopic:
             finding = quiet(row.age_s, ever=True)
         else:
             return row
-        return replace(
-            row, trouble=finding.trouble, detail=finding.detail, facts={**finding.facts, **RECORDED}
-        )
+        return replace(row, trouble=finding.trouble, detail=finding.detail, facts={**finding.facts, **RECORDED})
 
     def _sample(self, message: Newest, wall_s: float, now_ns: int) -> Sample | None:
         try:
@@ -158,9 +155,7 @@ class ReplayTopic:
     def _still_row(self) -> TopicRow:
         types = tuple(dict.fromkeys(each.kind.name for each in self._kinds))
         ends = tuple(
-            EndpointInfo(
-                NODE, each.kind.name, each.reliability or "unknown", each.durability or "unknown"
-            )
+            EndpointInfo(NODE, each.kind.name, each.reliability or "unknown", each.durability or "unknown")
             for each in self._kinds
         )
         facts = {"types": ", ".join(types), "shown": self._shown.kind.name}
@@ -225,13 +220,7 @@ class ReplayTopics:
         rows = {name: topic.row(now_s, begun_s) for name, topic in self._topics.items()}
         for name in interest.named - rows.keys():
             rows[name] = TopicRow(
-                name,
-                (),
-                0,
-                0,
-                trouble=Trouble.NO_PUBLISHER,
-                detail="not in this recording",
-                facts=RECORDED,
+                name, (), 0, 0, trouble=Trouble.NO_PUBLISHER, detail="not in this recording", facts=RECORDED
             )
         return tuple(rows[name] for name in sorted(rows))
 

@@ -98,9 +98,7 @@ def _process(gid: bytes) -> int | None:
 
 
 @lru_cache(maxsize=64)
-def _names(
-    history: int, reliability: int, durability: int, liveliness: int
-) -> tuple[str, str, str, str]:
+def _names(history: int, reliability: int, durability: int, liveliness: int) -> tuple[str, str, str, str]:
     """Return the names of these policy numbers, empty for an unreported history."""
     from rclpy.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, ReliabilityPolicy
 

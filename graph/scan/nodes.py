@@ -41,9 +41,7 @@ class NodeServices:
     calls: ServicesAndActions
 
 
-def services_of_nodes(
-    node: Node, own_name: str, serve_urgent: Callable[[], object]
-) -> dict[str, NodeServices]:
+def services_of_nodes(node: Node, own_name: str, serve_urgent: Callable[[], object]) -> dict[str, NodeServices]:
     """Ask the middleware what each node serves and calls; `own_name` is left out."""
     from rclpy.node import NodeNameNonExistentError
 
@@ -63,9 +61,7 @@ def services_of_nodes(
     return found
 
 
-def services_and_actions(
-    names_and_types: Iterable[tuple[str, Iterable[str]]],
-) -> ServicesAndActions:
+def services_and_actions(names_and_types: Iterable[tuple[str, Iterable[str]]]) -> ServicesAndActions:
     """Separate ordinary services from those inside an action."""
     sorted_out = ServicesAndActions()
     for name, types in sorted(names_and_types):
@@ -77,9 +73,7 @@ def services_and_actions(
     return sorted_out
 
 
-def node_rows(
-    topics: Mapping[str, TopicEnds], found: Mapping[str, NodeServices]
-) -> tuple[NodeRow, ...]:
+def node_rows(topics: Mapping[str, TopicEnds], found: Mapping[str, NodeServices]) -> tuple[NodeRow, ...]:
     """Return a row for each node, sorted by name."""
     publishes: defaultdict[str, set[str]] = defaultdict(set)
     subscribes: defaultdict[str, set[str]] = defaultdict(set)
@@ -120,12 +114,7 @@ def service_rows(found: Mapping[str, NodeServices]) -> tuple[ServiceRow, ...]:
         for name, kinds in one.calls.services.items():
             called[name] |= set(kinds)
     return tuple(
-        ServiceRow(
-            name,
-            tuple(sorted(types[name])),
-            tuple(nodes[name]),
-            tuple(sorted(called[name] - types[name])),
-        )
+        ServiceRow(name, tuple(sorted(types[name])), tuple(nodes[name]), tuple(sorted(called[name] - types[name])))
         for name in sorted(nodes)
     )
 

@@ -35,11 +35,7 @@ class Scan:
 
 def is_complete(seen: Scan) -> bool:
     """Return whether the node of every endpoint is known."""
-    return all(
-        end.is_named
-        for topic in seen.topics.values()
-        for end in (*topic.publishers, *topic.subscribers)
-    )
+    return all(end.is_named for topic in seen.topics.values() for end in (*topic.publishers, *topic.subscribers))
 
 
 def signature(node: Node) -> Signature:
@@ -47,12 +43,7 @@ def signature(node: Node) -> Signature:
     handle = node.handle
     return (
         tuple(
-            (
-                name,
-                tuple(types),
-                handle.get_count_publishers(name),
-                handle.get_count_subscribers(name),
-            )
+            (name, tuple(types), handle.get_count_publishers(name), handle.get_count_subscribers(name))
             for name, types in node.get_topic_names_and_types()
         ),
         tuple(node.get_node_names_and_namespaces()),

@@ -8,20 +8,7 @@ import threading
 from .finding import DEADLOCK_S, LOST, NOBODY, STUCK_S, UNSPUN_S, Finding
 from .stacks import ACTION_SERVER, is_of
 from .unspun import awaits_calls
-from .waits import (
-    CALL,
-    EVENT,
-    LOCK,
-    LOOP,
-    RATE,
-    SPIN,
-    awaiting,
-    is_offered,
-    is_told,
-    name_of,
-    pending,
-    waits_of,
-)
+from .waits import CALL, EVENT, LOCK, LOOP, RATE, SPIN, awaiting, is_offered, is_told, name_of, pending, waits_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -44,9 +31,7 @@ class Look:
     def __init__(self, threads: list[Thread], folder: str) -> None:
         self.threads = [thread for thread in threads if not thread.debugged]
         self._all = threads
-        self.executors = list(
-            {id(each): each for one in threads for each in one.executors}.values()
-        )
+        self.executors = list({id(each): each for one in threads for each in one.executors}.values())
         self.waits = {thread.number: waits_of(thread) for thread in self.threads}
         self.awaiting = [each for one in self.executors for each in awaiting(one, folder)]
         for wait in self.all_waits:
@@ -55,7 +40,6 @@ class Look:
 
     @property
     def all_waits(self) -> list[Wait]:
-        """What all threads and coroutines wait for."""
         return [*self.awaiting, *(wait for waits in self.waits.values() for wait in waits)]
 
     def findings(self) -> list[Finding]:
@@ -74,9 +58,7 @@ class Look:
             if self._waits_for_itself(wait, thread)
         }
         return found + [
-            finding
-            for wait, finding in asked
-            if wait in vain or not (wait in deadlocked or wait in itself)
+            finding for wait, finding in asked if wait in vain or not (wait in deadlocked or wait in itself)
         ]
 
     def is_beside(self, wait: Wait) -> bool:
@@ -233,8 +215,7 @@ def carries_out_a_goal(callback: FrameType) -> bool:
     servers = [each.f_locals.get("self") for each in frames if is_of(each, ACTION_SERVER)]
     refuses = getattr(sys.modules.get("rclpy.action.server"), "default_cancel_callback", None)
     return any(
-        getattr(server, "_cancel_callback", None) is refuses
-        and not awaits_calls(getattr(server, "_node", None))
+        getattr(server, "_cancel_callback", None) is refuses and not awaits_calls(getattr(server, "_node", None))
         for server in servers
     )
 

@@ -21,13 +21,7 @@ class Finding:
     """A callback that runs, a wait, a main thread that has not spun yet, a node left alone."""
 
     def __init__(
-        self,
-        key: object,
-        name: str,
-        place: tuple[str, int],
-        waits_in: str,
-        bound_s: float,
-        subject: object = None,
+        self, key: object, name: str, place: tuple[str, int], waits_in: str, bound_s: float, subject: object = None
     ) -> None:
         """`key`: the same as long as it is the same finding; `subject`: about the same thing."""
         self.key = key
@@ -51,9 +45,7 @@ class Finding:
         self.unoffered_looks = 0
 
     @classmethod
-    def at(
-        cls, kind: str, frame: FrameType, own: FrameType, waits_in: str, bound_s: float
-    ) -> Finding:
+    def at(cls, kind: str, frame: FrameType, own: FrameType, waits_in: str, bound_s: float) -> Finding:
         """Return what is found in a frame, of which the learner's own frame `own` is reported."""
         place = own.f_code.co_filename, own.f_lineno
         return cls((kind, frame), own.f_code.co_name, place, waits_in, bound_s)

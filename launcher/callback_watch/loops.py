@@ -10,9 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import FrameType
 
-_IDLE_CALLS = frozenset(
-    {"sleep", "debug", "info", "warning", "warn", "error", "print", "get_logger", "spin_once"}
-)
+_IDLE_CALLS = frozenset({"sleep", "debug", "info", "warning", "warn", "error", "print", "get_logger", "spin_once"})
 """What may be called in a loop that does nothing but wait."""
 
 
@@ -31,11 +29,7 @@ class Loop:
         self.endless = idle and _is_plain(loop.test)
         """Whether nothing in it changes what it waits for."""
         self.attributes = [each for each in ast.walk(loop.test) if isinstance(each, ast.Attribute)]
-        self.spins = any(
-            _called(each).startswith("spin")
-            for each in ast.walk(loop)
-            if isinstance(each, ast.Call)
-        )
+        self.spins = any(_called(each).startswith("spin") for each in ast.walk(loop) if isinstance(each, ast.Call))
 
 
 def loop_at(frame: FrameType) -> Loop | None:
@@ -54,9 +48,7 @@ def values_in(frame: FrameType, expression: ast.expr) -> list[object]:
 def is_property(frame: FrameType, attribute: ast.Attribute) -> bool:
     """Whether an attribute is worked out each time, by another than rclpy."""
     found = getattr(type(_value(frame, attribute.value)), attribute.attr, None)
-    return isinstance(found, property) and "/rclpy/" not in str(
-        getattr(found.fget, "__code__", None)
-    )
+    return isinstance(found, property) and "/rclpy/" not in str(getattr(found.fget, "__code__", None))
 
 
 def _value(frame: FrameType, expression: ast.expr) -> object:
@@ -97,15 +89,12 @@ def _asked_done(test: ast.expr) -> Sequence[ast.expr]:
     asked = [
         call.func.value
         for call in ast.walk(test)
-        if isinstance(call, ast.Call)
-        and isinstance(call.func, ast.Attribute)
-        and call.func.attr == "done"
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute) and call.func.attr == "done"
     ]
     return [lists.get(each.id, each) if isinstance(each, ast.Name) else each for each in asked]
 
 
 def _is_idle(statement: ast.stmt) -> bool:
-    """Whether a statement changes nothing."""
     if isinstance(statement, ast.If):
         ends = isinstance(statement.body[-1], ast.Break | ast.Return | ast.Raise)
         within = statement.orelse if ends else [*statement.body, *statement.orelse]
@@ -119,9 +108,7 @@ def _is_idle(statement: ast.stmt) -> bool:
 def _is_plain(test: ast.expr) -> bool:
     """Whether what it tests can be changed by others only."""
     calls = [each for each in ast.walk(test) if isinstance(each, ast.Call)]
-    return all(
-        _called(each) in ("done", "ok", "is_set", "all", "any") for each in calls
-    ) and not any(
+    return all(_called(each) in ("done", "ok", "is_set", "all", "any") for each in calls) and not any(
         isinstance(each, ast.NamedExpr | ast.Await | ast.Yield) for each in ast.walk(test)
     )
 

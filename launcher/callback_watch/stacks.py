@@ -35,16 +35,13 @@ class Thread:
 
     @property
     def spins(self) -> bool:
-        """Whether it is in an executor."""
         return any(
-            is_of(frame, EXECUTORS)
-            or (is_of(frame, RCLPY) and frame.f_code.co_name.startswith("spin"))
+            is_of(frame, EXECUTORS) or (is_of(frame, RCLPY) and frame.f_code.co_name.startswith("spin"))
             for frame in self.frames
         )
 
     @property
     def executors(self) -> list[Any]:
-        """The executors that it is in."""
         kind = class_of("rclpy.executors", "Executor")
         of = (frame.f_locals.get("self") for frame in self.frames if is_of(frame, EXECUTORS))
         return [each for each in of if isinstance(each, kind)]

@@ -29,8 +29,7 @@ def unspun(thread: Thread) -> list[Finding]:
             return [Finding.at("main", own, own, where, DEADLOCK_S)]
     node = class_of("rclpy.node", "Node")
     in_constructor = any(
-        each.f_code.co_name == "__init__" and isinstance(each.f_locals.get("self"), node)
-        for each in thread.frames
+        each.f_code.co_name == "__init__" and isinstance(each.f_locals.get("self"), node) for each in thread.frames
     )
     # The outermost: it stays, whatever it calls by turns.
     finding = Finding.at("main", thread.own[-1], own, MAIN, UNSPUN_S)
@@ -47,9 +46,7 @@ def _is_proven(*, in_constructor: bool) -> bool:
     everything = gc.get_objects()
     if any(isinstance(each, executor) and _has_spun(each) for each in everything):
         return False
-    return in_constructor or any(
-        isinstance(each, node) and awaits_calls(each) for each in everything
-    )
+    return in_constructor or any(isinstance(each, node) and awaits_calls(each) for each in everything)
 
 
 def _has_spun(executor: object) -> bool:

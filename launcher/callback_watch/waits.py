@@ -24,21 +24,14 @@ EVENT, LOCK, LOOP = "event", "lock", "loop"
 """How one waits without it."""
 _LOCKS = ("/threading.py", "/queue.py", "/concurrent/futures/_base.py")
 _BLOCKING = ("send_goal", "_get_result", "_cancel_goal")
-_PENDING = (
-    "_pending_requests",
-    "_pending_goal_requests",
-    "_pending_result_requests",
-    "_pending_cancel_requests",
-)
+_PENDING = ("_pending_requests", "_pending_goal_requests", "_pending_result_requests", "_pending_cancel_requests")
 """Where a client keeps the futures of answers that have not come."""
 
 
 class Wait:
     """A wait that has not ended."""
 
-    def __init__(
-        self, how: str, frame: FrameType, own: FrameType, *, limited: bool = False
-    ) -> None:
+    def __init__(self, how: str, frame: FrameType, own: FrameType, *, limited: bool = False) -> None:
         """`frame`: what waits, the same as long as it is the same wait; `own`: the learner's."""
         self.how = how
         self.frame = frame
@@ -59,7 +52,6 @@ class Wait:
         self.thread = 0
 
     def for_future(self, future: object) -> Wait:
-        """Name the future that ends it."""
         self.future, self.client = future, owner(future)
         return self
 

@@ -85,9 +85,7 @@ def _report(finding: Finding) -> None:
     russian = os.environ.get("DECK_LANG", "").startswith("ru")
     words = _IN_RUSSIAN if russian else _IN_ENGLISH
     within = f" {'в' if russian else 'in'} {finding.reported_in}" if finding.reported_in else ""
-    words = words.format(
-        name=finding.name, seconds=LONG_S, within=within, file=finding.file, line=finding.line
-    )
+    words = words.format(name=finding.name, seconds=LONG_S, within=within, file=finding.file, line=finding.line)
     sys.stderr.write(f"[WARN] [{time.time():.9f}] [deck]: {words}\n")
     sys.stderr.flush()
 

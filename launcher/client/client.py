@@ -107,13 +107,7 @@ async def launch(
     try:
         folders = {"run_dir": str(run_dir()), "log_dir": str(log_dir())}
         read = await asyncio.to_thread(_read, profile, hardware, tuple(overrides), domain)
-        plan = plan_of(
-            read,
-            **folders,
-            foreground=foreground,
-            node_lang=node_lang,
-            confined_to=confined_to,
-        )
+        plan = plan_of(read, **folders, foreground=foreground, node_lang=node_lang, confined_to=confined_to)
     except BaseException:
         supervisor.give_up()
         raise
@@ -150,16 +144,12 @@ def running() -> list[SessionInfo]:
     return [record.session for record in running_records()]
 
 
-def _read(
-    profile: Path | str | Profile, hardware: str, overrides: tuple[str, ...], domain: int | None
-) -> Profile:
+def _read(profile: Path | str | Profile, hardware: str, overrides: tuple[str, ...], domain: int | None) -> Profile:
     from launcher.profile.load import Profile, load_profile
 
     if isinstance(profile, Profile):
         return profile
-    return load_profile(
-        profile, hardware=hardware, overrides=overrides, domain=domain, ports=serial_ports
-    )
+    return load_profile(profile, hardware=hardware, overrides=overrides, domain=domain, ports=serial_ports)
 
 
 def _own_file(file: Path) -> str:
@@ -174,8 +164,7 @@ def _silent(pid: int) -> Words:
 
 def _endless(pid: int, left: Sequence[Process]) -> Words:
     return say(
-        "the supervisor (pid {pid}) has heard it and does not end; still running: {who}; "
-        "kill -9 {pid} ends it",
+        "the supervisor (pid {pid}) has heard it and does not end; still running: {who}; kill -9 {pid} ends it",
         pid=pid,
         who=who(left),
     )
@@ -184,9 +173,7 @@ def _endless(pid: int, left: Sequence[Process]) -> Words:
 async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
     try:
         connection = await asyncio.to_thread(connect, folder)
-        reader, writer = await asyncio.open_unix_connection(
-            sock=connection, limit=MAX_MESSAGE_BYTES
-        )
+        reader, writer = await asyncio.open_unix_connection(sock=connection, limit=MAX_MESSAGE_BYTES)
     except asyncio.TimeoutError as problem:
         raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
     except OSError as problem:
@@ -220,9 +207,7 @@ async def _first_line(reader: asyncio.StreamReader, supervisor: int) -> bytes:
         reading.cancel()
 
 
-async def _greeted(
-    reader: asyncio.StreamReader, writer: asyncio.StreamWriter, folder: Path
-) -> dict[str, Any]:
+async def _greeted(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, folder: Path) -> dict[str, Any]:
     """Announce our protocol version; return the greeting of a supervisor with the same version."""
     try:
         writer.write(encode({"deck": VERSION}))
@@ -371,9 +356,7 @@ class SupervisorClient:
         """Say that an agent is connected; `key` distinguishes those of this client."""
         await self._ask("join", key=key, name=name, approval=approval.value)
 
-    async def ask_consent(
-        self, key: str, lines: Iterable[str], *, anew: bool = False
-    ) -> ConsentVerdict:
+    async def ask_consent(self, key: str, lines: Iterable[str], *, anew: bool = False) -> ConsentVerdict:
         """Ask the person at the screen whether an agent may do this; takes a while.
 
         `anew`: also if they have allowed it for a time.
@@ -419,9 +402,7 @@ class SupervisorClient:
         await self.aclose()
         left = await left_behind(self.session.run_id)
         if left:
-            raise StillRunningError(
-                say("the session has ended, these have not: {who}", who=who(left))
-            )
+            raise StillRunningError(say("the session has ended, these have not: {who}", who=who(left)))
 
     async def _part(self, *, heard: bool) -> Words:
         """Kill a hung supervisor if we started it, else disconnect from it; say what is left."""

@@ -27,13 +27,9 @@ async def kill_supervisor(run_id: str) -> Words:
     left = await left_behind(run_id)
     pid = supervisor_of(run_id)
     if not left:
-        return say(
-            "the supervisor (pid {pid}) did not answer; it was killed with all its nodes", pid=pid
-        )
+        return say("the supervisor (pid {pid}) did not answer; it was killed with all its nodes", pid=pid)
     return say(
-        "the supervisor (pid {pid}) did not answer and was killed; still running: {who}",
-        pid=pid,
-        who=who(left),
+        "the supervisor (pid {pid}) did not answer and was killed; still running: {who}", pid=pid, who=who(left)
     )
 
 
@@ -61,9 +57,5 @@ def nodes_of(run_id: str) -> dict[str, int]:
 def left_of(run_id: str) -> list[Process]:
     """Return the processes of a run that are alive, its supervisor first."""
     supervisor = living_supervisor(run_id)
-    marked = [
-        each
-        for each in processes()
-        if each.pid != os.getpid() and not each.zombie and is_marked(each, run_id)
-    ]
+    marked = [each for each in processes() if each.pid != os.getpid() and not each.zombie and is_marked(each, run_id)]
     return marked if supervisor is None else [supervisor, *marked]

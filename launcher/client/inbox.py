@@ -6,14 +6,7 @@ import asyncio
 from collections import deque
 from typing import TYPE_CHECKING
 
-from launcher.events import (
-    AgentsEvent,
-    ClosedEvent,
-    LogEvent,
-    StatusEvent,
-    StraysEvent,
-    UnguardedEvent,
-)
+from launcher.events import AgentsEvent, ClosedEvent, LogEvent, StatusEvent, StraysEvent, UnguardedEvent
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterable, Mapping

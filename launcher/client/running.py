@@ -50,9 +50,7 @@ def find_running(name: str | None = None) -> RunRecord:
     if not chosen:
         raise NotRunningError(name, names)
     if len(chosen) > 1:
-        raise SeveralRunningError(
-            names if len(set(names)) == len(names) else [one.session.run_id for one in chosen]
-        )
+        raise SeveralRunningError(names if len(set(names)) == len(names) else [one.session.run_id for one in chosen])
     return chosen[0]
 
 

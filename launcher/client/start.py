@@ -116,9 +116,7 @@ class StartingSupervisor:
                 raise RunDirError(unpack_text(answer["no_room"]))
             if "running" in answer:
                 session = unpack_session(answer["running"])
-                raise AlreadyRunningError(
-                    session, answer["run_dir"], answer["down"], answer["free"]
-                )
+                raise AlreadyRunningError(session, answer["run_dir"], answer["down"], answer["free"])
             return Path(answer["folder"]), os.dup(stdin.fileno())
         finally:
             self.give_up()

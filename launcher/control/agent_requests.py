@@ -29,10 +29,7 @@ Choice = TypeVar("Choice", bound=Enum)
 
 
 async def serve_agents(
-    consent: ConsentDesk,
-    client: Hashable,
-    request: dict[str, Any],
-    tell: Callable[[Severity, str], None],
+    consent: ConsentDesk, client: Hashable, request: dict[str, Any], tell: Callable[[Severity, str], None]
 ) -> object:
     """Serve one of `AGENT_OPS`; `tell` adds a line to the log.
 
@@ -87,12 +84,7 @@ def _one_of(choices: type[Choice], request: dict[str, Any], field: str) -> Choic
         return choices(request.get(field))
     except ValueError:
         known = ", ".join(str(choice.value) for choice in choices)
-        words = say(
-            "{field}: expected one of {known}, found {x!r}",
-            field=field,
-            known=known,
-            x=request.get(field),
-        )
+        words = say("{field}: expected one of {known}, found {x!r}", field=field, known=known, x=request.get(field))
         raise BadRequestError(words) from None
 
 

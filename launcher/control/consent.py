@@ -108,7 +108,6 @@ class ConsentDesk:
         self._screens.add(client)
 
     def attends(self, client: Hashable) -> bool:
-        """Whether a person can answer there."""
         return client in self._screens
 
     def knows(self, client: Hashable, key: str | None = None) -> bool:
@@ -168,9 +167,7 @@ class ConsentDesk:
                 return True
         return False
 
-    async def ask(
-        self, client: Hashable, key: str, lines: tuple[str, ...], *, anew: bool = False
-    ) -> ConsentVerdict:
+    async def ask(self, client: Hashable, key: str, lines: tuple[str, ...], *, anew: bool = False) -> ConsentVerdict:
         """Ask a person, unless they have allowed it for a time; `anew`: even then.
 
         Raises:
@@ -201,9 +198,7 @@ class ConsentDesk:
 
     def withdraw(self, client: Hashable, key: str | None = None) -> None:
         """End the questions of a connection, or of one of its agents."""
-        self._end_questions(
-            lambda one: one.client is client and key in (None, one.key), ConsentVerdict.ENDED
-        )
+        self._end_questions(lambda one: one.client is client and key in (None, one.key), ConsentVerdict.ENDED)
 
     def leave(self, client: Hashable) -> None:
         """Forget a connection that has been closed."""
@@ -232,9 +227,7 @@ class ConsentDesk:
             return
         until_s = time.monotonic() + self._allowed_for_s
         known.allowed_until_s = until_s
-        known.agent = Agent(
-            known.agent.name, known.agent.approval, time.time() + self._allowed_for_s
-        )
+        known.agent = Agent(known.agent.name, known.agent.approval, time.time() + self._allowed_for_s)
         words = say(
             "agent “{name}” may drive without a question for {minutes:g} min",
             name=known.agent.name,

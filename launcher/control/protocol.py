@@ -20,13 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.consent import Agent, AgentRules, Agents, Approval, Question
 from launcher.faults.telling import pack_fault, unpack_fault
-from launcher.status import (
-    NodeState,
-    NodeStatus,
-    SessionInfo,
-    Stray,
-    Who,
-)
+from launcher.status import NodeState, NodeStatus, SessionInfo, Stray, Who
 from text.packing import pack_text, unpack_text
 
 if TYPE_CHECKING:
@@ -90,29 +84,20 @@ def unpack_session(fields: dict[str, Any]) -> SessionInfo:
 
 def unpack_rules(fields: dict[str, Any]) -> AgentRules:
     """Return the rules that `dataclasses.asdict` was given; what is missing is as by default."""
-    lists: dict[str, Any] = {
-        name: tuple(fields[name]) for name in ("publish", "call") if name in fields
-    }
+    lists: dict[str, Any] = {name: tuple(fields[name]) for name in ("publish", "call") if name in fields}
     return AgentRules(**{**fields, **lists})
 
 
 def pack_agents(agents: Agents) -> dict[str, Any]:
     """Return agents and their questions as JSON."""
-    questions = [
-        {**vars(one), "lines": [pack_text(line) for line in one.lines]} for one in agents.questions
-    ]
+    questions = [{**vars(one), "lines": [pack_text(line) for line in one.lines]} for one in agents.questions]
     return {"connected": [vars(one) for one in agents.connected], "questions": questions}
 
 
 def unpack_agents(fields: dict[str, Any]) -> Agents:
     """Return the agents that `pack_agents` was given."""
-    connected = [
-        Agent(**{**one, "approval": Approval(one["approval"])}) for one in fields["connected"]
-    ]
-    questions = [
-        Question(**{**one, "lines": tuple(map(unpack_text, one["lines"]))})
-        for one in fields["questions"]
-    ]
+    connected = [Agent(**{**one, "approval": Approval(one["approval"])}) for one in fields["connected"]]
+    questions = [Question(**{**one, "lines": tuple(map(unpack_text, one["lines"]))}) for one in fields["questions"]]
     return Agents(tuple(connected), tuple(questions))
 
 

@@ -125,9 +125,7 @@ class ControlServer:
         """Accept clients on this socket only from now on; existing connections stay."""
         if self._server is not None:
             self._server.close()
-        self._server = await asyncio.start_unix_server(
-            self._welcome, sock=listening, limit=MAX_REQUEST_BYTES
-        )
+        self._server = await asyncio.start_unix_server(self._welcome, sock=listening, limit=MAX_REQUEST_BYTES)
 
     def status_changed(self, name: str) -> None:
         """Note that a node's status has changed."""
@@ -143,13 +141,11 @@ class ControlServer:
             self._log_timer = self._loop.call_later(wait, self._tell_lines)
 
     def strays_changed(self) -> None:
-        """Note that the strays have changed."""
         news = {"event": "strays", "strays": [pack_stray(one) for one in self._controlled.strays]}
         for client in self._clients:
             client.tell(news)
 
     def guardian_lost(self) -> None:
-        """Note that the guardian is gone."""
         for client in self._clients:
             client.tell({"event": "unguarded"})
 
@@ -263,9 +259,7 @@ class ControlServer:
         try:
             result = await self._answer(request, client)
         except UnknownNodeError as error:
-            client.refuse(
-                request_id, "unknown_node", str(error), name=error.name, known=error.known
-            )
+            client.refuse(request_id, "unknown_node", str(error), name=error.name, known=error.known)
         except StillRunningError as error:
             client.refuse(request_id, "still_running", pack_text(error.args[0]))
         except BadRequestError as error:
@@ -335,10 +329,7 @@ class _Client:
     """One connection."""
 
     def __init__(
-        self,
-        writer: asyncio.StreamWriter,
-        feed: ClientFeed,
-        now: Callable[[], float] = time.monotonic,
+        self, writer: asyncio.StreamWriter, feed: ClientFeed, now: Callable[[], float] = time.monotonic
     ) -> None:
         self.writer = writer
         self.feed = feed
@@ -372,7 +363,6 @@ class _Client:
         return False
 
     def tell(self, message: dict[str, Any] | None) -> None:
-        """Send a message, if there is one."""
         if message is not None and not self.writer.is_closing():
             self.writer.write(encode(message))
 
@@ -418,9 +408,7 @@ def _said_ns(request: dict[str, Any]) -> int:
 
 def _check(problem: str) -> None:
     if problem:
-        raise BadRequestError(
-            say("the emergency stop on disk cannot be changed: {problem}", problem=problem)
-        )
+        raise BadRequestError(say("the emergency stop on disk cannot be changed: {problem}", problem=problem))
 
 
 def _newest(lines: Sequence[LogLine], max_chars: int) -> Sequence[LogLine]:

@@ -44,9 +44,7 @@ def connect(folder: Path, within_s: float = TAKEN_WITHIN_S) -> socket.socket:
     try:
         # If the server is suspended and its queue is full, connecting would block for ever.
         client.setsockopt(
-            socket.SOL_SOCKET,
-            socket.SO_SNDTIMEO,
-            struct.pack("ll", int(within_s), int(within_s % 1 * 1e6)),
+            socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", int(within_s), int(within_s % 1 * 1e6))
         )
         with _short_path(folder) as path:
             client.connect(path)

@@ -34,9 +34,7 @@ ONLY_THESE = "SKIP_DEFAULT_XML_FILE"
 RMW, FAST_RTPS = "RMW_IMPLEMENTATION", ("", "rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp")
 
 
-def settings_of_discovery(
-    environ: Mapping[str, str], discovery: str | tuple[str, ...]
-) -> dict[str, str | None]:
+def settings_of_discovery(environ: Mapping[str, str], discovery: str | tuple[str, ...]) -> dict[str, str | None]:
     """Return the variables to set for fast discovery that is limited to this machine.
 
     Args:

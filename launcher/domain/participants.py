@@ -43,7 +43,6 @@ class LocalParticipants:
     """The participants of a domain, whoever's they are."""
 
     def __init__(self, domain: int) -> None:
-        """Nothing is read yet."""
         self._domain = domain
         self._unread_since_s: dict[int, float] = {}
         """When each port was first seen with something unread, monotonic."""
@@ -80,9 +79,7 @@ def _pairs(ports: range, sockets: Mapping[int, Socket]) -> set[int]:
     }
 
 
-def _take_in_memory(
-    found: dict[int, LocalParticipant], one: LocalParticipant, sockets: Mapping[int, Socket]
-) -> None:
+def _take_in_memory(found: dict[int, LocalParticipant], one: LocalParticipant, sockets: Mapping[int, Socket]) -> None:
     """Add a participant whose port in shared memory has a number that no UDP port of it has.
 
     Either it speaks through shared memory alone, or somebody's file was in the way of its number.

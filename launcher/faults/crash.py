@@ -23,9 +23,7 @@ _BLOCKED = re.compile(
     r"(?P<file>.+), (?:line|строка) (?P<line>\d+)"
 )
 """What `launcher.callback_watch` writes."""
-_UNHEARD = re.compile(
-    r"(?P<words>nothing fills this buffer), .*: asked in (?P<file>.+), line (?P<line>\d+)"
-)
+_UNHEARD = re.compile(r"(?P<words>nothing fills this buffer), .*: asked in (?P<file>.+), line (?P<line>\d+)")
 """What the Buffer of `bridges/tf2_ros` writes."""
 BEGIN = "Traceback (most recent call last):"
 _FRAME = re.compile(r'^\s*File "(.+)", line (\d+)(?:, in .*)?$')
@@ -56,13 +54,7 @@ def crash_of(lines: Sequence[str], folder: str) -> NodeFault | None:
     own = [frame for frame in frames if os.path.dirname(frame[0]) == folder] or frames  # noqa: PTH120
     file, line, source = own[-1]
     kind = "syntax" if exception.startswith(("SyntaxError", "Indentation", "TabError")) else "crash"
-    return NodeFault(
-        kind,
-        file,
-        line=line,
-        source_line=source,
-        exception=exception,
-    )
+    return NodeFault(kind, file, line=line, source_line=source, exception=exception)
 
 
 def warning_in(line: str, file: str) -> NodeFault | None:

@@ -49,12 +49,10 @@ class TraceLevel(NamedTuple):
 
     @property
     def file(self) -> str:
-        """The file of its code."""
         return self.frame.f_code.co_filename
 
     @property
     def function(self) -> str:
-        """The name of its function."""
         return self.frame.f_code.co_name
 
     @property
@@ -80,7 +78,6 @@ class Failure:
 
     @property
     def inner(self) -> TraceLevel | None:
-        """The level at which it was raised."""
         return self.levels[-1] if self.levels else None
 
     @property
@@ -124,7 +121,6 @@ class Failure:
 
     @property
     def statement(self) -> ast.stmt | None:
-        """The statement that failed."""
         node = self.node
         while node is not None and not isinstance(node, ast.stmt):
             node = getattr(node, "parent", None)
@@ -154,7 +150,6 @@ class Failure:
 
     @cached_property
     def own_class(self) -> ast.ClassDef | None:
-        """The class whose method failed."""
         node: ast.AST | None = self.statement
         while node is not None and not isinstance(node, ast.ClassDef):
             node = getattr(node, "parent", None)
@@ -292,8 +287,7 @@ def fields_of(message: Any) -> dict[str, str]:  # noqa: ANN401 - of any type
 def is_from(value: object, package: str, *names: str) -> bool:
     """Whether it is an object of one of these classes of a package."""
     return any(
-        each.__name__ in names and each.__module__.partition(".")[0] == package
-        for each in type(value).__mro__
+        each.__name__ in names and each.__module__.partition(".")[0] == package for each in type(value).__mro__
     )
 
 

@@ -48,9 +48,7 @@ def _hidden_by(error: BaseException, folder: str) -> BaseException | None:
 _With = (ast.With, ast.AsyncWith)
 
 
-def _guarding(
-    failure: Failure, began: TraceLevel, level: TraceLevel
-) -> ast.Try | ast.With | ast.AsyncWith | None:
+def _guarding(failure: Failure, began: TraceLevel, level: TraceLevel) -> ast.Try | ast.With | ast.AsyncWith | None:
     """Return the innermost `try` or `with` that the first has left, and that then failed itself."""
     found: list[ast.Try | ast.With | ast.AsyncWith] = [
         each
@@ -81,10 +79,7 @@ def _is_at_the_end(statement: ast.Try, level: TraceLevel) -> bool:
 
 
 def _follows(
-    statement: ast.Try | ast.With | ast.AsyncWith,
-    error: BaseException,
-    before: BaseException,
-    level: TraceLevel,
+    statement: ast.Try | ast.With | ast.AsyncWith, error: BaseException, before: BaseException, level: TraceLevel
 ) -> bool:
     """Whether the second exception comes of the first one."""
     if isinstance(error, (NameError, AttributeError)):

@@ -24,10 +24,7 @@ class Meaning(NamedTuple):
 
 
 WARNINGS = (
-    Meaning(
-        r"incompatible QoS",
-        N_("The QoS of publisher and subscription do not fit each other: nothing arrives."),
-    ),
+    Meaning(r"incompatible QoS", N_("The QoS of publisher and subscription do not fit each other: nothing arrives.")),
     Meaning(
         r"Publisher already registered for (?:provided )?node name",
         N_("Two nodes have the same name: rename one of them."),

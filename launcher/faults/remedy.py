@@ -8,15 +8,7 @@ import re
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from launcher.faults.failure import (
-    UNKNOWN,
-    Failure,
-    fields_of,
-    is_from,
-    is_message_class,
-    name_of,
-    shown,
-)
+from launcher.faults.failure import UNKNOWN, Failure, fields_of, is_from, is_message_class, name_of, shown
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -39,8 +31,7 @@ def remedy(failure: Failure, node: ast.AST | None, value: Any = UNKNOWN) -> Word
 def of_list(what: str, call: str) -> Words:
     """Say that a function of one number was given many."""
     return say(
-        "{what} is a list: take one of its values, {call}({what}[0]), or all,"
-        " [{call}(v) for v in {what}].",
+        "{what} is a list: take one of its values, {call}({what}[0]), or all, [{call}(v) for v in {what}].",
         what=what,
         call=call,
     )
@@ -49,11 +40,7 @@ def of_list(what: str, call: str) -> Words:
 def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
     """Say that an expression is None, and what that may come from."""
     what, call = shown(node), failure.given_by(node)
-    if (
-        isinstance(node, ast.Attribute)
-        and node.attr == "value"
-        and isinstance(node.value, ast.Call)
-    ):
+    if isinstance(node, ast.Attribute) and node.attr == "value" and isinstance(node.value, ast.Call):
         words = unset_parameter(failure, node.value)
         if words is not None:
             return words
@@ -75,18 +62,10 @@ def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
 def unset_parameter(failure: Failure, call: ast.Call) -> Words | None:
     """Say that a parameter has no value, if it is asked for here and has none."""
     node = failure.named("self")
-    if (
-        not isinstance(call.func, ast.Attribute)
-        or not call.args
-        or not is_from(node, "rclpy", "Node")
-    ):
+    if not isinstance(call.func, ast.Attribute) or not call.args or not is_from(node, "rclpy", "Node"):
         return None
     name = failure.value(call.args[0])
-    if (
-        call.func.attr != "get_parameter"
-        or not isinstance(name, str)
-        or not node.has_parameter(name)
-    ):
+    if call.func.attr != "get_parameter" or not isinstance(name, str) or not node.has_parameter(name):
         return None
     if node.get_parameter(name).value is not None:
         return None
@@ -122,7 +101,6 @@ def _read_from(failure: Failure, node: ast.AST) -> bool:
 
 
 def _nothing_given(call: ast.Call) -> Words:
-    """Say that a function has given nothing."""
     name = call.func.attr if isinstance(call.func, ast.Attribute) else ""
     if name == "result":
         return say(
@@ -137,25 +115,17 @@ def _nothing_given(call: ast.Call) -> Words:
         )
     if name in ("append", "sort", "reverse", "extend", "update", "add", "insert"):
         return say(
-            "{name} changes the list itself and gives None: write it on a line of its own, without"
-            " an equals sign.",
+            "{name} changes the list itself and gives None: write it on a line of its own, without an equals sign.",
             name=name,
         )
-    return say(
-        "{what} gives None: does it have a return, and does it return a value in this case?",
-        what=shown(call),
-    )
+    return say("{what} gives None: does it have a return, and does it return a value in this case?", what=shown(call))
 
 
 def of_message(what: str, kind: Any) -> Words:  # noqa: ANN401 - a class of messages
     """Say that an expression is a whole message, and which of its fields may be meant."""
     fields = list(fields_of(kind))
     if fields == ["data"] or "data" in fields:
-        return say(
-            "{what} is a whole message, {type}; what is in it is {what}.data.",
-            what=what,
-            type=name_of(kind),
-        )
+        return say("{what} is a whole message, {type}; what is in it is {what}.data.", what=what, type=name_of(kind))
     return say(
         "{what} is a whole message, {type}; use one of its fields: {fields}.",
         what=what,
@@ -202,10 +172,7 @@ def _of_value(failure: Failure, what: str, node: ast.AST | None, value: Any) -> 
 def of_text(what: str, value: str) -> Words | None:
     """Say how a text becomes a number."""
     if re.fullmatch(r"\s*[-+]?\d+\s*", value):
-        return say(
-            "{what} is a text, not a number: int({what}), or with a fraction float({what}).",
-            what=what,
-        )
+        return say("{what} is a text, not a number: int({what}), or with a fraction float({what}).", what=what)
     if re.fullmatch(r"\s*[-+]?\d+\.\d*\s*", value):
         return say("{what} is a text, not a number: float({what}).", what=what)
     return None
@@ -216,9 +183,7 @@ def _of_type(failure: Failure, what: str, node: ast.AST | None, kind: type) -> W
         return is_none(failure, node)
     if is_message_class(kind) and kind.__name__ == "ParameterValue":
         return say(
-            "{what} is a message around the value; the value alone is"
-            " self.get_parameter(name).value.",
-            what=what,
+            "{what} is a message around the value; the value alone is self.get_parameter(name).value.", what=what
         )
     if is_message_class(kind) and not _is_time(kind):
         return of_message(what, kind)
@@ -241,8 +206,7 @@ def _of_type(failure: Failure, what: str, node: ast.AST | None, kind: type) -> W
         )
     if _is_time(kind):
         return say(
-            "{what} is the message {type}: Time.from_msg({what}) of rclpy.time can be calculated"
-            " with.",
+            "{what} is the message {type}: Time.from_msg({what}) of rclpy.time can be calculated with.",
             what=what,
             type=name_of(kind),
         )

@@ -42,9 +42,7 @@ def refused_arguments(lines: Sequence[str], file: str) -> NodeFault | None:
         meaning = meaning_of_arguments(line) if _ERROR.search(line) else None
         if meaning is not None:
             number, source = _reading_line(file)
-            return NodeFault(
-                "crash", file, number, 0, source, plain(line.strip()[:_LONGEST]), meaning
-            )
+            return NodeFault("crash", file, number, 0, source, plain(line.strip()[:_LONGEST]), meaning)
     return None
 
 

@@ -68,7 +68,6 @@ def _spun(statement: ast.stmt) -> str:
 
 
 def _called(call: ast.AST) -> str:
-    """Return which function of rclpy is called."""
     func = call.func if isinstance(call, ast.Call) else None
     if isinstance(func, ast.Attribute):
         of = func.value

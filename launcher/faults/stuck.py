@@ -59,10 +59,7 @@ MENDS = {
         "Every thread of the executor waits for an answer that one of them would have to take in."
         " Have it called back: client.call_async(request).add_done_callback(self.on_answer)."
     ),
-    "main": N_(
-        "Until the program comes to rclpy.spin(node), nothing is called: let a timer do what stands"
-        " here."
-    ),
+    "main": N_("Until the program comes to rclpy.spin(node), nothing is called: let a timer do what stands here."),
     "main_call": N_(
         "call() waits for an answer that nobody takes in before rclpy.spin. Here: future ="
         " client.call_async(request), and rclpy.spin_until_future_complete(node, future)."

@@ -40,12 +40,10 @@ class KeptLines:
         return self._count
 
     def __reversed__(self) -> Iterator[LogLine]:
-        """Yield the lines, the newest first."""
         older = (reversed(_unpacked(block)) for block in reversed(self._blocks))
         return chain(reversed(self._newest), chain.from_iterable(older))
 
     def append(self, line: LogLine) -> None:
-        """Add the newest line."""
         self._newest.append(line)
         self._count += 1
         if len(self._newest) >= 2 * BLOCK_LINES:

@@ -41,7 +41,6 @@ class LineAssembler:
 
     @property
     def unfinished(self) -> bool:
-        """Whether there is an unfinished line."""
         return bool(self._rest) or self._state is not None
 
     def feed(self, chunk: bytes, now: float) -> list[RawLine]:

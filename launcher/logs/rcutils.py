@@ -12,13 +12,11 @@ from dataclasses import dataclass
 
 from launcher.status import Severity
 
-_STAMPED = re.compile(
-    r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[(\d{1,12}\.\d{1,9})\] \[([^\]]*)\]: ?(.*)", re.DOTALL
-)
+_STAMPED = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[(\d{1,12}\.\d{1,9})\] \[([^\]]*)\]: ?(.*)", re.DOTALL)
 _SEVERITIES = {severity.name: severity for severity in Severity}
 _WORD = re.compile(
     r"\W*(DEBUG|INFO|WARN|WARNING|ERROR|CRITICAL|FATAL)(?=[\]:| ])"
-    r"|\d{4}-\d\d-\d\d .{0,80}?\b(Warning|Error)\]",
+    r"|\d{4}-\d\d-\d\d .{0,80}?\b(Warning|Error)\]"
 )
 _WORDS = {
     **_SEVERITIES,

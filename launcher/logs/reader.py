@@ -23,12 +23,7 @@ _MAX_DRAIN = 4 << 20
 class PipeReader:
     """Reads one pipe to its end."""
 
-    def __init__(
-        self,
-        fd: int,
-        on_bytes: Callable[[bytes], None],
-        on_lines: Callable[[list[RawLine]], None],
-    ) -> None:
+    def __init__(self, fd: int, on_bytes: Callable[[bytes], None], on_lines: Callable[[list[RawLine]], None]) -> None:
         """`fd` is closed by this object; `on_bytes` gets all data, in pieces that end lines."""
         self._fd = fd
         self._on_bytes = on_bytes

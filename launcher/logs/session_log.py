@@ -103,13 +103,7 @@ class SessionLog:
             if raw.lost:
                 shown += say(" … [{count} more bytes, see the log file]", count=raw.lost)
             line = LogLine(
-                node,
-                ring.last_seq + 1,
-                parsed.time_s,
-                parsed.severity,
-                shown,
-                sys.intern(parsed.logger),
-                source,
+                node, ring.last_seq + 1, parsed.time_s, parsed.severity, shown, sys.intern(parsed.logger), source
             )
             ring.append(line)
             self.heard(line)

@@ -56,11 +56,7 @@ class Confinement(Enum):
 
 
 class _Ruleset(ctypes.Structure):
-    _fields_ = (
-        ("files", ctypes.c_uint64),
-        ("net", ctypes.c_uint64),
-        ("scoped", ctypes.c_uint64),
-    )
+    _fields_ = (("files", ctypes.c_uint64), ("net", ctypes.c_uint64), ("scoped", ctypes.c_uint64))
 
 
 class _PathBeneath(ctypes.Structure):
@@ -128,11 +124,7 @@ def confine(folders: Iterable[str]) -> None:
 
 def _restrict(folders: Iterable[str], version: int) -> None:
     handled = _WRITE_FILE | _CHANGES_FOLDERS
-    for right, since in (
-        (_REFER, _REFER_SINCE),
-        (_TRUNCATE, _TRUNCATE_SINCE),
-        (_IOCTL_DEVICE, _IOCTL_SINCE),
-    ):
+    for right, since in ((_REFER, _REFER_SINCE), (_TRUNCATE, _TRUNCATE_SINCE), (_IOCTL_DEVICE, _IOCTL_SINCE)):
         handled |= right if version >= since else 0
     full = version >= _SIGNALS_SINCE
     tcp = version >= _TCP_SINCE

@@ -51,9 +51,7 @@ class Members:
         known = {}
         for process in table.values():
             key = (process.pid, process.started_ticks)
-            name = (
-                self._known.get(key) or self._by_descent(process, table) or self._by_marks(process)
-            )
+            name = self._known.get(key) or self._by_descent(process, table) or self._by_marks(process)
             if name:
                 known[key] = name
                 found.setdefault(name, []).append(process)

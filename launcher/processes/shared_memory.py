@@ -55,9 +55,7 @@ def mapped_segments(pid: int) -> set[str]:
     """
     lines = Path(f"/proc/{pid}/maps").read_text(errors="replace").splitlines()
     found = (line.rpartition(f"{SHARED_MEMORY}/")[2] for line in lines)
-    return {
-        name for name in found if name.startswith("fastrtps_") and not name.endswith(" (deleted)")
-    }
+    return {name for name in found if name.startswith("fastrtps_") and not name.endswith(" (deleted)")}
 
 
 def lost_ports(pid: int) -> set[str]:

@@ -89,8 +89,7 @@ def _listened_at(folder: Path) -> set[str]:
         return {
             match[1]
             for entry in entries
-            if (match := _LOCK_OF_PORT.fullmatch(entry.name)) is not None
-            and (device, entry.inode()) in locked
+            if (match := _LOCK_OF_PORT.fullmatch(entry.name)) is not None and (device, entry.inode()) in locked
         }
 
 
@@ -101,9 +100,7 @@ def _locked_files() -> set[tuple[int, int]]:
     """
     matches = map(_LOCK.match, Path("/proc/locks").read_text("ascii").splitlines())
     return {
-        (os.makedev(int(match[1], 16), int(match[2], 16)), int(match[3]))
-        for match in matches
-        if match is not None
+        (os.makedev(int(match[1], 16), int(match[2], 16)), int(match[3])) for match in matches if match is not None
     }
 
 
@@ -138,11 +135,7 @@ def _marked(memory: bytes, first: int) -> list[tuple[int, int]]:
     # Those that were never used are behind the others.
     slots = memory[first : first + _SLOTS * _SLOT_BYTES : _SLOT_BYTES].rstrip(b"\0")
     wanted = _IN_USE | _IN_HAND
-    return [
-        (first + number * _SLOT_BYTES, slot)
-        for number, slot in enumerate(slots)
-        if slot & wanted == wanted
-    ]
+    return [(first + number * _SLOT_BYTES, slot) for number, slot in enumerate(slots) if slot & wanted == wanted]
 
 
 def _dead_locks(memory: bytes | mmap.mmap, first: int) -> dict[int, int]:

@@ -15,14 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.processes.shared_memory import (
-    NAME,
-    SHARED_MEMORY,
-    STATES,
-    age_s,
-    is_users_alone,
-    names,
-)
+from launcher.processes.shared_memory import NAME, SHARED_MEMORY, STATES, age_s, is_users_alone, names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

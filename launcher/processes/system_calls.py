@@ -123,9 +123,7 @@ def refuse_calls(*, signals: bool) -> None:
         OSError: if the kernel refuses.
     """
     steps = _program(platform.machine(), os.getpid() if signals else 0)
-    code = (_Instruction * len(steps))(
-        *(_Instruction(one.code, one.when, one.otherwise, one.value) for one in steps)
-    )
+    code = (_Instruction * len(steps))(*(_Instruction(one.code, one.when, one.otherwise, one.value) for one in steps))
     program = _Program(len(steps), code)
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.prctl(_SET_SECCOMP, _FILTER, ctypes.byref(program), 0, 0) != 0:

@@ -43,9 +43,7 @@ class ProfileEntry:
     """The same as separate problems."""
 
 
-def list_profiles(
-    paths: Iterable[Path | str] = (), *, hardware: str = "mock"
-) -> list[ProfileEntry]:
+def list_profiles(paths: Iterable[Path | str] = (), *, hardware: str = "mock") -> list[ProfileEntry]:
     """Return all profiles, the lessons in their order; broken ones with their error.
 
     `paths`: files and folders in addition to the course's profiles and `./profiles`.
@@ -73,9 +71,7 @@ def find_profile(name: str | Path) -> Path:
         return Path(inside)
     if is_path(text):
         return Path(text)
-    known = {
-        file.stem: file for folder in (SHIPPED, Path("profiles")) for file in _files_of(folder)
-    }
+    known = {file.stem: file for folder in (SHIPPED, Path("profiles")) for file in _files_of(folder)}
     chosen = meant(text, known)
     if chosen is None:
         raise ProfileNotFoundError(text, _likely(text, known))
@@ -97,9 +93,7 @@ def meant(text: str, known: Iterable[str]) -> str | None:
         return text
     fits = fitting(text, names)
     if len(fits) > 1:
-        raise UsageError(
-            say("{name!r} matches several: {names}", name=text, names=", ".join(sorted(fits)))
-        )
+        raise UsageError(say("{name!r} matches several: {names}", name=text, names=", ".join(sorted(fits))))
     return fits[0] if fits else None
 
 

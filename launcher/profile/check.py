@@ -77,9 +77,7 @@ def _is_one_condition(node: NodeDocument, ready: ReadyDocument) -> bool:
     return count == 1 or (count == 0 and node.lifecycle is not None)
 
 
-def check_run(
-    name: str, run: str, folders: Sequence[Path], tree: Branch, problems: Problems
-) -> None:
+def check_run(name: str, run: str, folders: Sequence[Path], tree: Branch, problems: Problems) -> None:
     """Check that the module or file that a node runs exists.
 
     `folders`: that of the profile, and others where users may expect modules; Deck does not search
@@ -97,9 +95,7 @@ def check_run(
         message = say("there is no module {module!r}", module=run)
         own = file_of(run.removesuffix(".py"), folders, folders[0])
         hint = say("for your own file write run: {file}", file=own) if own else ""
-        problems.add(
-            place_of(tree, where), where, message, hint or did_you_mean(run, likely_names(run))
-        )
+        problems.add(place_of(tree, where), where, message, hint or did_you_mean(run, likely_names(run)))
 
 
 def check_needs(

@@ -90,9 +90,7 @@ def _replaced(branch: Branch, key: str, value: Tree) -> Branch:
     return Branch(entries, branch.place)
 
 
-def _overridden(
-    devices: Branch, hardware: str, environ: Mapping[str, str], problems: Problems
-) -> Branch:
+def _overridden(devices: Branch, hardware: str, environ: Mapping[str, str], problems: Problems) -> Branch:
     """Return the devices with the values from the environment and for this hardware."""
     for device, entry in devices.entries.items():
         if isinstance(entry.value, Branch):
@@ -101,9 +99,7 @@ def _overridden(
     return devices
 
 
-def _settings(
-    device: str, written: Branch, hardware: str, environ: Mapping[str, str], problems: Problems
-) -> Branch:
+def _settings(device: str, written: Branch, hardware: str, environ: Mapping[str, str], problems: Problems) -> Branch:
     settings: dict[str, MappingEntry] = {}
     for name, entry in written.entries.items():
         if name not in HARDWARE and _single(entry.value, ("devices", device, name), problems):
@@ -136,8 +132,7 @@ def _from_environment(name: str, text: str, declared: Scalar, problems: Problems
         return Scalar(text, text, declared.place)
     value = read_value(text, name, Problems())
     fits = isinstance(value, Scalar) and (
-        type(value.value) is type(declared.value)
-        or (isinstance(declared.value, float) and type(value.value) is int)
+        type(value.value) is type(declared.value) or (isinstance(declared.value, float) and type(value.value) is int)
     )
     if not fits or not isinstance(value, Scalar):
         message = say(
@@ -151,12 +146,7 @@ def _from_environment(name: str, text: str, declared: Scalar, problems: Problems
     return Scalar(value.value, text, declared.place)
 
 
-def _found(
-    devices: Branch,
-    used: set[str],
-    ports: Callable[[], Sequence[SerialPort]],
-    problems: Problems,
-) -> Branch:
+def _found(devices: Branch, used: set[str], ports: Callable[[], Sequence[SerialPort]], problems: Problems) -> Branch:
     """Return the devices with `auto` replaced by the ports that were found."""
     asked = {name: each for name, each in wanted(plain(devices)).items() if name in used}
     if not any(each.port == AUTO for each in asked.values()):

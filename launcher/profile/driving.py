@@ -4,14 +4,7 @@ from __future__ import annotations
 
 _DRIVERS = frozenset(
     f"nodes.{name}"
-    for name in (
-        "ai_brain",
-        "ai_driver",
-        "chassis",
-        "drive_to_point",
-        "electronic_differential",
-        "llm_parser",
-    )
+    for name in ("ai_brain", "ai_driver", "chassis", "drive_to_point", "electronic_differential", "llm_parser")
 )
 """The nodes that command the wheels; two sessions with any of these would fight over them."""
 

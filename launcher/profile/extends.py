@@ -47,9 +47,7 @@ def _read(path: Path, problems: Problems, chain: tuple[Path, ...]) -> Branch | N
     if tree is None or "extends" not in tree.entries:
         return tree
     entry = tree.entries["extends"]
-    own = Branch(
-        {key: value for key, value in tree.entries.items() if key != "extends"}, tree.place
-    )
+    own = Branch({key: value for key, value in tree.entries.items() if key != "extends"}, tree.place)
     wanted = plain(entry.value)
     if not isinstance(wanted, str):
         problems.add(entry.value.place, ("extends",), say("expected the name of a profile"))

@@ -26,17 +26,13 @@ def _texts(value: object) -> object:
 def ros_name(value: object) -> object:
     """Refuse text that is not a ROS name; everything else is refused by its type."""
     if isinstance(value, str) and not ROS_NAME.fullmatch(value):
-        raise refuse(
-            say("{value!r} is not a ROS name; write it as /sensor/sonar_front", value=value)
-        )
+        raise refuse(say("{value!r} is not a ROS name; write it as /sensor/sonar_front", value=value))
     return value
 
 
 def _type_name(value: object) -> object:
     if isinstance(value, str) and not TYPE_NAME.fullmatch(value):
-        raise refuse(
-            say("{value!r} is not a message type; write it as std_msgs/msg/Float32", value=value)
-        )
+        raise refuse(say("{value!r} is not a message type; write it as std_msgs/msg/Float32", value=value))
     return value
 
 

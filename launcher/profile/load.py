@@ -114,11 +114,7 @@ class _SpecBuilder:
         everybody = list(every.entries) if isinstance(every, Branch) else []
         for name, node in valid.items():
             check_node(name, node, tree, problems)
-        running = {
-            name: node
-            for name, node in valid.items()
-            if applies(name, node, hardware, tree, problems)
-        }
+        running = {name: node for name, node in valid.items() if applies(name, node, hardware, tree, problems)}
         if not running and not problems.found:
             self._nothing_runs(bool(valid), hardware)
         optional = {name for name, node in running.items() if node.optional}
@@ -154,9 +150,7 @@ class _SpecBuilder:
             folder=self.path.parent,
         )
 
-    def profile(
-        self, document: ProfileDocument, nodes: dict[str, NodeSpec], hardware: str, domain: int
-    ) -> Profile:
+    def profile(self, document: ProfileDocument, nodes: dict[str, NodeSpec], hardware: str, domain: int) -> Profile:
         return Profile(
             path=self.path,
             name=name_of(self.path),

@@ -40,8 +40,7 @@ def _module(value: object) -> object:
     if isinstance(value, str) and not is_file(value) and not MODULE.fullmatch(value):
         raise refuse(
             say(
-                "{value!r} is not a Python module; write a module as nodes.hello, a file "
-                "of your own as ./my_node.py",
+                "{value!r} is not a Python module; write a module as nodes.hello, a file of your own as ./my_node.py",
                 value=value,
             )
         )
@@ -65,12 +64,7 @@ def _variables(value: object) -> object:
 
 def _command(value: object) -> object:
     if isinstance(value, str):
-        raise refuse(
-            say(
-                "expected a list, found a single text; write [{words}]",
-                words=", ".join(value.split()),
-            )
-        )
+        raise refuse(say("expected a list, found a single text; write [{words}]", words=", ".join(value.split())))
     if value == []:
         raise refuse(say("an empty command; write for example [ros2, run, package, program]"))
     if isinstance(value, list) and any("\0" in str(word) for word in value):
@@ -82,34 +76,23 @@ def _discovery(value: object) -> object:
     if value in ("localhost", "subnet"):
         return value
     if not isinstance(value, list) or not value:
-        raise refuse(
-            say("expected localhost, subnet or a list of addresses, found {value!r}", value=value)
-        )
+        raise refuse(say("expected localhost, subnet or a list of addresses, found {value!r}", value=value))
     for peer in value:
         if not isinstance(peer, str) or not PEER.fullmatch(peer):
-            raise refuse(
-                say("{peer!r} is not an address; write it as 192.168.1.7 or robot.local", peer=peer)
-            )
+            raise refuse(say("{peer!r} is not an address; write it as 192.168.1.7 or robot.local", peer=peer))
     return tuple(value)
 
 
 ModuleOrFile = Annotated[str, BeforeValidator(_module)]
 _SCALARS: dict[str, Any] = {"type": ["string", "number", "boolean"]}
 Command = Annotated[
-    tuple[str, ...],
-    BeforeValidator(_command),
-    WithJsonSchema({"type": "array", "items": _SCALARS, "minItems": 1}),
+    tuple[str, ...], BeforeValidator(_command), WithJsonSchema({"type": "array", "items": _SCALARS, "minItems": 1})
 ]
 Discovery = Annotated[
     Any,
     BeforeValidator(_discovery),
     WithJsonSchema(
-        {
-            "anyOf": [
-                {"enum": ["localhost", "subnet"]},
-                {"type": "array", "items": {"type": "string"}, "minItems": 1},
-            ]
-        }
+        {"anyOf": [{"enum": ["localhost", "subnet"]}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}
     ),
 ]
 
@@ -121,10 +104,7 @@ _DEVICE: dict[str, Any] = {
             "enum": [*KINDS, "camera", "sound"],
             "description": "The kind of device, for `port: auto` and `deck check --preflight`.",
         },
-        "port": {
-            "type": "string",
-            "description": "A path, preferably in /dev/serial/by-id; auto: found by USB ids.",
-        },
+        "port": {"type": "string", "description": "A path, preferably in /dev/serial/by-id; auto: found by USB ids."},
         "usb": {
             "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
             "description": "USB ids for `port: auto`, vendor:product: 2e8a:0005.",
@@ -141,15 +121,13 @@ class ReadyDocument(Document):
 
     topic: RosName | None = Field(None, description="Ready when somebody publishes this topic.")
     type: TypeName | None = Field(
-        None,
-        description="With topic: only publishers of this type count, `std_msgs/msg/Float32`.",
+        None, description="With topic: only publishers of this type count, `std_msgs/msg/Float32`."
     )
     rate: float | None = Field(
         None,
         gt=0,
         le=1000,
-        description="With topic: messages must arrive this many times a second; nine tenths of it"
-        " are enough.",
+        description="With topic: messages must arrive this many times a second; nine tenths of it are enough.",
     )
     service: RosName | None = Field(None, description="Ready when this service is offered.")
     node: RosName | None = Field(None, description="Ready when this node is in the ROS graph.")
@@ -175,9 +153,7 @@ class NodeDocument(Document):
         description="Any command instead: `[ros2, run, package, program]`; `python` and `python3`"
         " are the ones that know rclpy: `[python, my_sonar.py]`.",
     )
-    params: Annotated[dict[str, Any], Joined()] = Field(
-        {}, description="ROS parameters, nested as you like."
-    )
+    params: Annotated[dict[str, Any], Joined()] = Field({}, description="ROS parameters, nested as you like.")
     remap: Annotated[dict[str, RosName], BeforeValidator(_ros_names), AsText(), Joined()] = Field(
         {}, description="Topic and service names to remap: `{/drive: /drive_safe}`."
     )
@@ -205,9 +181,7 @@ class NodeDocument(Document):
     restart: Restart = Field(
         "never", description="Whether to restart it when it ends; the delay doubles, up to 30 s."
     )
-    when: str | None = Field(
-        None, description='Run it only if true: `hardware == "mock"`, `hardware in ["real"]`.'
-    )
+    when: str | None = Field(None, description='Run it only if true: `hardware == "mock"`, `hardware in ["real"]`.')
     optional: bool = Field(
         False,
         description="The lesson can do without it: that its program is not installed, or ends, is"
@@ -222,12 +196,8 @@ class NodeDocument(Document):
 class AgentsDocument(Document):
     """What agents that speak to `deck mcp` may do, whatever a person allows them."""
 
-    max_speed_m_s: float = Field(
-        RULES.max_speed_m_s, ge=0, le=10, description="Fastest speed of a proposal, m/s."
-    )
-    max_distance_m: float = Field(
-        RULES.max_distance_m, ge=0, le=100, description="Longest way of one proposal, m."
-    )
+    max_speed_m_s: float = Field(RULES.max_speed_m_s, ge=0, le=10, description="Fastest speed of a proposal, m/s.")
+    max_distance_m: float = Field(RULES.max_distance_m, ge=0, le=100, description="Longest way of one proposal, m.")
     max_total_m: float = Field(
         RULES.max_total_m,
         ge=0,
@@ -235,27 +205,19 @@ class AgentsDocument(Document):
         description="Longest way within five minutes of all that nobody was asked about, m.",
     )
     publish: tuple[RosName, ...] = Field(
-        (),
-        strict=False,
-        description="Topics that agents may publish on; one that moves the robot stays refused.",
+        (), strict=False, description="Topics that agents may publish on; one that moves the robot stays refused."
     )
-    call: tuple[RosName, ...] = Field(
-        (), strict=False, description="Services that agents may call."
-    )
+    call: tuple[RosName, ...] = Field((), strict=False, description="Services that agents may call.")
 
 
 class ProfileDocument(Document):
     """A profile of Deck: nodes started, supervised and shown together."""
 
-    extends: str | None = Field(
-        None, description="Another profile, by name or path; this file overrides it."
-    )
+    extends: str | None = Field(None, description="Another profile, by name or path; this file overrides it.")
     title: Annotated[Texts, AsText()] = Field(
         {}, description="A line for the picker, by language: `{en: ..., ru: ...}`."
     )
-    about: Annotated[Texts, AsText()] = Field(
-        {}, description="What it starts and what you see, by language."
-    )
+    about: Annotated[Texts, AsText()] = Field({}, description="What it starts and what you see, by language.")
     lesson: Annotated[str, WithJsonSchema({"type": ["string", "integer"]}), AsText()] = Field(
         "", description="Number of the lesson: 9, 4b."
     )
@@ -271,12 +233,8 @@ class ProfileDocument(Document):
     nodes: dict[str, NodeDocument | None] = Field(
         {}, description="Nodes by name; null removes a node of the extended profile."
     )
-    devices: Annotated[dict[str, Annotated[dict[str, Any], WithJsonSchema(_DEVICE)]], Joined()] = (
-        Field(
-            {},
-            description="Settings of devices, used as ${devices.pico.port} and overridden by"
-            " DECK_PICO_PORT.",
-        )
+    devices: Annotated[dict[str, Annotated[dict[str, Any], WithJsonSchema(_DEVICE)]], Joined()] = Field(
+        {}, description="Settings of devices, used as ${devices.pico.port} and overridden by DECK_PICO_PORT."
     )
     panels: tuple[Panel, ...] = Field(
         (), strict=False, description="Panels that the deck shows beside nodes and logs."
@@ -285,9 +243,7 @@ class ProfileDocument(Document):
         default_factory=lambda: AgentsDocument.model_validate({}),
         description="Limits for agents, and what else they may do.",
     )
-    values: Values = Field(
-        {}, description="Values that differ from run to run, used in checks as `${near_m}`."
-    )
+    values: Values = Field({}, description="Values that differ from run to run, used in checks as `${near_m}`.")
     steps: tuple[StepDocument, ...] = Field(
         (), strict=False, description="What the learner does, and how it is checked."
     )

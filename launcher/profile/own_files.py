@@ -19,12 +19,7 @@ def faults_of(profile: Profile) -> tuple[ProfileProblem, ...]:
     faults = [(name, look_at(file)) for file, name in files.items()]
     return tuple(
         ProfileProblem(
-            shown(Path(fault.file)),
-            fault.line,
-            fault.column,
-            f"nodes.{name}",
-            fault.exception,
-            fault.meaning,
+            shown(Path(fault.file)), fault.line, fault.column, f"nodes.{name}", fault.exception, fault.meaning
         )
         for name, fault in faults
         if fault is not None

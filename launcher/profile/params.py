@@ -73,18 +73,10 @@ def _escaped(character: str) -> str:
     if character.isprintable():
         return character
     code = ord(character)
-    return (
-        f"\\x{code:02x}"
-        if code < 0x100
-        else f"\\u{code:04x}"
-        if code < 0x10000
-        else f"\\U{code:08x}"
-    )
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
-def _flatten(
-    params: Branch, prefix: str, where: Where, flat: dict[str, Param], problems: Problems
-) -> None:
+def _flatten(params: Branch, prefix: str, where: Where, flat: dict[str, Param], problems: Problems) -> None:
     for key, entry in params.entries.items():
         name, here = prefix + key, (*where, key)
         if isinstance(entry.value, Branch):
@@ -97,9 +89,7 @@ def _flatten(
                 say("letters, digits and _, joined by dots"),
             )
         elif name in flat:
-            problems.add(
-                entry.key_place, here, say("the parameter {name} is given twice", name=name)
-            )
+            problems.add(entry.key_place, here, say("the parameter {name} is given twice", name=name))
         elif isinstance(entry.value, Listing):
             items = _list(entry.value, here, problems)
             if items is not None:
@@ -146,19 +136,12 @@ def _number_trouble(number: float) -> str:
 
 def _list(listing: Listing, where: Where, problems: Problems) -> Param | None:
     if not listing.items:
-        problems.add(
-            listing.place,
-            where,
-            say("an empty list has no type in ROS"),
-            say("leave the parameter out"),
-        )
+        problems.add(listing.place, where, say("an empty list has no type in ROS"), say("leave the parameter out"))
         return None
     items: list[Single] = []
     for index, item in enumerate(listing.items):
         if not isinstance(item, Scalar):
-            kind = (
-                say("a list of lists") if isinstance(item, Listing) else say("a list of mappings")
-            )
+            kind = say("a list of lists") if isinstance(item, Listing) else say("a list of mappings")
             problems.add(
                 item.place,
                 (*where, index),
@@ -169,14 +152,10 @@ def _list(listing: Listing, where: Where, problems: Problems) -> Param | None:
         value = _single(item, (*where, index), problems)
         if value is not None:
             items.append(value)
-    return (
-        _of_one_type(items, listing, where, problems) if len(items) == len(listing.items) else None
-    )
+    return _of_one_type(items, listing, where, problems) if len(items) == len(listing.items) else None
 
 
-def _of_one_type(
-    items: list[Single], listing: Listing, where: Where, problems: Problems
-) -> Param | None:
+def _of_one_type(items: list[Single], listing: Listing, where: Where, problems: Problems) -> Param | None:
     kinds = {type(item) for item in items}
     if kinds == {int, float}:
         return [float(item) for item in items]

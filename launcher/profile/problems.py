@@ -21,9 +21,7 @@ class Problems:
 
     def add(self, place: FilePlace, where: Where, message: str, hint: str = "") -> None:
         """Add a problem; duplicates count once."""
-        problem = ProfileProblem(
-            place.file, place.line, place.column, field_name(where), message, hint
-        )
+        problem = ProfileProblem(place.file, place.line, place.column, field_name(where), message, hint)
         if problem not in self.found:
             self.found.append(problem)
 

@@ -25,9 +25,7 @@ REFERRING = ("params", "exec", "env")
 class Filler:
     """Fills in values; an unknown name in `${}` is left as it is."""
 
-    def __init__(
-        self, settings: Mapping[str, Scalar], places: Mapping[str, str], problems: Problems
-    ) -> None:
+    def __init__(self, settings: Mapping[str, Scalar], places: Mapping[str, str], problems: Problems) -> None:
         """`settings`: {"pico.port": ...}; `places`: {"run_dir": ...}."""
         self._settings, self._places, self._problems = settings, places, problems
 

@@ -46,9 +46,7 @@ class UnresolvedPort:
     hint: str
 
 
-def choose(
-    wanted: Mapping[str, WantedPort], ports: Sequence[SerialPort]
-) -> dict[str, SerialPort | UnresolvedPort]:
+def choose(wanted: Mapping[str, WantedPort], ports: Sequence[SerialPort]) -> dict[str, SerialPort | UnresolvedPort]:
     """Return the port of each device with `auto`, or why there is none.
 
     A port that is set explicitly for one device is not given to another.
@@ -66,18 +64,14 @@ def choose(
 def how_to_choose(device: str) -> str:
     """Say where the user can set the port of a device."""
     return say(
-        "choose with {variable}=/dev/serial/by-id/..., or devices.{device}.port in your "
-        "own profile",
+        "choose with {variable}=/dev/serial/by-id/..., or devices.{device}.port in your own profile",
         variable=variable(device, "port"),
         device=device,
     )
 
 
 def _one(
-    device: str,
-    wanted: WantedPort,
-    fitting: Mapping[str, Sequence[SerialPort]],
-    ports: Sequence[SerialPort],
+    device: str, wanted: WantedPort, fitting: Mapping[str, Sequence[SerialPort]], ports: Sequence[SerialPort]
 ) -> SerialPort | UnresolvedPort:
     found = fitting[device]
     rivals = [other for other in fitting if other != device and set(fitting[other]) & set(found)]
@@ -88,9 +82,7 @@ def _one(
         there = "; ".join(map(str, ports)) or say("none")
         message = say("no port matches ({usb}); ports: {ports}", usb=looked, ports=there)
     elif len(found) == 1:
-        message = say(
-            "{port} may be this or {others}", port=str(found[0]), others=", ".join(rivals)
-        )
+        message = say("{port} may be this or {others}", port=str(found[0]), others=", ".join(rivals))
     else:
         listed = "; ".join(map(str, found))
         message = say("several ports fit: {ports}", ports=listed)

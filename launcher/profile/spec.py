@@ -66,7 +66,6 @@ class NodeSpec:
 
     @property
     def command(self) -> str:
-        """The module or command, for display."""
         run = self.document.run
         if run is None:
             return " ".join(self.document.exec or ())
@@ -79,7 +78,6 @@ class NodeSpec:
 
     @property
     def is_ours(self) -> bool:
-        """Whether it is a module of Deck."""
         return self.document.run is not None and node_program.is_ours(self.document.run)
 
     @property
@@ -103,22 +101,14 @@ class NodeSpec:
     def ros_args(self) -> list[str]:
         """Return `--ros-args` and everything after it; empty for a command without parameters."""
         named = ["-r", f"__node:={self.name}"] if self.document.run is not None else []
-        remaps = [
-            part for old, new in self.document.remap.items() for part in ("-r", f"{old}:={new}")
-        ]
+        remaps = [part for old, new in self.document.remap.items() for part in ("-r", f"{old}:={new}")]
         arguments = [*named, *remaps, *as_arguments(self.params)]
         return ["--ros-args", *arguments] if arguments else []
 
     def argv(self) -> list[str]:
         """Return the full command line for a start without the spawn server."""
         if self.document.run is not None:
-            return [
-                sys.executable,
-                "-u",
-                node_program.__file__,
-                self.document.run,
-                *self.ros_args(),
-            ]
+            return [sys.executable, "-u", node_program.__file__, self.document.run, *self.ros_args()]
         words = list(self.document.exec or ())
         if self.own_file:
             words[:2] = [sys.executable, "-u", node_program.__file__, self.own_file]

@@ -36,9 +36,7 @@ def read_text(path: Path, problems: Problems) -> str | None:
         mode = path.stat().st_mode
         if not stat.S_ISREG(mode):
             kind = say("a directory") if stat.S_ISDIR(mode) else say("not a regular file")
-            problems.add(
-                place, (), say("expected a YAML file, found {kind}", kind=kind), _inside(path)
-            )
+            problems.add(place, (), say("expected a YAML file, found {kind}", kind=kind), _inside(path))
             return None
         with path.open("rb") as file:
             data = file.read(MAX_BYTES + 1)
@@ -47,9 +45,7 @@ def read_text(path: Path, problems: Problems) -> str | None:
         return None
     if len(data) > MAX_BYTES:
         limit = MAX_BYTES // 1024
-        problems.add(
-            place, (), say("is larger than {limit} KiB: too large for a profile", limit=limit)
-        )
+        problems.add(place, (), say("is larger than {limit} KiB: too large for a profile", limit=limit))
         return None
     return _decoded(data, place.file, problems)
 

@@ -36,10 +36,7 @@ WANTED = {
     "model_type": say("keys and values"),
 }
 _DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
-MISSING = {
-    "missing": say("`{key}` is missing"),
-    "too_short": say("`{key}` is empty"),
-}
+MISSING = {"missing": say("`{key}` is missing"), "too_short": say("`{key}` is empty")}
 LIMITS = {
     "greater_than": (say("more than {limit}"), "gt"),
     "greater_than_equal": (say("at least {limit}"), "ge"),
@@ -47,9 +44,7 @@ LIMITS = {
 }
 
 
-def validate(
-    tree: Branch, problems: Problems
-) -> tuple[ProfileDocument | None, dict[str, NodeDocument]]:
+def validate(tree: Branch, problems: Problems) -> tuple[ProfileDocument | None, dict[str, NodeDocument]]:
     """Return the profile without its nodes, and the nodes; everything invalid becomes a problem.
 
     Each node is validated separately, so that a fault in one does not hide faults in another.
@@ -72,9 +67,7 @@ def _data(tree: Branch) -> dict[str, Any]:
 
     In `exec: [--x, 0.10]` the value is the text 0.10 as written, and in `lesson: 9` the text 9.
     """
-    data: dict[str, Any] = {
-        key: plain(entry.value) for key, entry in tree.entries.items() if not empty(entry.value)
-    }
+    data: dict[str, Any] = {key: plain(entry.value) for key, entry in tree.entries.items() if not empty(entry.value)}
     for key in marked(ProfileDocument, AsText):
         if key in data:
             data[key] = _as_text(find(tree, (key,)))
@@ -103,9 +96,7 @@ def _as_text(tree: Tree | None) -> Any:  # noqa: ANN401 - whatever stands there
     return tree.text if tree is not None and not empty(tree) else None
 
 
-def _validated(
-    model: type[D], data: object, where: Where, tree: Branch, problems: Problems
-) -> D | None:
+def _validated(model: type[D], data: object, where: Where, tree: Branch, problems: Problems) -> D | None:
     """Return the document; if there are problems, without the keys that cause them.
 
     So later checks can report other problems in the same run.
@@ -175,11 +166,7 @@ def _words_of_choice(details: ErrorDetails, where: Where, tree: Branch) -> tuple
     if kind == "literal_error":
         known = _choices(details["ctx"]["expected"])
         return (
-            say(
-                "expected one of {known}, found {found}",
-                known=", ".join(known),
-                found=described(found),
-            ),
+            say("expected one of {known}, found {found}", known=", ".join(known), found=described(found)),
             did_you_mean(str(found), known),
         )
     return details["msg"], ""

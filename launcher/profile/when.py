@@ -74,9 +74,7 @@ def _comparison(node: ast.Compare, facts: Mapping[str, str]) -> bool:
 def _items(node: ast.expr) -> list[ast.expr]:
     if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
         return node.elts
-    raise WhenError(
-        say("{text!r} is not a list", text=ast.unparse(node)), say('write: hardware in ["real"]')
-    )
+    raise WhenError(say("{text!r} is not a list", text=ast.unparse(node)), say('write: hardware in ["real"]'))
 
 
 def _name(node: ast.expr) -> str:
@@ -93,14 +91,7 @@ def _word(node: ast.expr, name: str) -> str:
             return node.value
         known = ", ".join(NAMES[name])
         raise WhenError(
-            say(
-                "{name} is never {word!r}, only one of {known}",
-                name=name,
-                word=node.value,
-                known=known,
-            ),
+            say("{name} is never {word!r}, only one of {known}", name=name, word=node.value, known=known),
             did_you_mean(node.value, NAMES[name]),
         )
-    raise WhenError(
-        say("{text!r} is not a quoted word", text=ast.unparse(node)), say("put it in quotes")
-    )
+    raise WhenError(say("{text!r} is not a quoted word", text=ast.unparse(node)), say("put it in quotes"))

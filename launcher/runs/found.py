@@ -15,13 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.processes.table import (
-    SUPERVISOR_MARK,
-    own_number,
-    process_numbers,
-    read_marks,
-    read_process,
-)
+from launcher.processes.table import SUPERVISOR_MARK, own_number, process_numbers, read_marks, read_process
 from launcher.run_id import is_of_supervisor, supervisor_of
 from launcher.runs.record import read_record
 from text.run_path import OWN_RUN_DIR
@@ -50,7 +44,6 @@ class FoundSupervisor:
 
     @property
     def place(self) -> str:
-        """Where the folder is, for display."""
         try:
             return str(self.folder.readlink()).removesuffix(" (deleted)")
         except OSError:

@@ -46,7 +46,6 @@ class RunRecord:
 
     @property
     def runs(self) -> bool:
-        """Whether its supervisor is alive."""
         return supervisor_runs(self.session.run_id)
 
     def collides(self, nodes: set[str], drives: bool) -> bool:
@@ -89,10 +88,7 @@ def read_record(folder: Path) -> RunRecord | None:
     """Return the record of the run in this folder; None if it is missing or broken."""
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
         fields = read_json((folder / RECORD_NAME).read_text(encoding="utf-8"))
-        processes = {
-            str(node): (int(pid), int(started))
-            for node, (pid, started) in fields["processes"].items()
-        }
+        processes = {str(node): (int(pid), int(started)) for node, (pid, started) in fields["processes"].items()}
         session = unpack_session(fields["session"])
         drives = bool(fields.get("drives"))
         return RunRecord(folder, session, tuple(fields["nodes"]), processes, drives)

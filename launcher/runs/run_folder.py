@@ -55,7 +55,6 @@ class RunFolder:
         self._hold()
 
     def listen(self) -> socket.socket:
-        """Return a listening socket for clients."""
         server = listen(self.record.folder)
         self._socket = os.stat(SOCKET_NAME, dir_fd=self._descriptor)
         return server
@@ -66,9 +65,7 @@ class RunFolder:
         if self._is_in_place():
             self.record.write()
 
-    async def keep(
-        self, serve: Callable[[socket.socket], Awaitable[None]], tell: Callable[[Words], None]
-    ) -> None:
+    async def keep(self, serve: Callable[[socket.socket], Awaitable[None]], tell: Callable[[Words], None]) -> None:
         """Create it again whenever it disappears; `serve` gets each new socket, `tell` messages."""
         complained = False
         while True:
@@ -80,13 +77,7 @@ class RunFolder:
                 await serve(self._made_again())
             except OSError as problem:
                 if not complained:
-                    tell(
-                        say(
-                            "{path} is gone and cannot be created again: {problem}",
-                            path=before,
-                            problem=problem,
-                        )
-                    )
+                    tell(say("{path} is gone and cannot be created again: {problem}", path=before, problem=problem))
                 complained = True
             else:
                 now = self.record.folder

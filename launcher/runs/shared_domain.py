@@ -100,9 +100,7 @@ def refuse_shared_domain(profile: Profile) -> None:
     )
 
 
-def apart_from_classmates(
-    profile: Profile, asked: int | None, environ: Mapping[str, str] = os.environ
-) -> Profile:
+def apart_from_classmates(profile: Profile, asked: int | None, environ: Mapping[str, str] = os.environ) -> Profile:
     """Return the profile, in a free domain if a classmate with the same account is in its own.
 
     A classmate is who has logged in by SSH from another address. A domain that somebody has chosen

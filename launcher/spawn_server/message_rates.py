@@ -21,9 +21,7 @@ class _Counter:
     def __init__(self, node: Node, topic: str, kind: type[Any]) -> None:
         # This receives from reliable and best-effort publishers.
         quality = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self._subscription = node.create_subscription(
-            kind, topic, lambda _message: None, quality, raw=True
-        )
+        self._subscription = node.create_subscription(kind, topic, lambda _message: None, quality, raw=True)
         self._rate = ArrivalRate()
 
     def rate_hz(self) -> float:

@@ -53,9 +53,7 @@ class ForkSpec:
     """The only folders in which it may write; empty: it is not confined."""
 
     @classmethod
-    def from_request(
-        cls, request: dict[str, Any], fds: list[int], supervisor: int, preload: Preload
-    ) -> ForkSpec:
+    def from_request(cls, request: dict[str, Any], fds: list[int], supervisor: int, preload: Preload) -> ForkSpec:
         """Read a request; if the imports have failed, modules are started cold."""
         kind, argv = str(request["kind"]), tuple(map(str, request["argv"]))
         if kind == "module" and preload.broken:
@@ -175,12 +173,7 @@ def renew_streams() -> None:
 
 def _unbuffered(fd: int) -> io.TextIOWrapper:
     raw = io.FileIO(fd, "w", closefd=False)
-    return io.TextIOWrapper(
-        raw,
-        encoding="utf-8",
-        errors="backslashreplace",
-        write_through=True,
-    )
+    return io.TextIOWrapper(raw, encoding="utf-8", errors="backslashreplace", write_through=True)
 
 
 def check_fields(wanted: str) -> None:

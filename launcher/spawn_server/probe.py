@@ -89,10 +89,7 @@ def probe(argv: Sequence[str]) -> None:
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     # A leading underscore hides a node from the usual lists.
     node = rclpy.create_node(
-        f"_deck_probe_{os.getpid()}",
-        use_global_arguments=False,
-        enable_rosout=False,
-        start_parameter_services=False,
+        f"_deck_probe_{os.getpid()}", use_global_arguments=False, enable_rosout=False, start_parameter_services=False
     )
     try:
         _watch(node, conditions, MessageRates(node), reports)
@@ -163,10 +160,7 @@ def _clashes(node: Node) -> list[tuple[str, list[tuple[str, str]]]]:
     found = []
     for topic, types in node.get_topic_names_and_types():
         if len(types) > 1:
-            ends = (
-                *node.get_publishers_info_by_topic(topic),
-                *node.get_subscriptions_info_by_topic(topic),
-            )
+            ends = (*node.get_publishers_info_by_topic(topic), *node.get_subscriptions_info_by_topic(topic))
             users = {
                 (f"{end.node_namespace.rstrip('/')}/{end.node_name}", str(end.topic_type))
                 for end in ends

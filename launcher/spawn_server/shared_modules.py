@@ -40,7 +40,6 @@ class SharedModules:
         return self._load(package, "__preload_idle__")
 
     def _load(self, package: str, attribute: str) -> Iterator[str]:
-        """Skip modules that cannot be imported."""
         stamps = self._packages.setdefault(package, {})
         with contextlib.suppress(Exception):
             with _noting(stamps):

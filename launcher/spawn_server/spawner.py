@@ -108,9 +108,7 @@ class Spawner:
                 raise SpawnError(say("the spawn server does not answer"))
         raise SpawnError(say("the spawn server keeps ending"))
 
-    async def _ask(
-        self, link: SpawnServerLink, request: SpawnRequest, fds: Sequence[int]
-    ) -> SpawnedProcess | None:
+    async def _ask(self, link: SpawnServerLink, request: SpawnRequest, fds: Sequence[int]) -> SpawnedProcess | None:
         """Return the new process, None if the server died before answering.
 
         Anything it forked has been answered before: the end of the socket comes after all answers.
@@ -239,8 +237,7 @@ def _why_replaced(link: SpawnServerLink, within_s: float) -> Words:
     pid = link.handle.pid
     if link.hung:
         return say(
-            "the spawn server (pid {pid}) did not answer within {seconds:g} s and was "
-            "killed; a new one takes over",
+            "the spawn server (pid {pid}) did not answer within {seconds:g} s and was killed; a new one takes over",
             pid=pid,
             seconds=within_s,
         )

@@ -59,21 +59,12 @@ def start_spawn_server(run_id: str, *, warm: bool) -> SpawnServerHandle:
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     theirs.set_inheritable(True)
     mode = "warm" if warm else "cold"
-    argv = [
-        sys.executable,
-        "-m",
-        "launcher.spawn_server.server",
-        str(theirs.fileno()),
-        str(os.getpid()),
-    ]
+    argv = [sys.executable, "-m", "launcher.spawn_server.server", str(theirs.fileno()), str(os.getpid())]
     pid = os.posix_spawn(
         sys.executable,
         [*argv, mode, ROOM_ARGUMENT],
         {**os.environ, **room_for_marks(), RUN_MARK: run_id},
-        file_actions=[
-            (os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0),
-            (os.POSIX_SPAWN_DUP2, 2, 1),
-        ],
+        file_actions=[(os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0), (os.POSIX_SPAWN_DUP2, 2, 1)],
         setsid=True,
         setsigmask=(),
         setsigdef=(signal.SIGCHLD, signal.SIGPIPE),

@@ -24,11 +24,7 @@ def clash_of(node: str, file: str, clashes: Sequence[Clash]) -> NodeFault | None
                 "warning",
                 file,
                 exception=say(
-                    "{topic} is {own} here, and {other} in {node}",
-                    topic=topic,
-                    own=own[0],
-                    other=kind,
-                    node=user,
+                    "{topic} is {own} here, and {other} in {node}", topic=topic, own=own[0], other=kind, node=user
                 ),
                 meaning=say("A topic has one type: messages of another do not arrive."),
             )

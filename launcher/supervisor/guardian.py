@@ -73,7 +73,6 @@ def _end_all() -> None:
 
 
 def _descendants() -> list[Process]:
-    """Return all living descendants of this process."""
     children: dict[int, list[Process]] = {}
     for process in processes():
         children.setdefault(process.parent, []).append(process)

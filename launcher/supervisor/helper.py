@@ -20,9 +20,7 @@ ENDS_WITHIN_S = 3.0
 
 
 @contextlib.asynccontextmanager
-async def helping(
-    spawner: Spawner, reaper: Reaper, request: SpawnRequest
-) -> AsyncIterator[asyncio.StreamReader]:
+async def helping(spawner: Spawner, reaper: Reaper, request: SpawnRequest) -> AsyncIterator[asyncio.StreamReader]:
     """Start a process for the length of a `with`; yields its stdout, a line a report.
 
     Raises:

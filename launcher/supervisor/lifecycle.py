@@ -58,9 +58,7 @@ class LifecycleWaits:
     async def _one_process(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> bool:
         """Listen to one process; return whether the state was reached before it ended."""
         wanted = json.dumps([condition.name, condition.type, condition.goes])
-        request = SpawnRequest(
-            "lifecycle", "deck_lifecycle", "deck: lifecycle", (wanted,), "/", self._env
-        )
+        request = SpawnRequest("lifecycle", "deck_lifecycle", "deck: lifecycle", (wanted,), "/", self._env)
         with contextlib.suppress(SpawnError, ValueError):
             async with helping(self._spawner, self._reaper, request) as reports:
                 async for line in reports:

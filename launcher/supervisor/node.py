@@ -15,15 +15,7 @@ from launcher.spawn_server.spawner import SpawnError
 from launcher.status import IDLE, STUCK, NodeFault, NodeState, NodeStatus, Severity
 from launcher.supervisor.readying import Readying, why_unready
 from launcher.supervisor.restart_policy import Again, Finished, GivenUp, RestartPolicy
-from launcher.supervisor.words import (
-    NOT_EXECUTABLE,
-    NOT_FOUND,
-    end_words,
-    left_undone,
-    stopped_words,
-    suspended,
-    who,
-)
+from launcher.supervisor.words import NOT_EXECUTABLE, NOT_FOUND, end_words, left_undone, stopped_words, suspended, who
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -111,7 +103,6 @@ class SupervisedNode:
         return self._task is not None and not self._task.done()
 
     def status(self) -> NodeStatus:
-        """Return its current status."""
         now, last, usage = self._now, self._last, self.usage
         crash = self._recent_crash()
         fault = self.fault if self._suspended is None else self._suspended
@@ -252,9 +243,7 @@ class SupervisedNode:
     def _tell_fault(self, task: asyncio.Task[None]) -> None:
         """Report an exception in Deck itself, so that the node does not seem to be healthy."""
         if not task.cancelled() and task.exception() is not None:
-            self.become(
-                NodeState.FAILED, say("an error in Deck itself: {error!r}", error=task.exception())
-            )
+            self.become(NodeState.FAILED, say("an error in Deck itself: {error!r}", error=task.exception()))
             asyncio.get_running_loop().call_exception_handler(
                 {"message": f"life of {self.plan.name}", "exception": task.exception()}
             )
@@ -371,9 +360,7 @@ class SupervisedNode:
         await process.close()
         self._now, self._last, self._suspended, self._crash = None, end, None, None
         asked = self._down or bool(now.failure)
-        self._around.say(
-            self.plan.name, self._gravity(end, asked=asked), self._end_words(end, asked=asked)
-        )
+        self._around.say(self.plan.name, self._gravity(end, asked=asked), self._end_words(end, asked=asked))
         if self.plan.file:
             self._judge_end(end)
         return end, lasted, now.failure
@@ -394,11 +381,7 @@ class SupervisedNode:
     async def _end_all_of_it(self, now: _Now) -> None:
         """Stop what is left: everything if the node is to stop, else what its process left."""
         now.stop = StagedStop(
-            now.process,
-            self._around.clock,
-            self._held_up,
-            QUICK if self._hurried else PATIENT,
-            self._outlived,
+            now.process, self._around.clock, self._held_up, QUICK if self._hurried else PATIENT, self._outlived
         )
         if now.process.ended.done() and not self._down:
             left = now.process.left()

@@ -33,9 +33,7 @@ class OwnFiles:
     """The files of the nodes that are the learner's own."""
 
     def __init__(
-        self,
-        file_of: Callable[[], Mapping[str, str]],
-        saved: Callable[[str, NodeFault | None], None],
+        self, file_of: Callable[[], Mapping[str, str]], saved: Callable[[str, NodeFault | None], None]
     ) -> None:
         """`file_of`: each such node's file; `saved` is called with a node whose file was saved."""
         self._file_of = file_of

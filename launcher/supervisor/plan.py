@@ -87,7 +87,6 @@ class Plan:
 
     @property
     def needs(self) -> dict[str, tuple[str, ...]]:
-        """Node to the nodes it needs."""
         return {node.name: node.needs for node in self.nodes}
 
     @property
@@ -97,7 +96,6 @@ class Plan:
 
     @property
     def warm(self) -> bool:
-        """Whether any node is to be forked warm."""
         return any(node.module for node in self.nodes)
 
     @property
@@ -107,7 +105,6 @@ class Plan:
         return {module.rpartition(".")[0] for module in modules if "/" not in module} - {""}
 
     def to_json(self) -> str:
-        """Return it as one line."""
         return json.dumps(asdict(self))
 
     @classmethod
@@ -133,13 +130,7 @@ def _node_from(fields: dict[str, Any]) -> NodePlan:
 
 
 def plan_of(
-    profile: Profile,
-    *,
-    run_dir: str,
-    log_dir: str,
-    foreground: bool,
-    node_lang: str,
-    confined_to: Iterable[str] = (),
+    profile: Profile, *, run_dir: str, log_dir: str, foreground: bool, node_lang: str, confined_to: Iterable[str] = ()
 ) -> Plan:
     """Make the plan of a profile for this machine, environment and current folder."""
     return Plan(
@@ -164,9 +155,7 @@ def plan_of(
 def _common_env(profile: Profile, node_lang: str) -> dict[str, str | None]:
     wanted = ros_environment(os.environ, profile.domain, profile.document.discovery)
     env: dict[str, str | None] = {
-        name: wanted.get(name)
-        for name in {*wanted, *os.environ}
-        if wanted.get(name) != os.environ.get(name)
+        name: wanted.get(name) for name in {*wanted, *os.environ} if wanted.get(name) != os.environ.get(name)
     }
     env.update(settings_of_discovery(os.environ, profile.document.discovery))
     # A single format of log lines, which can be parsed.
@@ -197,9 +186,7 @@ def _node_plan(node: NodeSpec) -> NodePlan:
         env={**_learner_env(node), **env, **said.env},
         cwd=str(node.cwd) if node.cwd is not None else os.getcwd(),  # noqa: PTH109
         needs=tuple(node.needs),
-        ready=None
-        if ready is None
-        else ReadyCondition(ready.kind, ready.name, ready.type, ready.rate_hz),
+        ready=None if ready is None else ReadyCondition(ready.kind, ready.name, ready.type, ready.rate_hz),
         lifecycle=None
         if said.lifecycle is None
         else ReadyCondition("lifecycle", node.managed, said.lifecycle, goes=True),

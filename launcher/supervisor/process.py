@@ -53,19 +53,13 @@ class NodeProcess:
     """One process that was started for a node; a `RunningProcess`."""
 
     def __init__(
-        self,
-        name: str,
-        spawned: SpawnedProcess,
-        launcher: ProcessLauncher,
-        readers: Sequence[PipeReader],
+        self, name: str, spawned: SpawnedProcess, launcher: ProcessLauncher, readers: Sequence[PipeReader]
     ) -> None:
         """`readers` read its stdout and stderr."""
         self.name = name
         self.pid = spawned.pid
         self.started_ticks = spawned.started_ticks
-        self.ended: asyncio.Future[Exit] = launcher.reaper.exit_of(
-            spawned.pid, spawned.started_ticks
-        )
+        self.ended: asyncio.Future[Exit] = launcher.reaper.exit_of(spawned.pid, spawned.started_ticks)
         self.ended.add_done_callback(self._on_end)
         self._launcher = launcher
         self._readers = readers
@@ -101,9 +95,7 @@ class NodeProcess:
 class ProcessLauncher:
     """Starts processes for nodes, and reads their output into the log."""
 
-    def __init__(
-        self, plan: Plan, spawner: Spawner, reaper: Reaper, scan: ProcessScan, log: SessionLog
-    ) -> None:
+    def __init__(self, plan: Plan, spawner: Spawner, reaper: Reaper, scan: ProcessScan, log: SessionLog) -> None:
         self.spawner = spawner
         self.reaper = reaper
         self.scan = scan
@@ -138,10 +130,7 @@ class ProcessLauncher:
         out, out_write = node_pipe()
         err, err_write = node_pipe()
         # Read from the beginning: output from before the process is known is its own too.
-        readers = [
-            self._log.read(node.name, out, "stdout"),
-            self._log.read(node.name, err, "stderr"),
-        ]
+        readers = [self._log.read(node.name, out, "stdout"), self._log.read(node.name, err, "stderr")]
         try:
             self._blocked.avoid_others(self._plan.domain)
             spawned = await self.spawner.spawn(request, (out_write, err_write))

@@ -86,9 +86,7 @@ class Readiness:
         self._reaper = reaper
         self._env = env
         self._on_clashes = on_clashes
-        self._waiters: dict[
-            asyncio.Future[None], tuple[ReadyCondition, Callable[[Seen], None]]
-        ] = {}
+        self._waiters: dict[asyncio.Future[None], tuple[ReadyCondition, Callable[[Seen], None]]] = {}
         self._holding: frozenset[ReadyCondition] = frozenset()
         self._seen: dict[ReadyCondition, Seen] = {}
         self._task: asyncio.Task[None] | None = None

@@ -174,15 +174,11 @@ class Supervisor:
         self._spawner.preload(plan.packages)
         self._files = LogFiles(Path(self.info.log_dir), self._log_failed)
         self.control = ControlServer(self)
-        self._log = SessionLog(
-            (node.name for node in plan.nodes), self._files, self.control.lines_came
-        )
+        self._log = SessionLog((node.name for node in plan.nodes), self._files, self.control.lines_came)
         scan = ProcessScan(Members(self.info.run_id))
         launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._log)
         self._own_files = OwnFiles(lambda: self._session.own_files(), self._saved)  # noqa: PLW0108
-        self._session = Session(
-            plan, launcher, self._log, self._status_changed, self._own_files.note
-        )
+        self._session = Session(plan, launcher, self._log, self._status_changed, self._own_files.note)
         open_because = why_open(os.environ, plan.discovery)
         if open_because:
             self._log.say(DECK, Severity.WARN, open_because)
@@ -194,7 +190,6 @@ class Supervisor:
         self._pids: dict[str, int | None] = {}
 
     async def run(self, stdin: asyncio.StreamReader) -> None:
-        """Run the session to its end."""
         self._reaper.install(self._loop)
         self._install_signals()
         self._watch_guardian()
@@ -373,9 +368,7 @@ class Supervisor:
         except OSError as problem:
             if not self._record_failed:
                 self._record_failed = True
-                self._log.say(
-                    DECK, Severity.ERROR, _no_room(self._run_folder.record.folder, problem)
-                )
+                self._log.say(DECK, Severity.ERROR, _no_room(self._run_folder.record.folder, problem))
         else:
             self._record_failed = False
 
@@ -387,8 +380,7 @@ class Supervisor:
         users = other_users(self.info.domain)
         if users:
             words = say(
-                "{users} also have ROS processes in domain {domain} on this machine; choose "
-                "another with `--domain`",
+                "{users} also have ROS processes in domain {domain} on this machine; choose another with `--domain`",
                 users=", ".join(users),
                 domain=self.info.domain,
             )

@@ -207,7 +207,6 @@ class Session:
         return say("waiting for {nodes}", nodes=", ".join(map(_with_state, absent)))
 
     def last_words(self, name: str) -> str:
-        """Return the last words of the node."""
         return self.log.last_words(name)
 
     def crash(self, plan: NodePlan) -> NodeFault | None:

@@ -26,9 +26,7 @@ LEAST_FREE_BYTES = 1 << 20
 class SharedMemory:
     """Cleared before nodes start and periodically afterwards: others may be killed at any time."""
 
-    def __init__(
-        self, tell: Callable[[Severity, Words], None], folder: Path = SHARED_MEMORY
-    ) -> None:
+    def __init__(self, tell: Callable[[Severity, Words], None], folder: Path = SHARED_MEMORY) -> None:
         """`tell` adds a line to the log."""
         self._tell = tell
         self._folder = folder

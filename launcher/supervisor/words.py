@@ -35,10 +35,7 @@ def suspended(pid: int) -> NodeFault:
     return NodeFault(
         HALTED,
         exception=say("suspended by a signal (SIGSTOP, pid {pid})", pid=pid),
-        meaning=say(
-            "It does nothing until it gets SIGCONT: `kill -CONT {pid}`, or restart the node.",
-            pid=pid,
-        ),
+        meaning=say("It does nothing until it gets SIGCONT: `kill -CONT {pid}`, or restart the node.", pid=pid),
     )
 
 
@@ -49,9 +46,7 @@ def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
     if end.code == NOT_FOUND and last.startswith(NOT_FOUND_WORDS) and not plan.module:
         program = plan.argv[0]
         if plan.optional:
-            return say(
-                "{program} is not installed; the lesson continues without it", program=program
-            )
+            return say("{program} is not installed; the lesson continues without it", program=program)
         return say("{program} is not installed", program=program)
     if end == UNSEEN:
         return say("gone, nobody saw how it ended")
@@ -122,9 +117,7 @@ def lack(condition: ReadyCondition) -> str:
     if condition.kind == "service":
         return say("nobody serves {name}", name=condition.name)
     if condition.kind == "lifecycle":
-        return say(
-            "{name} tells no state: it is not there, or has no lifecycle", name=condition.name
-        )
+        return say("{name} tells no state: it is not there, or has no lifecycle", name=condition.name)
     return say("node {name} is not in the graph", name=condition.name)
 
 

@@ -16,9 +16,7 @@ if TYPE_CHECKING:
     import cv2
 
 _TIMEOUT_MS = 5000
-_NO_CAMERA = N_(
-    "no such camera; plug it in, or set the parameter source (v4l2-ctl --list-devices); {others}"
-)
+_NO_CAMERA = N_("no such camera; plug it in, or set the parameter source (v4l2-ctl --list-devices); {others}")
 _NO_DEVICE = N_("it is not a camera; v4l2-ctl --list-devices names them")
 _NOT_IN_GROUP = N_("no permission; sudo usermod -aG video $USER, then log in again")
 _NO_PICTURES = N_(
@@ -54,7 +52,6 @@ class CameraSource:
 
     @property
     def path(self) -> Path:
-        """Path of a device or a file."""
         if self.name.isdecimal():
             return Path(f"/dev/video{int(self.name)}")
         return Path(self.name).expanduser()
@@ -122,5 +119,4 @@ class SourceSetting(Text):
         return super().accept(value)
 
     def expected(self) -> str:
-        """Say what is accepted."""
         return N_("number, /dev path, file or URL")

@@ -39,7 +39,6 @@ class DeadReckoning:
         self.pose = Pose()
 
     def take(self, telemetry: Telemetry) -> None:
-        """Advance to the time of this telemetry."""
         before, self._uptime_ms = self._uptime_ms, telemetry.uptime_ms
         passed_s = ((telemetry.uptime_ms - before) % 2**32) / 1000 if before is not None else 0.0
         if passed_s > _LONGEST_GAP_S:

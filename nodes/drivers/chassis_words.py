@@ -22,9 +22,7 @@ COMMAND_OLD = N_("No wheel command for {seconds:g} s: stop")
 TOO_FAST = N_("A wheel should turn at {speed:.1f} rad/s, the limit is {fastest:g}: both are slowed")
 EMERGENCY = N_("EMERGENCY STOP: the wheels stand until it is released")
 RELEASED = N_("The emergency stop is released; waiting for a new command")
-_REFUSED_BY_PICO = N_(
-    "The Pico has refused {count} lines: damaged on their way, or more than its config.py allows"
-)
+_REFUSED_BY_PICO = N_("The Pico has refused {count} lines: damaged on their way, or more than its config.py allows")
 STANDS = N_("The wheels stand: {reasons}")
 _DRIVES = N_("ready to drive")
 _NO_ANSWER = N_("no Pico answers at {port}")
@@ -75,20 +73,13 @@ class StandstillLogger:
             count is None
             or before is None
             or count < before
-            or (
-                count > before
-                and self._say.warn(_REFUSED_BY_PICO, every_s=_SAY_EVERY_S, count=count - before)
-            )
+            or (count > before and self._say.warn(_REFUSED_BY_PICO, every_s=_SAY_EVERY_S, count=count - before))
         ):
             self._refused = count
 
 
 def diagnosis(
-    say: TranslatedLogger,
-    status: DiagnosticStatus,
-    pico: PicoClient,
-    emergency: bool,
-    refused: Refusal | None,
+    say: TranslatedLogger, status: DiagnosticStatus, pico: PicoClient, emergency: bool, refused: Refusal | None
 ) -> DiagnosticStatus:
     """Add the state of the Pico to that of the port, for programs and for people."""
     telemetry = pico.telemetry
@@ -99,11 +90,7 @@ def diagnosis(
             status.level = DiagnosticStatus.ERROR
             status.message = say.text(_NO_ANSWER, port=pico.link.port)
         return status
-    measured = {
-        "battery_v": telemetry.battery_v,
-        "left_a": telemetry.left_a,
-        "right_a": telemetry.right_a,
-    }
+    measured = {"battery_v": telemetry.battery_v, "left_a": telemetry.left_a, "right_a": telemetry.right_a}
     values = {
         "flags": "".join(sorted(telemetry.flags)) or "-",
         "refused_by_pico": str(telemetry.refused),

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
 STARTED = N_("The head is ready for {service}")
 STARTED_AT_PORT = N_(
-    "The head at {port}: {service}; /head_state is the commanded position, as servos do not"
-    " report theirs"
+    "The head at {port}: {service}; /head_state is the commanded position, as servos do not report theirs"
 )
 TURNING = N_("Turning the head to pan {pan}°, tilt {tilt}°")
 DONE = N_("The head is there: pan {pan}°, tilt {tilt}°")
@@ -64,9 +63,7 @@ def _joint_settings(joint: str, servo: int, way: str) -> tuple[Setting, ...]:
             high=int(SERVO.high),
         ),
         Number(f"{joint}_min", low, f"Minimum {joint}", fixed=True, low=low, high=high, unit="deg"),
-        Number(
-            f"{joint}_max", high, f"Maximum {joint}", fixed=True, low=low, high=high, unit="deg"
-        ),
+        Number(f"{joint}_max", high, f"Maximum {joint}", fixed=True, low=low, high=high, unit="deg"),
         Number(
             f"{joint}_trim",
             0.0,
@@ -75,20 +72,12 @@ def _joint_settings(joint: str, servo: int, way: str) -> tuple[Setting, ...]:
             high=45.0,
             unit="deg",
         ),
-        Switch(
-            f"{joint}_reversed", False, f"Whether a longer pulse turns the head {way}", fixed=True
-        ),
+        Switch(f"{joint}_reversed", False, f"Whether a longer pulse turns the head {way}", fixed=True),
     )
 
 
 SERVO_SETTINGS: tuple[Setting, ...] = (
-    Text(
-        "port",
-        "",
-        "Port of an LSC-16, as in /dev/serial/by-id; empty: simulated",
-        True,
-        may_be_empty=True,
-    ),
+    Text("port", "", "Port of an LSC-16, as in /dev/serial/by-id; empty: simulated", True, may_be_empty=True),
     Whole("baud", BAUD, "Speed of the port", fixed=True, low=9600, high=921_600),
     Number("speed", 90.0, "Speed of the servos, with a port", low=10.0, high=360.0, unit="deg/s"),
     *_joint_settings("pan", 1, "right"),

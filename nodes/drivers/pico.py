@@ -36,9 +36,7 @@ _HELLO_EVERY_S = 0.3
 SILENT_AFTER_S = 0.5
 
 _WELCOME = N_("The Pico answers: firmware {firmware}, protocol {protocol}")
-_OTHER_PROTOCOL = N_(
-    "The Pico speaks protocol {theirs}, this program {ours}: the wheels stand; flash firmware/pico2"
-)
+_OTHER_PROTOCOL = N_("The Pico speaks protocol {theirs}, this program {ours}: the wheels stand; flash firmware/pico2")
 _SILENT = N_("{port} is open, but no Pico answers: another device, or no firmware on it?")
 
 
@@ -93,7 +91,6 @@ class PicoClient:
         self._send(Halt)
 
     def release(self) -> None:
-        """Release the emergency stop."""
         self._send(Release)
 
     def _send(self, build: Callable[[int], Message]) -> None:
@@ -133,8 +130,6 @@ class PicoClient:
 
     def _welcome(self, message: Welcome) -> None:
         if message.protocol == PROTOCOL:
-            self._say.info(
-                _WELCOME, every_s=1.0, firmware=message.firmware, protocol=message.protocol
-            )
+            self._say.info(_WELCOME, every_s=1.0, firmware=message.firmware, protocol=message.protocol)
         else:
             self._say.error(_OTHER_PROTOCOL, every_s=10.0, theirs=message.protocol, ours=PROTOCOL)

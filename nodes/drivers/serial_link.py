@@ -92,7 +92,6 @@ class SerialLink:
 
     @property
     def connected(self) -> bool:
-        """Whether the port is open."""
         return self._output is not None
 
     def start(self) -> None:

@@ -37,9 +37,7 @@ _SILENT = N_(
     "{port} is open, but no LSC-16 answers: is it powered, are RX and TX both wired, {baud} baud?"
     " (with TX alone set battery_every_s to 0)"
 )
-_GARBLED = N_(
-    "{port} is open, but its data are not from an LSC-16: wrong port, or not {baud} baud?"
-)
+_GARBLED = N_("{port} is open, but its data are not from an LSC-16: wrong port, or not {baud} baud?")
 _LOW = N_("The battery of the servos is low: {volts:.1f} V")
 _COMMANDED = N_("positions are commanded, not measured")
 
@@ -50,9 +48,7 @@ class ServoClient:
     def __init__(self, node: LessonNode) -> None:
         self._node, self._say = node, node.say
         self._every_s = node.number("battery_every_s")
-        self.link = SerialLink(
-            node, int(node.number("baud")), self._hear, self._begin, self._forget, ServoReader
-        )
+        self.link = SerialLink(node, int(node.number("baud")), self._hear, self._begin, self._forget, ServoReader)
         self._decoder = ServoDecoder()
         self._battery: Battery | None = None
         """The newest voltage of this connection."""

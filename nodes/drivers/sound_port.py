@@ -71,11 +71,9 @@ class SoundPort:
 
     @property
     def wants(self) -> bool:
-        """Whether a device is wanted at all."""
         return self.wanted.casefold() != NOWHERE
 
     def start(self) -> None:
-        """Start opening the device."""
         if self.wants:
             self._thread.start()
 
@@ -194,7 +192,6 @@ class SoundPort:
         return self.connected and bool(self._part or len(self._queue))
 
     def _carry(self, child: SoundChild) -> None:
-        """Move the sound that can be moved now."""
         if self.way == OUT:
             self._part = self._part or self._queue.take(self._block)
             left = child.play(self._part)

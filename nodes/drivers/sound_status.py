@@ -27,9 +27,7 @@ class PortStatus:
         port, now_s = self._port, time.monotonic()
         counts = port.octets, port.faults
         passed_s = max(1e-3, now_s - self._told[0])
-        octets, faults = (
-            (new - old) / passed_s for new, old in zip(counts, self._told[1:], strict=True)
-        )
+        octets, faults = ((new - old) / passed_s for new, old in zip(counts, self._told[1:], strict=True))
         self._told = (now_s, *counts)
         level, words = self._state(faults)
         values = {

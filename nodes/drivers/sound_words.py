@@ -11,18 +11,9 @@ if TYPE_CHECKING:
     from nodes.parts.translated_logger import TranslatedLogger
     from text.i18n import N_
 
-OPENED = {
-    IN: N_("Microphone: {device}, {rate} Hz"),
-    OUT: N_("Speaker: {device}, {rate} Hz"),
-}
-LOST = {
-    IN: N_("Lost the microphone {device}: {problem}"),
-    OUT: N_("Lost the speaker {device}: {problem}"),
-}
-CANNOT = {
-    IN: N_("No microphone: {problem}"),
-    OUT: N_("No speaker: {problem}"),
-}
+OPENED = {IN: N_("Microphone: {device}, {rate} Hz"), OUT: N_("Speaker: {device}, {rate} Hz")}
+LOST = {IN: N_("Lost the microphone {device}: {problem}"), OUT: N_("Lost the speaker {device}: {problem}")}
+CANNOT = {IN: N_("No microphone: {problem}"), OUT: N_("No speaker: {problem}")}
 SINCE = {
     IN: N_("microphone {device}, {rate} Hz, for {seconds:.0f} s"),
     OUT: N_("speaker {device}, {rate} Hz, for {seconds:.0f} s"),

@@ -67,6 +67,4 @@ class DriveGoal:
         else:
             self.handle.abort()
         distance_m = self.distance_m(pose)
-        self.over.set_result(
-            DriveToPoint.Result(reached=reached, distance=distance_m, message=message)
-        )
+        self.over.set_result(DriveToPoint.Result(reached=reached, distance=distance_m, message=message))

@@ -44,27 +44,18 @@ _CONTRADICTED_S = 10.0
 _UNKNOWN = "_UNKNOWN_"
 """In the names of a node whose endpoint is known but whose name is not yet (rmw)."""
 
-_REMEMBERED = N_(
-    "EMERGENCY STOP, given before this node was started ({at}): nothing moves until it is released"
-)
+_REMEMBERED = N_("EMERGENCY STOP, given before this node was started ({at}): nothing moves until it is released")
 _UNREADABLE = N_(
-    "It is not known whether an emergency stop was given before ({problem}):"
-    " nothing moves until one is released"
+    "It is not known whether an emergency stop was given before ({problem}): nothing moves until one is released"
 )
-_NOT_KEPT = N_(
-    "The emergency stop holds, but cannot be written to disk ({problem}): it would not outlive"
-    " this node"
-)
-_NOT_FORGOTTEN = N_(
-    "The emergency stop is released, but stays on disk ({problem}): the next start will be stopped"
-)
+_NOT_KEPT = N_("The emergency stop holds, but cannot be written to disk ({problem}): it would not outlive this node")
+_NOT_FORGOTTEN = N_("The emergency stop is released, but stays on disk ({problem}): the next start will be stopped")
 _UNPLACED = N_(
     "A release of the emergency stop has no effect: it is {seconds:.1f} s old by the clock of this"
     " computer, so that it came late, or by another clock. Release it again"
 )
 _CONTRADICTED = N_(
-    "The emergency stop is not released: somebody releases it while another keeps giving it"
-    " ({publishers})"
+    "The emergency stop is not released: somebody releases it while another keeps giving it ({publishers})"
 )
 
 
@@ -80,10 +71,7 @@ class EmergencyStopListener:
     """
 
     def __init__(
-        self,
-        node: LessonNode,
-        changed: Callable[[bool], None],
-        released: Callable[[], None] | None = None,
+        self, node: LessonNode, changed: Callable[[bool], None], released: Callable[[], None] | None = None
     ) -> None:
         """Start with the saved stop, for which `changed` is not called.
 
@@ -95,9 +83,7 @@ class EmergencyStopListener:
         self._file = StopFile(node.context.get_domain_id(), name)
         self._status = DiagnosticStatus(name=name)
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
-        self._publisher = node.create_publisher(
-            DiagnosticArray, EMERGENCY_STATE, LATCHED, event_callbacks=quiet
-        )
+        self._publisher = node.create_publisher(DiagnosticArray, EMERGENCY_STATE, LATCHED, event_callbacks=quiet)
         self._released_s = self._contradicted_s = self._suspected_s = 0.0
         self._insistence = Insistence()
         self._suspects: set[bytes] = set()
@@ -174,11 +160,7 @@ class EmergencyStopListener:
         if self._insistence.lasts(time.monotonic(), said.number):
             self._tell_contradicted()
             return
-        release, before, saved = (
-            Heard(said.said_ns, _heard_ns(info)),
-            self._record,
-            self._file.read(),
-        )
+        release, before, saved = (Heard(said.said_ns, _heard_ns(info)), self._record, self._file.read())
         self._known.learn(saved.record, saved.written_ns)
         is_placed = self._known.release(release, was_frozen=was_frozen)
         self._obey(before, saved.stop)
@@ -295,9 +277,7 @@ class EmergencyStopListener:
         self._status.message = self._node.say.text(FREE if self._stop is None else HELD)
         said_s = time.monotonic() - self._contradicted_s
         contradicted = bool(self._contradicted_s) and said_s < _CONTRADICTED_S
-        message = report_message(
-            self._status, self._record, self._stop, self._released_s, contradicted=contradicted
-        )
+        message = report_message(self._status, self._record, self._stop, self._released_s, contradicted=contradicted)
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 

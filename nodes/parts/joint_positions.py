@@ -60,12 +60,7 @@ class JointPositions:
         unheard, quiet = _NeverWaitedFor(), SubscriptionEventCallbacks(use_default_callbacks=False)
         self._subscriptions: list[Subscription] = [
             node.create_subscription(
-                JointState,
-                topic,
-                _never_called,
-                _QUEUE,
-                callback_group=unheard,
-                event_callbacks=quiet,
+                JointState, topic, _never_called, _QUEUE, callback_group=unheard, event_callbacks=quiet
             )
             for topic in topics
         ]
@@ -90,13 +85,7 @@ class JointPositions:
                 self._say.warn(_ONLY_SPEEDS, every_s=_SAY_EVERY_S, topic=topic)
             return
         if len(names) != len(positions):
-            self._say.warn(
-                _UNEVEN,
-                every_s=_SAY_EVERY_S,
-                topic=topic,
-                names=len(names),
-                positions=len(positions),
-            )
+            self._say.warn(_UNEVEN, every_s=_SAY_EVERY_S, topic=topic, names=len(names), positions=len(positions))
             return
         now_s = time.monotonic()
         for joint, position in zip(names, positions, strict=True):
@@ -105,9 +94,7 @@ class JointPositions:
             elif is_position(position):
                 self.heard[joint] = HeardPosition(position, message.header.stamp, now_s)
             else:
-                self._say.warn(
-                    _NOWHERE, every_s=_SAY_EVERY_S, topic=topic, joint=joint, position=position
-                )
+                self._say.warn(_NOWHERE, every_s=_SAY_EVERY_S, topic=topic, joint=joint, position=position)
 
     def _tell_stranger(self, topic: str, joint: str) -> None:
         if joint not in self._strangers and len(self._strangers) < _MOST_STRANGERS:

@@ -26,9 +26,7 @@ if TYPE_CHECKING:
     from rclpy.publisher import Publisher
     from rclpy.timer import Timer
 
-_BAD_VALUE = N_(
-    "parameter {name} is {value!r}, but must be {expected}; for example: -p {name}:={example}"
-)
+_BAD_VALUE = N_("parameter {name} is {value!r}, but must be {expected}; for example: -p {name}:={example}")
 _UNKNOWN_NEAR = N_("there is no parameter {name}; did you mean {near}?")
 _UNKNOWN = N_("there is no parameter {name}; there are: {known}")
 _OWN_TO_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.")
@@ -58,11 +56,7 @@ class LessonNode(Node):
     SETTINGS: ClassVar[tuple[Setting, ...]] = ()
 
     def __init__(self) -> None:
-        super().__init__(
-            self.NAME,
-            automatically_declare_parameters_from_overrides=True,
-            enable_logger_service=True,
-        )
+        super().__init__(self.NAME, automatically_declare_parameters_from_overrides=True, enable_logger_service=True)
         logger = self.get_logger()  # type: ignore[no-untyped-call]
         self.say = TranslatedLogger(logger, detect())
         self._settings = {setting.name: setting for setting in self.SETTINGS}
@@ -112,12 +106,7 @@ class LessonNode(Node):
         """Return the node's purpose and parameters, for a terminal."""
         module = sys.modules[cls.__module__]
         name = module.__spec__.name if module.__spec__ else cls.__module__
-        lines = [
-            inspect.getdoc(module) or "",
-            "",
-            f"python -m {name} --ros-args -p NAME:=VALUE",
-            "",
-        ]
+        lines = [inspect.getdoc(module) or "", "", f"python -m {name} --ros-args -p NAME:=VALUE", ""]
         for setting in cls.SETTINGS:
             lines.append(f"  {setting.name} = {setting.default!r}  ({setting.expected()})")
             lines.append(f"      {setting.about}")
@@ -138,9 +127,7 @@ class LessonNode(Node):
                 self._values[name] = setting.accept(value)
             except BadValueError as error:
                 raise NodeUsageError(_BAD_VALUE, **self._complaint(setting, value, error)) from None
-            self.declare_parameter(
-                name, self._values[name], setting.descriptor(), ignore_override=True
-            )
+            self.declare_parameter(name, self._values[name], setting.descriptor(), ignore_override=True)
         problem = self.contradiction(self._values)
         if problem is not None:
             raise NodeUsageError(problem, **self._values)
@@ -150,16 +137,12 @@ class LessonNode(Node):
             return NodeUsageError(_UNKNOWN_NEAR, name=name, near=meant)
         return NodeUsageError(_UNKNOWN, name=name, known=", ".join(self._settings) or "-")
 
-    def _complaint(
-        self, setting: Setting, value: object, error: BadValueError
-    ) -> dict[str, object]:
+    def _complaint(self, setting: Setting, value: object, error: BadValueError) -> dict[str, object]:
         return {
             "name": setting.name,
             "value": value,
             "expected": self.say.text(error.expected, **error.values).rstrip(),
-            "example": str(setting.default).lower()
-            if isinstance(setting.default, bool)
-            else setting.default,
+            "example": str(setting.default).lower() if isinstance(setting.default, bool) else setting.default,
         }
 
     def _with_points(self, parameters: Sequence[Parameter]) -> list[Parameter]:
@@ -185,9 +168,7 @@ class LessonNode(Node):
             try:
                 wanted[parameter.name] = setting.accept(parameter.value)
             except BadValueError as error:
-                reason = self.say.text(
-                    _BAD_VALUE, **self._complaint(setting, parameter.value, error)
-                )
+                reason = self.say.text(_BAD_VALUE, **self._complaint(setting, parameter.value, error))
                 return SetParametersResult(successful=False, reason=reason)
         problem = self.contradiction(wanted)
         if problem is not None:

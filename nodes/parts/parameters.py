@@ -93,15 +93,12 @@ class Number(Setting):
         )
 
     def expected(self) -> str:
-        """The range and the unit."""
         return f"{self.low:g} .. {self.high:g} {self.unit}".rstrip()
 
     def descriptor(self) -> ParameterDescriptor:
         """Return a descriptor with a floating-point range."""
         descriptor = super().descriptor()
-        descriptor.floating_point_range = [
-            FloatingPointRange(from_value=float(self.low), to_value=float(self.high))
-        ]
+        descriptor.floating_point_range = [FloatingPointRange(from_value=float(self.low), to_value=float(self.high))]
         return descriptor
 
 
@@ -115,21 +112,13 @@ class Whole(Setting):
 
     def accept(self, value: object) -> int:
         """Return an int within the range."""
-        if (
-            isinstance(value, int)
-            and not isinstance(value, bool)
-            and self.low <= value <= self.high
-        ):
+        if isinstance(value, int) and not isinstance(value, bool) and self.low <= value <= self.high:
             return value
         raise BadValueError(
-            N_("a whole number from {low} to {high} {unit}"),
-            low=self.low,
-            high=self.high,
-            unit=self.unit,
+            N_("a whole number from {low} to {high} {unit}"), low=self.low, high=self.high, unit=self.unit
         )
 
     def expected(self) -> str:
-        """The range and the unit."""
         return f"{self.low} .. {self.high} {self.unit}".rstrip()
 
     def descriptor(self) -> ParameterDescriptor:

@@ -37,9 +37,7 @@ def bgr(message: Image) -> NDArray[np.uint8]:
     width, height, step = message.width, message.height, message.step
     row = width * CHANNELS
     if not width or not height or step < row or len(message.data) != step * height:
-        raise BadPictureError(
-            _BAD_SIZE, width=width, height=height, step=step, size=len(message.data)
-        )
+        raise BadPictureError(_BAD_SIZE, width=width, height=height, step=step, size=len(message.data))
     rows = np.frombuffer(message.data, np.uint8).reshape(height, step)
     picture = rows[:, :row].reshape(height, width, CHANNELS)
     return picture if message.encoding == "bgr8" else picture[:, :, ::-1]

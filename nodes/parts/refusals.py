@@ -41,11 +41,7 @@ _ANOTHER_CLOCK_S = 30.0
 
 _NO_NUMBER = N_("{source} asks for {value:g} {unit}, which is not a number: refused, stop")
 _BEYOND = N_("{source} asks for {value:g} {unit}, the limit is {limit:g} {unit}: refused, stop")
-_UNITS = {
-    "m/s": N_("m/s"),
-    "rad": N_("rad"),
-    "rad/s": N_("rad/s"),
-}
+_UNITS = {"m/s": N_("m/s"), "rad": N_("rad"), "rad/s": N_("rad/s")}
 _OLD = N_("A command of {source} is {age:.1f} s old by its stamp and is not obeyed")
 _OTHER_CLOCK = N_(
     "The stamps of {source} are {age:.1f} s {which} this computer's clock: it is not obeyed;"

@@ -42,9 +42,7 @@ LONGEST = 80
 """Characters of an argument that an error repeats."""
 
 _FAILED = "{problem}"
-_NO_ARGUMENTS = N_(
-    "does not know {extra}: parameters are given as --ros-args -p name:=value (see --help)"
-)
+_NO_ARGUMENTS = N_("does not know {extra}: parameters are given as --ros-args -p name:=value (see --help)")
 _NO_UTF_8 = N_("this argument is not UTF-8 text, which ROS takes: {word}")
 
 

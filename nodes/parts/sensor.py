@@ -60,8 +60,5 @@ class SensorListener:
         if self._relaxed or told.last_policy_kind != QoSPolicyKind.RELIABILITY:
             return
         self._relaxed = True
-        strict, self._subscription = (
-            self._subscription,
-            self._subscribed(ReliabilityPolicy.BEST_EFFORT),
-        )
+        strict, self._subscription = (self._subscription, self._subscribed(ReliabilityPolicy.BEST_EFFORT))
         self._node.destroy_subscription(strict)

@@ -65,9 +65,7 @@ class SolePublisher:
             names[self._own] -= 1
         now_s = time.monotonic()
         self._seen_s = {name: self._seen_s.get(name, now_s) for name in +names}
-        return [
-            self._called(name) for name, at_s in self._seen_s.items() if self._is_sure(name, at_s)
-        ]
+        return [self._called(name) for name, at_s in self._seen_s.items() if self._is_sure(name, at_s)]
 
     def _is_sure(self, name: str, seen_s: float) -> bool:
         now_s = time.monotonic()

@@ -33,12 +33,7 @@ class StopReport(NamedTuple):
 
 
 def report_message(
-    status: DiagnosticStatus,
-    record: StopRecord,
-    stop: KeptStop | None,
-    released_s: float,
-    *,
-    contradicted: bool,
+    status: DiagnosticStatus, record: StopRecord, stop: KeptStop | None, released_s: float, *, contradicted: bool
 ) -> DiagnosticArray:
     """Return the message, with `status` for its name and sentence; its header is left empty."""
     status.level = DiagnosticStatus.OK if stop is None else DiagnosticStatus.ERROR

@@ -41,7 +41,6 @@ class DistanceSensor:
         self._readings.are(publishers, time.monotonic())
 
     def result(self, zone: SafetyZone) -> SensorResult:
-        """Return its current result."""
         now_s = time.monotonic()
         reading: Reading = self._readings.reading(now_s, zone.stale_after_s)
         state = range_state(reading, zone.critical_m, zone.stale_after_s)
@@ -62,9 +61,7 @@ class DistanceSensors:
 
     def results(self, zone: SafetyZone) -> tuple[SensorResult, ...]:
         """Return the current result of each, the front first."""
-        return tuple(
-            sensor.result(zone) for sensor in (self.front, self.rear) if sensor is not None
-        )
+        return tuple(sensor.result(zone) for sensor in (self.front, self.rear) if sensor is not None)
 
 
 def shares(results: tuple[SensorResult, ...]) -> Shares:

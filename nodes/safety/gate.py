@@ -46,9 +46,7 @@ _HOLDING = (Verdict.EMERGENCY_STOP, Verdict.STARTING)
 class CommandGate:
     """Subscribes to the sources of `node`, and publishes what passes."""
 
-    def __init__(
-        self, node: LessonNode, look: Callable[[], None], reason: Callable[[], str]
-    ) -> None:
+    def __init__(self, node: LessonNode, look: Callable[[], None], reason: Callable[[], str]) -> None:
         """Call `look`, which calls `rule`, before each command is judged.
 
         `reason` returns in words why something was stopped.
@@ -162,11 +160,7 @@ class CommandGate:
 
     def _tell_cut(self, asked: DriveSetpoint) -> None:
         self._node.say.warn(
-            words.COMMAND_CUT,
-            every_s=1.0,
-            speed=asked.speed_m_s,
-            steering=asked.steering_rad,
-            reason=self._reason(),
+            words.COMMAND_CUT, every_s=1.0, speed=asked.speed_m_s, steering=asked.steering_rad, reason=self._reason()
         )
 
     def _send(self, passed: DriveSetpoint) -> None:

@@ -29,12 +29,8 @@ HELD_UP = N_("This node was held up: commands that waited meanwhile are not obey
 _FRONT = {
     RangeState.FREE: N_("The path is clear ({metres:.2f} m)."),
     RangeState.CLOSE: N_("EMERGENCY BRAKE! Obstacle at {metres:.2f} m."),
-    RangeState.INVALID: N_(
-        "The front sonar gives no valid distance ({metres}): treated as danger."
-    ),
-    RangeState.SILENT: N_(
-        "The front sonar has been silent for {seconds:.1f} s: treated as danger."
-    ),
+    RangeState.INVALID: N_("The front sonar gives no valid distance ({metres}): treated as danger."),
+    RangeState.SILENT: N_("The front sonar has been silent for {seconds:.1f} s: treated as danger."),
 }
 _FRONT_OUT_OF_RANGE = {
     RangeState.FREE: N_("The path is clear (nothing in range)."),
@@ -42,16 +38,11 @@ _FRONT_OUT_OF_RANGE = {
 }
 """Used instead for an infinite distance by REP-117."""
 _FRONT_TOO_RARE = N_(
-    "{nodes} speaks too rarely on the front sonar's topic, silent for {seconds:.1f} s:"
-    " treated as danger."
+    "{nodes} speaks too rarely on the front sonar's topic, silent for {seconds:.1f} s: treated as danger."
 )
 _FRONT_SLOWED = N_("Free to move, slowed to {percent} % ({metres:.2f} m).")
-_FRONT_HELD = {
-    RangeState.FREE: N_("{metres:.2f} m ahead; the emergency stop holds the wheels."),
-}
-_FRONT_HELD_OUT_OF_RANGE = {
-    RangeState.FREE: N_("Nothing in range ahead; the emergency stop holds the wheels."),
-}
+_FRONT_HELD = {RangeState.FREE: N_("{metres:.2f} m ahead; the emergency stop holds the wheels.")}
+_FRONT_HELD_OUT_OF_RANGE = {RangeState.FREE: N_("Nothing in range ahead; the emergency stop holds the wheels.")}
 _LOG_EVERY_S = 0.9
 
 _VERDICTS = {
@@ -113,11 +104,7 @@ def _percent(share: float) -> int:
 
 
 def diagnosis(
-    say: TranslatedLogger,
-    verdict: Verdict,
-    results: Sequence[SensorResult],
-    snapshot: GateSnapshot,
-    zone: SafetyZone,
+    say: TranslatedLogger, verdict: Verdict, results: Sequence[SensorResult], snapshot: GateSnapshot, zone: SafetyZone
 ) -> DiagnosticStatus:
     """Return the state of safety: level, a sentence, and key-values for programs.
 
@@ -132,10 +119,7 @@ def diagnosis(
         level=level,
         name="safety_stop",
         message=_sentence(say, verdict, results, snapshot),
-        values=[
-            KeyValue(key=key, value=value)
-            for key, value in _values(verdict, results, snapshot, zone)
-        ],
+        values=[KeyValue(key=key, value=value) for key, value in _values(verdict, results, snapshot, zone)],
     )
 
 
@@ -162,9 +146,7 @@ def _reason(say: TranslatedLogger, result: SensorResult) -> str:
     return say.text(_phrase(result, _REASONS, _REASONS_OUT_OF_RANGE), place=place, metres=metres)
 
 
-def _phrase(
-    result: SensorResult, phrases: Mapping[RangeState, str], out_of_range: Mapping[RangeState, str]
-) -> str:
+def _phrase(result: SensorResult, phrases: Mapping[RangeState, str], out_of_range: Mapping[RangeState, str]) -> str:
     metres = result.reading.distance_m
     if metres is not None and math.isinf(metres):
         return out_of_range.get(result.state, phrases[result.state])

@@ -48,12 +48,7 @@ class SimulatedBase:
     """Obeys each command on `commands` until the next."""
 
     def __init__(
-        self,
-        node: LessonNode,
-        mode: str,
-        commands: str,
-        wheelbase_m: float,
-        held: Callable[[], bool],
+        self, node: LessonNode, mode: str, commands: str, wheelbase_m: float, held: Callable[[], bool]
     ) -> None:
         """Read /drive or another topic of `commands`; stand and ignore commands while `held`."""
         self._node, self._commands, self._held = node, commands, held

@@ -54,6 +54,6 @@ class FaultyLine:
         if self._fault != NOISE:
             return data
         dice = self._dice
-        return bytes(
-            dice.randrange(256) if dice.random() < _NOISY else octet for octet in data
-        ) + dice.randbytes(dice.randrange(4))
+        return bytes(dice.randrange(256) if dice.random() < _NOISY else octet for octet in data) + dice.randbytes(
+            dice.randrange(4)
+        )

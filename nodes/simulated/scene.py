@@ -73,10 +73,7 @@ class MovingScene:
     def _paint_background(self) -> NDArray[np.uint8]:
         horizon = self._height * 3 // 5
         rows = np.concatenate(
-            (
-                np.linspace(_SKY_TOP, _SKY_LOW, horizon),
-                np.linspace(_GROUND_FAR, _GROUND_NEAR, self._height - horizon),
-            )
+            (np.linspace(_SKY_TOP, _SKY_LOW, horizon), np.linspace(_GROUND_FAR, _GROUND_NEAR, self._height - horizon))
         )
         # A dark band, to make the caption readable.
         rows[self._height // 12 - 2 * self._scale :][: (_GLYPH_ROWS + 4) * self._scale] = _BAND

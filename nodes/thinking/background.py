@@ -41,10 +41,7 @@ class Background:
         return self._question is not None
 
     def ask(
-        self,
-        question: Coroutine[Any, Any, T],
-        answered: Callable[[T], None],
-        failed: Callable[[Exception], None],
+        self, question: Coroutine[Any, Any, T], answered: Callable[[T], None], failed: Callable[[Exception], None]
     ) -> None:
         """Ask in place of the question under way; one of the two is called on the node's thread."""
         self.cancel()
@@ -88,11 +85,7 @@ class Background:
         self._thread.join(_CLOSING_S)
 
     def _finish(
-        self,
-        number: int,
-        future: Future[T],
-        answered: Callable[[T], None],
-        failed: Callable[[Exception], None],
+        self, number: int, future: Future[T], answered: Callable[[T], None], failed: Callable[[Exception], None]
     ) -> None:
         if number != self._number:
             return

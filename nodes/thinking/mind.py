@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 
 _ASKED = N_("Asking {model}")
 _REPAIRED = N_("{model} answered something invalid, and is asked once more: {problem}")
-_USED = N_(
-    "{model}: {tokens_in} + {tokens_out} tokens, the first after {first:.2f} s, all {total:.2f} s"
-)
+_USED = N_("{model}: {tokens_in} + {tokens_out} tokens, the first after {first:.2f} s, all {total:.2f} s")
 _COST = N_("That was {cost:.5f} {currency}")
 
 
@@ -52,7 +50,6 @@ class ModelMind:
 
     @property
     def sees(self) -> bool:
-        """Whether the model gets pictures."""
         return self._sees(self.model.settings)
 
     def think(self, situation: Situation) -> None:

@@ -63,10 +63,7 @@ class AskedModel:
         self.run(asking(), answered, failed)
 
     def run(
-        self,
-        work: Coroutine[Any, Any, T],
-        answered: Callable[[T], None],
-        failed: Callable[[ModelError], None],
+        self, work: Coroutine[Any, Any, T], answered: Callable[[T], None], failed: Callable[[ModelError], None]
     ) -> None:
         """Do something else with the server, in place of the question under way."""
 
@@ -86,7 +83,6 @@ class AskedModel:
         self.background.cancel()
 
     def close(self) -> None:
-        """Hang up, and close the connections."""
         self.background.close(self._client.close() if self._client is not None else None)
 
     def _made(self) -> Ladder:

@@ -51,7 +51,6 @@ class BrainState:
         self._say(DiagnosticStatus.OK, _THINKS)
 
     def answered(self, usage: TokenUsage) -> None:
-        """An answer was accepted."""
         self._usage, self._fault = usage, ""
         self._say(DiagnosticStatus.OK, _ANSWERED)
 

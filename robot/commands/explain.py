@@ -45,11 +45,7 @@ class Explainer:
     """Checks a refused JSON text again, against one model at a time."""
 
     def __init__(
-        self,
-        text: str,
-        found: PlacedJson,
-        envelope: type[BaseModel],
-        commands: Mapping[str, type[BaseModel]],
+        self, text: str, found: PlacedJson, envelope: type[BaseModel], commands: Mapping[str, type[BaseModel]]
     ) -> None:
         self._text = text
         self._found = found

@@ -24,9 +24,7 @@ _NAMED = (
     ("number_form", re.compile(r"\+[0-9.]|-?\.[0-9]")),
 )
 """Code, a key of `robot.commands.problems.TEMPLATES`, and what begins there."""
-_ALIKE: Mapping[str, str] = MappingProxyType(
-    dict(zip("，：［］｛｝＂−–", ',:[]{}"--', strict=True))
-)
+_ALIKE: Mapping[str, str] = MappingProxyType(dict(zip("，：［］｛｝＂−–", ',:[]{}"--', strict=True)))
 """Signs of other keyboards, and JSON's own."""
 _CONSTANTS: Mapping[str, str] = MappingProxyType(
     {"true": "true", "false": "false", "none": "null", "null": "null", "undefined": "null"}

@@ -89,14 +89,9 @@ class Problem:
     """Values of the template's fields."""
 
     @classmethod
-    def of(
-        cls, code: str, path: Path = (), place: tuple[int, int] = (1, 1), **args: str | float
-    ) -> Problem:
+    def of(cls, code: str, path: Path = (), place: tuple[int, int] = (1, 1), **args: str | float) -> Problem:
         """Make a problem, its message from the template; `place` is line and column."""
-        shown = {
-            name: shown_name(value) if isinstance(value, str) else value
-            for name, value in args.items()
-        }
+        shown = {name: shown_name(value) if isinstance(value, str) else value for name, value in args.items()}
         message = TEMPLATES[code].format(**shown)
         return cls(field_name(path), *place, message, code, MappingProxyType(shown))
 

@@ -42,10 +42,7 @@ def _whole(value: object) -> object:
 Speed = Annotated[
     float,
     Field(
-        strict=True,
-        ge=SPEED.low,
-        le=SPEED.high,
-        description="Speed in m/s, from -0.5 (backward) to 0.5 (forward)",
+        strict=True, ge=SPEED.low, le=SPEED.high, description="Speed in m/s, from -0.5 (backward) to 0.5 (forward)"
     ),
 ]
 Steering = Annotated[
@@ -58,11 +55,7 @@ Steering = Annotated[
     ),
 ]
 # The order matters: a range outside the `BeforeValidator` would be missing from the schema.
-Degrees = Annotated[
-    int,
-    Field(strict=True, ge=int(HEAD_ANGLE.low), le=int(HEAD_ANGLE.high)),
-    BeforeValidator(_whole),
-]
+Degrees = Annotated[int, Field(strict=True, ge=int(HEAD_ANGLE.low), le=int(HEAD_ANGLE.high)), BeforeValidator(_whole)]
 
 
 class _Strict(BaseModel):
@@ -99,9 +92,7 @@ class LlmResponse(_Strict):
 class SpokenResponse(LlmResponse):
     """The same with something to say: what the robot's brain asks a model for."""
 
-    say: Annotated[
-        str, Field(strict=True, description="What to say aloud, one short sentence; may be empty")
-    ]
+    say: Annotated[str, Field(strict=True, description="What to say aloud, one short sentence; may be empty")]
 
     def silent(self) -> LlmResponse:
         """Return it without the words: what goes to `llm_parser`."""

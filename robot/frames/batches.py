@@ -17,10 +17,7 @@ if TYPE_CHECKING:
 
 GIVE_UP_S = 0.3
 """After this long, the rest of an incomplete frame is no longer expected."""
-_PHRASES = {
-    "frames": N_("{count} more"),
-    "bytes": N_("{count} more bytes"),
-}
+_PHRASES = {"frames": N_("{count} more"), "bytes": N_("{count} more bytes")}
 
 
 class Chunk(NamedTuple):
@@ -74,9 +71,7 @@ class FrameBatcher:
                 return pieces[1:]
         return pieces
 
-    def _add(
-        self, lines: list[FrameLine], more: Counter[str], chunk: Chunk, pieces: list[FramePiece]
-    ) -> None:
+    def _add(self, lines: list[FrameLine], more: Counter[str], chunk: Chunk, pieces: list[FramePiece]) -> None:
         for piece in pieces:
             last = lines[-1] if lines else None
             if last and piece.kind is FrameKind.NOISE is last.kind and last.way == chunk.way:
@@ -85,9 +80,7 @@ class FrameBatcher:
             elif len(lines) >= MOST:
                 more[chunk.way] += 1
             else:
-                lines.append(
-                    FrameLine(chunk.time_s, chunk.way, piece.kind, piece.octets, piece.text)
-                )
+                lines.append(FrameLine(chunk.time_s, chunk.way, piece.kind, piece.octets, piece.text))
 
     def _mark(self, time_s: float, way: str, key: str, count: int) -> FrameLine:
         said = self._words(key, count=count)

@@ -3,15 +3,7 @@
 from __future__ import annotations
 
 from robot.frames.protocols import FrameKind, FramePhrases, FramePiece, HeadedReader
-from robot.wire.lsc16 import (
-    ActionComplete,
-    ActionRun,
-    ActionStop,
-    Battery,
-    ServoFrame,
-    ServoMove,
-    decode,
-)
+from robot.wire.lsc16 import ActionComplete, ActionRun, ActionStop, Battery, ServoFrame, ServoMove, decode
 from text.i18n import N_
 
 _HEAD = b"\x55\x55"

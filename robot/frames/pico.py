@@ -7,16 +7,7 @@ import re
 from robot.frames.protocols import FrameKind, FramePhrases, FramePiece, noise
 from robot.wire.crc import crc16
 from robot.wire.line import LONGEST, unwrap
-from robot.wire.pico import (
-    FLAGS,
-    Drive,
-    Halt,
-    Hello,
-    Message,
-    Telemetry,
-    Welcome,
-    parse,
-)
+from robot.wire.pico import FLAGS, Drive, Halt, Hello, Message, Telemetry, Welcome, parse
 from text.i18n import N_, translated
 
 _LINE = re.compile(rb"([^\r\n]*)[\r\n]+")
@@ -90,12 +81,7 @@ class PicoReader:
         if isinstance(message, Telemetry):
             return self._telemetry(message)
         if isinstance(message, Drive):
-            return words(
-                "drive",
-                left=message.left_rad_s,
-                right=message.right_rad_s,
-                steering=message.steering_rad,
-            )
+            return words("drive", left=message.left_rad_s, right=message.right_rad_s, steering=message.steering_rad)
         if isinstance(message, Hello):
             return words("hello", protocol=message.protocol)
         if isinstance(message, Welcome):
@@ -104,12 +90,7 @@ class PicoReader:
 
     def _telemetry(self, message: Telemetry) -> str:
         words = self._words
-        said = words(
-            "telemetry",
-            left=message.left_rad_s,
-            right=message.right_rad_s,
-            steering=message.steering_rad,
-        )
+        said = words("telemetry", left=message.left_rad_s, right=message.right_rad_s, steering=message.steering_rad)
         if message.flags:
             said += words("flags", flags=", ".join(self._named(message.flags)))
         if message.battery_v is not None:
@@ -118,11 +99,7 @@ class PicoReader:
             if value is not None:
                 said += words(side, value=value)
         uptime_s = message.uptime_ms / 1000
-        return said + words(
-            "counts", obeyed=message.obeyed, refused=message.refused, uptime=uptime_s
-        )
+        return said + words("counts", obeyed=message.obeyed, refused=message.refused, uptime=uptime_s)
 
     def _named(self, flags: frozenset[str]) -> list[str]:
-        return [
-            translated(name, self._language) for letter, name in FLAGS.items() if letter in flags
-        ]
+        return [translated(name, self._language) for letter, name in FLAGS.items() if letter in flags]

@@ -56,22 +56,16 @@ class FramePhrases:
         self._language, self._phrases = language, phrases
 
     def __call__(self, key: str, **values: object) -> str:
-        """Return the phrase with its values."""
         return localized(say(self._phrases[key], **values), self._language)
 
 
-_NOISE = {
-    "one": N_("noise 1 byte"),
-    "many": N_("noise {count} bytes"),
-}
+_NOISE = {"one": N_("noise 1 byte"), "many": N_("noise {count} bytes")}
 
 
 def noise(octets: bytes, language: str) -> FramePiece:
     """Bytes that belong to no frame."""
     key = "one" if len(octets) == 1 else "many"
-    return FramePiece(
-        octets, FramePhrases(language, _NOISE)(key, count=len(octets)), FrameKind.NOISE
-    )
+    return FramePiece(octets, FramePhrases(language, _NOISE)(key, count=len(octets)), FrameKind.NOISE)
 
 
 _ENOUGH = 4
@@ -82,11 +76,7 @@ class HeadedReader:
     """Reads frames that begin with a two-byte header."""
 
     def __init__(
-        self,
-        language: str,
-        head: bytes,
-        length: Callable[[bytes], int],
-        piece: Callable[[bytes], FramePiece],
+        self, language: str, head: bytes, length: Callable[[bytes], int], piece: Callable[[bytes], FramePiece]
     ) -> None:
         """`length`: the length of a frame that begins like this, 0 if not known yet.
 

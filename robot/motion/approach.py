@@ -45,14 +45,11 @@ class ApproachLimits:
         if not (0.0 < self.max_speed_m_s <= SPEED.high):
             raise ValueError(f"speed must be up to {SPEED.high} m/s, not {self.max_speed_m_s}")
         if not (0.0 < self.max_steering_rad <= STEERING.high):
-            raise ValueError(
-                f"steering must be up to {STEERING.high} rad, not {self.max_steering_rad}"
-            )
+            raise ValueError(f"steering must be up to {STEERING.high} rad, not {self.max_steering_rad}")
         turning_radius(self.max_steering_rad, self.wheelbase_m)
 
     @property
     def tightest_m(self) -> float:
-        """Radius of the tightest circle."""
         return turning_radius(self.max_steering_rad, self.wheelbase_m)
 
 
@@ -105,10 +102,7 @@ class Approach:
         fastest, sharpest = self._chassis.max_speed_m_s, self._chassis.max_steering_rad
         speed = max(SPEED_STEP_M_S, _rounded(abs(speed_m_s), SPEED_STEP_M_S))
         steering = _rounded(steering_rad, STEERING_STEP_RAD)
-        return DriveSetpoint(
-            math.copysign(min(fastest, speed), speed_m_s),
-            max(-sharpest, min(sharpest, steering)),
-        )
+        return DriveSetpoint(math.copysign(min(fastest, speed), speed_m_s), max(-sharpest, min(sharpest, steering)))
 
     def longest_way_m(self, start: Pose) -> float:
         """Return an upper bound for any way from there, turns and three-point turns included."""

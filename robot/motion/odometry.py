@@ -35,7 +35,6 @@ class Pose:
 
     @property
     def is_finite(self) -> bool:
-        """Whether all three are finite numbers."""
         return all(map(math.isfinite, (self.x_m, self.y_m, self.heading_rad)))
 
     def distance_to(self, point: Point | Pose) -> float:
@@ -49,9 +48,7 @@ class Pose:
         return cos * east + sin * north, cos * north - sin * east
 
 
-def advance(
-    pose: Pose, command: DriveSetpoint, seconds: float, wheelbase_m: float = WHEELBASE_M
-) -> Pose:
+def advance(pose: Pose, command: DriveSetpoint, seconds: float, wheelbase_m: float = WHEELBASE_M) -> Pose:
     """Return the pose after obeying a command for some seconds, along the exact arc.
 
     Raises ValueError for a steering angle without a circle (see `turning_radius`).
@@ -60,11 +57,7 @@ def advance(
     radius_m = turning_radius(command.steering_rad, wheelbase_m)
     heading = pose.heading_rad
     if math.isinf(radius_m):
-        return Pose(
-            pose.x_m + travelled_m * math.cos(heading),
-            pose.y_m + travelled_m * math.sin(heading),
-            heading,
-        )
+        return Pose(pose.x_m + travelled_m * math.cos(heading), pose.y_m + travelled_m * math.sin(heading), heading)
     turned = heading + travelled_m / radius_m
     return Pose(
         pose.x_m + radius_m * (math.sin(turned) - math.sin(heading)),

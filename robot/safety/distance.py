@@ -99,9 +99,7 @@ def share(reading: Reading, zone: SafetyZone) -> float:
     return (distance_m - zone.critical_m) / (zone.slow_m - zone.critical_m)
 
 
-def where(
-    front: RangeState, rear: RangeState | None, emergency: bool, *, starting: bool = False
-) -> Verdict:
+def where(front: RangeState, rear: RangeState | None, emergency: bool, *, starting: bool = False) -> Verdict:
     """Return where the robot may not go now. `rear` is None for a robot without a sensor there."""
     if emergency:
         return Verdict.EMERGENCY_STOP

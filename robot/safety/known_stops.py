@@ -39,7 +39,6 @@ class Heard(NamedTuple):
 
     @property
     def age_ns(self) -> int:
-        """Its age by our clock."""
         return self.heard_ns - self.said_ns
 
 

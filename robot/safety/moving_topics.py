@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-from robot.topics import (
-    AI_COMMAND,
-    DRIVE_SAFE,
-    GOAL_POSE,
-    HEARD,
-    LLM_RAW_JSON,
-    MICROPHONE,
-    WHEEL_COMMANDS,
-)
+from robot.topics import AI_COMMAND, DRIVE_SAFE, GOAL_POSE, HEARD, LLM_RAW_JSON, MICROPHONE, WHEEL_COMMANDS
 
 STOPPED_BY_ZEROS = frozenset(
     {
@@ -21,10 +13,7 @@ STOPPED_BY_ZEROS = frozenset(
     }
 )
 """Command types whose empty message is a stop."""
-MOVING_TYPES = STOPPED_BY_ZEROS | {
-    "trajectory_msgs/msg/JointTrajectory",
-    "trajectory_msgs/msg/JointTrajectoryPoint",
-}
+MOVING_TYPES = STOPPED_BY_ZEROS | {"trajectory_msgs/msg/JointTrajectory", "trajectory_msgs/msg/JointTrajectoryPoint"}
 MOVING_NAMES = frozenset(
     {
         WHEEL_COMMANDS,

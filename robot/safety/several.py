@@ -93,9 +93,7 @@ class Streams(Generic[Said]):
     def _silent(self, now_s: float, stale_after_s: float) -> Iterator[_Stream[Said]]:
         fresh = [one for one in self._streams if now_s - one.last_s <= stale_after_s]
         for one in self._streams:
-            if now_s - one.last_s > stale_after_s and any(
-                one.last_s >= other.first_s for other in fresh
-            ):
+            if now_s - one.last_s > stale_after_s and any(one.last_s >= other.first_s for other in fresh):
                 yield one
 
 
@@ -160,14 +158,7 @@ class SlowestCommand(Generic[Said]):
         self._streams: Streams[Said] = Streams()
 
     def choose(
-        self,
-        command: Said,
-        speed: float,
-        now_s: float,
-        *,
-        within_s: float,
-        number: int = 0,
-        publishers: int = 1,
+        self, command: Said, speed: float, now_s: float, *, within_s: float, number: int = 0, publishers: int = 1
     ) -> Said | None:
         """Return what to do after this command, with its speed and its number; None: stop.
 

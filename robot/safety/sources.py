@@ -87,9 +87,7 @@ class Sources:
         return min(self._max_age_s or HELD_AGE_S, HELD_AGE_S)
 
     def _drop_old(self, now_s: float) -> None:
-        self._orders = {
-            name: order for name, order in self._orders.items() if self._counts(order, now_s)
-        }
+        self._orders = {name: order for name, order in self._orders.items() if self._counts(order, now_s)}
 
     def _counts(self, order: SourceCommand, now_s: float) -> bool:
         limit_s = self.limit_s(order.source)

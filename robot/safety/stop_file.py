@@ -31,24 +31,13 @@ if TYPE_CHECKING:
 _LONGEST = 8192
 _ALONE_WITHIN_S, _AGAIN_S = 0.05, 0.001
 """How long to wait for another process that changes the files, and how often to try."""
-_NO_SENSE = (
-    OSError,
-    ValueError,
-    TypeError,
-    KeyError,
-    AttributeError,
-    ArithmeticError,
-    RecursionError,
-)
+_NO_SENSE = (OSError, ValueError, TypeError, KeyError, AttributeError, ArithmeticError, RecursionError)
 
 
 PASSED_EVERY_S = 0.5
 """How often to pass on what is heard: a stop may be repeated at any rate, and writing takes
 milliseconds."""
-NOT_PASSED = N_(
-    "The emergency stop cannot be written to disk ({problem}): a node that has not heard it may"
-    " move on"
-)
+NOT_PASSED = N_("The emergency stop cannot be written to disk ({problem}): a node that has not heard it may move on")
 TOPIC, BY_SCREEN = "topic", "screen"
 """What has engaged a stop: a message, or somebody by no topic."""
 
@@ -273,9 +262,7 @@ def _parse(text: bytes) -> tuple[frozenset[Stop], KeptStop, int]:
     document = read_json(text)
     since_s = float(document["since"])
     written_ns = int(document.get("written_ns", since_s * 1e9))
-    stop = KeptStop(
-        since_s, str(document["by"]), str(document.get("publishers", "")), remembered=True
-    )
+    stop = KeptStop(since_s, str(document["by"]), str(document.get("publishers", "")), remembered=True)
     held = read_record(str(document.get("stops", "")), "").held
     return held or frozenset({Stop(int(since_s * 1e9))}), stop, written_ns
 

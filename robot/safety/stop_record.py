@@ -158,9 +158,7 @@ class Insistence:
         own = self._chains.get(number - 1)
         if own is not None and not own.is_another:
             self._chains[number - 1] = own._replace(is_ended=True)
-        return any(
-            chain.length >= _IN_A_ROW and _lasts(chain, now_s) for chain in self._chains.values()
-        )
+        return any(chain.length >= _IN_A_ROW and _lasts(chain, now_s) for chain in self._chains.values())
 
 
 def _lasts(chain: _Chain, now_s: float) -> bool:

@@ -40,20 +40,16 @@ def grid_of(room: Room, cell_m: float = CELL_M) -> CellMap:
     # Half a cell of offset: a wall parallel to the axes runs through the middle of its cells.
     least = corners.min(axis=0) - (_MARGIN + 0.5) * cell_m
     columns, rows = np.ceil((corners.max(axis=0) - least) / cell_m).astype(int) + _MARGIN
-    centres = np.meshgrid(
-        least[0] + (np.arange(columns) + 0.5) * cell_m,
-        least[1] + (np.arange(rows) + 0.5) * cell_m,
-    )
+    centres = np.meshgrid(least[0] + (np.arange(columns) + 0.5) * cell_m, least[1] + (np.arange(rows) + 0.5) * cell_m)
     cells = np.full((rows, columns), UNKNOWN, dtype=np.int8)
     cells[_within(room.walls, *centres)] = FREE
     for box in room.boxes:
         cells[_within(box, *centres)] = OCCUPIED
     for box in (room.walls, *room.boxes):
         across, up = _edges(box, cell_m)
-        cells[
-            np.floor((up - least[1]) / cell_m).astype(int),
-            np.floor((across - least[0]) / cell_m).astype(int),
-        ] = OCCUPIED
+        cells[np.floor((up - least[1]) / cell_m).astype(int), np.floor((across - least[0]) / cell_m).astype(int)] = (
+            OCCUPIED
+        )
     return CellMap(float(least[0]), float(least[1]), cell_m, cells)
 
 

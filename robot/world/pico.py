@@ -89,7 +89,6 @@ class SimulatedPico:
 
     @property
     def refused(self) -> int:
-        """Lines that were unusable."""
         return self._decoder.errors + self._refused
 
     def _hello(self, message: Hello) -> None:
@@ -144,8 +143,7 @@ class SimulatedPico:
     def _telemetry(self) -> Telemetry:
         wheels = self.world.wheels
         left_a, right_a = (
-            0.2 + 0.05 * abs(speed) if speed else 0.0
-            for speed in (self._asked.left_rad_s, self._asked.right_rad_s)
+            0.2 + 0.05 * abs(speed) if speed else 0.0 for speed in (self._asked.left_rad_s, self._asked.right_rad_s)
         )
         return Telemetry(
             self._sequence,

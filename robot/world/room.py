@@ -62,12 +62,11 @@ class Room:
         return float(np.sqrt((gaps**2).sum(axis=1).min()))
 
     def touches(self, box: Box) -> bool:
-        """Whether a box touches or crosses any wall."""
         corners = np.array(box.corners())
         edges = np.roll(corners, -1, axis=0) - corners
-        return any(
-            self._crossed(corner, edge) for corner, edge in zip(corners, edges, strict=True)
-        ) or any(_inside(point, box) for point in self._begins)
+        return any(self._crossed(corner, edge) for corner, edge in zip(corners, edges, strict=True)) or any(
+            _inside(point, box) for point in self._begins
+        )
 
     def _crossed(self, begin: NDArray[np.float64], edge: NDArray[np.float64]) -> bool:
         to_begin = self._begins - begin
@@ -79,9 +78,7 @@ class Room:
         return bool(((on_wall >= 0) & (on_wall <= 1) & (on_edge >= 0) & (on_edge <= 1)).any())
 
 
-def _cross(
-    rows: NDArray[np.float64], other: tuple[float, float] | NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _cross(rows: NDArray[np.float64], other: tuple[float, float] | NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the cross product of each row with a vector, or with the row of the same index."""
     x, y = (other[:, 0], other[:, 1]) if isinstance(other, np.ndarray) else other
     result: NDArray[np.float64] = rows[:, 0] * y - rows[:, 1] * x
@@ -96,7 +93,6 @@ def _inside(point: NDArray[np.float64], box: Box) -> bool:
 
 
 LIVING_ROOM = Room(
-    Box(1.5, 0.0, 5.0, 4.0),
-    (Box(2.2, 0.2, 0.4, 0.5, 0.4), Box(0.8, -1.2, 0.6, 0.4), Box(3.2, -1.0, 0.3, 0.3, 0.8)),
+    Box(1.5, 0.0, 5.0, 4.0), (Box(2.2, 0.2, 0.4, 0.5, 0.4), Box(0.8, -1.2, 0.6, 0.4), Box(3.2, -1.0, 0.3, 0.3, 0.8))
 )
 """The robot starts at the origin, 1 m from the wall behind it and 2 m from those beside it."""

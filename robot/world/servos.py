@@ -31,7 +31,6 @@ class SimulatedServos:
         self._now_s += seconds
 
     def pulse_us(self, servo: int) -> float:
-        """Return the current pulse of a servo."""
         start, goal, began_s, length_s = self._moves.get(servo, (CENTRE_US, CENTRE_US, 0.0, 0.0))
         passed_s = self._now_s - began_s
         return goal if passed_s >= length_s else start + (goal - start) * passed_s / length_s

@@ -59,7 +59,6 @@ class SurfaceTextures:
 
     @classmethod
     def of(cls, canvases: Sequence[Canvas]) -> SurfaceTextures:
-        """Concatenate surfaces, in their order."""
         sizes = [len(canvas) * canvas.shape[1] for canvas in canvases]
         return cls(
             np.concatenate([canvas.reshape(-1, 3) for canvas in canvases]),
@@ -92,11 +91,7 @@ def paint_room(walls: Box) -> SurfaceTextures:
 def paint_box(number: int, box: Box) -> SurfaceTextures:
     """Paint the sides of a box: darker edges, and a stripe like tape."""
     colour, height_m = _BOXES[number % len(_BOXES)]
-    sizes = {
-        ALONG: (box.width_m, height_m),
-        ACROSS: (box.length_m, height_m),
-        TOP: (box.length_m, box.width_m),
-    }
+    sizes = {ALONG: (box.width_m, height_m), ACROSS: (box.length_m, height_m), TOP: (box.length_m, box.width_m)}
     return SurfaceTextures.of([_side(sizes[side], colour, _SHARES[side]) for side in sizes])
 
 
@@ -113,13 +108,8 @@ def _canvas(across_m: float, up_m: float, colour: tuple[int, ...]) -> Canvas:
     return np.full((*size, 3), colour, np.uint8)
 
 
-def _fill(
-    canvas: Canvas, across_m: tuple[float, float], up_m: tuple[float, float], colour: Colour
-) -> None:
-    """Paint a rectangle, clipped to the canvas."""
-    columns, rows = (
-        slice(*(max(0, round(end / PIXEL_M)) for end in ends)) for ends in (across_m, up_m)
-    )
+def _fill(canvas: Canvas, across_m: tuple[float, float], up_m: tuple[float, float], colour: Colour) -> None:
+    columns, rows = (slice(*(max(0, round(end / PIXEL_M)) for end in ends)) for ends in (across_m, up_m))
     canvas[rows, columns] = colour
 
 

@@ -112,9 +112,7 @@ class RoomView:
         rays = self._rays(eye)
         # A ray along a wall never meets it: the inf or nan of that division does no harm.
         with np.errstate(divide="ignore", invalid="ignore"):
-            reach, spots = _see_walls(
-                rays.seen_from(self._room.walls), self._room.walls, self._walls
-            )
+            reach, spots = _see_walls(rays.seen_from(self._room.walls), self._room.walls, self._walls)
             for number, box in enumerate(self._room.boxes):
                 part = self._part_with(box, number, eye)
                 if part is not None:
@@ -133,9 +131,7 @@ class RoomView:
     def _part_with(self, box: Box, number: int, eye: CameraPose) -> tuple[slice, slice] | None:
         """Return the rows and columns in which a box may be visible, None if there are none."""
         cos, sin = math.cos(eye.tilt_rad), math.sin(eye.tilt_rad)
-        floor = [
-            _turned(x_m - eye.x_m, y_m - eye.y_m, -eye.heading_rad) for x_m, y_m in box.corners()
-        ]
+        floor = [_turned(x_m - eye.x_m, y_m - eye.y_m, -eye.heading_rad) for x_m, y_m in box.corners()]
         depth, left, up = np.array(
             [
                 (cos * ahead + sin * z_m, left, cos * z_m - sin * ahead)
@@ -152,10 +148,7 @@ class RoomView:
         rows, columns = self._left.shape
         if depth.min() < _NEAR_M:
             return slice(0, rows), slice(0, columns)
-        return (
-            _between(up / depth / self._most_up, rows),
-            _between(left / depth / self._most_left, columns),
-        )
+        return (_between(up / depth / self._most_up, rows), _between(left / depth / self._most_left, columns))
 
     def _rays(self, eye: CameraPose) -> _Rays:
         cos, sin = math.cos(eye.tilt_rad), math.sin(eye.tilt_rad)
@@ -192,12 +185,7 @@ def _see_walls(rays: _Rays, walls: Box, paint: SurfaceTextures) -> tuple[Floats,
 
 
 def _see_box(
-    rays: _Rays,
-    sides_m: tuple[float, float, float],
-    paint: SurfaceTextures,
-    begin: int,
-    reach: Floats,
-    spots: Whole,
+    rays: _Rays, sides_m: tuple[float, float, float], paint: SurfaceTextures, begin: int, reach: Floats, spots: Whole
 ) -> None:
     """Draw a box over what is farther away, in `reach` and in `spots`."""
     length_m, width_m, height_m = sides_m
@@ -235,7 +223,6 @@ def _spots(paint: SurfaceTextures, surface: Whole | int, column_m: Floats, row_m
 
 
 def _turned(along: _Way, across: _Way, angle_rad: float) -> tuple[_Way, _Way]:
-    """Turn a vector to the left."""
     cos, sin = math.cos(angle_rad), math.sin(angle_rad)
     return along * cos - across * sin, along * sin + across * cos
 

@@ -139,10 +139,7 @@ class World:
 
     def read_sonars(self) -> tuple[float, float]:
         """Return front and rear in metres by REP-117; each call draws new noise."""
-        front, rear = (
-            sonar.read(self.room, self.body, self.pose, self._dice)
-            for sonar in (self.front, self.rear)
-        )
+        front, rear = (sonar.read(self.room, self.body, self.pose, self._dice) for sonar in (self.front, self.rear))
         return front, rear
 
     def _turn_wheels(self) -> None:

@@ -32,10 +32,7 @@ def clipped(start: Spot, end: Spot, width: float, height: float) -> tuple[Spot, 
     Source: Liang and Barsky, A New Concept and Method for Line Clipping, 1984.
     """
     first, last = 0.0, 1.0
-    for begin, way, most in (
-        (start[0], end[0] - start[0], width),
-        (start[1], end[1] - start[1], height),
-    ):
+    for begin, way, most in ((start[0], end[0] - start[0], width), (start[1], end[1] - start[1], height)):
         if way == 0.0:
             if not 0 <= begin <= most:
                 return None
@@ -45,7 +42,4 @@ def clipped(start: Spot, end: Spot, width: float, height: float) -> tuple[Spot, 
     if not first <= last:
         return None
     x, y = end[0] - start[0], end[1] - start[1]
-    return (
-        (start[0] + x * first, start[1] + y * first),
-        (start[0] + x * last, start[1] + y * last),
-    )
+    return ((start[0] + x * first, start[1] + y * first), (start[0] + x * last, start[1] + y * last))

@@ -56,7 +56,6 @@ class SpaceCamera:
 
     @property
     def turns(self) -> bool:
-        """Whether it can be turned."""
         return self.angle is Angle.PERSPECTIVE
 
     def basis(self) -> NDArray[np.float64]:
@@ -81,9 +80,7 @@ class SpaceCamera:
         basis = self.basis()
         x, y, z = -basis @ np.array(self.target)
         away = z + self.distance_m(height) if self.turns else z
-        return turned(points, basis, (float(x), float(y), float(away))).astype(
-            np.float32, copy=False
-        )
+        return turned(points, basis, (float(x), float(y), float(away))).astype(np.float32, copy=False)
 
     def on_picture(self, seen: Places, width: int, height: int) -> Places:
         """Return (x, y, depth) of points in the axes of the picture.
@@ -159,17 +156,13 @@ class SpaceCamera:
         if not self.turns:
             return self
         pitch = min(max(self.pitch_rad + pitch_rad, -STEEPEST_RAD), STEEPEST_RAD)
-        return replace(
-            self, yaw_rad=math.remainder(self.yaw_rad + yaw_rad, math.tau), pitch_rad=pitch
-        )
+        return replace(self, yaw_rad=math.remainder(self.yaw_rad + yaw_rad, math.tau), pitch_rad=pitch)
 
     def fitting(self, least: Vector, most: Vector, width: int, height: int) -> SpaceCamera:
         """Return the camera that shows all of a box, as large as possible."""
         middle = tuple((a + b) / 2 for a, b in zip(least, most, strict=True))
         sides = [(a, b) for a, b in zip(least, most, strict=True)]
-        corners = np.array(
-            [[x, y, z] for x in sides[0] for y in sides[1] for z in sides[2]], dtype=np.float32
-        )
+        corners = np.array([[x, y, z] for x in sides[0] for y in sides[1] for z in sides[2]], dtype=np.float32)
         camera = replace(self, target=(middle[0], middle[1], middle[2]))
         camera = _largest(camera, corners, width, height)
         for _round in range(CENTRE_ROUNDS if self.turns else 0):

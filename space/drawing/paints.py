@@ -45,11 +45,7 @@ class Tint(IntEnum):
     """What a map shows as occupied."""
 
 
-RGB = {
-    Tint.X_AXIS: (235, 80, 70),
-    Tint.Y_AXIS: (90, 200, 90),
-    Tint.Z_AXIS: (90, 140, 255),
-}
+RGB = {Tint.X_AXIS: (235, 80, 70), Tint.Y_AXIS: (90, 200, 90), Tint.Z_AXIS: (90, 140, 255)}
 """The colours that REP-103 and every viewer give to axes."""
 _STOPS = ((70, 90, 230), (40, 180, 220), (70, 200, 90), (235, 200, 60), (235, 80, 60))
 """From small to large."""

@@ -88,9 +88,7 @@ def _solid(codes: NDArray[np.uint16], dots: NDArray[np.int8]) -> NDArray[np.int8
 class Raster:
     """A picture of dots; what is nearer covers what is farther away."""
 
-    def __init__(
-        self, columns: int, rows: int, signs_before: Mapping[str, int | None] | None = None
-    ) -> None:
+    def __init__(self, columns: int, rows: int, signs_before: Mapping[str, int | None] | None = None) -> None:
         """Begin with nothing, in this many cells; `signs_before` is from the picture before."""
         self.columns, self.rows = columns, rows
         self.width, self.height = DOTS_ACROSS * columns, DOTS_DOWN * rows
@@ -216,10 +214,7 @@ class Raster:
         depth = self._depth.reshape(shape).transpose(0, 2, 1, 3).reshape(self.rows, self.columns, 8)
         paint = self._paint.reshape(shape).transpose(0, 2, 1, 3).reshape(self.rows, self.columns, 8)
         codes = characters(self._paint.reshape(self.height, self.width) > 0)
-        upper, lower = (
-            _nearest(depth[..., :4], paint[..., :4]),
-            _nearest(depth[..., 4:], paint[..., 4:]),
-        )
+        upper, lower = (_nearest(depth[..., :4], paint[..., :4]), _nearest(depth[..., 4:], paint[..., 4:]))
         front = _nearest(depth, paint)
         above, below = self.floor[0::2], self.floor[1::2]
         full = (paint > 0).all(axis=2)
@@ -253,9 +248,7 @@ class Raster:
 def _lattice(size: int) -> NDArray[np.float32]:
     """Shares of the three corners, of shape (m, 3), for dots all over a triangle of this size."""
     steps = size + 1
-    rows = [
-        (one, two, steps - one - two) for one in range(steps + 1) for two in range(steps + 1 - one)
-    ]
+    rows = [(one, two, steps - one - two) for one in range(steps + 1) for two in range(steps + 1 - one)]
     return np.array(rows, dtype=np.float32) / np.float32(steps)
 
 

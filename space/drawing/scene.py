@@ -37,9 +37,7 @@ def draw(raster: Raster, camera: SpaceCamera, shapes: Iterable[Shape]) -> None:
     faces = [shape for shape in shapes if isinstance(shape, Faces) and len(shape.corners)]
     if faces:
         corners = np.concatenate([one.corners for one in faces])
-        _draw_faces(
-            Faces(corners, _paints([(len(f.corners), f.paint) for f in faces])), raster, camera
-        )
+        _draw_faces(Faces(corners, _paints([(len(f.corners), f.paint) for f in faces])), raster, camera)
     strokes = [shape for shape in shapes if isinstance(shape, Strokes) and len(shape.starts)]
     if strokes:
         starts = np.concatenate([one.starts for one in strokes])
@@ -53,7 +51,6 @@ def draw(raster: Raster, camera: SpaceCamera, shapes: Iterable[Shape]) -> None:
 
 
 def _paints(counted: list[tuple[int, int | Paints]]) -> Paints:
-    """The paint of each of several shapes' parts."""
     parts = [np.broadcast_to(np.asarray(paint, dtype=np.uint8), count) for count, paint in counted]
     paints: Paints = np.concatenate(parts)
     return paints
@@ -129,7 +126,6 @@ def _draw_floor(shape: Floor, raster: Raster, camera: SpaceCamera) -> None:
 
 
 def _standing(shape: Floor) -> Speckles:
-    """The occupied cells as points."""
     rows, columns = np.nonzero(shape.cells == Tint.WALL)
     middles = np.stack([columns + 0.5, rows + 0.5, np.zeros(len(rows))], axis=1) * shape.cell_m
     return Speckles(shape.origin.points(middles).astype(np.float32), Tint.WALL)

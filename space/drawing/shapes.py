@@ -176,20 +176,11 @@ def _solid(at: Transform, corners: NDArray[np.floating], paint: int) -> Faces:
     return Faces(placed, cube((lifted * bright[:, None]).astype(np.uint8)))
 
 
-_CORNERS = np.array(
-    [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float32
-)
+_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float32)
 _SIDES = np.array(
     [
         [a, b, c]
-        for quad in (
-            (0, 1, 3, 2),
-            (4, 6, 7, 5),
-            (0, 4, 5, 1),
-            (2, 3, 7, 6),
-            (0, 2, 6, 4),
-            (1, 5, 7, 3),
-        )
+        for quad in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
         for a, b, c in ((quad[0], quad[1], quad[2]), (quad[0], quad[2], quad[3]))
     ]
 )

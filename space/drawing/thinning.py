@@ -58,9 +58,7 @@ def _corners(places: Places) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return least, most
 
 
-def _in_cubes(
-    at: NDArray[np.int32], paint: int | Paints, total: int
-) -> tuple[NDArray[np.int64], int | Paints]:
+def _in_cubes(at: NDArray[np.int32], paint: int | Paints, total: int) -> tuple[NDArray[np.int64], int | Paints]:
     """Return which cubes have points, and the paint of the last point in each."""
     there = np.zeros(total, dtype=np.bool_)
     there[at] = True

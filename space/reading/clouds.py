@@ -10,16 +10,7 @@ import numpy as np
 
 from space.drawing.paints import cube, ramp
 from space.drawing.shapes import Speckles
-from space.reading.fields import (
-    Drawable,
-    NotDrawnError,
-    field,
-    frame,
-    is_near,
-    listed,
-    stamp_s,
-    whole,
-)
+from space.reading.fields import Drawable, NotDrawnError, field, frame, is_near, listed, stamp_s, whole
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -80,9 +71,7 @@ def cloud_points(tree: Mapping[str, Any], most: int = MOST_POINTS) -> CloudPoint
 
     def column(name: str) -> NDArray[np.generic]:
         offset, kind = columns[name]
-        kinds = np.dtype(
-            {"names": ["v"], "formats": [order + kind], "offsets": [offset], "itemsize": step}
-        )
+        kinds = np.dtype({"names": ["v"], "formats": [order + kind], "offsets": [offset], "itemsize": step})
         return rows.view(kinds)["v"].reshape(-1)
 
     whole_cloud = np.empty((3, count), dtype=np.float32)
@@ -114,16 +103,10 @@ def _check_columns(columns: Mapping[str, _CloudColumn], step: int) -> None:
         raise NotDrawnError(say("the cloud has no field {names}", names=names))
     for name, column in columns.items():
         if name in "xyz" and column.kind not in FLOATS:
-            raise NotDrawnError(
-                say("field {name} of the cloud is neither float32 nor float64", name=name)
-            )
+            raise NotDrawnError(say("field {name} of the cloud is neither float32 nor float64", name=name))
         if column.offset + int(column.kind[1]) > step:
             raise NotDrawnError(
-                say(
-                    "field {name} of the cloud ends behind its point_step of {step} bytes",
-                    name=name,
-                    step=step,
-                )
+                say("field {name} of the cloud ends behind its point_step of {step} bytes", name=name, step=step)
             )
 
 
@@ -158,9 +141,7 @@ def _points_of(tree: Mapping[str, Any], step: int, count: int) -> NDArray[np.uin
         return np.zeros((0, step), dtype=np.uint8)
     if row_step == wide * step:
         return whole_data[: count * step].reshape(count, step)
-    rows = np.lib.stride_tricks.as_strided(
-        whole_data, (high, wide * step), (row_step, 1), writeable=False
-    )
+    rows = np.lib.stride_tricks.as_strided(whole_data, (high, wide * step), (row_step, 1), writeable=False)
     return np.ascontiguousarray(rows).reshape(count, step)
 
 

@@ -130,9 +130,7 @@ def frame(tree: Any, path: str = "header") -> str:  # noqa: ANN401
     """Return the name of a frame. Raises NotDrawnError."""
     name = str(field(tree, f"{path}.frame_id")).lstrip("/")
     if not name:
-        raise NotDrawnError(
-            say("{field} is empty: the publisher names no frame", field=f"{path}.frame_id")
-        )
+        raise NotDrawnError(say("{field} is empty: the publisher names no frame", field=f"{path}.frame_id"))
     return name
 
 
@@ -152,9 +150,7 @@ def table(tree: Any, path: str, names: str) -> NDArray[np.float32]:  # noqa: ANN
     try:
         rows = [[float(one[name]) for name in names] for one in found]
     except (KeyError, TypeError, ValueError):
-        raise NotDrawnError(
-            say("{field} is not a list of {names}", field=path, names=", ".join(names))
-        ) from None
+        raise NotDrawnError(say("{field} is not a list of {names}", field=path, names=", ".join(names))) from None
     return np.array(rows, dtype=np.float32).reshape(-1, len(names))
 
 

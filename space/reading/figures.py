@@ -114,9 +114,7 @@ def marker_action(tree: Mapping[str, Any]) -> MarkerAction:
     try:
         return MarkerAction(action)
     except ValueError:
-        raise NotDrawnError(
-            say("a marker has the unknown action {action}", action=action)
-        ) from None
+        raise NotDrawnError(say("a marker has the unknown action {action}", action=action)) from None
 
 
 def kind_name(kind: int) -> str:
@@ -131,9 +129,7 @@ def read_figure(tree: Mapping[str, Any]) -> MarkerFigure:
     except NotDrawnError as error:
         space, name = marker_key(tree)
         called = plain(f"{space}/{name}" if space else str(name), LONGEST_NAME)
-        raise NotDrawnError(
-            say("marker {name}: {reason}", name=called, reason=reason_of(error))
-        ) from None
+        raise NotDrawnError(say("marker {name}: {reason}", name=called, reason=reason_of(error))) from None
 
 
 def _figure(tree: Mapping[str, Any]) -> MarkerFigure:

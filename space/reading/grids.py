@@ -10,17 +10,7 @@ import numpy as np
 
 from space.drawing.paints import Tint
 from space.drawing.shapes import Floor
-from space.reading.fields import (
-    FARTHEST_M,
-    Drawable,
-    NotDrawnError,
-    field,
-    frame,
-    number,
-    pose,
-    stamp_s,
-    whole,
-)
+from space.reading.fields import FARTHEST_M, Drawable, NotDrawnError, field, frame, number, pose, stamp_s, whole
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -59,9 +49,7 @@ def grid_cells(tree: Mapping[str, Any]) -> GridCells:
     rows, columns = whole(tree, "info.height"), whole(tree, "info.width")
     cell_m = number(tree, "info.resolution")
     if rows < 1 or columns < 1:
-        raise NotDrawnError(
-            say("a map of {columns} by {rows} cells has none", columns=columns, rows=rows)
-        )
+        raise NotDrawnError(say("a map of {columns} by {rows} cells has none", columns=columns, rows=rows))
     if not 0.0 < cell_m <= FARTHEST_M:
         raise NotDrawnError(say("info.resolution is {metres} m a cell", metres=f"{cell_m:g}"))
     data = field(tree, "data")

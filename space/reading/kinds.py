@@ -39,7 +39,6 @@ class NewestReader:
     """Shows the newest message alone."""
 
     def __init__(self, read: Callable[[Mapping[str, Any]], Drawable]) -> None:
-        """Read messages by this function."""
         self._read = read
         self._newest: Drawable | None = None
 

@@ -10,27 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from space.drawing.paints import cube, nearest
-from space.drawing.shapes import (
-    Shape,
-    Sign,
-    Speckles,
-    Strokes,
-    arrow,
-    box,
-    cylinder,
-    ellipsoid,
-    moved,
-    polyline,
-)
+from space.drawing.shapes import Shape, Sign, Speckles, Strokes, arrow, box, cylinder, ellipsoid, moved, polyline
 from space.reading.fields import Drawable, NotDrawnError, listed, whole
-from space.reading.figures import (
-    MarkerAction,
-    MarkerKind,
-    kind_name,
-    marker_action,
-    marker_key,
-    read_figure,
-)
+from space.reading.figures import MarkerAction, MarkerKind, kind_name, marker_action, marker_key, read_figure
 from space.transform import IDENTITY, Transform
 from text.plain import plain
 from text.sentences import say
@@ -81,7 +63,6 @@ class MarkerBook:
             self._take(one, now_s)
 
     def shown(self, now_s: float) -> list[Drawable]:
-        """Return what is to be seen now."""
         for key in [key for key, one in self._kept.items() if one.ends_s <= now_s]:
             del self._kept[key]
         return [one.drawable for one in self._kept.values()]

@@ -9,16 +9,7 @@ import numpy as np
 
 from space.drawing.paints import Tint
 from space.drawing.shapes import Strokes, arrow, dart, places, polyline
-from space.reading.fields import (
-    Drawable,
-    NotDrawnError,
-    field,
-    frame,
-    listed,
-    pose,
-    stamp_s,
-    vector,
-)
+from space.reading.fields import Drawable, NotDrawnError, field, frame, listed, pose, stamp_s, vector
 from text.sentences import say
 
 if TYPE_CHECKING:

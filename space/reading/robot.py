@@ -64,9 +64,7 @@ class ModelReader:
         """What is wrong with the description, else how many shapes are in files of their own."""
         if self._warnings:
             return say(
-                "faults in the description: {count}; {first}",
-                count=len(self._warnings),
-                first=self._warnings[0],
+                "faults in the description: {count}; {first}", count=len(self._warnings), first=self._warnings[0]
             )
         if not self._meshes:
             return None

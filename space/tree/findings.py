@@ -37,9 +37,7 @@ class Surroundings:
     """How many frames are kept at most; 0 without a limit."""
 
 
-def frame_findings(
-    tree: FrameTree, heard: Sequence[HeardFrame], around: Surroundings
-) -> list[FrameFinding]:
+def frame_findings(tree: FrameTree, heard: Sequence[HeardFrame], around: Surroundings) -> list[FrameFinding]:
     """Return what is wrong, the worst first."""
     found = [
         *findings_of_tree(tree, around.named, settling=around.settling),
@@ -55,10 +53,7 @@ def frame_findings(
 def _full(heard: Sequence[HeardFrame], around: Surroundings) -> Iterator[FrameFinding]:
     if around.most and len(heard) >= around.most:
         text = say("there are more than {most} frames; the others are not shown", most=around.most)
-        advice = say(
-            "look for a node that makes a new name each time, such as one with a number or a time "
-            "in it"
-        )
+        advice = say("look for a node that makes a new name each time, such as one with a number or a time in it")
         yield FrameFinding(FrameTrouble.FULL, (), text, advice)
 
 
@@ -84,8 +79,7 @@ def _elsewhere(around: Surroundings) -> Iterator[FrameFinding]:
             else say("frames come on {topic} too, which nobody here listens to", topic=topic)
         )
         advice = say(
-            "start its publisher with -r {topic}:={usual}, or whoever needs these frames with "
-            "-r {usual}:={topic}",
+            "start its publisher with -r {topic}:={usual}, or whoever needs these frames with -r {usual}:={topic}",
             topic=topic,
             usual=TF_STATIC if topic.endswith(TF_STATIC) else TF,
         )

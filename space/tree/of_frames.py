@@ -22,9 +22,7 @@ OTHER_START_S = 1e9
 """Stamps below are no unix time: simulated time, time since the start, or none at all."""
 
 
-def findings_of_frames(
-    heard: Sequence[HeardFrame], *, simulated: bool = False
-) -> Iterator[FrameFinding]:
+def findings_of_frames(heard: Sequence[HeardFrame], *, simulated: bool = False) -> Iterator[FrameFinding]:
     """Yield what is wrong with each; what one node does to many frames is said once.
 
     With `simulated` time, stamps cannot be compared with the clock on the wall.
@@ -40,9 +38,7 @@ def findings_of_frames(
 
 
 def _numbers(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
-    for found in _grouped(
-        heard, lambda one: one.fault and (one.publishers, one.certain, one.fault)
-    ):
+    for found in _grouped(heard, lambda one: one.fault and (one.publishers, one.certain, one.fault)):
         first = found[0]
         text = say(
             "{frames}: {fault}; refused {faults} of {count}",
@@ -51,10 +47,7 @@ def _numbers(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
             faults=sum(one.faults for one in found),
             count=sum(one.count for one in found),
         )
-        advice = say(
-            "tf2 drops such a transform as well: fix what {node} fills in",
-            node=by_whom([first]),
-        )
+        advice = say("tf2 drops such a transform as well: fix what {node} fills in", node=by_whom([first]))
         yield FrameFinding(FrameTrouble.NUMBERS, _names(found), text, advice)
 
 
@@ -66,10 +59,7 @@ def _contested(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
             if found[0].certain and len(found[0].publishers) > 1
             else say("several publishers send {frames} by turns, so that it jumps", frames=names)
         )
-        advice = say(
-            "leave it to one of {nodes}; many nodes have a parameter like publish_tf: false",
-            nodes=nodes,
-        )
+        advice = say("leave it to one of {nodes}; many nodes have a parameter like publish_tf: false", nodes=nodes)
         yield FrameFinding(FrameTrouble.CONTESTED, _names(found), text, advice)
 
 
@@ -101,17 +91,10 @@ def _gone(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
         frames, node = listed(_names(found)), found[0].gone
         text = (
             say(
-                "{frames}: {node}, which published it on {topic}, has gone",
-                frames=frames,
-                node=node,
-                topic=TF_STATIC,
+                "{frames}: {node}, which published it on {topic}, has gone", frames=frames, node=node, topic=TF_STATIC
             )
             if node
-            else say(
-                "{frames}: the node that published it on {topic} has gone",
-                frames=frames,
-                topic=TF_STATIC,
-            )
+            else say("{frames}: the node that published it on {topic} has gone", frames=frames, topic=TF_STATIC)
         )
         advice = say("start it again: a node that starts now does not get this frame")
         yield FrameFinding(FrameTrouble.GONE, _names(found), text, advice)
@@ -119,9 +102,7 @@ def _gone(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
 
 def _clocks(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
     moving = [one for one in heard if not one.is_static and one.count > one.faults]
-    for found in _grouped(
-        moving, lambda one: (kind := _clock(one)) and (kind, one.publishers, one.certain)
-    ):
+    for found in _grouped(moving, lambda one: (kind := _clock(one)) and (kind, one.publishers, one.certain)):
         first = found[0]
         values: dict[str, object] = {
             "frames": listed(_names(found)),
@@ -157,8 +138,7 @@ def _of_future(values: dict[str, object]) -> tuple[str, str]:
     return (
         say("{frames}: stamped {seconds:.1f} s in the future", **values),
         say(
-            "set the clocks of both machines by the same server (chrony); {node} must not add time "
-            "to its stamps",
+            "set the clocks of both machines by the same server (chrony); {node} must not add time to its stamps",
             **values,
         ),
     )
@@ -168,9 +148,7 @@ def _of_past(values: dict[str, object]) -> tuple[str, str]:
     return (
         say("{frames}: stamped {seconds:.1f} s before it arrives", **values),
         say(
-            "set the clocks of both machines by the same server (chrony), or find out what holds "
-            "{node} up",
-            **values,
+            "set the clocks of both machines by the same server (chrony), or find out what holds {node} up", **values
         ),
     )
 
@@ -203,16 +181,13 @@ def _slashed(heard: Iterable[HeardFrame]) -> Iterator[FrameFinding]:
     for found in _grouped(heard, lambda one: one.slashed and (one.publishers, one.certain)):
         text = say("{frames}: published with a slash in front", frames=listed(_names(found)))
         advice = say(
-            "take it away in {node}: tf2 knows names without one, and others may look for it with "
-            "the slash",
+            "take it away in {node}: tf2 knows names without one, and others may look for it with the slash",
             node=by_whom(found[:1]),
         )
         yield FrameFinding(FrameTrouble.SLASH, _names(found), text, advice)
 
 
-def _grouped(
-    heard: Iterable[HeardFrame], key: Callable[[HeardFrame], Hashable]
-) -> list[list[HeardFrame]]:
+def _grouped(heard: Iterable[HeardFrame], key: Callable[[HeardFrame], Hashable]) -> list[list[HeardFrame]]:
     """Return those that have a key, together with others of the same."""
     found: dict[Hashable, list[HeardFrame]] = {}
     for one in heard:

@@ -21,9 +21,7 @@ MOST_COMPARED = 20
 """Roots and names whose slips are looked for: comparing all with all takes long."""
 
 
-def findings_of_tree(
-    tree: FrameTree, named: Mapping[str, str], *, settling: bool = False
-) -> Iterator[FrameFinding]:
+def findings_of_tree(tree: FrameTree, named: Mapping[str, str], *, settling: bool = False) -> Iterator[FrameFinding]:
     """Yield what is wrong; `named` is topic to the frame that the header of its messages names.
 
     While it is `settling`, nothing is said to be missing.
@@ -39,9 +37,7 @@ def findings_of_tree(
 def _loops(tree: FrameTree) -> Iterator[FrameFinding]:
     for loop in tree.loops:
         text = say(
-            "{frames} and back to {first}: a loop, which has no root",
-            frames=" → ".join(loop[:8]),
-            first=loop[0],
+            "{frames} and back to {first}: a loop, which has no root", frames=" → ".join(loop[:8]), first=loop[0]
         )
         closing = tree.edges[loop[-1], loop[0]]
         advice = say(
@@ -79,9 +75,7 @@ def _roots(tree: FrameTree) -> Iterator[FrameFinding]:
     if len(tree.parts) < 2:
         return
     text = say(
-        "{count} trees that nothing joins, with the roots {roots}",
-        count=len(tree.parts),
-        roots=listed(tree.parts),
+        "{count} trees that nothing joins, with the roots {roots}", count=len(tree.parts), roots=listed(tree.parts)
     )
     main, *others = tree.parts
     yield FrameFinding(FrameTrouble.ROOTS, tree.parts, text, _to_join(tree, main, others))
@@ -113,11 +107,7 @@ def _unknown(tree: FrameTree, named: Mapping[str, str]) -> Iterator[FrameFinding
         if bare and tree.frames and bare not in tree.frames:
             unknown.setdefault(bare, []).append(topic)
     for number, (frame, topics) in enumerate(unknown.items()):
-        text = say(
-            "{topics}: the header names {frame}, which no tree knows",
-            topics=listed(topics),
-            frame=frame,
-        )
+        text = say("{topics}: the header names {frame}, which no tree knows", topics=listed(topics), frame=frame)
         meant = _meant(frame, tree.frames) if number < MOST_COMPARED else ""
         if meant:
             advice = say("is it a slip for {meant}?", meant=meant)

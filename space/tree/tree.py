@@ -90,12 +90,7 @@ class FrameTree:
             found.append(line)
             below = [child for child in self.children.get(line.frame, ()) if child in shown]
             waiting += [
-                TreeLine(
-                    child,
-                    line.frame,
-                    self.edges[line.frame, child],
-                    (*line.last, number == len(below) - 1),
-                )
+                TreeLine(child, line.frame, self.edges[line.frame, child], (*line.last, number == len(below) - 1))
                 for number, child in reversed(list(enumerate(below)))
             ]
         return found

@@ -32,10 +32,7 @@ _PICTURE: Any = [
         "role": "user",
         "content": [
             {"type": "text", "text": "What is there?"},
-            {
-                "type": "image_url",
-                "image_url": {"url": f"data:image/jpeg;base64,{b64encode(_JPEG).decode()}"},
-            },
+            {"type": "image_url", "image_url": {"url": f"data:image/jpeg;base64,{b64encode(_JPEG).decode()}"}},
         ],
     }
 ]
@@ -72,9 +69,7 @@ def test_whatever_a_model_says_has_the_form(tmp_path: Path, habits: Habits) -> N
 def test_a_picture_is_looked_at(model_file: Path, tmp_path: Path) -> None:
     eyes = write_eyes(tmp_path / "eyes.gguf")
     with served(model_file, "--mmproj", str(eyes)) as model, model.client() as client:
-        answer = client.chat.completions.create(
-            model=model.name, messages=_PICTURE, response_format=ANSWER
-        )
+        answer = client.chat.completions.create(model=model.name, messages=_PICTURE, response_format=ANSWER)
         assert parse_llm(answer.choices[0].message.content or "").commands
         model.process.said("answered in ")
 

@@ -14,9 +14,7 @@ class HeadController(Node):
         super().__init__("head_controller")
         self.create_service(AddTwoInts, "set_head_position", self.turn)
 
-    def turn(
-        self, request: AddTwoInts.Request, response: AddTwoInts.Response
-    ) -> AddTwoInts.Response:
+    def turn(self, request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
         self.get_logger().info(f"turning to {request.a}, {request.b}")
         time.sleep(1.0)
         response.sum = 1

@@ -31,9 +31,7 @@ class Deck:
     held: set[str] = field(default_factory=set)
     """What its processes held in shared memory."""
 
-    def open(
-        self, *args: str, columns: int = 120, rows: int = 40, env: Mapping[str, str] | None = None
-    ) -> Terminal:
+    def open(self, *args: str, columns: int = 120, rows: int = 40, env: Mapping[str, str] | None = None) -> Terminal:
         """Start `deck ARGS` in a terminal of this size, with `env` besides its own."""
         argv = [sys.executable, "-m", "tui", *args]
         terminal = Terminal(argv, columns, rows, {**self.env, **(env or {})}, cwd=str(ROOT))

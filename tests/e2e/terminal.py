@@ -110,7 +110,6 @@ class Terminal:
                 self.type(key if len(key) == 1 else KEYS[key])
 
     def type(self, text: str) -> None:
-        """Send text as if typed."""
         os.write(self._master, text.encode())
 
     def resize(self, columns: int, rows: int) -> None:
@@ -161,9 +160,7 @@ class Terminal:
         """Wait until `text` does not stand on the screen any more; return the screen."""
         return self.wait_until(lambda screen: text not in screen, f"no {text!r}", within_s)
 
-    def wait_until(
-        self, condition: Callable[[str], bool], what: str, within_s: float = DEADLINE_S
-    ) -> str:
+    def wait_until(self, condition: Callable[[str], bool], what: str, within_s: float = DEADLINE_S) -> str:
         """Wait until `condition` holds of the screen's text; return that text."""
 
         def shown() -> str | None:
@@ -177,7 +174,6 @@ class Terminal:
         return self.process.wait(timeout=within_s)
 
     def svg(self, title: str = "deck") -> str:
-        """The screen as a picture."""
         with self._lock:
             console = Console(
                 record=True,

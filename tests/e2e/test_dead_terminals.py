@@ -54,9 +54,7 @@ def read_until(own: int, word: str) -> None:
     wait_until(more, f"{word!r} on the terminal")
 
 
-def test_a_terminal_that_takes_nothing_keeps_nobody_from_stopping_the_robot(
-    line: Line, deck: Deck
-) -> None:
+def test_a_terminal_that_takes_nothing_keeps_nobody_from_stopping_the_robot(line: Line, deck: Deck) -> None:
     own, program, process = line
     read_until(own, "1/1")
     # What Ctrl+S does, or a line to a host that is gone.
@@ -88,9 +86,7 @@ def test_interrupting_twice_does_not_wait_for_anybody(line: Line, deck: Deck) ->
 def test_leaving_twice_ends_the_screen_of_a_supervisor_that_hangs(line: Line, deck: Deck) -> None:
     own, _program, process = line
     read_until(own, "1/1")
-    (supervisor,) = (
-        pid for pid, command in marked.alive(deck.mark).items() if "launcher.supervisor" in command
-    )
+    (supervisor,) = (pid for pid, command in marked.alive(deck.mark).items() if "launcher.supervisor" in command)
     os.kill(supervisor, signal.SIGSTOP)
     os.write(own, b"q")
     read_until(own, "Stopping")

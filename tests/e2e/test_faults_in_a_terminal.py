@@ -44,9 +44,7 @@ def test_one_huge_number_ends_neither_the_screen_nor_the_nodes(deck: Deck, ros_d
     leave(deck, terminal)
 
 
-def test_a_panel_that_fails_says_so_in_its_place_and_in_the_log(
-    deck: Deck, ros_domain: int, tmp_path: Path
-) -> None:
+def test_a_panel_that_fails_says_so_in_its_place_and_in_the_log(deck: Deck, ros_domain: int, tmp_path: Path) -> None:
     argv = [sys.executable, "-c", BROKEN, LESSON]
     terminal = Terminal(argv, 120, 40, {**deck.env, "DECK_LOG_DIR": str(tmp_path)}, cwd=str(ROOT))
     deck.terminals.append(terminal)

@@ -26,9 +26,7 @@ ENTITIES = "&#27;]52;c;ZXZpbA==&#7; &#x202e;cba &#155;45m [click](javascript:ale
 def test_a_saved_file_is_started_again_and_ticks_its_check(deck: Deck, tmp_path: Path) -> None:
     own = Path(deck.env["DECK_COURSE"]) / LESSON / "hello_node.py"
     editor, seen = tmp_path / "vim", tmp_path / "line"
-    editor.write_text(
-        EDITOR.format(seen=seen, solution=SHIPPED / LESSON / "solution" / "hello_node.py")
-    )
+    editor.write_text(EDITOR.format(seen=seen, solution=SHIPPED / LESSON / "solution" / "hello_node.py"))
     editor.chmod(0o755)
     terminal = deck.open(env={"EDITOR": shlex.quote(str(editor))})
     terminal.wait_for("Starts 1 node")
@@ -54,9 +52,7 @@ def test_a_saved_file_is_started_again_and_ticks_its_check(deck: Deck, tmp_path:
     assert terminal.wait_exit() == 0
 
 
-def test_a_lesson_that_means_harm_and_a_broken_progress_file_cost_nothing_but_ticks(
-    deck: Deck,
-) -> None:
+def test_a_lesson_that_means_harm_and_a_broken_progress_file_cost_nothing_but_ticks(deck: Deck) -> None:
     course = Path(deck.env["DECK_COURSE"])
     lesson = course / "lessons" / "00-evil"
     own = course / "00-evil"

@@ -41,14 +41,12 @@ def module_wheels(module_domain: int, devices: Path) -> Iterator[Wheels]:
 
 @pytest.fixture
 def wheels(module_wheels: Wheels) -> Iterator[Wheels]:
-    """The motors of an emulated robot."""
     yield module_wheels
     module_wheels.quiet()
 
 
 @pytest.fixture
 def profile(tmp_path: Path, devices: Path, module_domain: int) -> str:
-    """The differential and the chassis, on that robot."""
     nodes = {
         "chassis": {"run": "nodes.chassis", "params": {"port": str(devices / "pico")}},
         "differential": {"run": "nodes.electronic_differential", "params": {"max_age_s": 0.5}},
@@ -60,7 +58,6 @@ def profile(tmp_path: Path, devices: Path, module_domain: int) -> str:
 
 
 def driving(deck: Deck, wheels: Wheels, *arguments: str) -> Terminal:
-    """Start Deck, and drive."""
     terminal = deck.open(*arguments)
     wheels.drive()
     wheels.wait_moving()
@@ -69,7 +66,6 @@ def driving(deck: Deck, wheels: Wheels, *arguments: str) -> Terminal:
 
 
 def supervisor(deck: Deck) -> int:
-    """The process that started the nodes."""
     (pid,) = (pid for pid, line in marked.alive(deck.mark).items() if "-m launcher.sup" in line)
     return pid
 

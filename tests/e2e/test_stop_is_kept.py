@@ -48,10 +48,7 @@ def profile(tmp_path: Path, ros_domain: int) -> str:
             "restart": "on-failure",
         },
         "sonar_front": {**sonar, "params": {"port": str(devices / "tof_front")}},
-        "sonar_rear": {
-            **sonar,
-            "params": {"port": str(devices / "tof_rear"), "topic": "/sensor/sonar_rear"},
-        },
+        "sonar_rear": {**sonar, "params": {"port": str(devices / "tof_rear"), "topic": "/sensor/sonar_rear"}},
         "safety_stop": {"run": "nodes.safety_stop", "params": gate, "restart": "on-failure"},
         "differential": {
             "run": "nodes.electronic_differential",
@@ -67,7 +64,6 @@ def profile(tmp_path: Path, ros_domain: int) -> str:
 
 @pytest.fixture
 def wheels(ros_domain: int) -> Iterator[Wheels]:
-    """The motors of that robot."""
     with Peer(ros_domain) as peer:
         yield Wheels(peer)
 
@@ -88,7 +84,6 @@ def detach(terminal: Terminal) -> None:
 
 
 def kill(deck: Deck, words: str) -> None:
-    """Kill the one process of that name."""
     deck.held |= ports.held_by(marked.alive(deck.mark))
     (pid,) = (pid for pid, line in marked.alive(deck.mark).items() if words in line)
     os.kill(pid, signal.SIGKILL)
@@ -103,9 +98,7 @@ def assert_held(wheels: Wheels) -> None:
     wheels.quiet()
 
 
-def test_it_outlives_the_screen_the_gate_and_the_supervisor(
-    deck: Deck, profile: str, wheels: Wheels
-) -> None:
+def test_it_outlives_the_screen_the_gate_and_the_supervisor(deck: Deck, profile: str, wheels: Wheels) -> None:
     up(deck, profile)
     terminal = attached(deck)
     wheels.drive()

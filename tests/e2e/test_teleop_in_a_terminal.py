@@ -72,7 +72,6 @@ class Robot:
         self.peer.node.create_subscription(JointState, "/wheel_commands", self._hear, 100)
 
     def turns(self) -> bool:
-        """Whether that is to turn."""
         return bool(self._told) and self._told[-1][1] != 0
 
     def turned_after(self, moment_s: float) -> bool:

@@ -13,9 +13,7 @@ from tests.unfinished_shared_memory import is_unfinished, make_old
 from tests.waiting import wait_until
 
 
-def test_a_running_node_is_seen_stopped_by_nobody_and_left_alone(
-    deck: Deck, ros_domain: int
-) -> None:
+def test_a_running_node_is_seen_stopped_by_nobody_and_left_alone(deck: Deck, ros_domain: int) -> None:
     params: dict[str, object] = {"pattern": "constant", "value": 1.25, "rate": 5.0}
     with NodeProcess("nodes.mock_sonar", ros_domain, name="ours", params=params) as node:
         terminal = deck.open("watch", "--domain", str(ros_domain), "--lang", "en")

@@ -17,24 +17,8 @@ from graph.messages.values import fields_of
 TYPES = tuple(name for name in interfaces() if "/msg/" in name)
 """All messages, those of services and actions left out."""
 
-TEXTS = st.text(
-    st.characters(codec="utf-8", exclude_characters="\0"), max_size=5
-) | st.sampled_from(
-    [
-        "on",
-        "~",
-        "1e3",
-        "12:30",
-        "nan",
-        "- a",
-        "a: b",
-        "# c",
-        "\t",
-        " x ",
-        "\x85",
-        "\ufeff",
-        "\x1b[1m",
-    ]
+TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=5) | st.sampled_from(
+    ["on", "~", "1e3", "12:30", "nan", "- a", "a: b", "# c", "\t", " x ", "\x85", "\ufeff", "\x1b[1m"]
 )
 _SINGLE: dict[str, st.SearchStrategy[Any]] = {
     "boolean": st.booleans(),

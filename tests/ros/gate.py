@@ -86,7 +86,6 @@ class Gate:
         self.process.close()
 
     def send(self, number: signal.Signals) -> None:
-        """Send a signal to its process."""
         assert isinstance(self.process, NodeProcess)
         self.process.send(number)
         if number.name in ("SIGTERM", "SIGINT", "SIGKILL"):
@@ -116,8 +115,7 @@ class Gate:
         """Wait until the gate lets this speed through, and no other."""
         self.safe.clear()
         wait_until(
-            lambda: self.safe and self.safe[-1].drive.speed == pytest.approx(speed),
-            f"{speed} m/s on /drive_safe",
+            lambda: self.safe and self.safe[-1].drive.speed == pytest.approx(speed), f"{speed} m/s on /drive_safe"
         )
         return self.safe[-1]
 

@@ -54,7 +54,6 @@ def started(domain: int) -> Iterator[subprocess.Popen[bytes]]:
 
 
 def main() -> None:
-    """Spin them."""
     rclpy.init(args=sys.argv)
     executor = MultiThreadedExecutor(4)
     for node in [*(Managed(name, enable_logger_service=True) for name in NAMES), Node("ordinary")]:

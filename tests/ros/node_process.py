@@ -118,7 +118,6 @@ class NodeProcess:
         return code
 
     def close(self) -> None:
-        """End it, whatever it does."""
         if self.process.poll() is None:
             self.send(signal.SIGINT)
             try:
@@ -130,6 +129,4 @@ class NodeProcess:
     def _stop_waiting(self, words: tuple[str, ...]) -> bool:
         if self.process.poll() is None:
             return False
-        raise AssertionError(
-            f"{self.module} ended with {self.process.returncode} before {words}:\n{self.output}"
-        )
+        raise AssertionError(f"{self.module} ended with {self.process.returncode} before {words}:\n{self.output}")

@@ -51,11 +51,7 @@ class NodeThread:
 
         context = Context()
         with pytest.MonkeyPatch.context() as patch:
-            for name, value in {
-                **DISCOVERY,
-                "ROS_DOMAIN_ID": str(domain),
-                "DECK_LANG": lang,
-            }.items():
+            for name, value in {**DISCOVERY, "ROS_DOMAIN_ID": str(domain), "DECK_LANG": lang}.items():
                 patch.setenv(name, value)
             # A lesson node is the only one of its program, and lives in the default context.
             patch.setattr(rclpy.utilities, "g_default_context", context)
@@ -81,18 +77,15 @@ class NodeThread:
 
     @property
     def output(self) -> str:
-        """All that it has logged."""
         return "\n".join(self._lines)
 
     def wait_for_words(self, *words: str) -> None:
         """Wait until it has logged these words, in any order."""
         wait_until(
-            lambda: all(word in self.output for word in words),
-            lambda: f"{words} from {self.module}:\n{self.output}",
+            lambda: all(word in self.output for word in words), lambda: f"{words} from {self.module}:\n{self.output}"
         )
 
     def close(self) -> None:
-        """End it as its program does."""
         if self._ending:
             return
         self._ending = True

@@ -113,14 +113,11 @@ class Watcher:
         return next((row for row in self.update.nodes if row.name == name), None)
 
     def serves(self, name: str) -> bool:
-        """Whether somebody is seen to serve that."""
         return any(row.name == name for row in self.update.services)
 
     def of(self, topic: str) -> list[Any]:
         """The values of the samples so far; `data` alone where that is all there is."""
-        return [
-            s.value["data"] if len(s.value) == 1 else s.value for s in self.samples.get(topic, [])
-        ]
+        return [s.value["data"] if len(s.value) == 1 else s.value for s in self.samples.get(topic, [])]
 
     def wait_for(self, topic: str, test: Any, what: str) -> TopicRow:
         """Wait until the topic's row is there and passes the test, and its nodes are known.

@@ -68,7 +68,6 @@ class Peer:
         self.close()
 
     def close(self) -> None:
-        """End the node and its thread."""
         self._closing = True
         self._executor.create_task(lambda: None)
         self._thread.join(timeout=10)
@@ -87,7 +86,6 @@ class Peer:
         return heard
 
     def publisher(self, topic: str, kind: type, qos: QoSProfile | int = 10) -> Publisher:
-        """The publisher of a topic, made once."""
         if topic not in self._publishers:
             self._publishers[topic] = self.node.create_publisher(kind, topic, qos)
         return self._publishers[topic]
@@ -98,15 +96,10 @@ class Peer:
         if publisher is not None:
             self.node.destroy_publisher(publisher)
 
-    def say(
-        self, topic: str, message: Any, *, listeners: int = 1, qos: QoSProfile | int = 10
-    ) -> None:
+    def say(self, topic: str, message: Any, *, listeners: int = 1, qos: QoSProfile | int = 10) -> None:
         """Publish, once so many subscriptions are matched that the message cannot get lost."""
         publisher = self.publisher(topic, type(message), qos)
-        wait_until(
-            lambda: publisher.get_subscription_count() >= listeners,
-            f"{listeners} subscribers of {topic}",
-        )
+        wait_until(lambda: publisher.get_subscription_count() >= listeners, f"{listeners} subscribers of {topic}")
         publisher.publish(message)
 
     @contextlib.contextmanager
@@ -120,13 +113,10 @@ class Peer:
             self.node.destroy_timer(timer)
 
     def ask(self, service: str, kind: Any, request: Any, within_s: float = DEADLINE_S) -> Any:
-        """Call a service and return its response."""
         client = self.node.create_client(kind, service)
         try:
             wait_until(client.service_is_ready, f"service {service}", within_s)
-            return self.insist(
-                lambda: client.call_async(request), f"an answer of {service}", within_s
-            )
+            return self.insist(lambda: client.call_async(request), f"an answer of {service}", within_s)
         finally:
             self.node.destroy_client(client)
 
@@ -155,7 +145,6 @@ class Peer:
         return cast("T", self.answer(self._executor.create_task(call), what))
 
     def answer(self, future: Future, what: str, within_s: float = DEADLINE_S) -> Any:
-        """Wait for a future, and return its result."""
         wait_until(future.done, what, within_s)
         return future.result()
 

@@ -51,7 +51,6 @@ class RobotNodes:
         wait_until(lambda: self.wheels.told, "news of the motors")
 
     def start_robot(self) -> None:
-        """Start the emulated robot, the Pico with it."""
         self.robot = mock_robot(self.domain, self.folder, noise=0.0, dropout=0.0)
         self.robot.wait_for_words("The simulated robot is in")
 
@@ -73,9 +72,7 @@ class RobotNodes:
         for name in names:
             self.processes[name].wait_for_words(READY[name])
 
-    def end(
-        self, *names: str, number: signal.Signals = signal.SIGINT, codes: tuple[int, ...] = (0,)
-    ) -> None:
+    def end(self, *names: str, number: signal.Signals = signal.SIGINT, codes: tuple[int, ...] = (0,)) -> None:
         """Send nodes a signal, one right after the other, and wait until each has ended."""
         for name in names:
             self.processes[name].send(number)
@@ -85,11 +82,9 @@ class RobotNodes:
             self.processes.pop(name).close()
 
     def hang(self, name: str) -> None:
-        """Let a node stand still as it is."""
         self.processes[name].send(signal.SIGSTOP)
 
     def wake(self, name: str) -> None:
-        """Let a node that hung go on."""
         self._woken.add(name)
         self.processes[name].send(signal.SIGCONT)
 
@@ -108,10 +103,7 @@ class RobotNodes:
 
     def said(self) -> str:
         """What the nodes said last, for whoever reads of a test that failed."""
-        ends = (
-            [f"--- {name}", *process.output.splitlines()[-12:]]
-            for name, process in self.processes.items()
-        )
+        ends = ([f"--- {name}", *process.output.splitlines()[-12:]] for name, process in self.processes.items())
         return "\n".join(line for end in ends for line in end)
 
     def mend(self) -> None:
@@ -125,7 +117,6 @@ class RobotNodes:
         self.renew()
 
     def close(self) -> None:
-        """End everything."""
         self.wheels.quiet()
         for process in self.processes.values():
             process.send(signal.SIGCONT)

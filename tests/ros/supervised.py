@@ -15,14 +15,7 @@ import pytest
 
 from launcher.client.client import SupervisorClient, attach, launch, running
 from launcher.errors import ConnectionLostError, NotRunningError, SilentSupervisorError
-from launcher.processes.table import (
-    NODE_MARK,
-    RUN_MARK,
-    Process,
-    processes,
-    read_marks,
-    read_process,
-)
+from launcher.processes.table import NODE_MARK, RUN_MARK, Process, processes, read_marks, read_process
 from launcher.status import NodeState, NodeStatus
 from tests.waiting import DEADLINE_S, until
 
@@ -41,17 +34,13 @@ DEAF = "import signal, time; signal.signal(signal.SIGINT, signal.SIG_IGN); "
 
 
 def write_profile(folder: Path, nodes: dict[str, Any], name: str = "test") -> Path:
-    """Write a profile; JSON is YAML."""
     path = folder / f"{name}.yaml"
-    path.write_text(
-        json.dumps({"title": {"en": "Test"}, "nodes": nodes}, ensure_ascii=False), "utf-8"
-    )
+    path.write_text(json.dumps({"title": {"en": "Test"}, "nodes": nodes}, ensure_ascii=False), "utf-8")
     return path
 
 
 @pytest.fixture
 async def start(tmp_path: Path, ros_domain: int) -> AsyncIterator[Launch]:
-    """Launch sessions that end with the test."""
     clients: list[SupervisorClient] = []
 
     async def begin(nodes: dict[str, Any], **options: Any) -> SupervisorClient:
@@ -90,10 +79,7 @@ async def until_state(
     except pytest.fail.Exception:
         node = client.nodes[name]
         needed = [client.nodes[need] for need in node.needs]
-        logs = {
-            each.name: [line.text for line in await client.history(each.name, 20)]
-            for each in (node, *needed)
-        }
+        logs = {each.name: [line.text for line in await client.history(each.name, 20)] for each in (node, *needed)}
         pytest.fail(f"{name} is not {words} but {node}; it needs {needed}; logs: {logs}")
     return status
 
@@ -117,7 +103,6 @@ async def said(client: SupervisorClient, name: str, start: str) -> str:
 
 
 def alive(pid: int) -> bool:
-    """Whether a process lives."""
     process = read_process(pid)
     return process is not None and not process.zombie
 
@@ -130,11 +115,7 @@ def kill(pid: int, number: int) -> None:
 def of_run(run_id: str, node: str = "") -> list[Process]:
     """Return the living processes of a run, or of one node of it."""
     marked = ((each, read_marks(each.pid) or {}) for each in processes() if not each.zombie)
-    return [
-        each
-        for each, marks in marked
-        if marks.get(RUN_MARK) == run_id and node in ("", marks.get(NODE_MARK))
-    ]
+    return [each for each, marks in marked if marks.get(RUN_MARK) == run_id and node in ("", marks.get(NODE_MARK))]
 
 
 async def spawn_server_of(run_id: str) -> int:

@@ -87,7 +87,6 @@ class ActionOrders:
         return [[h.request.x, h.request.y] for h in self.served_actions[topic].handles]
 
     def cancels(self, topic: str) -> int:
-        """How often somebody has asked to cancel."""
         return self.served_actions[topic].cancels
 
     def feedback(self, topic: str, goal: int, distance: float) -> None:
@@ -100,7 +99,6 @@ class ActionOrders:
         served.end(goal, how, to_message(served.kind.Result, result))
 
     def send_drive(self, topic: str, x: float) -> None:
-        """Send a goal, as any client does."""
         if topic not in self.asked_actions:
             self.asked_actions[topic] = Asked(self.node, topic)
         self.asked_actions[topic].send(x)

@@ -77,9 +77,7 @@ class Orders(ActionOrders):
         self.timed: dict[str, Timed] = {}
 
     def advertise(self, topic: str, type_name: str, **policies: Any) -> None:
-        self.publishers[topic] = self.node.create_publisher(
-            load_message(type_name), topic, qos(**policies)
-        )
+        self.publishers[topic] = self.node.create_publisher(load_message(type_name), topic, qos(**policies))
 
     def publish(self, topic: str, value: dict[str, Any], times: int = 1) -> None:
         """Publish so many times; the value "NUMBER" stands for the number of the message."""
@@ -135,9 +133,7 @@ class Orders(ActionOrders):
         self.node.destroy_client(self.clients.pop(topic))
 
     def names(self) -> list[str]:
-        return [
-            f"{ns.rstrip('/')}/{name}" for name, ns in self.node.get_node_names_and_namespaces()
-        ]
+        return [f"{ns.rstrip('/')}/{name}" for name, ns in self.node.get_node_names_and_namespaces()]
 
 
 def obey(orders: Orders, lines: queue.SimpleQueue[str]) -> bool:

@@ -26,13 +26,7 @@ class Popen(Forked):
     """Such a process."""
 
     def __init__(
-        self,
-        argv: Sequence[str],
-        *,
-        cwd: Path,
-        env: Mapping[str, str],
-        stderr: int,
-        **_as_always: object,
+        self, argv: Sequence[str], *, cwd: Path, env: Mapping[str, str], stderr: int, **_as_always: object
     ) -> None:
         """Start `PYTHON -m launcher.supervisor ...`; stdin and stdout are pipes."""
         theirs_in, ours_in = os.pipe()
@@ -45,9 +39,7 @@ class Popen(Forked):
         self.stdin, self.stdout = os.fdopen(ours_in, "wb", 0), os.fdopen(ours_out, "rb", 0)
 
 
-def _become(
-    argv: tuple[str, ...], cwd: str, env: dict[str, str], streams: tuple[int, ...], client: int
-) -> None:
+def _become(argv: tuple[str, ...], cwd: str, env: dict[str, str], streams: tuple[int, ...], client: int) -> None:
     os.setsid()
     for stream, fd in enumerate(streams):
         os.dup2(fd, stream)

@@ -58,7 +58,6 @@ class Wheels:
         self._timer = self.peer.node.create_timer(0.1, lambda: publisher.publish(message()))
 
     def quiet(self) -> None:
-        """Command nothing any more."""
         if self._timer is not None:
             self.peer.node.destroy_timer(self._timer)
             self._timer = None
@@ -81,10 +80,7 @@ class Wheels:
         """Wait until both wheels turn that way."""
         seen = len(self.told)
         wait_until(
-            lambda: (
-                len(self.told) > seen and min(way * v for v in self.told[-1].velocity[:2]) > 0.5
-            ),
-            "turning wheels",
+            lambda: len(self.told) > seen and min(way * v for v in self.told[-1].velocity[:2]) > 0.5, "turning wheels"
         )
 
     def assert_stands(self, within_s: float = STANDS_WITHIN_S) -> None:

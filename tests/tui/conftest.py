@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import os
 
-os.environ.update(
-    TEXTUAL_ANIMATIONS="none", COLORTERM="truecolor", TEXTUAL_COLOR_SYSTEM="truecolor"
-)
+os.environ.update(TEXTUAL_ANIMATIONS="none", COLORTERM="truecolor", TEXTUAL_COLOR_SYSTEM="truecolor")
 os.environ.pop("NO_COLOR", None)
 
 import time
@@ -49,9 +47,7 @@ def _css_is_parsed_once() -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True)
-def _only_what_is_looked_at_is_drawn(
-    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def _only_what_is_looked_at_is_drawn(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw no frame that no terminal gets: it was two fifths of the time of these tests.
 
     Of a picture the whole screen is drawn once. Tests marked `every_frame` are about what is drawn

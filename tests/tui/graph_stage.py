@@ -35,9 +35,7 @@ class GraphStage(ScreenStage[GraphScreen]):
         await self.wait(lambda: words in " ".join(self.seen().split()))
 
 
-def opened(
-    graph: RecordedGraph | None = None, look: Look = HOME
-) -> AbstractAsyncContextManager[GraphStage]:
+def opened(graph: RecordedGraph | None = None, look: Look = HOME) -> AbstractAsyncContextManager[GraphStage]:
     """Open the screen of the graph of lesson 9."""
     graph = graph or RecordedGraph(update=graph_update())
     return on_stage(GraphStage, RecordedOpener(graph=graph), look)

@@ -17,15 +17,7 @@ from course.judging import JudgeEvent
 from course.lessons.lesson import LessonFolder
 from graph.replay.replay import Replay
 from launcher.consent import Agents, ConsentAnswer
-from launcher.events import (
-    AgentsEvent,
-    ClosedEvent,
-    Event,
-    LogEvent,
-    StatusEvent,
-    StraysEvent,
-    UnguardedEvent,
-)
+from launcher.events import AgentsEvent, ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent, UnguardedEvent
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Stray
 from tests.tui.recorded_graph import PARAMETERS, RecordedGraph
 from tests.tui.recorded_lesson import (
@@ -228,9 +220,7 @@ class RecordedOpener:
         del session
         return self.task
 
-    async def judge(
-        self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]
-    ) -> RecordedJudge:
+    async def judge(self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]) -> RecordedJudge:
         del lesson, session
         self.judged.passed = frozenset(passed)
         return self.judged

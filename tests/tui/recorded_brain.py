@@ -6,12 +6,7 @@ from graph.data import Sample
 from tests.tui.recorded import sample
 
 BRAIN_STATE, TYPE = "/brain_state", "diagnostic_msgs/msg/DiagnosticArray"
-BUDGET = {
-    "calls_last_minute": "3",
-    "calls_per_minute": "20",
-    "tokens": "498",
-    "tokens_per_session": "200000",
-}
+BUDGET = {"calls_last_minute": "3", "calls_per_minute": "20", "tokens": "498", "tokens_per_session": "200000"}
 USAGE = {
     "input_tokens": "412",
     "output_tokens": "86",
@@ -22,9 +17,7 @@ USAGE = {
 }
 
 
-def brain_state(
-    message: str = "has answered; m-1", level: int = 0, node: str = "ai_brain", **values: str
-) -> Sample:
+def brain_state(message: str = "has answered; m-1", level: int = 0, node: str = "ai_brain", **values: str) -> Sample:
     """Return one report; `values` replaces some of a model's that has answered."""
     given = {"backend": "llm", "fault": "", "model": "m-1", **BUDGET, **USAGE, **values}
     pairs = [{"key": key, "value": value} for key, value in given.items() if value != "-"]

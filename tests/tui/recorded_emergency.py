@@ -28,25 +28,19 @@ def held(level: bytes, words: str) -> GraphUpdate:
 def gate_says(verdict: str, at_s: float) -> GraphUpdate:
     """The graph with one verdict of the gate, as the safety node words it."""
     values = [{"key": "verdict", "value": verdict}]
-    status: list[dict[str, Any]] = [
-        {"level": b"\x02", "name": "safety_stop", "message": "held", "values": values}
-    ]
+    status: list[dict[str, Any]] = [{"level": b"\x02", "name": "safety_stop", "message": "held", "values": values}]
     kind = "diagnostic_msgs/msg/DiagnosticArray"
     one = Sample(SAFETY_STATE, kind, at_s, 0.0, 120, {"status": status})
     return lesson_update(samples={SAFETY_STATE: (one,)})
 
 
-def word(
-    node: str, engaged: bool, at_s: float, *, since_s: float | None = None, **more: str
-) -> Sample:
+def word(node: str, engaged: bool, at_s: float, *, since_s: float | None = None, **more: str) -> Sample:
     """What one node says of the stop that it obeys."""
     values = {"engaged": str(engaged).lower(), **more}
     values["since"] = str(at_s if since_s is None else since_s)
     pairs = [{"key": key, "value": value} for key, value in values.items()]
     status = [{"level": b"\x02" if engaged else b"\x00", "name": node, "values": pairs}]
-    return Sample(
-        EMERGENCY_STATE, "diagnostic_msgs/msg/DiagnosticArray", at_s, 0.0, 120, {"status": status}
-    )
+    return Sample(EMERGENCY_STATE, "diagnostic_msgs/msg/DiagnosticArray", at_s, 0.0, 120, {"status": status})
 
 
 def obeyed(*words: Sample, at_s: float, **more: Any) -> GraphUpdate:

@@ -54,11 +54,7 @@ def drive(topic: str, speed: float, steering: float, at_s: float) -> Sample:
 
 def wheels(left: float, right: float, at_s: float) -> Sample:
     return at(
-        joints(
-            "/wheel_commands",
-            rear_left_wheel_joint=(math.nan, left),
-            rear_right_wheel_joint=(math.nan, right),
-        ),
+        joints("/wheel_commands", rear_left_wheel_joint=(math.nan, left), rear_right_wheel_joint=(math.nan, right)),
         at_s,
     )
 

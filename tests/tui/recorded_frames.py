@@ -54,11 +54,7 @@ TROUBLES = (
     replace(ROBOT[4], age_s=7.4, newest=replace(ROBOT[4].newest, stamp_s=NOW_S - 7.4)),
     replace(ROBOT[5], publishers=(), gone="/robot_state_publisher"),
     replace(ROBOT[6], publishers=("/chassis", "/robot_state_publisher"), contested=True),
-    replace(
-        ROBOT[7],
-        fault=say("its translation is not finite: {numbers}", numbers="nan, 0, 0"),
-        faults=250,
-    ),
+    replace(ROBOT[7], fault=say("its translation is not finite: {numbers}", numbers="nan, 0, 0"), faults=250),
     frame("map", "base_link", (1.0, 0.0, 0.0), publishers=("/slam",), hz=5.0),
     frame("camera_lnk", "lens", static=True, publishers=("/camera", "/camera"), moved=True),
     frame("gripper", "finger", publishers=("/arm", "/hand"), certain=False),
@@ -75,14 +71,10 @@ def topics(image_frame: str = "camera_link") -> tuple[TopicRow, ...]:
     )
 
 
-def frames_update(
-    frames: Sequence[FrameRow] = ROBOT, rows: Sequence[TopicRow] = topics()
-) -> GraphUpdate:
+def frames_update(frames: Sequence[FrameRow] = ROBOT, rows: Sequence[TopicRow] = topics()) -> GraphUpdate:
     return replace(lesson_update(topics=tuple(rows), samples={}), frames=tuple(frames))
 
 
-def with_frames(
-    frames: Sequence[FrameRow] = ROBOT, rows: Sequence[TopicRow] = topics()
-) -> RecordedOpener:
+def with_frames(frames: Sequence[FrameRow] = ROBOT, rows: Sequence[TopicRow] = topics()) -> RecordedOpener:
     graph = RecordedGraph(frames_update(frames, rows))
     return RecordedOpener(RecordedSession(lines=()), graph)

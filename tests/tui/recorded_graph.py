@@ -106,7 +106,6 @@ class RecordedGraph:
             on_update(self.update)
 
     def show(self, update: GraphUpdate) -> None:
-        """Let the graph be this from now on."""
         self.update = update
         if self._on_update is not None:
             self._on_update(update)
@@ -138,15 +137,11 @@ class RecordedGraph:
     def cancel_seen_goal(self, action: str, goal_id: str) -> None:
         self.canceled_of_others.append((action, goal_id))
 
-    def prepare_publisher(
-        self, topic: str, type_name: str, *, latched: bool = False
-    ) -> Future[None]:
+    def prepare_publisher(self, topic: str, type_name: str, *, latched: bool = False) -> Future[None]:
         self.prepared.append((topic, type_name, latched))
         return done(None)
 
-    def publish(
-        self, topic: str, type_name: str, value: Mapping[str, Any], *, latched: bool = False
-    ) -> Future[int]:
+    def publish(self, topic: str, type_name: str, value: Mapping[str, Any], *, latched: bool = False) -> Future[int]:
         self.published.append((topic, type_name, value, latched))
         return done(1, self.publish_error)
 
@@ -160,9 +155,7 @@ class RecordedGraph:
             return self.waiting[-1]
         return done(self.answers.get(service, CallResult(service, True, {"sum": 1}, "", 0.012)))
 
-    def start_publishing(
-        self, topic: str, type_name: str, value: Mapping[str, Any], hz: float
-    ) -> Future[int]:
+    def start_publishing(self, topic: str, type_name: str, value: Mapping[str, Any], hz: float) -> Future[int]:
         self.repeated.append((topic, type_name, value, hz))
         number = len(self.repeated)
         if self.publish_error is None:
@@ -201,9 +194,7 @@ class RecordedGraph:
     def _known(self, node: str) -> ParametersResult:
         return self.node_parameters.get(node, ParametersResult(node, PARAMETERS, "", 0.01))
 
-    def set_parameters(
-        self, node: str, values: Mapping[str, Any], timeout_s: float = 5.0
-    ) -> Future[SetResult]:
+    def set_parameters(self, node: str, values: Mapping[str, Any], timeout_s: float = 5.0) -> Future[SetResult]:
         del timeout_s
         self.set_to.append((node, values))
         refused = {name: why for name, why in self.refusals.items() if name in values}

@@ -8,13 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from graph.data import GraphUpdate, NodeRow
-from graph.inner_states import (
-    ComponentRow,
-    ContainerRow,
-    LevelResult,
-    LifecycleRow,
-    TransitionResult,
-)
+from graph.inner_states import ComponentRow, ContainerRow, LevelResult, LifecycleRow, TransitionResult
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 
 T = TypeVar("T")
@@ -23,9 +17,7 @@ LIFECYCLES = (
     LifecycleRow("/camera", "inactive", ("cleanup", "activate", "shutdown")),
     LifecycleRow("/sonar_front", "active", ("deactivate", "shutdown")),
 )
-CONTAINERS = (
-    ContainerRow("/perception", (ComponentRow(1, "/camera"), ComponentRow(2, "/debayer"))),
-)
+CONTAINERS = (ContainerRow("/perception", (ComponentRow(1, "/camera"), ComponentRow(2, "/debayer"))),)
 
 
 def managed_update(**more: Any) -> GraphUpdate:
@@ -51,9 +43,7 @@ class RecordedInner:
     refusals: dict[str, str] = field(default_factory=dict)
     """Node to the reason why its level cannot be read."""
 
-    def change_state(
-        self, node: str, transition: str, timeout_s: float = 5.0
-    ) -> Future[TransitionResult]:
+    def change_state(self, node: str, transition: str, timeout_s: float = 5.0) -> Future[TransitionResult]:
         del timeout_s
         self.changes.append((node, transition))
         done = TransitionResult(node, transition, "active")
@@ -65,9 +55,7 @@ class RecordedInner:
         level = "" if refused else self.levels.get(node, "info")
         return _done(LevelResult(node, level, refused))
 
-    def set_logger_level(
-        self, node: str, level: str, timeout_s: float = 5.0
-    ) -> Future[LevelResult]:
+    def set_logger_level(self, node: str, level: str, timeout_s: float = 5.0) -> Future[LevelResult]:
         self.levels[node] = level
         return self.logger_level(node, timeout_s)
 

@@ -49,12 +49,7 @@ NODES: dict[str, NodeStatus] = {
 
 
 def line(
-    node: str,
-    seq: int,
-    text: str,
-    severity: Severity = Severity.INFO,
-    at_s: float = 0.0,
-    source: str = "stderr",
+    node: str, seq: int, text: str, severity: Severity = Severity.INFO, at_s: float = 0.0, source: str = "stderr"
 ) -> LogLine:
     """One line of `node`, `at_s` seconds into the recording."""
     return LogLine(node, seq, NOW_S + at_s, severity, text, logger=node, source=source)

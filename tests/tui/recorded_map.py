@@ -18,9 +18,7 @@ from tests.unit.random_driver import let_pass
 
 GRID, POSE = "nav_msgs/msg/OccupancyGrid", "geometry_msgs/msg/PoseStamped"
 ODOMETRY, FLOAT = "nav_msgs/msg/Odometry", "std_msgs/msg/Float32"
-MAP_SESSION = replace(
-    SESSION, name="robot", lesson="", title={"en": "Robot", "ru": "Робот"}, panels=("sonar", "map")
-)
+MAP_SESSION = replace(SESSION, name="robot", lesson="", title={"en": "Robot", "ru": "Робот"}, panels=("sonar", "map"))
 MAP_TOPICS: tuple[TopicRow, ...] = (
     topic("/goal_pose", POSE, None, age_s=7.0, count=1),
     topic("/map", GRID, None, age_s=80.0, count=1),
@@ -71,10 +69,7 @@ def room(frame: str = "odom") -> Sample:
 @lru_cache
 def driven() -> tuple[World, tuple[Pose, ...]]:
     """The robot after some curves, and where it was on the way, ten times a second."""
-    world, path = (
-        World(front=SimulatedSonar(noise_m=0.0), rear=SimulatedSonar(forward=False, noise_m=0.0)),
-        [],
-    )
+    world, path = (World(front=SimulatedSonar(noise_m=0.0), rear=SimulatedSonar(forward=False, noise_m=0.0)), [])
     radius = world.body.wheel_radius_m
     for seconds, steering in ((2.0, 0.0), (3.0, 0.5), (3.0, -0.5), (1.2, -0.2)):
         speeds = wheel_speeds(0.3, steering)
@@ -85,14 +80,10 @@ def driven() -> tuple[World, tuple[Pose, ...]]:
     return world, tuple(path)
 
 
-def map_update(
-    rows: Mapping[str, Mapping[str, Any]] | None = None, **samples: tuple[Sample, ...]
-) -> GraphUpdate:
+def map_update(rows: Mapping[str, Mapping[str, Any]] | None = None, **samples: tuple[Sample, ...]) -> GraphUpdate:
     """The graph with a robot on its way; by topic, without slashes, what it says instead."""
     world, path = driven()
-    ahead, behind = (
-        sonar.true_m(world.room, world.body, world.pose) for sonar in (world.front, world.rear)
-    )
+    ahead, behind = (sonar.true_m(world.room, world.body, world.pose) for sonar in (world.front, world.rear))
     # Odometry is what the wheels believe: a little less of a turn each time.
     believed = [Pose(p.x_m * 1.03, p.y_m * 0.96, p.heading_rad - 0.05) for p in path]
     said = {

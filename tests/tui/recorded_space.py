@@ -22,11 +22,7 @@ STRING = "std_msgs/msg/String"
 CLOUD, SCAN = "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/LaserScan"
 PATH, MARKERS = "nav_msgs/msg/Path", "visualization_msgs/msg/MarkerArray"
 RANGE, GRID = "sensor_msgs/msg/Range", "nav_msgs/msg/OccupancyGrid"
-ODOMETRY, POSE, FLOAT = (
-    "nav_msgs/msg/Odometry",
-    "geometry_msgs/msg/PoseStamped",
-    "std_msgs/msg/Float32",
-)
+ODOMETRY, POSE, FLOAT = ("nav_msgs/msg/Odometry", "geometry_msgs/msg/PoseStamped", "std_msgs/msg/Float32")
 URDF = """
 <robot name="cart">
   <link name="base_link">
@@ -65,7 +61,6 @@ SPACE_TOPICS: tuple[TopicRow, ...] = (
 
 
 def flat(pose: Pose, z_m: float = 0.0) -> Transform:
-    """A pose on the floor as a transform."""
     return Transform.from_rpy((pose.x_m, pose.y_m, z_m), (0.0, 0.0, pose.heading_rad))
 
 
@@ -74,13 +69,11 @@ def frame_row(parent: str, child: str, at: Transform, *, static: bool = True) ->
 
 
 def scan(turned: float = 0.0, rays: int = 240) -> Sample:
-    """A scan of the room from the lidar."""
     world, _path = driven()
     at = flat(world.pose) @ Transform((0.15, 0.0, 0.2))
     angles = np.linspace(-math.pi, math.pi, rays, endpoint=False)
     ranges = [
-        world.room.distance(at.translation[0], at.translation[1], world.pose.heading_rad + angle)
-        for angle in angles
+        world.room.distance(at.translation[0], at.translation[1], world.pose.heading_rad + angle) for angle in angles
     ]
     value = {
         "header": header("laser"),
@@ -105,7 +98,6 @@ def boxes() -> np.ndarray[Any, Any]:
 
 
 def path(frame: str = "map") -> Sample:
-    """A plan from the robot to the goal."""
     world, _path = driven()
     goal = Pose(3.2, 1.4)
     steps = [

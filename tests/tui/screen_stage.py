@@ -50,9 +50,7 @@ class ScreenStage(Generic[S]):
 
 
 @asynccontextmanager
-async def on_stage(
-    stage: type[T], opener: RecordedOpener | None = None, look: Look = HOME
-) -> AsyncIterator[T]:
+async def on_stage(stage: type[T], opener: RecordedOpener | None = None, look: Look = HOME) -> AsyncIterator[T]:
     opener = opener or RecordedOpener()
     app = look.app(stage.name, opener)
     async with app.run_test(size=look.size) as pilot:

@@ -82,5 +82,4 @@ async def opened(
 
 
 def seen(app: App[Any]) -> str:
-    """Return all that is on the screen."""
     return "\n".join(strip.text for strip in app.screen._compositor.render_strips())

@@ -22,14 +22,7 @@ from tests.tui.lesson.test_lesson import SEED, SEEN, own_opener
 from tests.tui.panel_stage import Placed, Stage
 from tests.tui.panels.test_drawings import turning
 from tests.tui.panels.test_voice import tone
-from tests.tui.recorded import (
-    NOW_S,
-    RecordedGraph,
-    RecordedOpener,
-    RecordedSession,
-    lesson_update,
-    topic,
-)
+from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession, lesson_update, topic
 from tests.tui.recorded_brain import BRAIN_STATE, TYPE, brain_state
 from tests.tui.recorded_frames import with_frames
 from tests.tui.recorded_map import MAP_SESSION, map_update
@@ -163,7 +156,6 @@ async def node_map(at: At) -> None:
 
 
 async def depth(at: At) -> None:
-    """Depth by colours, with a scale in metres."""
     await chosen(at, CAMERA, with_camera("sensor_msgs/msg/Image", depth_message()))
     await at.show(with_camera("sensor_msgs/msg/Image", depth_message()))
 
@@ -295,15 +287,10 @@ def sonars() -> list[list[Placed]]:
 def wheels_seen() -> list[list[Placed]]:
     """Wheels turned as steered, a longer bar for the faster wheel, downwards when backwards."""
     views = [WheelsView() for _view in range(4)]
-    for view, (speed, steering) in zip(
-        views, ((0.3, 0.5), (-0.3, -0.5), (0.5, 0.0), (0.0, 0.2)), strict=True
-    ):
+    for view, (speed, steering) in zip(views, ((0.3, 0.5), (-0.3, -0.5), (0.5, 0.0), (0.0, 0.2)), strict=True):
         view.show(turning(speed, steering))
     views[3].show_trouble(Trouble.QUIET, "", 5.0)
-    return [
-        [(views[0], (46, 14)), (views[1], (46, 10))],
-        [(views[2], (36, 5)), (views[3], (36, 9))],
-    ]
+    return [[(views[0], (46, 14)), (views[1], (46, 10))], [(views[2], (36, 5)), (views[3], (36, 9))]]
 
 
 def heads() -> list[list[Placed]]:

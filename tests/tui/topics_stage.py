@@ -55,11 +55,9 @@ class TopicsStage(ScreenStage[TopicsScreen]):
         return self.screen.query_one(TopicHead).render().plain
 
     def count(self) -> str:
-        """How many topics are said to be there."""
         return str(self.screen.query_one("#topics-count", Static).content)
 
     def echo(self) -> str:
-        """The message, or the words in its place."""
         tree = self.screen.detail.echo
         return "\n".join(tree.render_line(y).text.rstrip() for y in range(tree.size.height)).strip()
 
@@ -93,7 +91,4 @@ def jpeg_message(cut_to: int | None = None) -> dict[str, Any]:
 
 
 def with_camera(type_name: str, value: dict[str, Any]) -> GraphUpdate:
-    """The lesson with a camera that says this."""
-    return with_row(
-        row(CAMERA, type_names=(type_name,)), **{CAMERA: (sample(CAMERA, type_name, value),)}
-    )
+    return with_row(row(CAMERA, type_names=(type_name,)), **{CAMERA: (sample(CAMERA, type_name, value),)})

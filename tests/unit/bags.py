@@ -6,15 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from rosbags.interfaces import (
-    Connection,
-    Qos,
-    QosDurability,
-    QosHistory,
-    QosLiveliness,
-    QosReliability,
-    QosTime,
-)
+from rosbags.interfaces import Connection, Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
@@ -39,10 +31,7 @@ def store() -> Typestore:
 
 
 def write_bag(
-    folder: Path,
-    seconds: float = 10.0,
-    hz: float = 10.0,
-    storage: StoragePlugin = StoragePlugin.MCAP,
+    folder: Path, seconds: float = 10.0, hz: float = 10.0, storage: StoragePlugin = StoragePlugin.MCAP
 ) -> Path:
     """A bag with the rising /number, the /battery of an unknown package and a latched /map_name.
 
@@ -81,12 +70,7 @@ def write_robot_bag(folder: Path, silent: Sequence[str] = ()) -> Path:
     types = store()
     made = types.types
     joint, header, stamp = (
-        made[name]
-        for name in (
-            "sensor_msgs/msg/JointState",
-            "std_msgs/msg/Header",
-            "builtin_interfaces/msg/Time",
-        )
+        made[name] for name in ("sensor_msgs/msg/JointState", "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
     )
     with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
 

@@ -18,10 +18,7 @@ TENTH_NS = 100_000_000
 TEXT = "std_msgs/msg/String"
 DEFINITION = b"string data\n"
 TOPIC = "/chatter"
-NUMBERED_QOS = (
-    "- history: 1\n  depth: 10\n  reliability: 2\n  durability: 1\n  deadline:\n    sec: 0\n"
-    "    nsec: 0\n"
-)
+NUMBERED_QOS = "- history: 1\n  depth: 10\n  reliability: 2\n  durability: 1\n  deadline:\n    sec: 0\n    nsec: 0\n"
 """Best effort and transient local, as rosbag2 wrote it until Iron."""
 
 
@@ -54,11 +51,7 @@ def write_mcap(
     file.parent.mkdir(parents=True, exist_ok=True)
     with file.open("wb") as stream:
         writer = Writer(
-            stream,
-            chunk_size=chunk_bytes,
-            use_statistics=statistics,
-            index_types=indexes,
-            compression=compression,
+            stream, chunk_size=chunk_bytes, use_statistics=statistics, index_types=indexes, compression=compression
         )
         writer.start("ros2", "a test")
         schema = writer.register_schema(TEXT, "ros2msg", DEFINITION)
@@ -96,10 +89,7 @@ def write_sqlite(file: Path, count: int = 20, first: int = 0) -> Path:
             "create table topics(id integer primary key, name text, type text, "
             "serialization_format text, offered_qos_profiles text)"
         )
-        base.execute(
-            "create table messages(id integer primary key, topic_id integer, timestamp integer, "
-            "data blob)"
-        )
+        base.execute("create table messages(id integer primary key, topic_id integer, timestamp integer, data blob)")
         base.execute("insert into topics values(1, ?, ?, 'cdr', '')", (TOPIC, TEXT))
         for number, at_ns in enumerate(times(first, count), first):
             row = (at_ns, text_in_cdr(f"m{number}"))
@@ -117,13 +107,7 @@ def write_metadata(
     **facts: object,
 ) -> Path:
     """The metadata of a folder; `topics` and `facts` replace what is right of /chatter and all."""
-    about = {
-        "name": TOPIC,
-        "type": TEXT,
-        "serialization_format": "cdr",
-        "offered_qos_profiles": "",
-        **(topics or {}),
-    }
+    about = {"name": TOPIC, "type": TEXT, "serialization_format": "cdr", "offered_qos_profiles": "", **(topics or {})}
     content = {
         "version": 5,
         "storage_identifier": "mcap",

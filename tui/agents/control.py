@@ -41,12 +41,10 @@ class AgentControl:
 
     @property
     def state(self) -> Agents:
-        """The agents, and what they ask for."""
         return self._feed.agents
 
     @property
     def question(self) -> Question | None:
-        """The one that is asked."""
         return next(iter(self.state.questions), None)
 
     @property

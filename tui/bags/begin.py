@@ -55,7 +55,6 @@ class BeginRecording(Action["BeginRecordingScreen"]):
 
     @classmethod
     async def run(cls, target: BeginRecordingScreen) -> None:
-        """Answer with what is wished."""
         target.begin()
 
 

@@ -36,8 +36,7 @@ def shares(rows: Iterable[TopicRow]) -> tuple[RecordingShare, ...]:
             kind = next((kind for kind in HEAVY_TYPES if kind in row.type_names), OTHERS)
             found[kind].append(row)
     return tuple(
-        RecordingShare(kind, tuple(row.name for row in of_kind), _rate(of_kind))
-        for kind, of_kind in found.items()
+        RecordingShare(kind, tuple(row.name for row in of_kind), _rate(of_kind)) for kind, of_kind in found.items()
     )
 
 

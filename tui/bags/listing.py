@@ -128,9 +128,7 @@ class RecordingsScreen(Dialog[None]):
         if refusal:
             self.notify(plain(localized(refusal), LONGEST), severity="error", markup=False)
             return
-        request = sessions.request._replace(
-            profile=None, attach=None, watch=None, replay=ReplayRequest(bag.path)
-        )
+        request = sessions.request._replace(profile=None, attach=None, watch=None, replay=ReplayRequest(bag.path))
         opened = self.deck.feed.opened
         self.dismiss(None)
         (sessions.move_to if opened else sessions.open)(request)

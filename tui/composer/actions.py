@@ -102,7 +102,6 @@ class Send(_SendAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Send it if it is valid."""
         target.send()
 
 
@@ -142,7 +141,6 @@ class Write(Action[ComposerTarget]):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Go there."""
         target.write()
 
 
@@ -163,7 +161,6 @@ class Leave(ComposerAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Leave it."""
         target.leave()
 
 
@@ -237,7 +234,6 @@ class Auto(_SendAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Switch it on, or off."""
         target.toggle_auto()
 
 
@@ -301,7 +297,6 @@ class OlderSent(_WritingAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Recall the older text."""
         target.recall(older=True)
 
 
@@ -315,7 +310,6 @@ class NewerSent(_WritingAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Recall the newer text."""
         target.recall(older=False)
 
 

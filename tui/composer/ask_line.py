@@ -102,7 +102,6 @@ class AskLine(Vertical):
 
     @property
     def note(self) -> str:
-        """The sentence that is shown."""
         return str(self.query_one("#ask-note", Static).content)
 
     def action_recall(self, step: int) -> None:

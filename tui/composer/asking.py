@@ -112,7 +112,6 @@ class ComposerAsking:
 
     @property
     def under_way(self) -> bool:
-        """Whether a question is."""
         return self._question is not None
 
     def messages(self, words: str) -> list[Message]:
@@ -128,7 +127,6 @@ class ComposerAsking:
     # ---------------------------------------------------------------- asking
 
     def ask(self, words: str) -> None:
-        """Ask the model of the settings."""
         if self.under_way:
             return
         screen = self._screen
@@ -149,9 +147,7 @@ class ComposerAsking:
 
     async def _ask(self, question: ModelQuestion, messages: list[Message]) -> None:
         try:
-            thought = await self.models.ask(
-                question.model, messages, question.take, question.repair
-            )
+            thought = await self.models.ask(question.model, messages, question.take, question.repair)
         except ModelError as fault:
             if question is self._question:
                 self._failed(question, fault)
@@ -245,9 +241,7 @@ class ComposerAsking:
             self._show_fault(fault)
             return None
         if settings.compare_with is None:
-            told = _(
-                "There is no second model to compare with: write compare_with: MODEL in {path}"
-            )
+            told = _("There is no second model to compare with: write compare_with: MODEL in {path}")
             line.show_note(told.format(path=plain(str(settings_path()))), "warning")
             return None
         if not words:
@@ -332,9 +326,7 @@ class ComposerAsking:
         screen.verdict.show_under_way(_progress(question, count, len(problems)), problems)
         if question.refused:
             words = _("The first answer was not valid ({problem}): {model} is asked once more.")
-            told = words.format(
-                problem=problem_words(question.refused[0]), model=plain(question.model, 60)
-            )
+            told = words.format(problem=problem_words(question.refused[0]), model=plain(question.model, 60))
             screen.line.show_note(told, "warning")
 
     def read_settings(self) -> None:

@@ -118,13 +118,11 @@ class ComparedAnswer(Vertical):
         self.state = _Compared()
 
     def compose(self) -> ComposeResult:
-        """One below the other."""
         yield Static(plain(self.model, 60), classes="compared-title", markup=False)
         yield JsonEditor()
         yield Static(classes="compared-below", markup=False)
 
     def on_mount(self) -> None:
-        """Nothing is written here."""
         self.query_one(JsonEditor).read_only = True
 
     def redraw(self) -> None:
@@ -167,10 +165,7 @@ class ComparedAnswer(Vertical):
         count = len(thought.value.commands)
         commands = ngettext("{n} command", "{n} commands", count).format(n=count)
         usage = usage_of(summed(thought.usages), self._settings.prices)
-        return [
-            "✓ " + _("valid: {commands}").format(commands=commands),
-            usage_words(usage, named=False),
-        ]
+        return ["✓ " + _("valid: {commands}").format(commands=commands), usage_words(usage, named=False)]
 
     def _refused(self) -> list[str]:
         question = self.state.question
@@ -204,7 +199,6 @@ class CompareDialog(Dialog[ModelAnswer | None]):
         names: tuple[str, str],
         messages: Sequence[Message],
     ) -> None:
-        """Ask the models of these names."""
         super().__init__()
         self._words, self._models, self._messages = words, models, messages
         self._answers = tuple(ComparedAnswer(name, settings) for name in names)
@@ -226,7 +220,6 @@ class CompareDialog(Dialog[ModelAnswer | None]):
         return _("Two models, the same words")
 
     def words(self) -> Content:
-        """Return what was asked."""
         return Content(f"“{plain(self._words, 300)}” · " + _("Tab goes to the other answer"))
 
     def redraw(self) -> None:
@@ -236,7 +229,6 @@ class CompareDialog(Dialog[ModelAnswer | None]):
 
     @property
     def chosen(self) -> ComparedAnswer:
-        """The answer that has the focus."""
         return next((one for one in self._answers if one.has_focus_within), self._answers[0])
 
     @property
@@ -256,9 +248,7 @@ class CompareDialog(Dialog[ModelAnswer | None]):
         for one in self._answers:
             question = one.state.question = ModelQuestion(self._words, one.model)
             try:
-                one.state.thought = await self._models.ask(
-                    one.model, self._messages, question.take, question.repair
-                )
+                one.state.thought = await self._models.ask(one.model, self._messages, question.take, question.repair)
             except ModelError as fault:
                 one.state.fault = fault
             self._progress()

@@ -58,7 +58,6 @@ class JsonEditor(MarkedEditor):
     """The text, and how to undo it, that an answer under way has replaced."""
 
     def tokens_of(self, line: str) -> Iterable[Token]:
-        """Return the tokens of JSON."""
         return tokens(line)
 
     # ---------------------------------------------------------------- an answer that comes
@@ -73,7 +72,6 @@ class JsonEditor(MarkedEditor):
         self.grow_to("")
 
     def grow_to(self, text: str) -> None:
-        """Show this much of it."""
         shown, now = self.shown(text), self.text
         if shown == now:
             return

@@ -64,7 +64,6 @@ class PromptDialog(Dialog[None]):
         return _("Prompt to {model}").format(model=plain(request.model, 60))
 
     def words(self) -> Content:
-        """Return all of it."""
         request = self._models.went_out
         if request is None:
             return Content(_("Nothing has been asked since this session was opened."))

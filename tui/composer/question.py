@@ -33,7 +33,6 @@ class ModelQuestion:
         return time.monotonic() - self.begun_s
 
     def take(self, piece: str) -> None:
-        """Add a piece of the answer."""
         self._pieces.append(piece)
 
     def repair(self, _problems: str) -> None:

@@ -116,22 +116,18 @@ class ComposerScreen(DeckScreen):
 
     @property
     def editor(self) -> JsonEditor:
-        """The editor with the JSON."""
         return self.query_one(JsonEditor)
 
     @property
     def verdict(self) -> JsonVerdict:
-        """The problems in the JSON."""
         return self.query_one(JsonVerdict)
 
     @property
     def outcome(self) -> Outcome:
-        """The outcome of the last message."""
         return self.query_one(Outcome)
 
     @property
     def line(self) -> AskLine:
-        """The line in which a model is asked."""
         return self.query_one(AskLine)
 
     @property
@@ -141,7 +137,6 @@ class ComposerScreen(DeckScreen):
 
     @property
     def send_key(self) -> str:
-        """The key that sends, as it is written."""
         return self.deck.keys_of(Send)[0]
 
     @property
@@ -156,7 +151,6 @@ class ComposerScreen(DeckScreen):
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """The problems in the current JSON."""
         return self.verdict.problems if self.is_mounted else ()
 
     def follow_topics(self) -> set[str]:
@@ -199,7 +193,6 @@ class ComposerScreen(DeckScreen):
         self._say()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Follow the outcome of the message."""
         update = message.update
         self._listener = next((row for row in update.topics if row.name == LLM_RAW_JSON), None)
         if self._trail is not None and not self._trail.over(clock.now()):
@@ -297,9 +290,7 @@ class ComposerScreen(DeckScreen):
         try:
             await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
         except asyncio.TimeoutError:
-            trail.failure = _("ROS did not accept it within {n} s").format(
-                n=decimal(f"{SENT_WITHIN_S:g}")
-            )
+            trail.failure = _("ROS did not accept it within {n} s").format(n=decimal(f"{SENT_WITHIN_S:g}"))
         except Exception as error:  # noqa: BLE001 - any failure is reported
             trail.failure = reason_words(error)
         if trail.failure:
@@ -337,7 +328,6 @@ class ComposerScreen(DeckScreen):
         self.asking.toggle_auto()
 
     def stop_asking(self) -> None:
-        """Hang up on the model."""
         self.asking.cancel()
 
     def compare(self) -> None:
@@ -356,7 +346,6 @@ class ComposerScreen(DeckScreen):
             self.app.push_screen(dialog, take)
 
     def show_prompt(self) -> None:
-        """Show what was sent to the model."""
         self.app.push_screen(PromptDialog(self.asking.models))
 
     def recall(self, *, older: bool) -> None:

@@ -29,7 +29,6 @@ class RobotSenses:
         self._refused = ""
 
     def see(self, samples: Mapping[str, Sequence[Sample]]) -> None:
-        """Take in what has come."""
         from brain.situation import refusal
 
         for topic in WATCHED & samples.keys():

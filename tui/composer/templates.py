@@ -126,7 +126,6 @@ class TemplatesDialog(Dialog[str | None]):
         return _("Templates")
 
     def words(self) -> Content:
-        """Return what the keys do."""
         return Content(_("Enter takes it, Escape closes"))
 
     def compose(self) -> ComposeResult:

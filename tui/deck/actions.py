@@ -89,9 +89,7 @@ class DeckTarget(Protocol):
     def write_command(self) -> None:
         """Focus the command line."""
 
-    def notify(
-        self, message: str, *, severity: SeverityLevel = "information", markup: bool = True
-    ) -> None:
+    def notify(self, message: str, *, severity: SeverityLevel = "information", markup: bool = True) -> None:
         """Show a notification."""
 
 
@@ -281,7 +279,6 @@ class MuteChosenNode(_OfNode):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Mute it, or unmute it."""
         target.filter_log(target.log_filter.toggled(target.chosen_node))
 
 
@@ -374,7 +371,6 @@ class LessonBeside(DeckAction):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Show or remove it."""
         await target.toggle_lesson()
 
 

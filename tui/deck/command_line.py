@@ -91,7 +91,6 @@ class CommandLine(Vertical):
         yield Static("", markup=False)
 
     def on_mount(self) -> None:
-        """Show which words there are."""
         self.words_changed()
 
     @property
@@ -141,10 +140,7 @@ class CommandLine(Vertical):
         setpoint = parse_word(text)
         if setpoint is not None:
             words = _("{speed} m/s, steering {steering} rad")
-            speed, steering = (
-                decimal(f"{setpoint.speed_m_s:g}"),
-                decimal(f"{setpoint.steering_rad:g}"),
-            )
+            speed, steering = (decimal(f"{setpoint.speed_m_s:g}"), decimal(f"{setpoint.steering_rad:g}"))
             return words.format(speed=speed, steering=steering), False
         if any(word.startswith(text.casefold()) for word in words_in_order(language())):
             return _("→ completes the word"), False

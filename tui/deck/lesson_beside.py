@@ -26,7 +26,6 @@ class LessonBesideNodes:
 
     @property
     def fits(self) -> bool:
-        """Whether there is room."""
         return self._screen.size.width >= ROOM[0] and self._screen.size.height >= ROOM[1]
 
     async def toggle(self) -> None:
@@ -43,7 +42,6 @@ class LessonBesideNodes:
             self._column.display = self.fits
 
     async def session_changed(self, message: SessionChanged) -> None:
-        """Show the lesson of another session."""
         await self._bring()
         if self._column is not None:
             self._column.session_changed(self._screen, message)

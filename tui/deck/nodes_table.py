@@ -10,17 +10,7 @@ from textual.message import Message
 
 from text.i18n import N_, _
 from text.plain import plain
-from tui.widgets.node_words import (
-    AILING,
-    AT_WORK,
-    STATES,
-    ailing_words,
-    duration,
-    memory,
-    percent,
-    state_words,
-    why,
-)
+from tui.widgets.node_words import AILING, AT_WORK, STATES, ailing_words, duration, memory, percent, state_words, why
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:

@@ -45,11 +45,9 @@ class DeckPanels:
 
     @property
     def pages(self) -> int:
-        """Number of pages of panels."""
         return 0 if self._grid is None or self._screen.has_class("-small") else self._grid.pages
 
     def turn_page(self) -> None:
-        """Show the next page of panels."""
         if self._grid is not None:
             self._grid.turn()
 
@@ -60,11 +58,9 @@ class DeckPanels:
 
     @property
     def have_focus(self) -> bool:
-        """Whether the chosen panel has the focus."""
         return self._grid is not None and self._grid.has_focus
 
     def choose_next(self) -> Panel | None:
-        """Choose the next panel, and return it."""
         return None if self._grid is None else self._grid.choose_next(1)
 
     def watched(self) -> set[str]:
@@ -142,6 +138,4 @@ class DeckPanels:
 
     def _say_small(self) -> None:
         words = _("Too small for panels: they need {columns}×{rows}")
-        self._screen.query_one("#small", Static).update(
-            words.format(columns=SMALL[0], rows=SMALL[1])
-        )
+        self._screen.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))

@@ -52,12 +52,7 @@ if TYPE_CHECKING:
     from tui.emergency.messages import EmergencyChanged
     from tui.log_view.filter import LogFilter
     from tui.panels.panel import Panel
-    from tui.session.messages import (
-        GraphChanged,
-        LanguageChanged,
-        LogArrived,
-        StatusChanged,
-    )
+    from tui.session.messages import GraphChanged, LanguageChanged, LogArrived, StatusChanged
     from tui.widgets.rows import Rows
 
 DRIVER = "nodes.ai_driver"
@@ -138,7 +133,6 @@ class LessonDeck(DeckScreen):
 
     @property
     def table(self) -> NodesTable:
-        """The table of nodes."""
         return self.query_one(NodesTable)
 
     @property
@@ -192,11 +186,9 @@ class LessonDeck(DeckScreen):
 
     @property
     def log_filter(self) -> LogFilter:
-        """The filter of the log."""
         return self.pane.view.log_filter
 
     def filter_log(self, chosen: LogFilter) -> None:
-        """Apply a filter to the log."""
         self.pane.view.log_filter = chosen
         self._show_nodes()
 
@@ -212,9 +204,7 @@ class LessonDeck(DeckScreen):
             return row is not None and row.subscribers > 0
         if self.feed.link is None:
             return False
-        return any(
-            DRIVER in (node.command, f"nodes.{node.name}") for node in self.feed.nodes.values()
-        )
+        return any(DRIVER in (node.command, f"nodes.{node.name}") for node in self.feed.nodes.values())
 
     def write_command(self) -> None:
         """Focus the command line at once, so that it receives the next key."""
@@ -234,7 +224,6 @@ class LessonDeck(DeckScreen):
         return await node_command(self.feed.link.session, status)
 
     def on_command_line_command_sent(self, message: CommandLine.CommandSent) -> None:
-        """Publish it for the driver."""
         if self.feed.graph is None:
             return
         sent = self.feed.graph.publish(AI_COMMAND, COMMANDS_TYPE, {"data": message.text})
@@ -262,7 +251,6 @@ class LessonDeck(DeckScreen):
 
     @property
     def pages(self) -> int:
-        """Number of pages of panels."""
         return self._panels.pages
 
     def turn_page(self) -> None:
@@ -279,7 +267,6 @@ class LessonDeck(DeckScreen):
 
     @property
     def shows_one_panel(self) -> bool:
-        """Whether a panel is enlarged."""
         return self.maximized in self.panels
 
     def part_to_enlarge(self) -> Widget | None:
@@ -306,17 +293,14 @@ class LessonDeck(DeckScreen):
         await self._dock.open()
 
     async def on_teleop_panel_closed(self) -> None:
-        """Close the panel for driving with keys."""
         await self._dock.close()
 
     def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
-        """The keys for driving."""
         yield _("Keys while driving"), TELEOP_ACTIONS
 
     # Display
 
     def watch_topics(self) -> set[str]:
-        """The topics that the panels show."""
         return self._panels.watched() | self._dock.topics
 
     def picture_topics(self) -> set[str]:
@@ -328,7 +312,6 @@ class LessonDeck(DeckScreen):
         return self._panels.kept()
 
     def past_topics(self) -> set[str]:
-        """The topics of the trends."""
         return set(SONARS)
 
     def follow_topics(self) -> set[str]:
@@ -410,7 +393,6 @@ class LessonDeck(DeckScreen):
         self._dock.release()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw in the current language."""
         del message
         self.pane.words_changed()
         self._show_nodes()

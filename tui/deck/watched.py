@@ -38,10 +38,7 @@ class Watched:
         if self._gone_s is None:
             self._gone_s = update.time_s
         words = (
-            _(
-                "Nobody is seen any more since {time}: the network may be down, or all nodes have"
-                " ended."
-            )
+            _("Nobody is seen any more since {time}: the network may be down, or all nodes have ended.")
             if self._beyond
             else _("Nobody is seen any more since {time}.")
         )

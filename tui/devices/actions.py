@@ -84,7 +84,6 @@ class NextDevicesTab(Action[DevicesTarget]):
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Switch to the other one."""
         target.show_tree(not target.shows_tree)
 
 
@@ -148,7 +147,6 @@ class OnlyBad(DevicesAction):
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Switch to the other one."""
         target.toggle_bad()
 
 
@@ -170,7 +168,6 @@ class Hex(DevicesAction):
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Switch to the other one."""
         target.toggle_hex()
 
 
@@ -245,7 +242,6 @@ class _MakeTrouble(DevicesAction):
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Cause it, or clear it."""
         target.switch_trouble(cls.trouble)
 
 
@@ -266,9 +262,7 @@ class Noise(_MakeTrouble):
     id = "devices.noise"
     key = "Z,Я"
     title = N_("Noise")
-    tooltip = N_(
-        "Simulated robot: noise on the line of the selected device; press again to end it."
-    )
+    tooltip = N_("Simulated robot: noise on the line of the selected device; press again to end it.")
     trouble = NOISE
 
 
@@ -288,9 +282,7 @@ class LowBattery(_MakeTrouble):
     id = "devices.battery"
     key = "B,И"
     title = N_("Low battery")
-    tooltip = N_(
-        "Simulated robot: the battery of Pico and servos is weak; press again to charge it."
-    )
+    tooltip = N_("Simulated robot: the battery of Pico and servos is weak; press again to charge it.")
     trouble = BATTERY
 
 

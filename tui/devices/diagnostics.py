@@ -49,9 +49,7 @@ class DiagnosticsTree(Rows):
     def _row(row: TreeRow) -> Row:
         words, meaning = STATES[row.level]
         sign = _(words)[0]
-        said = (
-            "" if row.record is None or row.level is StatusLevel.OK else row.record.status.message
-        )
+        said = "" if row.record is None or row.level is StatusLevel.OK else row.record.status.message
         name = f"{'  ' * row.depth}{sign} {plain(row.label)}"
         return Row(row.key, (Cell(f"{name}  {said}" if said else name, meaning),))
 
@@ -76,10 +74,7 @@ class StatusFacts(Rows):
             rows.append(Row(f"change {number}", (Cell(words, level_cell(change.level).meaning),)))
         if values:
             rows.append(Row("", (Cell(_("Values"), "dim"),)))
-        rows += [
-            Row(f"value {key}", (Cell(plain(key), "dim"), Cell(plain(value))))
-            for key, value in values.items()
-        ]
+        rows += [Row(f"value {key}", (Cell(plain(key), "dim"), Cell(plain(value)))) for key, value in values.items()]
         self.show([Column("", width), Column("")], rows)
 
 
@@ -129,10 +124,7 @@ class DiagnosticsView(Horizontal):
         head, facts = self.query_one(NameHead), self.query_one(StatusFacts)
         state = level_cell(row.level).text
         if row.record is None:
-            below = sum(
-                one.record is not None and one.path[: len(row.path)] == row.path
-                for one in self._rows
-            )
+            below = sum(one.record is not None and one.path[: len(row.path)] == row.path for one in self._rows)
             head.show(" / ".join(row.path), f"{state} · " + _("reports: {n}").format(n=below))
         else:
             status = row.record.status

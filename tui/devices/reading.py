@@ -31,7 +31,6 @@ class Device:
 
     @property
     def port(self) -> str:
-        """The port that it is connected to."""
         return self.report.values.get("port") or self.report.hardware
 
     @property

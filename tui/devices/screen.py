@@ -19,12 +19,7 @@ from tui.actions import bindings
 from tui.devices import trouble as device_trouble
 from tui.devices import words
 from tui.devices.actions import DEVICES_ACTIONS
-from tui.devices.diagnostics import (
-    DiagnosticsTree,
-    DiagnosticsView,
-    StatusFacts,
-    worst_of,
-)
+from tui.devices.diagnostics import DiagnosticsTree, DiagnosticsView, StatusFacts, worst_of
 from tui.devices.frame_rows import KEPT, WAYS, FrameRows, frame_columns
 from tui.devices.reading import Device, device_of, devices_of, frames_topic
 from tui.devices.table import DevicesTable
@@ -95,7 +90,6 @@ class DevicesScreen(DeckScreen):
 
     @property
     def table(self) -> DevicesTable:
-        """The table of drivers."""
         return self.query_one(DevicesTable)
 
     @property
@@ -266,9 +260,7 @@ class DevicesScreen(DeckScreen):
     # Display
 
     def _take_frames(self, samples: Iterable[Sample]) -> None:
-        fresh = [
-            line for sample in samples for line in decode(str(sample.value.get("data", "")))[0]
-        ]
+        fresh = [line for sample in samples for line in decode(str(sample.value.get("data", "")))[0]]
         if not fresh:
             return
         if self.frames.add(fresh):
@@ -280,13 +272,11 @@ class DevicesScreen(DeckScreen):
         self.pane.view.replace_lines(self.frames.lines())
 
     def _name_lines(self) -> None:
-        """Name the lines in the current language."""
         self.pane.view.minimum_words = _("only noise and bad frames")
         self.pane.view.know_nodes(_(way) for way in WAYS.values())
         self.pane.words_changed()
 
     def _look(self) -> None:
-        """Show the current state."""
         # Without its parts it is just being opened or closed.
         if not self.query(DevicesTable) or self.feed.front is not self:
             return

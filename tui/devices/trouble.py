@@ -42,21 +42,16 @@ class SimulatedTrouble:
 
 
 UNPLUGGED = SimulatedTrouble(
-    *("unplugged", "fine"),
-    *(N_("{device}: the cable is pulled."), N_("{device}: the cable is plugged in again.")),
+    *("unplugged", "fine"), *(N_("{device}: the cable is pulled."), N_("{device}: the cable is plugged in again."))
 )
 NOISE = SimulatedTrouble(
-    *("noise", "fine"),
-    *(N_("{device}: there is noise on the line."), N_("{device}: the noise is gone.")),
+    *("noise", "fine"), *(N_("{device}: there is noise on the line."), N_("{device}: the noise is gone."))
 )
 SILENCE = SimulatedTrouble(
-    *("silent", "fine"),
-    *(N_("{device}: it has gone silent."), N_("{device}: it sends data again.")),
+    *("silent", "fine"), *(N_("{device}: it has gone silent."), N_("{device}: it sends data again."))
 )
 BATTERY = SimulatedTrouble(
-    *(5.8, 7.4),
-    *(N_("The battery has 5.8 V."), N_("The battery has 7.4 V.")),
-    *("battery", POWERED),
+    *(5.8, 7.4), *(N_("The battery has 5.8 V."), N_("The battery has 7.4 V.")), *("battery", POWERED)
 )
 
 
@@ -75,9 +70,7 @@ def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:
     return (names[0], port.name) if names else None
 
 
-async def switch(
-    graph: GraphLink, node: str, device: str, trouble: SimulatedTrouble
-) -> tuple[bool, str]:
+async def switch(graph: GraphLink, node: str, device: str, trouble: SimulatedTrouble) -> tuple[bool, str]:
     """Cause the trouble, or clear it; return whether it is present now, or why that failed."""
     name = trouble.parameter or device
     read = await asyncio.wrap_future(graph.parameters(node))
@@ -85,7 +78,5 @@ async def switch(
     if read.error or now is None:
         return False, read.error or name
     made = now != trouble.wrong
-    done = await asyncio.wrap_future(
-        graph.set_parameters(node, {name: trouble.wrong if made else trouble.fine})
-    )
+    done = await asyncio.wrap_future(graph.set_parameters(node, {name: trouble.wrong if made else trouble.fine}))
     return made, done.error or done.refused.get(name, "")

@@ -62,9 +62,7 @@ def no_frames(device: Device, topic: str | None, now_s: float) -> str:
     name = plain(device.report.name)
     age_s = device.age_s(now_s)
     if age_s > STALE_S:
-        words = _(
-            "{name} has said nothing for {seconds} s: has it ended? See Deck (1) or Logs (4)."
-        )
+        words = _("{name} has said nothing for {seconds} s: has it ended? See Deck (1) or Logs (4).")
         return words.format(name=name, seconds=elapsed(age_s))
     if topic is None:
         words = _(
@@ -123,8 +121,7 @@ def _lessons_with_drivers() -> tuple[str, ...]:
         except LauncherError:
             continue
         if any(
-            node.document.run in DRIVERS or (node.document.run == HEAD and "port" in node.params)
-            for node in nodes
+            node.document.run in DRIVERS or (node.document.run == HEAD and "port" in node.params) for node in nodes
         ):
             found.append(entry.name)
     return tuple(found)

@@ -65,11 +65,7 @@ class ChoiceScreen(Dialog[str]):
     """
 
     def __init__(
-        self,
-        title: Callable[[], str],
-        words: Callable[[], str],
-        choices: Mapping[str, str],
-        chosen: str = "",
+        self, title: Callable[[], str], words: Callable[[], str], choices: Mapping[str, str], chosen: str = ""
     ) -> None:
         """Offer `choices`, key to text, with `chosen` or the first one chosen.
 
@@ -100,11 +96,9 @@ class ChoiceScreen(Dialog[str]):
         return self._title()
 
     def words(self) -> Content:
-        """Return what is asked."""
         return Content(plain_lines(self._words()))
 
     def take(self) -> None:
-        """Answer with the chosen one."""
         self.dismiss(self.query_one(Rows).chosen)
 
     def on_rows_opened(self, message: Rows.Opened) -> None:

@@ -90,7 +90,6 @@ class Dialog(ModalScreen[Answer], Acting, Working):
         self.redraw()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw in the current language."""
         del message
         self.redraw()
 

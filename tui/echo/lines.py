@@ -47,7 +47,6 @@ class EchoLine:
 
     @property
     def depth(self) -> int:
-        """The level of indentation."""
         return len(self.path) - 1
 
 
@@ -68,9 +67,7 @@ def _children(path: Path, message: Mapping[str, Value], is_open: IsOpen) -> Iter
         yield from _value((*path, key), f"{plain(key)}:".ljust(widest), value, places, is_open)
 
 
-def _value(
-    path: Path, label: str, value: Value, places: int, is_open: IsOpen
-) -> Iterator[EchoLine]:
+def _value(path: Path, label: str, value: Value, places: int, is_open: IsOpen) -> Iterator[EchoLine]:
     if echo_values.is_branch(value):
         yield from _branch(path, label.rstrip(), value, is_open)
         return
@@ -114,9 +111,7 @@ def _contents(path: Path, value: Value, is_open: IsOpen) -> Iterator[EchoLine]:
 
 
 def _numbered(
-    path: Path,
-    values: Sequence[Value] | np.ndarray[tuple[int, ...], np.dtype[np.generic]],
-    is_open: IsOpen,
+    path: Path, values: Sequence[Value] | np.ndarray[tuple[int, ...], np.dtype[np.generic]], is_open: IsOpen
 ) -> Iterator[EchoLine]:
     shown = min(len(values), OPENED_ITEMS)
     widest = len(f"[{shown - 1}]:")

@@ -121,7 +121,6 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
 
     @property
     def message(self) -> Mapping[str, Value] | None:
-        """The message shown now."""
         return self._message
 
     @property
@@ -141,7 +140,6 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
 
     @property
     def at_cursor(self) -> Path | None:
-        """The path of the line with the cursor."""
         line = self._line_at(self._cursor)
         return None if line is None else line.path
 
@@ -160,7 +158,6 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         self._move_to(self._cursor + by)
 
     def action_page(self, pages: int) -> None:
-        """Move the cursor by a page."""
         self._move_to(self._cursor + pages * max(1, self.size.height - 1))
 
     def action_toggle_fold(self) -> None:

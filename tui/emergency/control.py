@@ -199,8 +199,7 @@ class EmergencyControl:
         if update is None:
             return True
         return not update.error and any(
-            node.state.coming or (node.state.alive and (node.uptime_s or 0.0) < SEEN_WITHIN_S)
-            for node in nodes
+            node.state.coming or (node.state.alive and (node.uptime_s or 0.0) < SEEN_WITHIN_S) for node in nodes
         )
 
     async def _is_obeyed(self) -> bool:
@@ -274,7 +273,6 @@ class EmergencyControl:
             self._app.notify(told, severity="warning", timeout=WHY_S, markup=False)
 
     async def _reached(self, sent: Future[int] | None) -> bool:
-        """Return whether ROS accepted it."""
         if sent is None:
             return False
         try:

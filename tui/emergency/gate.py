@@ -40,22 +40,13 @@ PLACES = {
 }
 NOTHING_NEAR = {"front": N_("nothing ahead"), "rear": N_("nothing behind")}
 """Nothing within the range of the sensor."""
-TOO_CLOSE = {
-    "front": N_("obstacle ahead too close to measure"),
-    "rear": N_("obstacle behind too close to measure"),
-}
-TOO_RARE = {
-    "front": N_("{nodes} speaks too rarely ahead"),
-    "rear": N_("{nodes} speaks too rarely behind"),
-}
+TOO_CLOSE = {"front": N_("obstacle ahead too close to measure"), "rear": N_("obstacle behind too close to measure")}
+TOO_RARE = {"front": N_("{nodes} speaks too rarely ahead"), "rear": N_("{nodes} speaks too rarely behind")}
 ONE_TOO_RARE = {
     "front": N_("one of {nodes} speaks too rarely ahead"),
     "rear": N_("one of {nodes} speaks too rarely behind"),
 }
-REFUSED = {
-    "m/s": N_("{value} m/s, limit {limit} m/s"),
-    "rad": N_("{value} rad, limit {limit} rad"),
-}
+REFUSED = {"m/s": N_("{value} m/s, limit {limit} m/s"), "rad": N_("{value} rad, limit {limit} rad")}
 BEYOND = re.compile(r"(?P<value>\S+) (?P<unit>\S+), limit (?P<limit>\S+) (?P=unit)")
 STAMP = re.compile(r"stamp (?P<age>\S+) s old")
 SOURCES = {DRIVE_TELEOP: N_("the keys")}
@@ -68,11 +59,7 @@ def held_words(gate: Gate) -> str:
         return ""
     why = ""
     if gate.verdict in EXPLAINED:
-        why = ", ".join(
-            _sensor_words(gate, place, state)
-            for place, state in gate.states.items()
-            if state != "free"
-        )
+        why = ", ".join(_sensor_words(gate, place, state) for place, state in gate.states.items() if state != "free")
     return _(HELD[gate.verdict]) + (f": {why}" if why else "")
 
 

@@ -14,6 +14,5 @@ class EmergencyChanged(Message, bubble=False):
     """The emergency stop was engaged or released, or its details have changed."""
 
     def __init__(self, emergency: Emergency) -> None:
-        """Carry the new state."""
         super().__init__()
         self.emergency = emergency

@@ -55,11 +55,7 @@ def reported_stops(nodes: Mapping[str, NodeStop], update: GraphUpdate) -> dict[s
 def present(nodes: Mapping[str, NodeStop], update: GraphUpdate) -> dict[str, NodeStop]:
     """Return the nodes that are still present."""
     names = {node.name for node in update.nodes}
-    return {
-        name: node
-        for name, node in nodes.items()
-        if name in names or update.time_s - node.heard_s < GONE_S
-    }
+    return {name: node for name, node in nodes.items() if name in names or update.time_s - node.heard_s < GONE_S}
 
 
 def _statuses(sample: Sample) -> Iterator[tuple[str, dict[str, str]]]:

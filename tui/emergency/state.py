@@ -93,26 +93,17 @@ class Emergency:
         """The nodes that have said nothing since it was pressed here, though others have."""
         if not self.asked or not self.ours or self.time_s < self.since_s + SETTLED_S:
             return ()
-        return tuple(
-            sorted(name for name, node in self.nodes.items() if node.heard_s < self.since_s)
-        )
+        return tuple(sorted(name for name, node in self.nodes.items() if node.heard_s < self.since_s))
 
     @property
     def holders(self) -> tuple[str, ...]:
-        """The nodes that hold."""
         return tuple(sorted(name for name, node in self.nodes.items() if node.engaged))
 
     @property
     def free(self) -> tuple[str, ...]:
         """The nodes that do not hold, though they have had as much time as the others to do so."""
         known_s = max(self.changed_s, self.heard_s, self.since_s) + SETTLED_S
-        return tuple(
-            sorted(
-                name
-                for name, node in self.nodes.items()
-                if not node.engaged and node.heard_s > known_s
-            )
-        )
+        return tuple(sorted(name for name, node in self.nodes.items() if not node.engaged and node.heard_s > known_s))
 
     @property
     def overdue(self) -> tuple[str, ...]:
@@ -121,7 +112,6 @@ class Emergency:
         return tuple(sorted(self.awaited)) if settled else ()
 
     def pressed(self, now_s: float, *, waits: bool = False) -> Emergency:
-        """Engage it from here."""
         state = self.said(True, now_s, now_s)
         return replace(state, ours=True, since_s=now_s, awaited={}, waits=waits)
 
@@ -195,11 +185,7 @@ class Emergency:
             state = replace(state, changed_s=update.time_s)
         if not held and state.holders and not state.asked:
             state = replace(state, ours=False)
-        if (
-            state.asked
-            and not state.holders
-            and any(was_released(node, state.said_s) for node in nodes.values())
-        ):
+        if state.asked and not state.holders and any(was_released(node, state.said_s) for node in nodes.values()):
             state = replace(state, asked=False, ours=False)
         return replace(state, awaited=still_awaited(state))
 

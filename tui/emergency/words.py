@@ -100,9 +100,7 @@ def _since(state: Emergency) -> str:
     except (OverflowError, OSError, ValueError):
         return ""
     today = time.localtime()[:3] == since[:3]
-    return " " + _("since {time}").format(
-        time=time.strftime("%H:%M:%S" if today else "%Y-%m-%d %H:%M", since)
-    )
+    return " " + _("since {time}").format(time=time.strftime("%H:%M:%S" if today else "%Y-%m-%d %H:%M", since))
 
 
 def _names(names: Iterable[str]) -> str:

@@ -128,9 +128,7 @@ class HideLane(_Chosen):
     key = "m,ь"
     title = N_("Hide")
     means = "leave out"
-    tooltip = N_(
-        "Hide all steps of the same kind as the selected one: microphone, brain, wheels..."
-    )
+    tooltip = N_("Hide all steps of the same kind as the selected one: microphone, brain, wheels...")
     footer = True
 
     @classmethod
@@ -166,7 +164,6 @@ class OtherLogs(FlowAction):
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Show them, or hide them."""
         target.toggle_logs()
 
 
@@ -182,7 +179,6 @@ class ChangeTimeScale(FlowAction):
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Switch to the other one."""
         target.toggle_scale()
 
 
@@ -200,13 +196,4 @@ class CopyChain(_Chosen):
         target.copy_chain()
 
 
-FLOW_ACTIONS = (
-    OlderChain,
-    NewerChain,
-    PauseFlow,
-    HideLane,
-    ShowAllLanes,
-    OtherLogs,
-    ChangeTimeScale,
-    CopyChain,
-)
+FLOW_ACTIONS = (OlderChain, NewerChain, PauseFlow, HideLane, ShowAllLanes, OtherLogs, ChangeTimeScale, CopyChain)

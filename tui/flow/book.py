@@ -29,7 +29,6 @@ class FlowBook:
 
     @property
     def chains(self) -> Sequence[Chain]:
-        """The chains, oldest first."""
         return self._chains
 
     def clear(self) -> None:
@@ -55,7 +54,6 @@ class FlowBook:
         return False
 
     def _at(self, time_s: float) -> Chain | None:
-        """The newest chain that had begun by then."""
         begun = (one for one in reversed(self._chains) if one.start_s <= time_s + EARLY_S)
         return next(begun, None)
 

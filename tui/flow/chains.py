@@ -90,7 +90,6 @@ class FlowStep:
     """What a model's answer took, if the step tells of one."""
 
     def repeats(self, other: FlowStep) -> bool:
-        """Whether the content is the same."""
         return self._content() == other._content()
 
     def _content(self) -> tuple[object, ...]:
@@ -131,9 +130,7 @@ class Chain:
             return self._takes_beginning(step, age_s)
         if age_s < -EARLY_S:
             return False
-        return age_s <= FOLLOWS_S or (
-            step.time_s - self._active_s <= PAUSE_S and age_s <= LONGEST_S
-        )
+        return age_s <= FOLLOWS_S or (step.time_s - self._active_s <= PAUSE_S and age_s <= LONGEST_S)
 
     def _takes_beginning(self, step: FlowStep, age_s: float) -> bool:
         heard_s = self._heard_s.get(step.source)
@@ -152,10 +149,7 @@ class Chain:
         self._heard_s[step.source] = max(step.time_s, self._heard_s.get(step.source, step.time_s))
         if step.lane is not Lane.LOG:
             self._active_s = max(self._active_s, step.time_s)
-        at = next(
-            (at for at in reversed(range(len(self.steps))) if self.steps[at].source == step.source),
-            None,
-        )
+        at = next((at for at in reversed(range(len(self.steps))) if self.steps[at].source == step.source), None)
         if at is not None and step.repeats(self.steps[at]):
             said = self.steps[at]
             self.steps[at] = replace(said, times=said.times + 1)

@@ -51,9 +51,7 @@ def columns(width: int) -> FlowColumns:
     else:
         source, said_by, bar = 24, 26, width // 3
     gaps = 4 if said_by else 3
-    return FlowColumns(
-        source, said_by, bar, max(8, width - DELAY - source - said_by - bar - 2 * gaps)
-    )
+    return FlowColumns(source, said_by, bar, max(8, width - DELAY - source - said_by - bar - 2 * gaps))
 
 
 def lines(
@@ -74,9 +72,7 @@ def lines(
     before_s = 0.0
     for number, step in enumerate(shown):
         after_s = chain.delay_s(step)
-        found.append(
-            FlowLine((chain.start_s, number), _row(chain, step, axis.bar(before_s, after_s), room))
-        )
+        found.append(FlowLine((chain.start_s, number), _row(chain, step, axis.bar(before_s, after_s), room)))
         before_s = after_s
     if chain.more:
         found.append(FlowLine((chain.start_s, -2), ((f"{'':{DELAY}}  … +{chain.more}", "dim"),)))

@@ -69,9 +69,7 @@ class FlowReader:
         self._head_s = 0.0
         self._usages: dict[str, UsageFigures | None] = {}
 
-    def messages(
-        self, samples: Mapping[str, Iterable[Sample]], said_by: Mapping[str, str]
-    ) -> list[FlowStep]:
+    def messages(self, samples: Mapping[str, Iterable[Sample]], said_by: Mapping[str, str]) -> list[FlowStep]:
         """Read samples; `said_by` has the publishers of each topic."""
         came = [one for topic in TOPICS for one in samples.get(topic, ())]
         came.sort(key=_sent_s)
@@ -106,9 +104,7 @@ class FlowReader:
             if is_new and report.usage is not None:
                 yield FlowStep(time_s, Lane.BRAIN, BRAIN_STATE, report.node, usage=report.usage)
 
-    def _read_motion(
-        self, topic: str, value: Mapping[str, Value], time_s: float, said_by: str
-    ) -> Iterator[FlowStep]:
+    def _read_motion(self, topic: str, value: Mapping[str, Value], time_s: float, said_by: str) -> Iterator[FlowStep]:
         wheels = topic == WHEEL_COMMANDS
         figures = _wheels(value) if wheels else outcome_words.setpoint(value)
         # Values in 32 bits and their repetitions may differ slightly.
@@ -129,9 +125,7 @@ class FlowReader:
         told_s = self._told_s.get(topic, -math.inf)
         return time_s - given_s <= PASSED_ON_S and told_s < given_s
 
-    def _read_head(
-        self, value: Mapping[str, Value], time_s: float, said_by: str
-    ) -> Iterator[FlowStep]:
+    def _read_head(self, value: Mapping[str, Value], time_s: float, said_by: str) -> Iterator[FlowStep]:
         """Two steps for one movement: where it begins, and where it has come to rest."""
         looks = outcome_words.joint(value, HEAD_PAN), outcome_words.joint(value, HEAD_TILT)
         before, self._looked = self._looked, looks

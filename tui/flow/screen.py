@@ -92,7 +92,6 @@ class FlowScreen(DeckScreen):
 
     @property
     def chosen_chain(self) -> Chain | None:
-        """The chain at the cursor."""
         key = self.view.chosen if self.is_mounted else None
         found = (one for one in self.chains if key is not None and one.start_s == key[0])
         return next(found, None)
@@ -193,7 +192,6 @@ class FlowScreen(DeckScreen):
         return chains[at] if 0 <= at < len(chains) else None
 
     def go(self, step: int) -> None:
-        """Go to that chain."""
         chain = self.neighbour(step)
         if chain is not None:
             self.view.choose((chain.start_s, -1))
@@ -227,7 +225,6 @@ class FlowScreen(DeckScreen):
         self._show()
 
     def copy_chain(self) -> None:
-        """Copy the chosen chain as text."""
         chain = self.chosen_chain
         if chain is None:
             return
@@ -257,11 +254,7 @@ class FlowScreen(DeckScreen):
 
     def _shown(self, chain: Chain) -> list[FlowStep]:
         # What an answer took stands in the headline, not among what happened.
-        return [
-            step
-            for step in chain.steps
-            if step.lane not in self._hidden and step.source != BRAIN_STATE
-        ]
+        return [step for step in chain.steps if step.lane not in self._hidden and step.source != BRAIN_STATE]
 
     def _lay(self, width: int) -> list[FlowLine]:
         found: list[FlowLine] = []

@@ -79,9 +79,7 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
 
     def show(self) -> None:
         """Repeat the layout; at the top, follow what is new, otherwise stay at the chosen line."""
-        at_top = self.scroll_offset.y == 0 and (
-            self._chosen is None or self._chosen == next(iter(self.keys()), None)
-        )
+        at_top = self.scroll_offset.y == 0 and (self._chosen is None or self._chosen == next(iter(self.keys()), None))
         before = self._row_of(self._chosen)
         self._lines = self._lay(max(1, self.scrollable_content_region.width))
         self.virtual_size = Size(0, len(self._lines))
@@ -143,11 +141,7 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
         if row >= len(self._lines):
             return Strip.blank(width, base)
         line = self._lines[row]
-        over = (
-            self.get_component_rich_style("flow--cursor", partial=True)
-            if line.key == self._chosen
-            else None
-        )
+        over = self.get_component_rich_style("flow--cursor", partial=True) if line.key == self._chosen else None
         segments = []
         for text, name in line.pieces:
             style = base + self.get_component_rich_style(f"flow--{name}", partial=True)

@@ -71,9 +71,7 @@ def headline(chain: Chain, shown: Sequence[FlowStep]) -> str:
     steps = len(shown) + chain.more
     count = ngettext("{n} step", "{n} steps", steps).format(n=steps)
     took = delay(max(map(chain.delay_s, shown), default=0.0))
-    return _("“{words}” · {count} in {time}").format(
-        words=_once(chain.first), count=count, time=took
-    )
+    return _("“{words}” · {count} in {time}").format(words=_once(chain.first), count=count, time=took)
 
 
 def model_took(chain: Chain) -> str:

@@ -10,11 +10,7 @@ from textual.widget import Widget
 
 from text.i18n import _
 from tui.agents.words import question_head, question_lines, standing_words
-from tui.frame.actions.agents import (
-    AllowAgent,
-    AllowAgentForATime,
-    RefuseAgent,
-)
+from tui.frame.actions.agents import AllowAgent, AllowAgentForATime, RefuseAgent
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -74,7 +70,6 @@ class AgentBanner(Widget):
 
     @property
     def text(self) -> str:
-        """All of it as text."""
         return self.render().plain
 
     def render(self) -> Content:
@@ -106,9 +101,7 @@ class AgentBanner(Widget):
         line = Content.styled(f" {words}", style)
         return line.truncate(max(1, self.app.size.width), ellipsis=True)
 
-    def _keys(
-        self, host: Host, *actions: type[AllowAgent | AllowAgentForATime | RefuseAgent]
-    ) -> Content:
+    def _keys(self, host: Host, *actions: type[AllowAgent | AllowAgentForATime | RefuseAgent]) -> Content:
         key = self.get_visual_style("agent-banner--key")
         parts = []
         for action in actions:

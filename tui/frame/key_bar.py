@@ -91,7 +91,6 @@ class KeyBar(Widget):
         self.tooltip = _(REGISTRY[name].tooltip) if name in REGISTRY else None
 
     async def action_press(self, name: str) -> None:
-        """Run the clicked action."""
         for active in self.screen.active_bindings.values():
             if active.binding.id == name:
                 await self.app.run_action(active.binding.action, active.node)
@@ -117,9 +116,7 @@ class KeyBar(Widget):
         title_style = self.get_visual_style("key-bar--title" if entry.enabled else "key-bar--off")
         meta = {"@click": f"press({entry.id!r})"} if entry.enabled else {}
         click = Style.from_meta({"key-bar": entry.id, **meta})
-        return Content.assemble(
-            (f" {entry.key}", key_style + click), (f" {entry.title} ", title_style + click)
-        )
+        return Content.assemble((f" {entry.key}", key_style + click), (f" {entry.title} ", title_style + click))
 
 
 def _places(names: Iterable[str]) -> dict[str, tuple[int, int]]:

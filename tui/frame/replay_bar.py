@@ -69,7 +69,6 @@ class ReplayBar(Widget):
         self._timer = self.set_interval(LOOK_S, self.look, pause=True)
 
     def show(self, replay: Replay | None) -> None:
-        """Show this replay, or nothing."""
         self._replay = replay
         self.display = replay is not None
         if replay is None:
@@ -93,7 +92,6 @@ class ReplayBar(Widget):
                 self.screen.refresh_bindings()
 
     def on_click(self, event: Click) -> None:
-        """Jump to the position that was clicked."""
         begin, width = self.track
         state = self._state
         if self._replay is not None and state is not None and begin <= event.x < begin + width:
@@ -130,9 +128,7 @@ class ReplayBar(Widget):
         sign = "‖" if state.paused else "▶"
         words = self.get_visual_style("replay-bar--words")
         click = Style.from_meta({"@click": "app.act('replay.toggle')"})
-        return Content.assemble(
-            (f" {sign} {_clock(state.position_s, state.length_s)} ", words + click)
-        )
+        return Content.assemble((f" {sign} {_clock(state.position_s, state.length_s)} ", words + click))
 
     def _right(self, state: ReplayState) -> Content:
         words = self.get_visual_style("replay-bar--words")
@@ -171,9 +167,7 @@ class ReplayBar(Widget):
         for action in (Step, Back, Forward, SlowerReplay, FasterReplay, Loop):
             click = Style.from_meta({"@click": f"app.act({action.id!r})"})
             key = app.keys_of(action)[0]
-            yield Content.assemble(
-                (f"  {key}", bold + click), (f" {_(action.title)}", words + click)
-            )
+            yield Content.assemble((f"  {key}", bold + click), (f" {_(action.title)}", words + click))
 
 
 def _clock(seconds: float, length_s: float) -> str:

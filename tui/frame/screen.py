@@ -203,7 +203,6 @@ class DeckScreen(Screen[None], Acting, Working):
         self.topics_changed()
 
     def on_screen_resume(self) -> None:
-        """Request the topics of this screen."""
         self.show_frame()
         self.topics_changed()
 

@@ -29,10 +29,7 @@ def show(bar: TitleBar, app: Host, front: str) -> None:
 
 def tabs(app: Host, front: str) -> Sequence[tuple[str, str, bool]]:
     """Return (text, action, in front) for every screen of the session."""
-    return [
-        (f"{app.keys_of(tab)[0]} {_(tab.title)}", f"app.act({tab.id!r})", tab.screen == front)
-        for tab in TABS
-    ]
+    return [(f"{app.keys_of(tab)[0]} {_(tab.title)}", f"app.act({tab.id!r})", tab.screen == front) for tab in TABS]
 
 
 def look(app: Host) -> str:
@@ -128,10 +125,7 @@ def _is_unguarded(app: Host) -> bool:
 
 def _unguarded() -> Sequence[str]:
     """Return that the guardian is gone, and what brings it back."""
-    return (
-        _("⚠ The guardian process is dead: start the session anew"),
-        _("⚠ guardian dead"),
-    )
+    return (_("⚠ The guardian process is dead: start the session anew"), _("⚠ guardian dead"))
 
 
 def _held(state: Emergency) -> Sequence[str]:
@@ -162,9 +156,7 @@ def _recorded(app: Host, session: SessionInfo) -> Sequence[str]:
     recorded = app.recording.words
     if not recorded:
         return _running(app, session)
-    everything = (
-        f"{words} · {running}" for running in _running(app, session) for words in recorded[:2]
-    )
+    everything = (f"{words} · {running}" for running in _running(app, session) for words in recorded[:2])
     short = (f"{words} · {domain_words(session)}" for words in recorded)
     return (*everything, *short, recorded[-1])
 
@@ -180,8 +172,4 @@ def _running(app: Host, session: SessionInfo) -> Sequence[str]:
     title = f"{plain(session.lesson)} {pick(session.title)}".strip() or name
     domain = domain_words(session)
     names = (f"{title} · {hardware}", title, name)
-    return (
-        *(f"{words} · {domain} · {count}" for words in names),
-        f"{domain} · {count}",
-        domain,
-    )
+    return (*(f"{words} · {domain} · {count}" for words in names), f"{domain} · {count}", domain)

@@ -82,11 +82,7 @@ class TitleBar(Widget):
         self._aside = ""
 
     def show(
-        self,
-        tabs: Sequence[tuple[str, str, bool]],
-        states: Sequence[str],
-        look: str = "state",
-        aside: str = "",
+        self, tabs: Sequence[tuple[str, str, bool]], states: Sequence[str], look: str = "state", aside: str = ""
     ) -> None:
         """Show tabs of (text, action, in front), and on the right the first of `states` that fits.
 
@@ -105,7 +101,6 @@ class TitleBar(Widget):
 
     @property
     def text(self) -> str:
-        """The text of the line."""
         return self.render().plain
 
     def render(self) -> Content:
@@ -172,9 +167,7 @@ class TitleBar(Widget):
     def _levels(self) -> list[_Level]:
         """Return all tabs, shorter and shorter; the first NAMED levels show a part of each name."""
         shapes = ((None, "", 2), (SHORT, ".", 2), (SHORT, ".", 1), (SHORT, "", 1))
-        named = [
-            _Level(_shortened(self._tabs, letters, mark), gap) for letters, mark, gap in shapes
-        ]
+        named = [_Level(_shortened(self._tabs, letters, mark), gap) for letters, mark, gap in shapes]
         # The name of a tab is worth more than that of the program.
         named.append(_Level(_shortened(self._tabs, SHORTEST), 1, ""))
         keys = _keys(self._tabs)
@@ -199,10 +192,7 @@ def _shortened(
     """
     if letters is None:
         return tabs
-    return [
-        (text if front else _initials(text, letters, mark), action, front)
-        for text, action, front in tabs
-    ]
+    return [(text if front else _initials(text, letters, mark), action, front) for text, action, front in tabs]
 
 
 def _keys(tabs: Sequence[tuple[str, str, bool]]) -> Sequence[tuple[str, str, bool]]:

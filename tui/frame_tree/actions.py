@@ -72,7 +72,6 @@ class RelativeTo(FramesAction):
 
     @classmethod
     async def run(cls, target: FramesTarget) -> None:
-        """Mark it, or unmark it."""
         target.relate()
 
 
@@ -181,12 +180,4 @@ class OtherWayRound(FramesAction):
         target.turn_round()
 
 
-FRAMES_ACTIONS = (
-    RelativeTo,
-    NextFinding,
-    PreviousFinding,
-    CopyTransform,
-    FilterFrames,
-    FramesIn3D,
-    OtherWayRound,
-)
+FRAMES_ACTIONS = (RelativeTo, NextFinding, PreviousFinding, CopyTransform, FilterFrames, FramesIn3D, OtherWayRound)

@@ -51,15 +51,11 @@ class FramePairs:
         self._newest.clear()
 
     def take(self, rows: Sequence[FrameRow]) -> None:
-        """Take in the newest transform of each frame."""
         good = [row.newest for row in rows if row.count > row.faults]
         self._buffer.add(good)
         self._newest.clear()
         # As if all were of one time: what is shown while they have no time in common.
-        self._newest.add(
-            type(one)(one.parent, one.child, one.stamp_s, one.transform, static=True)
-            for one in good
-        )
+        self._newest.add(type(one)(one.parent, one.child, one.stamp_s, one.transform, static=True) for one in good)
 
     def find(self, target: str, source: str) -> FramePair:
         """Return where `source` is in `target`."""
@@ -87,9 +83,7 @@ def pair_lines(pair: FramePair, room: int) -> list[str]:
     Numbers that do not fit beside their name in `room` cells have a line of their own. A line is as
     long for all frames of a robot, so that nothing below jumps while it moves.
     """
-    head = _("{source} in {target}").format(
-        source=plain(pair.source, LONGEST), target=plain(pair.target, LONGEST)
-    )
+    head = _("{source} in {target}").format(source=plain(pair.source, LONGEST), target=plain(pair.target, LONGEST))
     if pair.transform is None:
         return [head, localized(pair.remark)]
     if pair.source == pair.target:

@@ -106,7 +106,6 @@ class FramesScreen(DeckScreen):
 
     @property
     def filter(self) -> Input:
-        """The input of the filter."""
         return self.query_one("#frames-filter", Input)
 
     @property
@@ -116,12 +115,10 @@ class FramesScreen(DeckScreen):
 
     @property
     def has_frames(self) -> bool:
-        """Whether there is a tree."""
         return bool(self._tree.frames)
 
     @property
     def has_findings(self) -> bool:
-        """Whether anything is wrong."""
         return bool(self._findings)
 
     @property
@@ -153,7 +150,6 @@ class FramesScreen(DeckScreen):
             self._show()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Take in the frames."""
         self._update = message.update
         self._pairs.take(message.update.frames)
         self._show()
@@ -223,7 +219,6 @@ class FramesScreen(DeckScreen):
         self.table.choose(keys[beyond[0] if beyond else places[::step][0]])
 
     def copy_pair(self) -> None:
-        """Copy the transform that is shown."""
         text = pair_text(self.pair) if self.pair else ""
         if not text:
             self.notify(_("There is no transform to copy."), severity="warning", markup=False)
@@ -285,9 +280,7 @@ class FramesScreen(DeckScreen):
         if heard:
             recorded = self.feed.replay is not None
             lines.append(
-                _("a recording does not tell which node published it")
-                if recorded
-                else publisher_line(heard)
+                _("a recording does not tell which node published it") if recorded else publisher_line(heard)
             )
         looks = ["bold"] + [""] * len(lines)
         self._say("#frames-pair", list(zip(lines, looks, strict=False)))

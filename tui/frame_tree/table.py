@@ -37,14 +37,7 @@ class FrameTable(Rows):
         """Leave Enter to the screen, whose footer says what it does."""
         return False if action == "open" else super().check_action(action, parameters)
 
-    def show_tree(
-        self,
-        lines: Sequence[TreeLine],
-        looks: Mapping[str, str],
-        relative_to: str,
-        *,
-        wide: bool,
-    ) -> None:
+    def show_tree(self, lines: Sequence[TreeLine], looks: Mapping[str, str], relative_to: str, *, wide: bool) -> None:
         """Show the tree; one frame has been marked, `looks` are `warn`, `dim` or none for each."""
         columns = [
             Column(_("frame")),

@@ -33,9 +33,7 @@ def fits(line: TreeLine, parts: Sequence[str]) -> bool:
     return all(part in text for part in parts)
 
 
-def finding_lines(
-    findings: Sequence[FrameFinding], frame: str, width: int
-) -> list[tuple[str, str]]:
+def finding_lines(findings: Sequence[FrameFinding], frame: str, width: int) -> list[tuple[str, str]]:
     """Return what is wrong, line by line, each with its meaning; what is about `frame` first."""
     if not findings:
         return [(_("✓ nothing is wrong with the frames"), "good")]

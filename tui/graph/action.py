@@ -110,10 +110,7 @@ class ActionPane(AskPane):
             return (
                 _("Feedback and result"),
                 self.name_shown,
-                (
-                    _("no goal has been sent yet"),
-                    _("{key} sends what is filled in.").format(key=self.submit_key),
-                ),
+                (_("no goal has been sent yet"), _("{key} sends what is filled in.").format(key=self.submit_key)),
             )
         name = f"{self.name_shown} {_key(goal)}"
         state = f"{_name(goal)} {_words(goal)}"
@@ -280,7 +277,6 @@ class CancelGoalScreen(Dialog["SeenGoal | None"]):
         return _("Cancel a goal of another client?")
 
     def words(self) -> Content:
-        """Say which goal it is, and its state."""
         lines = [
             Content.styled(plain(self.goal.action, LONGEST), "bold"),
             Content(f"{self.goal.goal_id}  {self._state}"),

@@ -95,9 +95,7 @@ class ShowMap(GraphAction):
     id = "graph.map"
     key = "M,Ь"
     title = N_("Map")
-    tooltip = N_(
-        "Draw the selected node with those that it talks to; the arrow keys move, Enter opens."
-    )
+    tooltip = N_("Draw the selected node with those that it talks to; the arrow keys move, Enter opens.")
     footer = True
     from_elsewhere = True
 
@@ -108,7 +106,6 @@ class ShowMap(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Show the map or the list."""
         target.toggle_map()
 
 
@@ -131,7 +128,6 @@ class ShowParameters(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Show or hide them."""
         if target.node_pane is not None:
             target.node_pane.toggle_parameters()
 
@@ -158,7 +154,6 @@ class SaveParameters(ParametersAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Ask for a file."""
         if target.node_pane is not None:
             target.node_pane.save_parameters()
 
@@ -173,7 +168,6 @@ class LoadParameters(ParametersAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Ask for a file."""
         if target.node_pane is not None:
             target.node_pane.load_parameters()
 
@@ -211,10 +205,7 @@ class CancelRequest(GraphAction):
     key = "f12,x,ч"
     title = N_("Cancel")
     means = "stop"
-    tooltip = N_(
-        "Stop waiting for the call, or cancel the selected goal; asks first if it is "
-        "another client's."
-    )
+    tooltip = N_("Stop waiting for the call, or cancel the selected goal; asks first if it is another client's.")
     footer = True
     priority = True
 
@@ -263,7 +254,6 @@ class ShowEverything(GraphAction):
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Show or hide it."""
         target.toggle_everything()
 
 

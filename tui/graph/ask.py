@@ -86,7 +86,6 @@ class AskPane(GraphPane):
 
     @property
     def echo(self) -> EchoTree:
-        """The answer as a tree."""
         return self.query_one(EchoTree)
 
     @property
@@ -96,7 +95,6 @@ class AskPane(GraphPane):
 
     @property
     def submit_key(self) -> str:
-        """The key that sends the request."""
         return self.deck.keys_of(SubmitForm)[0]
 
     def type_names(self) -> tuple[str, ...]:
@@ -120,7 +118,6 @@ class AskPane(GraphPane):
 
     @property
     def can_cancel(self) -> bool:
-        """Whether a request is in progress."""
         raise NotImplementedError
 
     def cancel(self) -> None:
@@ -137,7 +134,6 @@ class AskPane(GraphPane):
 
     @property
     def is_waiting(self) -> bool:
-        """Whether a waiting time is to be updated."""
         return self.can_cancel
 
     def tick(self) -> None:
@@ -184,7 +180,6 @@ class AskPane(GraphPane):
             self.form.load(types[0], self._texts.get(self.name_shown))
 
     def redraw(self) -> None:
-        """Show who is asked, and the answer."""
         if not self.name_shown or not self.is_mounted:
             return
         types = self.type_names()

@@ -33,9 +33,7 @@ class GraphDetail(ContentSwitcher):
 
     def __init__(self) -> None:
         self._panes = {kind: pane(id=f"graph-{kind.value}") for kind, pane in PANES.items()}
-        super().__init__(
-            EmptyNotice(id=WORDS), *self._panes.values(), id="graph-detail", initial=WORDS
-        )
+        super().__init__(EmptyNotice(id=WORDS), *self._panes.values(), id="graph-detail", initial=WORDS)
 
     def pane_of(self, place: GraphPlace | None) -> GraphPane | None:
         """Return the pane for places of this kind, None if it does not exist yet."""

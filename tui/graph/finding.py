@@ -43,9 +43,7 @@ def goal_of(finding: GraphFinding, update: GraphUpdate | None) -> GraphPlace:
     return GraphPlace(GraphKind(kind), name)
 
 
-def place_meant(
-    here: GraphPlace | None, book: FindingsBook, update: GraphUpdate | None
-) -> GraphPlace | None:
+def place_meant(here: GraphPlace | None, book: FindingsBook, update: GraphUpdate | None) -> GraphPlace | None:
     """Return the chosen place; in place of a finding, where to look."""
     if here is None or here.kind is not GraphKind.FINDING:
         return here
@@ -90,18 +88,11 @@ class FindingPane(GraphPane):
         if finding is None:
             return
         self.query_one(NameHead).show(finding.place.name, head_words(finding))
-        parts = (
-            (_("What is wrong"), localized(finding.what)),
-            (_("What to do"), localized(finding.mend)),
-        )
+        parts = ((_("What is wrong"), localized(finding.what)), (_("What to do"), localized(finding.mend)))
         lines = [
             line
             for title, words in parts
-            for line in (
-                Content.styled(title, "$text-muted"),
-                Content(plain(words, LONGEST)),
-                Content(""),
-            )
+            for line in (Content.styled(title, "$text-muted"), Content(plain(words, LONGEST)), Content(""))
         ]
         self.query_one("#finding-words", Static).update(Content("\n").join(lines[:-1]))
         goal = goal_of(finding, self.graph_now)

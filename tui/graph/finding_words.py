@@ -18,10 +18,7 @@ if TYPE_CHECKING:
     from graph.findings.finding import GraphFinding
     from launcher.status import NodeStatus
 
-LOOKS = {
-    FindingLevel.ERROR: ("✗", N_("error"), "bad"),
-    FindingLevel.WARNING: ("▲", N_("warning"), "warn"),
-}
+LOOKS = {FindingLevel.ERROR: ("✗", N_("error"), "bad"), FindingLevel.WARNING: ("▲", N_("warning"), "warn")}
 """Sign, word and meaning (`tui.widgets.rows.Cell`) of a level."""
 _TITLES = {
     "clock": N_("another clock"),

@@ -50,9 +50,7 @@ class GraphIndex:
         self._installed: tuple[str, ...] = ()
         """Every type installed on this computer, once it has been requested."""
 
-    def take(
-        self, update: GraphUpdate | None, failures: Mapping[str, str] = MappingProxyType({})
-    ) -> None:
+    def take(self, update: GraphUpdate | None, failures: Mapping[str, str] = MappingProxyType({})) -> None:
         """Use this graph from now on; `failures`: nodes that have ended for good, and why."""
         self.listed = {kind: entries(update, kind, self._installed) for kind in LISTED}
         self.findings.take(update, failures)
@@ -72,7 +70,6 @@ class GraphIndex:
         self._installed = await asyncio.to_thread(interfaces)
 
     def all_of(self, kind: GraphKind) -> list[GraphEntry]:
-        """Return everything of a kind."""
         return self.listed.get(kind, [])
 
     def fitting(self, kind: GraphKind, words: str = "") -> list[GraphEntry]:
@@ -89,9 +86,7 @@ class GraphIndex:
         return bool(chosen_of([entry], words, everything=True))
 
 
-def entries(
-    update: GraphUpdate | None, kind: GraphKind, installed: Iterable[str] = ()
-) -> list[GraphEntry]:
+def entries(update: GraphUpdate | None, kind: GraphKind, installed: Iterable[str] = ()) -> list[GraphEntry]:
     """Return everything of a kind, sorted by name; types that nobody uses count as ROS's own.
 
     Findings take time to be sure of: they are not made here.
@@ -131,10 +126,7 @@ def users_of(update: GraphUpdate | None, type_name: str) -> dict[GraphKind, list
         GraphKind.SERVICE: update.services,
         GraphKind.ACTION: update.actions,
     }
-    found = {
-        kind: [row.name for row in of_kind if type_name in row.type_names]
-        for kind, of_kind in rows.items()
-    }
+    found = {kind: [row.name for row in of_kind if type_name in row.type_names] for kind, of_kind in rows.items()}
     return {kind: names for kind, names in found.items() if names}
 
 
@@ -165,9 +157,7 @@ def _types(update: GraphUpdate, installed: Iterable[str]) -> list[GraphEntry]:
     return [GraphEntry(name, "", hidden) for name, hidden in used.items()]
 
 
-def why_empty(
-    feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str
-) -> tuple[str, str]:
+def why_empty(feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str) -> tuple[str, str]:
     """Return headline and advice for a list that shows none of `listed`."""
     update = feed.update
     if feed.link is None:
@@ -186,8 +176,7 @@ def why_empty(
 def _none(kind: GraphKind) -> tuple[str, str]:
     if kind is GraphKind.NODE:
         return _("no node in this domain"), _(
-            "Nodes of another domain number, or of another computer while discovery is localhost, "
-            "are not seen."
+            "Nodes of another domain number, or of another computer while discovery is localhost, are not seen."
         )
     if kind is GraphKind.SERVICE:
         return _("nobody serves a service"), _("Start a node that does: head_controller is one.")

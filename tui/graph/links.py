@@ -37,9 +37,7 @@ class GraphLinks(Rows):
         if width:
             names = [len(row.cells[0].text) for row in self._shown if len(row.cells) > 1]
             most = max(4, int(width * ROOM_FOR_NAMES))
-            self.show(
-                [Column("", min(most, max(names, default=0)) or most), Column("")], self._shown
-            )
+            self.show([Column("", min(most, max(names, default=0)) or most), Column("")], self._shown)
 
 
 def heading(words: str) -> Row:

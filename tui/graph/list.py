@@ -29,9 +29,7 @@ class GraphList(Rows):
     def chosen_name(self) -> str:
         return self.chosen.partition("|")[2]
 
-    def show_entries(
-        self, kind: GraphKind, shown: Sequence[GraphEntry], chosen: str, words: str
-    ) -> None:
+    def show_entries(self, kind: GraphKind, shown: Sequence[GraphEntry], chosen: str, words: str) -> None:
         """Show these entries; `chosen` was chosen last, and `words` are the filter."""
         listed = [(entry, True) for entry in shown]
         missing = chosen and not words and chosen not in {entry.name for entry in shown}

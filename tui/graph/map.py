@@ -74,7 +74,6 @@ class GraphMap(ScrollView, can_focus=True):
 
     @property
     def here(self) -> GraphPlace | None:
-        """The place at the cursor."""
         stop = self._stop()
         return None if stop is None else stop.place
 
@@ -139,7 +138,6 @@ class GraphMap(ScrollView, can_focus=True):
             self._draw()
 
     def render_line(self, y: int) -> Strip:
-        """One line of the drawing."""
         width, base = self.scrollable_content_region.width, self.rich_style
         if self._words[0]:
             strips = word_strips(self._words, width, base, self.app.console)

@@ -54,9 +54,7 @@ class MapDrawing:
 
     height: int
     pieces: list[MapPiece] = field(default_factory=list)
-    stops: tuple[list[MapStop], list[MapStop], list[MapStop]] = field(
-        default_factory=lambda: ([], [], [])
-    )
+    stops: tuple[list[MapStop], list[MapStop], list[MapStop]] = field(default_factory=lambda: ([], [], []))
 
     def put(self, piece: MapPiece, place: GraphPlace | None = None, column: int = CENTRE) -> None:
         """Add a piece; with a `place`, the cursor can be on it."""
@@ -93,9 +91,7 @@ def _box(drawn: MapDrawing, name: str, x: int, width: int, middle: int) -> None:
     bar = "─" * (width - 2)
     drawn.put(MapPiece(middle - 1, x, f"┌{bar}┐", "box"))
     drawn.put(MapPiece(middle, x, "│", "box"))
-    drawn.put(
-        MapPiece(middle, x + 1, f" {inner:{width - 4}} ", "node"), GraphPlace(GraphKind.NODE, name)
-    )
+    drawn.put(MapPiece(middle, x + 1, f" {inner:{width - 4}} ", "node"), GraphPlace(GraphKind.NODE, name))
     drawn.put(MapPiece(middle, x + width - 1, "│", "box"))
     drawn.put(MapPiece(middle + 1, x, f"└{bar}┘", "box"))
 
@@ -141,9 +137,7 @@ def _trunk(drawn: MapDrawing, rows: Sequence[int], middle: int, x: int, column: 
             drawn.put(MapPiece(row, x + 1, "▶", "line"))
 
 
-def _narrow(
-    drawn: MapDrawing, connection: Connection, row: int, side: int, column: int, x: int
-) -> None:
+def _narrow(drawn: MapDrawing, connection: Connection, row: int, side: int, column: int, x: int) -> None:
     """Draw the connection, and below it the nodes at its other end."""
     name = ended(_named(connection), side - 2)
     drawn.put(MapPiece(row, x, name, "name"), connection.place, column)
@@ -152,16 +146,12 @@ def _narrow(
         drawn.put(MapPiece(row, cell_len(name), line, "line"))
     for below, node in enumerate(connection.nodes):
         text = ended(short(node), side - 3)
-        drawn.put(
-            MapPiece(row + 1 + below, x + 2, text, "node"), GraphPlace(GraphKind.NODE, node), column
-        )
+        drawn.put(MapPiece(row + 1 + below, x + 2, text, "node"), GraphPlace(GraphKind.NODE, node), column)
     if not connection.nodes:
         drawn.put(MapPiece(row + 1, x + 2, _("nobody"), "dim"))
 
 
-def _wide(
-    drawn: MapDrawing, connection: Connection, row: int, side: int, column: int, x: int
-) -> None:
+def _wide(drawn: MapDrawing, connection: Connection, row: int, side: int, column: int, x: int) -> None:
     """Draw the connection beside the nodes at its other end, each node in a row of its own."""
     name = ended(_named(connection), side // 2 - 4)
     room = side // 2 - 2
@@ -178,9 +168,7 @@ def _wide(
         _nodes(drawn, connection, row, x + side // 2, room, column)
 
 
-def _nodes(
-    drawn: MapDrawing, connection: Connection, row: int, x: int, room: int, column: int
-) -> None:
+def _nodes(drawn: MapDrawing, connection: Connection, row: int, x: int, room: int, column: int) -> None:
     if not connection.nodes:
         drawn.put(MapPiece(row, x, _("nobody"), "dim"))
     last = len(connection.nodes) - 1

@@ -39,12 +39,10 @@ class Neighbours:
 
     @property
     def coming(self) -> tuple[Connection, ...]:
-        """All connections to it."""
         return (*self.heard, *self.served, *self.goals_taken)
 
     @property
     def going(self) -> tuple[Connection, ...]:
-        """All connections from it."""
         return (*self.said, *self.called, *self.goals_sent)
 
 

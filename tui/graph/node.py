@@ -58,7 +58,6 @@ class NodePane(GraphPane):
 
     @property
     def links(self) -> GraphLinks:
-        """The links to the node's connections."""
         return self.query_one(GraphLinks)
 
     @property
@@ -67,7 +66,6 @@ class NodePane(GraphPane):
 
     @property
     def shows_parameters(self) -> bool:
-        """Whether they were requested."""
         return self.has_class("-parameters")
 
     def show_name(self, name: str) -> None:
@@ -158,10 +156,7 @@ class NodePane(GraphPane):
         self.links.show_links(rows)
         words.display = not rows
         if not rows:
-            words.show(
-                _("it talks to nobody"),
-                _("It neither publishes nor subscribes, serves nor calls anything."),
-            )
+            words.show(_("it talks to nobody"), _("It neither publishes nor subscribes, serves nor calls anything."))
 
     def _note_transitions(self, possible: tuple[str, ...]) -> None:
         if possible != self._transitions:
@@ -199,10 +194,7 @@ def node_rows(update: GraphUpdate, node: NodeRow, *, everything: bool) -> list[R
     for section, title, connections, arrow in sections:
         if connections:
             rows.append(heading(title))
-            rows += [
-                link(connection.place, section, _with(connection, arrow))
-                for connection in connections
-            ]
+            rows += [link(connection.place, section, _with(connection, arrow)) for connection in connections]
     return rows
 
 

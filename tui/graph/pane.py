@@ -59,7 +59,6 @@ class GraphPane(Vertical, Working):
 
     @property
     def graph_now(self) -> GraphUpdate | None:
-        """The newest update of the graph."""
         return self.deck.feed.update
 
     def ros2_command(self) -> str:

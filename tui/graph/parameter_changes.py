@@ -73,7 +73,6 @@ class PathDialog(Dialog[str]):
         self._remark("")
 
     def redraw(self) -> None:
-        """Redraw in the current language."""
         super().redraw()
         self.query_one("#path-keys", Static).update(_("Enter continues, Escape cancels"))
 
@@ -144,10 +143,7 @@ def load(app: App[Any], table: GraphParameters) -> None:
     words = _("A file of `ros2 param dump`. What it has for {node} is set.")
     path = f"{table.node.strip('/').replace('/', '__')}.yaml"
     dialog = PathDialog(
-        _("Load parameters"),
-        words.format(node=plain(table.node, LONGEST)),
-        path,
-        partial(_load, app, table),
+        _("Load parameters"), words.format(node=plain(table.node, LONGEST)), path, partial(_load, app, table)
     )
     app.push_screen(dialog)
 

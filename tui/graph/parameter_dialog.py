@@ -39,10 +39,7 @@ Apply = Callable[["Value"], Awaitable[str]]
 class ParameterDialog(Dialog[bool]):
     """Returns whether it was set; stays open, with the reason, while the value is refused."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape", "leave", show=False),
-        *bindings(CopyDialogAsRos2),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False), *bindings(CopyDialogAsRos2)]
     DEFAULT_CSS: ClassVar[str] = """
     ParameterDialog Input { width: 1fr; margin: 0 1; }
     ParameterDialog #parameter-remark { height: auto; padding: 1 1 0 1; color: $text-warning; }
@@ -57,7 +54,6 @@ class ParameterDialog(Dialog[bool]):
         self._busy = False
 
     def title_words(self) -> str:
-        """Name node and parameter."""
         return f"{plain(self._node, LONGEST)} · {plain(self._row.name, LONGEST)}"
 
     def words(self) -> Content:
@@ -87,7 +83,6 @@ class ParameterDialog(Dialog[bool]):
             self._remark(_("It can only be read: the node sets it when it starts."))
 
     def redraw(self) -> None:
-        """Redraw in the current language."""
         super().redraw()
         keys = _("Enter sets it, Escape leaves")
         if self._row.read_only:

@@ -69,12 +69,10 @@ class GraphParameters(Vertical, Working):
 
     @property
     def node(self) -> str:
-        """The node whose parameters are shown."""
         return self._node
 
     @property
     def rows(self) -> tuple[ParameterRow, ...]:
-        """The parameters that were read."""
         return () if self._result is None else self._result.parameters
 
     @property
@@ -82,7 +80,6 @@ class GraphParameters(Vertical, Working):
         return next((row for row in self.rows if row.name == self.table.chosen), None)
 
     def forget(self) -> None:
-        """Forget the previous node."""
         self._question += 1
         self._node, self._result, self._asked_s, self._processes = "", None, None, None
         self.redraw()
@@ -176,9 +173,7 @@ class GraphParameters(Vertical, Working):
                 return _("no lesson is running"), ""
             return _("the node is being asked"), _("A node that hangs answers nothing.")
         if self._result.error:
-            return _("its parameters could not be read"), plain(
-                localized(self._result.error), LONGEST
-            )
+            return _("its parameters could not be read"), plain(localized(self._result.error), LONGEST)
         return ("", "") if self.rows else (_("this node has no parameters"), "")
 
 

@@ -22,10 +22,7 @@ class GraphKind(str, Enum):
     FINDING = "finding"
 
 
-LISTED = (
-    *(GraphKind.NODE, GraphKind.SERVICE, GraphKind.ACTION, GraphKind.TYPE),
-    GraphKind.FINDING,
-)
+LISTED = (*(GraphKind.NODE, GraphKind.SERVICE, GraphKind.ACTION, GraphKind.TYPE), GraphKind.FINDING)
 """The kinds that the Graph screen itself lists; topics have their own screen."""
 
 TITLES = {
@@ -75,7 +72,6 @@ class PlaceHistory:
 
     @property
     def chosen(self) -> Mapping[GraphKind, str]:
-        """The last choice of each kind."""
         return self._chosen
 
     def choose(self, name: str) -> None:

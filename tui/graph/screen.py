@@ -118,7 +118,6 @@ class GraphScreen(DeckScreen):
 
     @property
     def names(self) -> GraphList:
-        """The names of one kind."""
         return self.query_one(GraphList)
 
     @property
@@ -128,7 +127,6 @@ class GraphScreen(DeckScreen):
 
     @property
     def filter(self) -> Input:
-        """The input of the filter."""
         return self.query_one("#graph-filter", Input)
 
     @property
@@ -137,7 +135,6 @@ class GraphScreen(DeckScreen):
 
     @property
     def draws(self) -> bool:
-        """Whether the map is shown."""
         return self.has_class("-map")
 
     @property
@@ -167,13 +164,11 @@ class GraphScreen(DeckScreen):
 
     @property
     def shows_parameters(self) -> bool:
-        """Whether parameters are shown."""
         pane = self.node_pane
         return pane is not None and pane.shows_parameters and self.shows_pane
 
     @property
     def is_in_list(self) -> bool:
-        """Whether the list of names has the focus."""
         return self.focused is self.names
 
     @property
@@ -194,7 +189,6 @@ class GraphScreen(DeckScreen):
     # Display
 
     def take(self, update: GraphUpdate | None) -> None:
-        """Show this graph from now on."""
         self._failures = failures_of(self.feed.nodes.values())
         self.index.take(update, self._failures)
         self.redraw()

@@ -53,7 +53,6 @@ class CallTimeout(Horizontal):
     """
 
     def compose(self) -> ComposeResult:
-        """All in one line."""
         yield Static(classes="timeout-label", markup=False)
         yield Field(USUAL_S, compact=True, select_on_focus=False, id="call-timeout")
         yield Static(classes="timeout-unit", markup=False)
@@ -130,11 +129,9 @@ class ServicePane(AskPane):
 
     @property
     def timeout(self) -> CallTimeout:
-        """The field for the time-out."""
         return self.query_one(CallTimeout)
 
     def show_name(self, name: str) -> None:
-        """Show another service, with its own time-out."""
         if name != self.name_shown:
             self._timeouts[self.name_shown] = self.timeout.field.value
             self.timeout.field.value = self._timeouts.get(name, USUAL_S)
@@ -212,20 +209,15 @@ class ServicePane(AskPane):
 
     def _waiting(self, call: ServiceCall, name: str) -> tuple[str, str, tuple[str, str]]:
         if call.given_up:
-            words = _(
-                "The node may still do what it was asked for; a late response will be shown here."
-            )
+            words = _("The node may still do what it was asked for; a late response will be shown here.")
             return _("No response"), name, (_("given up"), words)
         waited = int(now_s() - call.asked_s)
-        title = _("Still waiting: {n} s of {most} s").format(
-            n=waited, most=decimal(f"{call.timeout_s:g}")
-        )
+        title = _("Still waiting: {n} s of {most} s").format(n=waited, most=decimal(f"{call.timeout_s:g}"))
         key = self.deck.keys_of(CancelRequest)[0]
         way_out = _("{key} stops waiting for it.").format(key=key)
         return title, name, (_("the call is under way"), way_out)
 
     def ros2_line(self, type_name: str, value: Mapping[str, Any]) -> str:
-        """Return what calls it."""
         return ros2_words.call(self.name_shown, type_name, value)
 
     def ros2_info(self) -> str:
@@ -273,7 +265,6 @@ class ServicePane(AskPane):
 
     @property
     def can_cancel(self) -> bool:
-        """Whether a call is in progress."""
         return any(call.waits for call in self.calls)
 
     def cancel(self) -> None:

@@ -18,10 +18,6 @@ def tab_entries(counts: Mapping[GraphKind, int], worst: str) -> list[TabEntry]:
     `worst` is the meaning of the worst finding: `bad`, `warn` or none.
     """
     return [
-        TabEntry(
-            kind.value,
-            f"{_(TITLES[kind])} {counts.get(kind, 0)}",
-            worst if kind is GraphKind.FINDING else "",
-        )
+        TabEntry(kind.value, f"{_(TITLES[kind])} {counts.get(kind, 0)}", worst if kind is GraphKind.FINDING else "")
         for kind in LISTED
     ]

@@ -75,7 +75,6 @@ class GraphTypeTree(Tree["str | None"], Working):
         self.auto_expand = False
 
     def show_definition(self, shown: Definition) -> None:
-        """Show a type; its own parts are open."""
         self.clear()
         self.root.expand()
         for part in shown.parts:
@@ -131,9 +130,7 @@ class GraphTypeTree(Tree["str | None"], Working):
             _fill(node, part.fields, part.constants)
 
 
-def _fill(
-    node: TreeNode[str | None], fields: tuple[MessageField, ...], constants: tuple[Constant, ...]
-) -> None:
+def _fill(node: TreeNode[str | None], fields: tuple[MessageField, ...], constants: tuple[Constant, ...]) -> None:
     if not fields and not constants:
         node.add_leaf(Text(_("no fields"), "italic dim"))
     width = min(30, max((len(field.name) for field in fields), default=0))
@@ -145,10 +142,7 @@ def _fill(
             node.add_leaf(label)
     for constant in constants:
         node.add_leaf(
-            Text.assemble(
-                (f"{plain(constant.name)} ", "italic"),
-                f"= {plain(typed(constant.value), LONGEST)}",
-            )
+            Text.assemble((f"{plain(constant.name)} ", "italic"), f"= {plain(typed(constant.value), LONGEST)}")
         )
 
 

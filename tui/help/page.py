@@ -47,7 +47,6 @@ class Page(ScrollView, can_focus=True):
         self._lines: list[list[tuple[str, str]]] = []
 
     def show(self, entries: Sequence[PageEntry]) -> None:
-        """Show these entries from the top."""
         self._entries = entries
         self._fold()
 

@@ -121,7 +121,6 @@ class CompareFiles(LessonAction):
 
     @classmethod
     async def run(cls, target: LessonTarget) -> None:
-        """Switch to the other."""
         target.compare()
 
 
@@ -203,12 +202,4 @@ class PreviousStep(LessonAction):
         target.go(-1)
 
 
-LESSON_ACTIONS = (
-    GoOn,
-    TakeHint,
-    EditFile,
-    CompareFiles,
-    MakeOwnFolder,
-    NextStep,
-    PreviousStep,
-)
+LESSON_ACTIONS = (GoOn, TakeHint, EditFile, CompareFiles, MakeOwnFolder, NextStep, PreviousStep)

@@ -83,7 +83,6 @@ class LessonAtWork:
 
     @classmethod
     def of(cls, screen: Screen[None]) -> LessonAtWork:
-        """Return that of the app."""
         host = host_of(screen)
         if host.lesson is None:
             host.lesson = cls(host)
@@ -126,9 +125,7 @@ class LessonAtWork:
         session = self._session
         if session is not None and session.run_id != self._run:
             self._run = session.run_id
-            self._following = screen.app.run_worker(
-                self._judge_session(session), group="judge", exclusive=True
-            )
+            self._following = screen.app.run_worker(self._judge_session(session), group="judge", exclusive=True)
 
     async def _judge_session(self, session: SessionInfo) -> None:
         """Read the lesson of the session, and take what the judge says of it until it ends."""
@@ -186,8 +183,7 @@ class LessonAtWork:
         return [
             step.id
             for step in steps
-            if self.was_right(step.id) is not None
-            and not any(str(kind_of(check)) in ACTS for check in step.checks)
+            if self.was_right(step.id) is not None and not any(str(kind_of(check)) in ACTS for check in step.checks)
         ]
 
     def _take(self, event: JudgeEvent) -> None:
@@ -278,7 +274,6 @@ class LessonAtWork:
 
     @property
     def step(self) -> StepDocument | None:
-        """The step at hand."""
         steps = () if self.folder is None else self.folder.steps
         return next((step for step in steps if step.id == self._step), None)
 
@@ -307,7 +302,6 @@ class LessonAtWork:
 
     @property
     def passed_now(self) -> bool:
-        """Whether the step at hand has passed."""
         return self.step is not None and self._step in self.passed
 
     @property
@@ -318,7 +312,6 @@ class LessonAtWork:
 
     @property
     def saw_solution(self) -> bool:
-        """Whether the solution was asked for."""
         name = "" if self.folder is None else self.folder.name
         return self.progress.step(name, self._step).solution
 
@@ -330,7 +323,6 @@ class LessonAtWork:
 
     @property
     def takes_solution(self) -> bool:
-        """Whether the next help is the solution."""
         return self.step is not None and self.taken >= len(self.step.hints)
 
     @property
@@ -368,7 +360,6 @@ class LessonAtWork:
         return ids[at] if 0 <= at < len(ids) else ""
 
     def go(self, by: int) -> None:
-        """Go to that step."""
         self._step = self.neighbour(by) or self._step
         self._ask_judge()
         self._changed()

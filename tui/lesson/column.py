@@ -46,12 +46,10 @@ class LessonColumn(VerticalScroll):
             yield Static(classes=name, markup=False)
 
     def follow(self, screen: Screen[None]) -> None:
-        """Show the lesson from now on."""
         self._at_work.show_on(screen, self.show)
         self.show()
 
     def session_changed(self, screen: Screen[None], message: SessionChanged) -> None:
-        """Show the lesson of another session."""
         self._at_work.session_changed(screen, message)
         self.show()
 
@@ -67,12 +65,7 @@ class LessonColumn(VerticalScroll):
         at_work = self._at_work
         step = at_work.step
         if at_work.folder is None or step is None:
-            self._put(
-                "head",
-                Content(
-                    _("This profile is not a lesson: it has no steps.") if at_work.sought else ""
-                ),
-            )
+            self._put("head", Content(_("This profile is not a lesson: it has no steps.") if at_work.sought else ""))
             return
         ids = [one.id for one in at_work.folder.steps]
         number = ids.index(step.id) + 1

@@ -52,11 +52,7 @@ def judged_lines(at_work: LessonAtWork, host: Host, *, beside: bool = False) -> 
 def _after(at_work: LessonAtWork, there: str) -> str:
     """Say what comes after a step that has passed; `there` is the key to the Lesson screen."""
     steps = at_work.folder.steps if at_work.folder is not None else ()
-    faded = [
-        str(number)
-        for number, step in enumerate(steps, start=1)
-        if at_work.was_right(step.id) is not None
-    ]
+    faded = [str(number) for number, step in enumerate(steps, start=1) if at_work.was_right(step.id) is not None]
     if at_work.grading:
         return _("Passed. All of the lesson is being graded once more…")
     if at_work.neighbour(1) and there:

@@ -73,11 +73,7 @@ class _Code(CodeBlock):
 
 
 class _Drawn(Markdown):
-    elements: ClassVar[dict[str, type[MarkdownElement]]] = {
-        **Markdown.elements,
-        "fence": _Code,
-        "code_block": _Code,
-    }
+    elements: ClassVar[dict[str, type[MarkdownElement]]] = {**Markdown.elements, "fence": _Code, "code_block": _Code}
 
 
 def drawn(text: str, *, dark: bool) -> Markdown:

@@ -90,7 +90,6 @@ class LessonScreen(DeckScreen):
 
     @property
     def at_work(self) -> LessonAtWork:
-        """The lesson that is shown."""
         return LessonAtWork.of(self)
 
     def compose_body(self) -> ComposeResult:
@@ -126,7 +125,6 @@ class LessonScreen(DeckScreen):
         return self.at_work.saw_solution or self.at_work.passed_now
 
     def go(self, by: int) -> None:
-        """Go to that step."""
         self.beside = False
         self.query_one("#lesson-reading").scroll_home(animate=False)
         self.at_work.go(by)
@@ -186,9 +184,7 @@ class LessonScreen(DeckScreen):
             self.notify(plain(localized(reason_of(error))), severity="error", markup=False)
             return
         request = self.deck.sessions.request
-        self.deck.sessions.move_to(
-            OpenRequest(profile, hardware=request.hardware, domain=request.domain)
-        )
+        self.deck.sessions.move_to(OpenRequest(profile, hardware=request.hardware, domain=request.domain))
 
     # Display
 
@@ -223,33 +219,19 @@ class LessonScreen(DeckScreen):
         put(
             self.query_one("#lesson-head", Static),
             words.head(
-                step,
-                number,
-                len(ids),
-                result.state,
-                at_work.was_right(step.id),
-                saw_solution=at_work.saw_solution,
+                step, number, len(ids), result.state, at_work.was_right(step.id), saw_solution=at_work.saw_solution
             ),
         )
         earned = _("{points} of {all} points").format(
             points=at_work.progress.points(lesson.name, at_work.passed), all=lesson.points
         )
-        put(
-            self.query_one("#lesson-overview", Static),
-            words.overview(at_work, step.id, earned),
-        )
-        put(
-            self.query_one("#lesson-checks", Static),
-            Content("\n").join(judged_lines(at_work, self.deck)),
-        )
+        put(self.query_one("#lesson-overview", Static), words.overview(at_work, step.id, earned))
+        put(self.query_one("#lesson-checks", Static), Content("\n").join(judged_lines(at_work, self.deck)))
         put(
             self.query_one("#lesson-file", Static),
             Content("\n").join(words.file_lines(at_work.node, self._shell_words())),
         )
-        put(
-            self.query_one("#lesson-hints", Static),
-            Content("\n").join(words.hint_lines(step, at_work.taken)),
-        )
+        put(self.query_one("#lesson-hints", Static), Content("\n").join(words.hint_lines(step, at_work.taken)))
         self._show_text(lesson, step)
         self.refresh_bindings()
 

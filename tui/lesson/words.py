@@ -69,9 +69,7 @@ def was_right_words(at_s: int) -> str:
         return _("was right earlier")
     then, now = time.localtime(at_s), time.localtime()
     today = then[:3] == now[:3]
-    return _("was right at {time}").format(
-        time=time.strftime("%H:%M" if today else "%Y-%m-%d %H:%M", then)
-    )
+    return _("was right at {time}").format(time=time.strftime("%H:%M" if today else "%Y-%m-%d %H:%M", then))
 
 
 def overview(at_work: LessonAtWork, shown: str, points: str) -> Content:
@@ -91,9 +89,7 @@ def overview(at_work: LessonAtWork, shown: str, points: str) -> Content:
     return Content.assemble(*parts)
 
 
-def waiting_lines(
-    steps: Sequence[StepDocument], step: StepDocument, passed: Iterable[str]
-) -> list[Content]:
+def waiting_lines(steps: Sequence[StepDocument], step: StepDocument, passed: Iterable[str]) -> list[Content]:
     """Return which steps this one waits for, as they are numbered above."""
     done = set(passed)
     return [
@@ -137,9 +133,7 @@ def hint_lines(step: StepDocument, taken: int) -> list[Content]:
     lines = []
     for number, hint in enumerate(step.hints[:taken], start=1):
         name = _("Hint {number}").format(number=number)
-        lines.append(
-            Content.assemble((f"{name}: ", "bold $text-warning"), plain(pick(hint), LONGEST))
-        )
+        lines.append(Content.assemble((f"{name}: ", "bold $text-warning"), plain(pick(hint), LONGEST)))
     return lines
 
 
@@ -162,7 +156,6 @@ def file_lines(node: NodeStatus | None, command: str) -> list[Content]:
 
 
 def _from_home(file: str) -> str:
-    """Shorten a path as a shell does."""
     home = f"{Path.home()}/"
     return f"~/{file.removeprefix(home)}" if file.startswith(home) else file
 
@@ -176,9 +169,7 @@ def difference(own: str, solution: str) -> Content:
         if line[0] in colours
     ]
     head = Content.assemble(
-        (_("- only in your file"), "bold $text-error"),
-        "   ",
-        (_("+ only in the solution"), "bold $text-success"),
+        (_("- only in your file"), "bold $text-error"), "   ", (_("+ only in the solution"), "bold $text-success")
     )
     return Content("\n").join([head, *lines])
 

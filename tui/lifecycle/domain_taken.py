@@ -106,9 +106,7 @@ class DomainTakenScreen(Dialog[DomainAnswer]):
             Content(""),
             Content(means),
             Content(
-                _("Domain {free} is free: {name} can start in it.").format(
-                    free=taken.free, name=plain(self._profile)
-                )
+                _("Domain {free} is free: {name} can start in it.").format(free=taken.free, name=plain(self._profile))
             ),
         ]
         return Content("\n").join(lines)

@@ -75,9 +75,7 @@ class LiveOpener:
         """Import what every profile needs, here, in a supervisor, and in an observer's process."""
         await self._start_ahead()
         await _start_observer_ahead()
-        await _imported(
-            "launcher.client.client", "launcher.runs.shared_domain", "graph.observer.observer"
-        )
+        await _imported("launcher.client.client", "launcher.runs.shared_domain", "graph.observer.observer")
         # Done now, because after a lesson is chosen its nodes need the processors.
         await _imported(*OF_SCREEN, *(entry.module for entry in PANELS.values()))
 
@@ -115,12 +113,7 @@ class LiveOpener:
 
         read = await asyncio.to_thread(_read, profile, request)
         ahead, self._ahead = self._ahead, None
-        return await client.launch(
-            read,
-            foreground=True,
-            node_lang=language(),
-            supervisor=ahead,
-        )
+        return await client.launch(read, foreground=True, node_lang=language(), supervisor=ahead)
 
     def observe(self, session: SessionInfo) -> GraphLink:
         """Return the graph of the session's domain, or the recording in its place."""
@@ -134,9 +127,7 @@ class LiveOpener:
         """Return the lesson that a running profile belongs to, already read; None without one."""
         return await asyncio.to_thread(_lesson_of, session)
 
-    async def judge(
-        self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]
-    ) -> JudgeLink:
+    async def judge(self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]) -> JudgeLink:
         """Start a judge, which begins with its first order."""
         from course.judging import RemoteJudge
 
@@ -169,11 +160,7 @@ def _read(path: Path, request: OpenRequest) -> Profile:
     from launcher.serial_ports import serial_ports
 
     profile = load_profile(
-        path,
-        hardware=request.hardware,
-        overrides=request.overrides,
-        domain=request.domain,
-        ports=serial_ports,
+        path, hardware=request.hardware, overrides=request.overrides, domain=request.domain, ports=serial_ports
     )
     if not request.beside:
         profile = apart_from_classmates(profile, request.domain)
@@ -231,11 +218,7 @@ def _task(folder: LessonFolder | None, progress: Progress) -> Task | None:
     if folder is None:
         return None
     own = folder_of(folder) / FOLDERS_OWN
-    return Task(
-        folder=folder.path,
-        own=own if own.is_file() else None,
-        left_off=progress.last == folder.name,
-    )
+    return Task(folder=folder.path, own=own if own.is_file() else None, left_off=progress.last == folder.name)
 
 
 def _scored(lessons: Iterable[Lesson]) -> list[Lesson]:

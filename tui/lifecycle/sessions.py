@@ -74,7 +74,6 @@ class Sessions:
         self._code = 0
 
     def begin(self) -> None:
-        """Open the requested session, if there is one."""
         if not self.picking:
             self.open(self.request)
 

@@ -58,7 +58,6 @@ class SearchLines(Action[Shown]):
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Ask for the text."""
         target.pane.search()
 
 
@@ -69,7 +68,6 @@ class FindLine(Action[Shown]):
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Move the cursor to it."""
         target.pane.find(cls.step)
 
 
@@ -100,7 +98,6 @@ class FoldLines(Action[Shown]):
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Switch to the other."""
         target.pane.view.set_fold(not target.pane.view.fold)
 
 
@@ -127,5 +124,4 @@ class SaveLines(Action[Shown]):
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Ask for its name."""
         target.pane.save()

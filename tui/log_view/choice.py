@@ -37,7 +37,6 @@ class LineChoice:
 
     @property
     def entries(self) -> Sequence[LogEntry]:
-        """The shown lines that are chosen."""
         span = self._span
         if span is None:
             return ()

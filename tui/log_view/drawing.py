@@ -31,9 +31,7 @@ PAGES_KEPT = 2
 class DrawnRows:
     """Draws the rows of an index for a widget, and keeps them until they look different."""
 
-    def __init__(
-        self, widget: Widget, index: LogIndex, columns_for: ColumnsFor, *, fold: bool
-    ) -> None:
+    def __init__(self, widget: Widget, index: LogIndex, columns_for: ColumnsFor, *, fold: bool) -> None:
         """Use the colours of `widget`; with `fold` long lines are wrapped, else shifted."""
         self.fold = fold
         self._widget = widget
@@ -88,9 +86,7 @@ class DrawnRows:
         """Columns and text of a line as they are drawn, but unwrapped."""
         return "".join(gutter_texts(entry, self._columns)) + self._index.text_of(entry)
 
-    def strip(
-        self, entry: LogEntry, part: int, selection: Selection | None, *, chosen: bool
-    ) -> Strip:
+    def strip(self, entry: LogEntry, part: int, selection: Selection | None, *, chosen: bool) -> Strip:
         """Row number `part` of a line."""
         strip = None if selection else self._strips.get((entry.id, part))
         if strip is None:
@@ -103,9 +99,7 @@ class DrawnRows:
     def _text_width(self) -> int:
         return max(LEAST_TEXT, self._width - self._columns.gutter)
 
-    def _draw(
-        self, entry: LogEntry, part: int, selection: Selection | None, *, chosen: bool
-    ) -> Strip:
+    def _draw(self, entry: LogEntry, part: int, selection: Selection | None, *, chosen: bool) -> Strip:
         painter = self._painter
         if painter is None:
             painter = self._painter = RowPainter(

@@ -20,9 +20,7 @@ from tui.log_view.ring import LogEntry
 _id_of = attrgetter("id")
 
 
-_narrow = re.compile(
-    "[ -~\xa0-\xac\xae-\u02ff\u0370-\u0482\u048a-\u052f\u2010-\u2027\u2400-\u2421]*"
-).fullmatch
+_narrow = re.compile("[ -~\xa0-\xac\xae-\u02ff\u0370-\u0482\u048a-\u052f\u2010-\u2027\u2400-\u2421]*").fullmatch
 """Matches texts in which every character takes one cell."""
 _JOINER = "\u200d"
 """Joins two emoji into one."""
@@ -139,9 +137,7 @@ class LogIndex:
         """Remove the entries that the ring has dropped, and insert its marks for them."""
         shown = [entry for entry in self.shown if not entry.dropped]
         heights = [end - start for start, end in pairwise(chain((0,), self._ends))]
-        kept = [
-            height for entry, height in zip(self.shown, heights, strict=False) if not entry.dropped
-        ]
+        kept = [height for entry, height in zip(self.shown, heights, strict=False) if not entry.dropped]
         gone = {entry.id for entry in self.shown if entry.dropped}
         self.found = [entry_id for entry_id in self.found if entry_id not in gone]
         self.shown = shown

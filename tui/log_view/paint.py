@@ -44,14 +44,7 @@ class RowPainter:
     pattern: re.Pattern[str] | None
 
     def row(
-        self,
-        entry: LogEntry,
-        part: int,
-        text: str,
-        node_style: Style,
-        selection: Selection | None,
-        *,
-        chosen: bool,
+        self, entry: LogEntry, part: int, text: str, node_style: Style, selection: Selection | None, *, chosen: bool
     ) -> Strip:
         """Row number `part` of an entry, with matches and the mouse selection."""
         under = self.palette.cursor if chosen else Style()

@@ -44,7 +44,6 @@ class Palette:
     selection: Style
 
     def node(self, place: int) -> Style:
-        """Style of the node with this number."""
         return self.nodes[place % len(self.nodes)]
 
 

@@ -52,7 +52,6 @@ class LogPane(Vertical, Working):
 
     @property
     def prompt(self) -> LogPrompt:
-        """The line for questions."""
         return self.query_one(LogPrompt)
 
     @on(LogView.StateChanged)
@@ -84,7 +83,6 @@ class LogPane(Vertical, Working):
             self.notify(_("Choose lines first: with up and down, several with Shift."))
 
     def copy_all(self) -> None:
-        """Copy all lines shown."""
         self._copy(self.view.shown_lines())
 
     def _copy(self, lines: Sequence[str]) -> None:
@@ -139,9 +137,7 @@ class LogPane(Vertical, Working):
 
     async def _save(self, path: Path) -> None:
         try:
-            size = await asyncio.to_thread(
-                save_lines, path, self._lines, replace=path == self._refused
-            )
+            size = await asyncio.to_thread(save_lines, path, self._lines, replace=path == self._refused)
         except FileExistsError:
             self._refused = path
             self.prompt.remark(_("The file already exists: press Enter again to overwrite it."))

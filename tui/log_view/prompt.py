@@ -39,7 +39,6 @@ class LogPrompt(Horizontal):
         """Base of its messages."""
 
         def __init__(self, prompt: LogPrompt, text: str) -> None:
-            """Carry the current text."""
             super().__init__()
             self.prompt, self.kind, self.text = prompt, prompt.kind, text
 

@@ -45,7 +45,6 @@ class LogEntry:
 
     @property
     def size(self) -> int:
-        """Approximate size in bytes."""
         return sys.getsizeof(self.text) + _OBJECT_BYTES
 
 
@@ -89,9 +88,7 @@ class LineRing:
     def _now(self) -> float:
         return self.entries[-1].time_s if self.entries else 0.0
 
-    def _add(
-        self, node: str, time_s: float, rank: int = 0, text: str = "", skipped: int = 0
-    ) -> None:
+    def _add(self, node: str, time_s: float, rank: int = 0, text: str = "", skipped: int = 0) -> None:
         if len(text) > LONGEST_TEXT:
             text = f"{text[:LONGEST_TEXT]} … (+{len(text) - LONGEST_TEXT})"
         text = plain(text)

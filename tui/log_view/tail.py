@@ -23,11 +23,7 @@ class Tail:
     """
 
     def __init__(
-        self,
-        view: ScrollView,
-        total_rows: Callable[[], int],
-        on_drawn: Callable[[], object],
-        period_s: float,
+        self, view: ScrollView, total_rows: Callable[[], int], on_drawn: Callable[[], object], period_s: float
     ) -> None:
         """Start at the end, following it; new rows are drawn within `period_s`."""
         self.following = True
@@ -43,7 +39,6 @@ class Tail:
 
     @property
     def page_rows(self) -> int:
-        """Number of rows on screen."""
         return self._view.container_size.height
 
     def rows_came(self) -> None:

@@ -101,9 +101,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         """
         super().__init__(id=id, classes=classes)
         self.ring = LineRing(max_lines)
-        self.index = LogIndex(
-            lambda entry: text_of(entry, file_of(entry.node)) if entry.skipped else entry.text
-        )
+        self.index = LogIndex(lambda entry: text_of(entry, file_of(entry.node)) if entry.skipped else entry.text)
         self.fresh = 0
         """Shown lines that have arrived since following ended."""
         self.empty_words = ""
@@ -146,7 +144,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
 
     @property
     def log_filter(self) -> LogFilter:
-        """The filter in use."""
         return self.index.filter
 
     @log_filter.setter
@@ -202,7 +199,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self._tell()
 
     def toggle_following(self) -> None:
-        """Pause, or follow again."""
         if self.following:
             self.pause()
         else:
@@ -220,11 +216,9 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self.follow()
 
     def action_page_up(self) -> None:
-        """Scroll up by one page."""
         self.scroll_to(y=self.scroll_y - self._tail.page_rows, animate=False)
 
     def action_page_down(self) -> None:
-        """Scroll down by one page."""
         self.scroll_to(y=self.scroll_y + self._tail.page_rows, animate=False)
 
     def action_scroll_home(self) -> None:

@@ -101,7 +101,6 @@ class OnlyFound(LogsAction):
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:
-        """Switch to the other."""
         chosen = target.pane.view.log_filter
         target.choose(replace(chosen, only_found=not chosen.only_found))
 
@@ -118,7 +117,6 @@ class RaiseSeverity(LogsAction):
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:
-        """Go to the next one."""
         target.choose(target.pane.view.log_filter.next_minimum())
 
 
@@ -156,7 +154,6 @@ class MuteInLog(LogsAction):
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:
-        """Switch to the other."""
         if target.chosen_node:
             target.choose(target.pane.view.log_filter.toggled(target.chosen_node))
 

@@ -26,9 +26,7 @@ class LogNodes(Rows):
     LogNodes { background: $surface; }
     """
 
-    def show_nodes(
-        self, names: Iterable[str], counts: Mapping[str, Sequence[int]], chosen: LogFilter
-    ) -> None:
+    def show_nodes(self, names: Iterable[str], counts: Mapping[str, Sequence[int]], chosen: LogFilter) -> None:
         """Show these nodes; `counts` has the lines of each by rank of the severity."""
         columns = (
             Column("", 1),
@@ -45,11 +43,7 @@ def _row(name: str, counts: Sequence[int], chosen: LogFilter) -> Row:
     meaning = "" if heard else "dim"
     errors = sum(counts[Severity.ERROR.rank :])
     warnings = sum(counts[Severity.WARN.rank : Severity.ERROR.rank])
-    alarms = " ".join(
-        f"{letter}{short_count(count)}"
-        for letter, count in (("W", warnings), ("E", errors))
-        if count
-    )
+    alarms = " ".join(f"{letter}{short_count(count)}" for letter, count in (("W", warnings), ("E", errors)) if count)
     alarm_meaning = ("bad" if errors else "warn") if alarms and heard else meaning
     return Row(
         name,

@@ -40,10 +40,7 @@ class LogsScreen(DeckScreen):
         "the log, End follows it again. The list has the nodes with their lines, warnings (W) and "
         "errors (E): ● is shown, ○ is muted, ★ is shown alone."
     )
-    BINDINGS: ClassVar[list[BindingType]] = [
-        *bindings(*LOGS_ACTIONS),
-        Binding("escape", "close_nodes", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings(*LOGS_ACTIONS), Binding("escape", "close_nodes", show=False)]
     DEFAULT_CSS = """
     LogsScreen LogNodes {
         width: 38;
@@ -114,7 +111,6 @@ class LogsScreen(DeckScreen):
             self._show_nodes()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw in the current language."""
         del message
         self.pane.words_changed()
         self._show_nodes()

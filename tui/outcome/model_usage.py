@@ -87,9 +87,7 @@ def usage_of(usage: TokenUsage, prices: PriceSettings | None) -> UsageFigures:
 
 def budget_of(totals: Totals, budget: BudgetSettings) -> BudgetFigures:
     """Return how far the budget is used up."""
-    return BudgetFigures(
-        totals.calls_last_minute, budget.calls_per_minute, totals.tokens, budget.tokens_per_session
-    )
+    return BudgetFigures(totals.calls_last_minute, budget.calls_per_minute, totals.tokens, budget.tokens_per_session)
 
 
 def usage_words(usage: UsageFigures, *, named: bool = True) -> str:
@@ -119,9 +117,7 @@ def noted(usage: UsageFigures) -> Words:
     }
     if usage.cost is None:
         return say(
-            "{model}: {tokens_in} + {tokens_out} tokens, the first after {first:.2f} s, "
-            "all {total:.2f} s",
-            **values,
+            "{model}: {tokens_in} + {tokens_out} tokens, the first after {first:.2f} s, all {total:.2f} s", **values
         )
     return say(
         "{model}: {tokens_in} + {tokens_out} tokens, the first after {first:.2f} s, "
@@ -167,9 +163,7 @@ def budget_words(budget: BudgetFigures) -> str:
     calls = _("{count} of {limit} calls a minute").format(
         count=budget.calls_last_minute, limit=whole(budget.calls_per_minute)
     )
-    tokens = _("{count} of {limit} tokens").format(
-        count=whole(budget.tokens), limit=whole(budget.tokens_per_session)
-    )
+    tokens = _("{count} of {limit} tokens").format(count=whole(budget.tokens), limit=whole(budget.tokens_per_session))
     return f"{calls} · {tokens}"
 
 

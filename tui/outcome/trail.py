@@ -7,15 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robot.joints import HEAD_PAN, HEAD_TILT
-from robot.topics import (
-    DRIVE,
-    DRIVE_SAFE,
-    HEAD_STATE,
-    LLM_RAW_JSON,
-    LLM_RESULT,
-    SAFETY_STATE,
-    WHEEL_COMMANDS,
-)
+from robot.topics import DRIVE, DRIVE_SAFE, HEAD_STATE, LLM_RAW_JSON, LLM_RESULT, SAFETY_STATE, WHEEL_COMMANDS
 from text.i18n import _, ngettext
 from text.plain import plain
 from tui.emergency.state import blocked_reason
@@ -56,11 +48,7 @@ class OutcomeTrail:
     """The trail of one message."""
 
     def __init__(
-        self,
-        sent_s: float,
-        listeners: Sequence[str],
-        expected: LlmResponse | None,
-        before: Mapping[str, Sample],
+        self, sent_s: float, listeners: Sequence[str], expected: LlmResponse | None, before: Mapping[str, Sample]
     ) -> None:
         """`expected` is what was sent, if it was valid; `before` the newest samples until then."""
         self.sent_s = sent_s
@@ -72,9 +60,7 @@ class OutcomeTrail:
         drives = sum(command.action == "drive" for command in commands)
         self._most_drives = MOST_OF_A_KIND if expected is None else drives
         turns = [command for command in commands if command.action == "turn_head"]
-        self._target = (
-            (math.radians(turns[-1].pan), math.radians(turns[-1].tilt)) if turns else None
-        )
+        self._target = (math.radians(turns[-1].pan), math.radians(turns[-1].tilt)) if turns else None
         self._came: dict[str, list[OutcomeEntry]] = {}
         """Entries by topic or service."""
         self._drive: tuple[float, float] | None = None
@@ -82,11 +68,9 @@ class OutcomeTrail:
         """Delay of the newest setpoint after sending."""
 
     def over(self, now_s: float) -> bool:
-        """Whether the trail has ended."""
         return bool(self.failure) or now_s - self.sent_s > OVER_AFTER_S
 
     def see(self, samples: Mapping[str, Iterable[Sample]]) -> None:
-        """Take in new samples."""
         # The effects of a setpoint can be recognised only after the setpoint itself.
         for topic, read in (
             (LLM_RESULT, self._see_result),
@@ -115,9 +99,7 @@ class OutcomeTrail:
     def _awaited(self, now_s: float) -> Iterable[OutcomeEntry]:
         late = now_s - self.sent_s >= ANSWER_WITHIN_S
         if self.failure:
-            yield OutcomeEntry(
-                "✗", LLM_RAW_JSON, _("not sent: {reason}").format(reason=plain(self.failure))
-            )
+            yield OutcomeEntry("✗", LLM_RAW_JSON, _("not sent: {reason}").format(reason=plain(self.failure)))
         elif LLM_RESULT in self._came:
             return
         elif DRIVE in self._came:
@@ -129,9 +111,7 @@ class OutcomeTrail:
         elif late:
             silence = _("no answer within {seconds} s: is llm_parser running? Listening: {nodes}")
             nodes = plain(", ".join(self.listeners))
-            yield OutcomeEntry(
-                "✗", LLM_RESULT, silence.format(seconds=f"{ANSWER_WITHIN_S:g}", nodes=nodes)
-            )
+            yield OutcomeEntry("✗", LLM_RESULT, silence.format(seconds=f"{ANSWER_WITHIN_S:g}", nodes=nodes))
         else:
             yield OutcomeEntry("·", LLM_RESULT, _("waiting for an answer"))
 
@@ -169,9 +149,7 @@ class OutcomeTrail:
         if self._drive is None or not self._is_news(DRIVE_SAFE, sample, delay_s):
             return
         passed = words.setpoint(sample.value)
-        alike = all(
-            math.isclose(a, b, abs_tol=1e-3) for a, b in zip(passed, self._drive, strict=True)
-        )
+        alike = all(math.isclose(a, b, abs_tol=1e-3) for a, b in zip(passed, self._drive, strict=True))
         if alike:
             self._add("✓", DRIVE_SAFE, _("let through"), delay_s)
         else:
@@ -200,9 +178,7 @@ class OutcomeTrail:
             # The position of servos that have not been moved is unknown.
             return
         there = all(abs(a - b) < NEAR_RAD for a, b in zip(looks, self._target, strict=True))
-        entry = OutcomeEntry(
-            "✓" if there else "·", HEAD_STATE, words.head_words(*looks), delay_s if there else None
-        )
+        entry = OutcomeEntry("✓" if there else "·", HEAD_STATE, words.head_words(*looks), delay_s if there else None)
         self._came[HEAD_STATE] = [entry]
 
 

@@ -68,7 +68,6 @@ class Outcome(ScrollView, can_focus=True):
         return self._entries
 
     def render_line(self, y: int) -> Strip:
-        """One line of the trail."""
         if self._off_colour:
             self._lay()
         index, width = y + self.scroll_offset.y, self.size.width
@@ -108,19 +107,14 @@ class Outcome(ScrollView, can_focus=True):
         base = self.rich_style
         dim = base + Style(dim=True)
         kind = base + self.get_component_rich_style(f"outcome--{KINDS[entry.mark]}", partial=True)
-        before = [
-            Segment(delay_text(entry.delay_s).rjust(DELAY), dim),
-            Segment(f" {entry.mark} ", kind),
-        ]
+        before = [Segment(delay_text(entry.delay_s).rjust(DELAY), dim), Segment(f" {entry.mark} ", kind)]
         if width < ROOMY:
             self._wrap(before, DELAY + MARK, f"{entry.topic}: {entry.text}", kind, width)
             return
         before.append(Segment(entry.topic.ljust(TOPIC), dim))
         self._wrap(before, DELAY + MARK + TOPIC, entry.text, kind, width)
 
-    def _wrap(
-        self, before: list[Segment], indent: int, text: str, style: Style, width: int
-    ) -> None:
+    def _wrap(self, before: list[Segment], indent: int, text: str, style: Style, width: int) -> None:
         """Append the text to `before`, with its further lines indented."""
         lines = Text(text).wrap(self.app.console, max(8, width - indent))
         for number, line in enumerate(lines or [Text("")]):

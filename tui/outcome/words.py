@@ -39,9 +39,7 @@ def drive_words(speed_m_s: float, steering_rad: float) -> str:
 
 def wheel_words(value: Mapping[str, Value]) -> str:
     """Describe the speeds of the rear wheels in a JointState."""
-    return rim_words(
-        joint(value, REAR_LEFT_WHEEL, "velocity"), joint(value, REAR_RIGHT_WHEEL, "velocity")
-    )
+    return rim_words(joint(value, REAR_LEFT_WHEEL, "velocity"), joint(value, REAR_RIGHT_WHEEL, "velocity"))
 
 
 def rim_words(left_rad_s: float, right_rad_s: float) -> str:
@@ -53,16 +51,12 @@ def rim_words(left_rad_s: float, right_rad_s: float) -> str:
 
 def head_words(pan_rad: float, tilt_rad: float) -> str:
     """Describe where the head looks."""
-    return _("pan {pan}°, tilt {tilt}°").format(
-        pan=whole(math.degrees(pan_rad)), tilt=whole(math.degrees(tilt_rad))
-    )
+    return _("pan {pan}°, tilt {tilt}°").format(pan=whole(math.degrees(pan_rad)), tilt=whole(math.degrees(tilt_rad)))
 
 
 def service_words(event: Mapping[str, Any]) -> tuple[bool, str]:
     """Whether the head accepted a command, and its answer, from llm_parser's `head` event."""
-    asked = head_words(
-        math.radians(number(event.get("pan"))), math.radians(number(event.get("tilt")))
-    )
+    asked = head_words(math.radians(number(event.get("pan"))), math.radians(number(event.get("tilt"))))
     error = event.get("error")
     if error:
         return False, plain(f"{asked}: {error}", LONGEST)

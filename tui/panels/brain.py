@@ -39,7 +39,6 @@ class BrainView(Drawing):
 
     @property
     def has_value(self) -> bool:
-        """Whether any node has reported."""
         return bool(self._reports)
 
     def draw(self, width: int, height: int) -> list[Line]:
@@ -47,8 +46,7 @@ class BrainView(Drawing):
         reports = [self._reports[name] for name in sorted(self._reports)]
         several = len(reports) > 1
         parts = [
-            (f"{one.node}: {one.message}" if several else one.message, LOOKS.get(one.level, "bad"))
-            for one in reports
+            (f"{one.node}: {one.message}" if several else one.message, LOOKS.get(one.level, "bad")) for one in reports
         ]
         parts += [
             # The state usually names the model.

@@ -42,12 +42,7 @@ class CameraPanel(Panel):
         """Whether an error message is shown because the last message was not a picture."""
         self._in_sight = False
         self._hz = ""
-        self._compressed = NewestPicture(
-            self,
-            self._fit,
-            self._show_read,
-            self._refuse_read,
-        )
+        self._compressed = NewestPicture(self, self._fit, self._show_read, self._refuse_read)
 
     def compose(self) -> ComposeResult:
         yield ImageView(bits=4)

@@ -31,7 +31,6 @@ class Dots:
             self._looks[row // 4][column // 2] = look
 
     def line(self, start: Point, end: Point, look: str = "") -> None:
-        """Draw a straight line."""
         steps = max(1, math.ceil(max(abs(end[0] - start[0]), abs(end[1] - start[1]))))
         for step in range(steps + 1):
             share = step / steps

@@ -45,9 +45,7 @@ class Joints:
         if (wrong := other_type(sample, TYPE)) is not None:
             return wrong
         found = sample.value.get("name")
-        names = (
-            plain(", ".join(map(str, found)), LONGEST) if isinstance(found, (list, tuple)) else ""
-        )
+        names = plain(", ".join(map(str, found)), LONGEST) if isinstance(found, (list, tuple)) else ""
         if not names:
             came = _("{topic}: received no joint names").format(topic=self._topic)
         else:

@@ -37,7 +37,6 @@ class LlmPanel(Panel):
         yield Outcome()
 
     def on_mount(self) -> None:
-        """Show how to begin."""
         self._say()
 
     def followed(self) -> set[str]:
@@ -53,9 +52,7 @@ class LlmPanel(Panel):
             self._trail = OutcomeTrail(sample.received_s, listeners, expected, self._newest)
         if self._trail is not None and not self._trail.over(clock.now()):
             self._trail.see(update.samples)
-        self._newest.update(
-            {topic: update.samples[topic][-1] for topic in FOLLOWED & update.samples.keys()}
-        )
+        self._newest.update({topic: update.samples[topic][-1] for topic in FOLLOWED & update.samples.keys()})
         self._say()
 
     def words_changed(self) -> None:

@@ -47,7 +47,6 @@ class PanelGrid(Container, can_focus=True):
     """
 
     def __init__(self, panels: Sequence[Panel], id: str | None = None) -> None:
-        """Hold these panels, in this order."""
         super().__init__(*panels, id=id)
         self._panels = list(panels)
         self._page = 0
@@ -85,7 +84,6 @@ class PanelGrid(Container, can_focus=True):
         self.choose_next(step)
 
     def on_focus(self) -> None:
-        """Show which panel is chosen."""
         self._mark_chosen()
 
     @property

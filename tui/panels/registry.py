@@ -39,12 +39,8 @@ class PanelEntry(NamedTuple):
 
 
 PANELS: dict[PanelName, PanelEntry] = {
-    "sonar": PanelEntry(
-        N_("sonar"), "tui.panels.sonar.panel", "SonarPanel", (SONAR_FRONT, SONAR_REAR)
-    ),
-    "wheels": PanelEntry(
-        N_("wheels"), "tui.panels.wheels.panel", "WheelsPanel", (WHEEL_COMMANDS, JOINT_STATES)
-    ),
+    "sonar": PanelEntry(N_("sonar"), "tui.panels.sonar.panel", "SonarPanel", (SONAR_FRONT, SONAR_REAR)),
+    "wheels": PanelEntry(N_("wheels"), "tui.panels.wheels.panel", "WheelsPanel", (WHEEL_COMMANDS, JOINT_STATES)),
     "map": PanelEntry(N_("map"), "tui.panels.map.panel", "MapPanel", (ODOMETRY, MAP)),
     "camera": PanelEntry(N_("camera"), "tui.panels.camera", "CameraPanel", (CAMERA,)),
     "head": PanelEntry(N_("head"), "tui.panels.head.panel", "HeadPanel", (HEAD_STATE,)),

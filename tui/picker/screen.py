@@ -60,11 +60,7 @@ class StartLesson(Action["PickerScreen"]):
     @classmethod
     def label(cls, target: PickerScreen) -> str:
         """Named after what would be started."""
-        return (
-            StartOwn.title
-            if target.chosen_task is not None and target.chosen_task.own
-            else cls.title
-        )
+        return StartOwn.title if target.chosen_task is not None and target.chosen_task.own else cls.title
 
     @classmethod
     def possible(cls, target: PickerScreen) -> bool | None:
@@ -94,7 +90,6 @@ class StartOwn(Action["PickerScreen"]):
 
     @classmethod
     async def run(cls, target: PickerScreen) -> None:
-        """Make it, and start it."""
         target.start_own()
 
 
@@ -281,7 +276,6 @@ class PickerScreen(Screen[None], Acting, Working):
             self.deck.sessions.open(request)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw in the current language."""
         del message
         self.redraw()
 

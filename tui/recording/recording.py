@@ -12,15 +12,7 @@ from typing import TYPE_CHECKING, Any
 from text.i18n import _, localized
 from text.plain import plain
 from tui.recording.wish import RecordingLimit
-from tui.recording.words import (
-    complaints,
-    is_low,
-    length_words,
-    low_words,
-    progress,
-    rate_words,
-    size_words,
-)
+from tui.recording.words import complaints, is_low, length_words, low_words, progress, rate_words, size_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -54,7 +46,6 @@ class Recording:
 
     @property
     def active(self) -> bool:
-        """Whether it is recording."""
         return self._recorder is not None
 
     @property

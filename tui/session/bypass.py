@@ -71,7 +71,6 @@ class BypassingPublisher:
 
     @property
     def called(self) -> str:
-        """Its name for display."""
         if self.node.endswith(NAMELESS):
             return _("a program without a node's name")
         name = plain(self.node, 60)
@@ -131,10 +130,7 @@ class BypassDetector:
 
 
 def _on_topics_of(
-    reserved: ReservedTopic,
-    rows: Iterable[TopicRow],
-    nodes: Mapping[str, NodeStatus],
-    ours: Collection[str],
+    reserved: ReservedTopic, rows: Iterable[TopicRow], nodes: Mapping[str, NodeStatus], ours: Collection[str]
 ) -> Iterator[BypassingPublisher]:
     owners = {f"/{node.name}": node for node in nodes.values() if node.command == reserved.module}
     for row in rows:
@@ -150,9 +146,7 @@ def _on_topics_of(
             yield from _bypassing(row.name, by, reserved, owners, nodes)
 
 
-def _with_sonars(
-    row: TopicRow, nodes: Mapping[str, NodeStatus], ours: Collection[str]
-) -> list[BypassingPublisher]:
+def _with_sonars(row: TopicRow, nodes: Mapping[str, NodeStatus], ours: Collection[str]) -> list[BypassingPublisher]:
     """Return who speaks for a sonar beside the session's own node; all if that is not known."""
     by = Counter(end.node for end in row.published_by)
     if row.name in ours:
@@ -164,11 +158,7 @@ def _with_sonars(
     twice = [name for name in by.keys() & own.keys() if by[name] > 1]
     return [
         *(BypassingPublisher(row.name, name) for name in foreign if len(by) > 1),
-        *(
-            BypassingPublisher(row.name, name, True)
-            for name in twice
-            if not _may_be_left(own[name])
-        ),
+        *(BypassingPublisher(row.name, name, True) for name in twice if not _may_be_left(own[name])),
     ]
 
 

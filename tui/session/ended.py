@@ -25,13 +25,7 @@ def _ended(node: NodeStatus, reason: str) -> NodeStatus:
     if node.state in {NodeState.EXITED, NodeState.FAILED}:
         return node
     return replace(
-        node,
-        state=NodeState.EXITED,
-        detail=reason,
-        pid=None,
-        uptime_s=None,
-        cpu_percent=None,
-        memory_bytes=None,
+        node, state=NodeState.EXITED, detail=reason, pid=None, uptime_s=None, cpu_percent=None, memory_bytes=None
     )
 
 

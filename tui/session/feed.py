@@ -16,13 +16,7 @@ from launcher.consent import Agents
 from text.i18n import _
 from tui.session.history import KEPT_LINES, LogHistory
 from tui.session.inbox import GraphInbox
-from tui.session.messages import (
-    AgentsChanged,
-    GraphChanged,
-    LogArrived,
-    SessionChanged,
-    StatusChanged,
-)
+from tui.session.messages import AgentsChanged, GraphChanged, LogArrived, SessionChanged, StatusChanged
 from tui.session.outside import Outside
 from tui.session.past import FLOW_TOPICS, SONARS, Past
 from tui.session.rosout import TOPIC as ROSOUT
@@ -127,7 +121,6 @@ class Feed:
 
     @property
     def agents(self) -> Agents:
-        """The agents, and what they ask for."""
         return Agents() if self.link is None else self.link.agents
 
     @property
@@ -239,14 +232,7 @@ class Feed:
 
     async def _on_event(self, event: Event, owner: SessionOwner) -> None:
         # Not needed for the first frame.
-        from launcher.events import (
-            AgentsEvent,
-            ClosedEvent,
-            LogEvent,
-            StatusEvent,
-            StraysEvent,
-            UnguardedEvent,
-        )
+        from launcher.events import AgentsEvent, ClosedEvent, LogEvent, StatusEvent, StraysEvent, UnguardedEvent
 
         if isinstance(event, StatusEvent):
             self._tell_status(frozenset(node.name for node in event.nodes))
@@ -270,7 +256,6 @@ class Feed:
             await owner.ended(event.reason)
 
     def take_update(self) -> GraphUpdate | None:
-        """Return the waiting update."""
         update = self._inbox.take()
         if update is None or self.graph is None:
             return None
@@ -336,9 +321,7 @@ class Feed:
         if graph is None:
             return
         own = {ROSOUT} if self._hears_everybody or self.outside.now else set[str]()
-        followed = own.union(self._followed).union(
-            *(screen.follow_topics() for screen in self._screens)
-        )
+        followed = own.union(self._followed).union(*(screen.follow_topics() for screen in self._screens))
         kept: set[str] = set().union(*(screen.keep_topics() for screen in self._screens))
         if self.replay is None:
             followed |= set(FLOW_TOPICS)

@@ -82,9 +82,7 @@ class Outside:
         while len(self._printed) > KEPT_HEARD:
             self._printed.pop(next(iter(self._printed)))
 
-    def lines(
-        self, samples: Iterable[Sample], nodes: Mapping[str, NodeStatus]
-    ) -> tuple[LogLine, ...]:
+    def lines(self, samples: Iterable[Sample], nodes: Mapping[str, NodeStatus]) -> tuple[LogLine, ...]:
         """Read their messages on /rosout; the output of Deck's own nodes is read elsewhere."""
         found: list[LogLine] = []
         waiting = (*self._unknown, *samples)

@@ -56,7 +56,6 @@ class Past:
         self._bytes.clear()
 
     def take(self, update: GraphUpdate) -> None:
-        """Keep what has come."""
         for topic in (*FLOW_TOPICS, *SONARS):
             for sample in update.samples.get(topic, ()):
                 self._keep(topic, sample)

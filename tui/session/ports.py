@@ -107,9 +107,7 @@ class InnerLink(Protocol):
     def logger_level(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
         """Read from which severity on a node logs."""
 
-    def set_logger_level(
-        self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[LevelResult]:
+    def set_logger_level(self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
         """Set from which severity on a node's logger writes."""
 
 
@@ -153,9 +151,7 @@ class GraphLink(Protocol):
     def watch_frames(self, wanted: bool) -> None:
         """Report the frames of /tf and /tf_static, or none."""
 
-    def prepare_publisher(
-        self, topic: str, type_name: str, *, latched: bool = False
-    ) -> Future[None]:
+    def prepare_publisher(self, topic: str, type_name: str, *, latched: bool = False) -> Future[None]:
         """Create a publisher now, so that its first message goes out at once."""
 
     def publish(
@@ -164,17 +160,11 @@ class GraphLink(Protocol):
         """Publish one message; the future gives the number of subscribers, or fails with why."""
 
     def call(
-        self,
-        service: str,
-        type_name: str,
-        request: Mapping[str, Value],
-        timeout_s: float = ANSWER_WITHIN_S,
+        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[CallResult]:
         """Call a service."""
 
-    def start_publishing(
-        self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
-    ) -> Future[int]:
+    def start_publishing(self, topic: str, type_name: str, value: Mapping[str, Value], hz: float) -> Future[int]:
         """Publish a message periodically; the future gives its number, or fails."""
 
     def stop_publishing(self, number: int) -> None:
@@ -260,9 +250,7 @@ class SessionOpener(Protocol):
     async def lesson(self, session: SessionInfo) -> LessonFolder | None:
         """Return the lesson that a running profile belongs to, already read; None without one."""
 
-    async def judge(
-        self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]
-    ) -> JudgeLink:
+    async def judge(self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]) -> JudgeLink:
         """Start a judge, which begins with its first order."""
 
     async def grade(self, lesson: LessonFolder, folder: Path) -> WholeGrade:

@@ -54,9 +54,7 @@ class NodelessLink:
     """A `SessionLink` without nodes: there is nothing to start, stop or restart."""
 
     def __init__(
-        self,
-        session: SessionInfo,
-        emergency_stop: Callable[[bool, int], None] = lambda _engaged, _said_ns: None,
+        self, session: SessionInfo, emergency_stop: Callable[[bool, int], None] = lambda _engaged, _said_ns: None
     ) -> None:
         """`emergency_stop`: the road beside the topic; a recording has none."""
         self.session = session

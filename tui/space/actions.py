@@ -111,7 +111,6 @@ class NextAngle(SpaceAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Switch to the next of the three."""
         target.next_angle()
 
 
@@ -183,7 +182,6 @@ class ToggleLayer(_LayerAction):
 
     @classmethod
     async def run(cls, target: SpaceTarget) -> None:
-        """Show or hide it."""
         target.toggle_layer()
 
 
@@ -221,9 +219,7 @@ class ArmGoal(SpaceAction):
     id = "space.goal"
     key = "alt+g,alt+п"
     title = N_("Goal")
-    tooltip = N_(
-        "Aim a goal for navigation: press and drag the mouse, or arrows, Ctrl+arrows and Enter."
-    )
+    tooltip = N_("Aim a goal for navigation: press and drag the mouse, or arrows, Ctrl+arrows and Enter.")
     footer = True
 
     @classmethod

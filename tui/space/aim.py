@@ -32,12 +32,10 @@ class AimKind(Enum):
 
     @property
     def topic(self) -> str:
-        """Where it is published."""
         return self.value[0]
 
     @property
     def type_name(self) -> str:
-        """The type of its message."""
         return self.value[1]
 
 
@@ -69,9 +67,7 @@ class Aim:
         arm = CROSS_DOTS / dots_per_m
         x, y = self.x_m, self.y_m
         cross = Strokes(
-            places((x - arm, y, 0.0), (x, y - arm, 0.0)),
-            places((x + arm, y, 0.0), (x, y + arm, 0.0)),
-            Tint.WARN,
+            places((x - arm, y, 0.0), (x, y - arm, 0.0)), places((x + arm, y, 0.0), (x, y + arm, 0.0)), Tint.WARN
         )
         return [cross, arrow(at, ARROW_DOTS / dots_per_m, Tint.WARN)]
 

@@ -56,9 +56,7 @@ class AimingTarget(Protocol):
     def aim_changed(self) -> None:
         """Show what is aimed now."""
 
-    def notify(
-        self, message: str, *, severity: SeverityLevel = "information", markup: bool = True
-    ) -> None:
+    def notify(self, message: str, *, severity: SeverityLevel = "information", markup: bool = True) -> None:
         """Show a notification."""
 
     def run_worker(self, work: Coroutine[Any, Any, None], *, group: str) -> object:
@@ -69,7 +67,6 @@ class Aiming:
     """What the Space screen does about goals."""
 
     def __init__(self, screen: AimingTarget) -> None:
-        """Aim in the picture of this screen."""
         self._screen = screen
 
     @property
@@ -102,7 +99,6 @@ class Aiming:
         screen.aim_changed()
 
     def disarm(self) -> None:
-        """Aim at nothing any more."""
         if self._screen.armed:
             self._screen.view.aim = None
             self._screen.aim_changed()

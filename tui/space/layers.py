@@ -21,14 +21,7 @@ if TYPE_CHECKING:
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
 FLOAT, TEXT = "std_msgs/msg/Float32", "std_msgs/msg/String"
-FLEETING = frozenset(
-    {
-        FLOAT,
-        "sensor_msgs/msg/LaserScan",
-        CLOUD,
-        "sensor_msgs/msg/Range",
-    }
-)
+FLEETING = frozenset({FLOAT, "sensor_msgs/msg/LaserScan", CLOUD, "sensor_msgs/msg/Range"})
 """Measurements: once nothing more arrives, what came last is no longer so."""
 
 STREAMS = FLEETING | {"nav_msgs/msg/Odometry"}
@@ -57,7 +50,6 @@ class SpaceLayer:
 
     @property
     def is_drawn(self) -> bool:
-        """Whether it belongs into the picture."""
         if not self.on:
             return False
         return self.type_name not in FLEETING or self.row is None or self.row.trouble is None
@@ -85,7 +77,6 @@ class SpaceLayer:
         return bool(samples)
 
     def forget(self) -> None:
-        """Discard what has come."""
         self.reader.clear()
         self.refused = self.apart = self.frame = ""
 
@@ -97,11 +88,9 @@ class SpaceLayers:
         self._layers: dict[str, SpaceLayer] = {}
 
     def __iter__(self) -> Iterator[SpaceLayer]:
-        """Yield them, sorted by topic."""
         return iter(self._layers.values())
 
     def get(self, topic: str) -> SpaceLayer | None:
-        """Return the layer of a topic."""
         return self._layers.get(topic)
 
     def see(self, update: GraphUpdate) -> bool:

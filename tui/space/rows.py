@@ -48,7 +48,6 @@ class LayerRows(Rows):
             self.action_open()
 
     def show_stage(self, stage: Stage) -> None:
-        """Show the layers of a stage."""
         width = max(8, self.size.width - MARK - 3)
         frames = len(stage.buffer.frames)
         rows = [_head(FRAMES, _("frames"), str(frames or "–"), on=stage.show_frames)]
@@ -58,12 +57,7 @@ class LayerRows(Rows):
         for layer in stage.layers:
             rate = self._rate(layer)
             rows.append(
-                _head(
-                    layer.topic,
-                    _short(layer.topic, width - RATE - 2),
-                    rate if layer.on else "",
-                    on=layer.on,
-                )
+                _head(layer.topic, _short(layer.topic, width - RATE - 2), rate if layer.on else "", on=layer.on)
             )
             if layer.on:
                 trouble = trouble_of_layer(layer)

@@ -90,23 +90,19 @@ class SpaceScreen(DeckScreen):
 
     @property
     def layer_rows(self) -> LayerRows:
-        """The list of layers."""
         return self.query_one(LayerRows)
 
     @property
     def armed(self) -> bool:
-        """Whether something is aimed."""
         return self.is_mounted and self.view.aim is not None
 
     @property
     def has_layers(self) -> bool:
-        """Whether the list of layers can be used."""
         return self.is_mounted
 
     # What is watched
 
     def watch_topics(self) -> set[str]:
-        """The topics of all layers that are shown."""
         return self.stage.layers.watched()
 
     def follow_topics(self) -> set[str]:
@@ -145,7 +141,6 @@ class SpaceScreen(DeckScreen):
             self.notify(self.aiming.refusal, severity="warning", markup=False)
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Show what is new."""
         update = message.update
         came = self.stage.take(update, clock.now())
         if self.stage.sent is not None and update.samples.get(self.stage.sent[1].kind.topic):
@@ -187,7 +182,6 @@ class SpaceScreen(DeckScreen):
         return "" if layer is None else ros2_words.echo(layer.topic)
 
     def next_angle(self) -> None:
-        """Look from the next of the three."""
         angles = list(Angle)
         view = self.view
         angle = angles[(angles.index(view.camera.angle) + 1) % len(angles)]
@@ -223,10 +217,7 @@ class SpaceScreen(DeckScreen):
         self._ask_frame(lambda: _("Fixed frame"), lambda: _("the robot's root"), take)
 
     def _ask_frame(
-        self,
-        title: Callable[[], str],
-        none: Callable[[], str],
-        take: Callable[[str | None], None],
+        self, title: Callable[[], str], none: Callable[[], str], take: Callable[[str | None], None]
     ) -> None:
         frames = sorted(self.stage.buffer.frames)
         if not frames:
@@ -277,11 +268,9 @@ class SpaceScreen(DeckScreen):
     # Goals
 
     def arm_goal(self) -> None:
-        """Begin to aim a goal."""
         self.aiming.arm(AimKind.GOAL)
 
     def arm_initial_pose(self) -> None:
-        """Begin to aim an initial pose."""
         self.aiming.arm(AimKind.INITIAL)
 
     def disarm(self) -> None:
@@ -289,11 +278,9 @@ class SpaceScreen(DeckScreen):
         self.aiming.disarm()
 
     async def publish_aim(self) -> None:
-        """Publish what is aimed."""
         self.aiming.publish()
 
     def aim_changed(self) -> None:
-        """Show what is aimed now."""
         self._show(by_user=True)
         self.refresh_bindings()
 
@@ -306,7 +293,6 @@ class SpaceScreen(DeckScreen):
         return self.stage.place(self.view.camera, clock.now())
 
     def _show(self, *, by_user: bool = False) -> None:
-        """Show the current state."""
         if not self.is_mounted:
             return
         view = self.view

@@ -59,7 +59,6 @@ class Stage:
     """What is known of space, and how it is to be seen."""
 
     def __init__(self) -> None:
-        """Begin with an empty space."""
         self.buffer = TransformBuffer()
         self.layers = SpaceLayers()
         self.show_frames = True
@@ -114,9 +113,7 @@ class Stage:
         Return whether anything is to be seen elsewhere than before.
         """
         found: list[Located] = []
-        shown = {
-            layer: layer.reader.shown(now_s) if layer.is_drawn else () for layer in self.layers
-        }
+        shown = {layer: layer.reader.shown(now_s) if layer.is_drawn else () for layer in self.layers}
         for layer, drawables in shown.items():
             layer.frame = next((one.frame for one in drawables if one.frame), layer.frame)
         # Without /tf the frames of the layers say what the fixed frame is.
@@ -131,11 +128,7 @@ class Stage:
             if apart:
                 names = ", ".join(apart[:3]) + (", …" if len(apart) > 3 else "")
                 self.frames_why = say("not joined to {fixed}: {frames}", fixed=fixed, frames=names)
-        if (
-            camera == self._placed_for
-            and _look_alike(found, self._found)
-            and _look_alike(frames, self._frames)
-        ):
+        if camera == self._placed_for and _look_alike(found, self._found) and _look_alike(frames, self._frames):
             return False
         self._placed_for, self._found, self._frames = camera, found, frames
         self._shapes = self._placer.place(found, cube_of(camera))
@@ -168,9 +161,7 @@ class Stage:
         before, self._followed = self._followed, at
         if before is None:
             return replace(camera, target=at)
-        x, y, z = (
-            middle + now - then for middle, now, then in zip(camera.target, at, before, strict=True)
-        )
+        x, y, z = (middle + now - then for middle, now, then in zip(camera.target, at, before, strict=True))
         return replace(camera, target=(x, y, z))
 
     def picture(self, camera: SpaceCamera, columns: int, rows: int, aim: Aim | None) -> CellPicture:

@@ -23,14 +23,7 @@ from tui.widgets.words import word_strips
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from textual.events import (
-        MouseDown,
-        MouseMove,
-        MouseScrollDown,
-        MouseScrollUp,
-        MouseUp,
-        Resize,
-    )
+    from textual.events import MouseDown, MouseMove, MouseScrollDown, MouseScrollUp, MouseUp, Resize
     from textual.timer import Timer
 
     from space.drawing.extent import SpaceBox
@@ -109,10 +102,7 @@ class SpaceView(OneStyle, Widget, can_focus=True):
     """
 
     def __init__(
-        self,
-        compose_picture: Callable[[SpaceCamera, int, int], CellPicture],
-        *,
-        id: str | None = None,
+        self, compose_picture: Callable[[SpaceCamera, int, int], CellPicture], *, id: str | None = None
     ) -> None:
         super().__init__(id=id)
         self.camera = SpaceCamera()
@@ -287,7 +277,6 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self._move(self.camera.zoomed(ZOOM**steps))
 
     def action_zoom(self, steps: int) -> None:
-        """Zoom about the middle."""
         self._move(self.camera.zoomed(ZOOM**steps))
 
     def _move(self, camera: SpaceCamera) -> None:
@@ -359,13 +348,11 @@ class SpaceView(OneStyle, Widget, can_focus=True):
             self.post_message(self.Aimed(done=True))
 
     def on_leave(self) -> None:
-        """Forget where the pointer was."""
         self._pointer = None
         self.post_message(self.PointerMoved())
 
 
 def _middle_of(x: float, y: float) -> tuple[float, float]:
-    """Return the middle of a cell, in dots."""
     return 2 * math.floor(x) + 1.0, 4 * math.floor(y) + 2.0
 
 

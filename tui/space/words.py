@@ -18,11 +18,7 @@ if TYPE_CHECKING:
     from tui.space.stage import Stage
     from tui.space.view import SpaceView
 
-ANGLES = {
-    Angle.ABOVE: N_("from above"),
-    Angle.SIDE: N_("from the side"),
-    Angle.PERSPECTIVE: N_("perspective"),
-}
+ANGLES = {Angle.ABOVE: N_("from above"), Angle.SIDE: N_("from the side"), Angle.PERSPECTIVE: N_("perspective")}
 LONGEST = 40
 
 
@@ -50,9 +46,9 @@ def armed(aim: Aim, frame: str, listeners: Sequence[str], keys: tuple[str, str])
     what = _("GOAL") if aim.kind is AimKind.GOAL else _("INITIAL POSE")
     where = place_words(aim, frame)
     heard = ", ".join(listeners) if listeners else _("nobody listens")
-    how = _(
-        "Press, drag, let go: published. Or arrows, Ctrl+arrows, {enter}. {escape} leaves."
-    ).format(enter=keys[0], escape=keys[1])
+    how = _("Press, drag, let go: published. Or arrows, Ctrl+arrows, {enter}. {escape} leaves.").format(
+        enter=keys[0], escape=keys[1]
+    )
     return f"{what} → {aim.kind.topic} ({heard}) · {where}\n{how}"
 
 

@@ -31,9 +31,7 @@ class OpenTeleop(Action["CanDrive"]):
     key = "t,е"
     title = N_("Drive")
     means = "drive"
-    tooltip = N_(
-        "Drive with the arrow keys or W A S D while held; releasing them stops. Escape closes."
-    )
+    tooltip = N_("Drive with the arrow keys or W A S D while held; releasing them stops. Escape closes.")
     footer = True
     from_elsewhere = True
 
@@ -44,7 +42,6 @@ class OpenTeleop(Action["CanDrive"]):
 
     @classmethod
     async def run(cls, target: CanDrive) -> None:
-        """Open the panel, or focus it."""
         await target.open_teleop()
 
 
@@ -77,7 +74,6 @@ class CloseTeleop(TeleopAction):
 
     @classmethod
     async def run(cls, target: DrivenByKeys) -> None:
-        """Stop and close the panel."""
         target.close()
 
 

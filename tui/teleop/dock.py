@@ -28,7 +28,6 @@ class TeleopDock:
 
     @property
     def topics(self) -> frozenset[str]:
-        """The topics that the panel shows."""
         return frozenset() if self._panel is None else self._panel.topics
 
     async def open(self) -> None:

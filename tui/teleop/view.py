@@ -51,14 +51,7 @@ def drawn(driving: Driving, width: int, height: int) -> list[Line]:
             "" if driving.gated else _gone(),
             ago=driving.allowed_ago,
         ),
-        _column(
-            _("wheels"),
-            _of(driving.wheels),
-            "second",
-            "",
-            _sides(driving.wheels),
-            ago=driving.wheels_ago,
-        ),
+        _column(_("wheels"), _of(driving.wheels), "second", "", _sides(driving.wheels), ago=driving.wheels_ago),
     )
     words: Line = [Ink(fit(driving.words, width), driving.look)]
     limits = _limits(driving.limits, width)
@@ -92,13 +85,7 @@ class _Column(NamedTuple):
 
 
 def _column(
-    title: str,
-    setpoint: DriveSetpoint | None,
-    look: str,
-    missing: str,
-    detail: str = "",
-    *,
-    ago: str = "",
+    title: str, setpoint: DriveSetpoint | None, look: str, missing: str, detail: str = "", *, ago: str = ""
 ) -> _Column:
     if ago:
         return _Column(title, "---", ago, "muted", ago)
@@ -133,20 +120,14 @@ def _way(setpoint: DriveSetpoint) -> str:
 def _arrows(setpoint: DriveSetpoint) -> str:
     speed, angle = setpoint.speed_m_s, setpoint.steering_rad
     way = "■" if not abs(speed) >= STANDING_M_S else "↑" if speed > 0 else "↓"
-    side = (
-        ""
-        if not abs(angle) >= STRAIGHT_RAD
-        else f" {'←' if angle > 0 else '→'} " + decimal(f"{abs(angle):.2f}")
-    )
+    side = "" if not abs(angle) >= STRAIGHT_RAD else f" {'←' if angle > 0 else '→'} " + decimal(f"{abs(angle):.2f}")
     return way + side
 
 
 def _angle(angle: float) -> str:
     if not math.isfinite(angle) or abs(angle) < STRAIGHT_RAD:
         return ""
-    return ("← " if angle > 0 else "→ ") + _("{angle} rad").format(
-        angle=decimal(f"{abs(angle):.2f}")
-    )
+    return ("← " if angle > 0 else "→ ") + _("{angle} rad").format(angle=decimal(f"{abs(angle):.2f}"))
 
 
 def _of(wheels: WheelsReading | None) -> DriveSetpoint | None:
@@ -172,7 +153,6 @@ def _row(parts: list[Line]) -> Line:
 
 
 def _small(columns: tuple[_Column, ...], width: int) -> Line:
-    """All three in one line."""
     line: Line = []
     for column in columns:
         line += [Ink(column.title + " ", "muted"), Ink(column.speed + "  ", column.look)]

@@ -26,14 +26,7 @@ from tui.panels.panel import newest, row_of
 from tui.panels.wheels.reading import WheelsReading, wheels_in
 from tui.teleop.actions import TELEOP_ACTIONS, MoveAction, OpenTeleop
 from tui.teleop.keys import NOTHING, Move, TeleopLimits
-from tui.teleop.route import (
-    DRIVE_TYPE,
-    RATE_HZ,
-    Route,
-    command,
-    nowhere_words,
-    route,
-)
+from tui.teleop.route import DRIVE_TYPE, RATE_HZ, Route, command, nowhere_words, route
 from tui.teleop.view import Driving, drawn
 from tui.widgets.drawing import Drawing, Line
 from tui.yaml_form.words import reason_words
@@ -108,7 +101,6 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
 
     @property
     def asked(self) -> DriveSetpoint:
-        """What the keys ask for now."""
         return self._keys.at(clock.steady()).setpoint(self._limits)
 
     # Keys
@@ -197,7 +189,6 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self.release()
 
     def on_focus(self) -> None:
-        """The panel receives the keys."""
         self.redraw()
 
     def on_blur(self) -> None:
@@ -205,7 +196,6 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self.release()
 
     def show(self, update: GraphUpdate) -> None:
-        """Show the newest values."""
         self._follow(route(update))
         self._time_s = update.time_s
         for topic in self.topics:
@@ -256,7 +246,6 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
     # Drawing
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw as much as fits."""
         words, look = self._told()
         driving = Driving(
             self.asked,

@@ -91,7 +91,6 @@ class PicturePace:
         self._left_out_s = float("-inf")
 
     def shown(self, now_s: float) -> None:
-        """Record that a picture is shown."""
         if self._shown and now_s - self._shown[-1] > MOST_DEBT_S + RECENT_S:
             self._shown.clear()  # The stream had paused.
         self._shown.append(now_s)

@@ -73,9 +73,7 @@ class DeckDriver(LinuxDriver):
         super().__init__(app, **options)  # type: ignore[arg-type]
         self._deck = app
         fd = app.terminal_fd
-        self._terminal = Terminal(
-            fd, lambda: app.call_later(app.refresh, layout=True), app.bandwidth
-        )
+        self._terminal = Terminal(fd, lambda: app.call_later(app.refresh, layout=True), app.bandwidth)
         self._file = self._terminal  # type: ignore[assignment]
         self._signals: set[int] = set()
         """Those that wait for the event loop."""
@@ -89,7 +87,6 @@ class DeckDriver(LinuxDriver):
 
     @property
     def gone(self) -> bool:
-        """Whether the terminal has hung up."""
         return self._terminal.gone or hung_up(self.fileno)
 
     def give_up(self) -> None:

@@ -42,9 +42,7 @@ def end_when_gone(
     threading.Thread(target=_watch, args=watching, name="hang-up", daemon=True).start()
 
 
-def _watch(
-    fds: Iterable[int], gone: Callable[[], object], exit_now: Callable[[int], object]
-) -> None:
+def _watch(fds: Iterable[int], gone: Callable[[], object], exit_now: Callable[[int], object]) -> None:
     _hung_up(fds, None)
     threading.Thread(target=gone, name="hung-up", daemon=True).start()
     time.sleep(ORDERLY_END_S)

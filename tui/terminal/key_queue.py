@@ -73,7 +73,6 @@ class KeyQueue:
             self._next()
 
     def _next(self) -> None:
-        """Continue with the next key."""
         if self._giving_up is not None:
             self._giving_up.cancel()
             self._giving_up = None

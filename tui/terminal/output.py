@@ -27,9 +27,7 @@ class Terminal:
     again: then `on_caught_up` is called, on another thread, for a full repaint.
     """
 
-    def __init__(
-        self, fd: int, on_caught_up: Callable[[], object], bandwidth: Bandwidth | None = None
-    ) -> None:
+    def __init__(self, fd: int, on_caught_up: Callable[[], object], bandwidth: Bandwidth | None = None) -> None:
         """Write to `fd` on a separate thread, and report all output to `bandwidth`."""
         self._fd = fd
         self._bandwidth = bandwidth or Bandwidth()
@@ -88,7 +86,6 @@ class Terminal:
         """Do nothing: output is already on its way."""
 
     def isatty(self) -> bool:
-        """Return that it is a terminal."""
         return True
 
     def fileno(self) -> int:
@@ -97,9 +94,7 @@ class Terminal:
     def finish(self) -> None:
         """Wait until everything has been written, for a limited time."""
         with self._lock:
-            self._lock.wait_for(
-                lambda: self.gone or not (self._waiting or self._busy), LAST_WORDS_S
-            )
+            self._lock.wait_for(lambda: self.gone or not (self._waiting or self._busy), LAST_WORDS_S)
 
     def _run(self) -> None:
         while not self.gone:

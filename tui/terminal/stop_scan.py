@@ -47,9 +47,7 @@ class _At(Enum):
 class StopScan:
     """Finds the keys that stop; for one thread."""
 
-    def __init__(
-        self, is_stop: Callable[[str], bool], now_s: Callable[[], float] = clock.steady
-    ) -> None:
+    def __init__(self, is_stop: Callable[[str], bool], now_s: Callable[[], float] = clock.steady) -> None:
         """Ask `is_stop` about each key, in Textual's notation, whether it stops now."""
         self._is_stop = is_stop
         self._now_s = now_s
@@ -151,7 +149,6 @@ class StopScan:
         return False
 
     def _complete(self, byte: int) -> bool:
-        """Take a whole sequence."""
         sequence = (self._sequence + bytes((byte,))).decode("latin-1")
         if not self._pasting:
             self._doubt_s = None

@@ -63,10 +63,7 @@ class StrayOutput:
         return self._saved[0][1]
 
     def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Restore 1 and 2."""
         for stream in (sys.__stdout__, sys.__stderr__):

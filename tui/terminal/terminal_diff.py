@@ -66,7 +66,6 @@ class TerminalDiff:
     """Knows what the terminal shows; `changes` returns what has to be sent to update it."""
 
     def __init__(self) -> None:
-        """Start with an unknown content."""
         self._width = self._height = 0
         self._rows: list[list[ScreenCell | None]] = []
         self._at: tuple[int, int] | None = None

@@ -147,7 +147,6 @@ class ShowPlot(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Show it in the next place."""
         target.show_plot_next()
 
 
@@ -166,9 +165,7 @@ class TogglePlotField(TopicsAction):
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
         """Only with a message that has fields to choose from."""
-        return not target.plotting.covers_all and (
-            target.detail.front is target.detail.echo or None
-        )
+        return not target.plotting.covers_all and (target.detail.front is target.detail.echo or None)
 
     @classmethod
     def shown(cls, target: TopicsTarget) -> bool:
@@ -177,7 +174,6 @@ class TogglePlotField(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Add it, or remove it."""
         target.toggle_field()
 
 
@@ -276,7 +272,6 @@ class PictureOrTree(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Switch to the other."""
         target.toggle_picture()
 
 
@@ -287,9 +282,7 @@ class ShowEndpoints(TopicsAction):
     key = "I,Ш"
     title = N_("Endpoints")
     means = "nodes behind it"
-    tooltip = N_(
-        "Show every publisher and subscriber with its QoS, and which of them are incompatible."
-    )
+    tooltip = N_("Show every publisher and subscriber with its QoS, and which of them are incompatible.")
     footer = True
 
     @classmethod
@@ -299,7 +292,6 @@ class ShowEndpoints(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Switch to the other."""
         target.toggle_endpoints()
 
 
@@ -343,7 +335,6 @@ class ShowHousekeeping(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Show or hide them."""
         target.toggle_housekeeping()
 
 

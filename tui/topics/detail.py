@@ -116,22 +116,18 @@ class TopicDetail(Vertical, Working):
 
     @property
     def echo(self) -> EchoTree:
-        """The message as a tree."""
         return self.query_one(EchoTree)
 
     @property
     def filter(self) -> EchoFilter:
-        """The filter for messages."""
         return self.query_one(EchoFilter)
 
     @property
     def picture(self) -> ImageView:
-        """The message as a picture."""
         return self.query_one(ImageView)
 
     @property
     def endpoints(self) -> TopicEndpoints:
-        """All endpoints of the topic."""
         return self.query_one(TopicEndpoints)
 
     @property
@@ -143,7 +139,6 @@ class TopicDetail(Vertical, Working):
 
     @property
     def sample(self) -> Sample | None:
-        """The message that is shown."""
         return self._sample
 
     def fitting(self, samples: Sequence[Sample]) -> Sample | None:
@@ -172,7 +167,6 @@ class TopicDetail(Vertical, Working):
         self._say()
 
     def show_message(self, sample: Sample) -> None:
-        """Show a new message of the current topic."""
         resized = self._sample is None or self._sample.size_bytes != sample.size_bytes
         self._sample = sample
         if resized:
@@ -180,7 +174,6 @@ class TopicDetail(Vertical, Working):
         self.echo.show(sample.topic, sample.value)
 
     def copy_message(self) -> None:
-        """Copy the message that is shown as YAML."""
         message = self.echo.message
         if message is None:
             self.notify(_("There is no message to copy."), severity="warning", markup=False)
@@ -193,7 +186,6 @@ class TopicDetail(Vertical, Working):
         self.notify(words, markup=False)
 
     def show_picture(self, rgb: Pixels, caption: str, scale: ImageScale | None, hz: str) -> None:
-        """Show the newest message as a picture."""
         self.picture.show(rgb, caption, scale, hz)
 
     def show_no_picture(self, headline: str, detail: str = "") -> None:
@@ -206,7 +198,6 @@ class TopicDetail(Vertical, Working):
         return self.has_class("-picture")
 
     def show_as_picture(self, picture: bool) -> None:
-        """Show the picture, or the tree."""
         if picture != self.as_picture:
             self.set_class(picture, "-picture")
 
@@ -216,7 +207,6 @@ class TopicDetail(Vertical, Working):
         return self.has_class("-endpoints")
 
     def show_as_endpoints(self, endpoints: bool) -> None:
-        """Show the endpoints, or the message."""
         if endpoints == self.as_endpoints:
             return
         had_focus = self.front.has_focus

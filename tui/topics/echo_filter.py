@@ -54,7 +54,6 @@ class EchoFilter(Horizontal):
         """When the newest message examined was sent."""
 
     def compose(self) -> ComposeResult:
-        """Everything in one line."""
         yield Static(classes="filter-label", markup=False)
         yield Field(id="echo-filter", compact=True, select_on_focus=False, max_length=LONGEST)
         yield Static(classes="filter-told", markup=False)
@@ -64,17 +63,14 @@ class EchoFilter(Horizontal):
 
     @property
     def field(self) -> Field:
-        """The input of the expression."""
         return self.query_one(Field)
 
     @property
     def in_force(self) -> bool:
-        """Whether messages are filtered."""
         return bool(self._texts.get(self._topic, "").strip())
 
     @property
     def is_wrong(self) -> bool:
-        """Whether the expression is invalid."""
         return self.in_force and self._condition is None
 
     def open(self) -> None:

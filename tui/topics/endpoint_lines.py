@@ -62,11 +62,7 @@ def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
         lines.append([])
         lines.append(_title(is_publisher, len(ends), columns))
         for end in ends:
-            at = [
-                pair
-                for pair in pairs
-                if end is (pair.publisher if is_publisher else pair.subscriber)
-            ]
+            at = [pair for pair in pairs if end is (pair.publisher if is_publisher else pair.subscriber)]
             bad = frozenset(_column(pair.mismatch.policy) for pair in at)
             lines += _end_lines(end, columns, bad, width, with_type=disagree)
         if is_publisher and row.own_publishers:
@@ -121,12 +117,7 @@ def _title(is_publisher: bool, count: int, columns: Sequence[EndpointColumn]) ->
 
 
 def _end_lines(
-    end: EndpointInfo,
-    columns: Sequence[EndpointColumn],
-    bad: frozenset[str],
-    width: int,
-    *,
-    with_type: bool,
+    end: EndpointInfo, columns: Sequence[EndpointColumn], bad: frozenset[str], width: int, *, with_type: bool
 ) -> Iterator[Line]:
     mark = Ink(f"{MISMATCH} ", "bad") if bad else Ink(" " * MARK)
     looks = ["bad" if column.id in bad else "" for column in columns]
@@ -154,9 +145,7 @@ def _notes(row: TopicRow, width: int) -> Iterator[Line]:
         yield from _wrapped("", words, width, "muted")
 
 
-def _wrapped(
-    mark: str, text: str, width: int, look: str = "", *, indent: int = MARK
-) -> Iterator[Line]:
+def _wrapped(mark: str, text: str, width: int, look: str = "", *, indent: int = MARK) -> Iterator[Line]:
     """Yield a mark and a wrapped text beside it; if there is a mark, it carries the look."""
     room = max(8, width - indent)
     for place, part in enumerate(textwrap.wrap(text, room)):

@@ -53,11 +53,7 @@ class TopicEndpoints(ScrollView, can_focus=True):
         """Show the endpoints of this topic; wrapped again only if they have changed."""
         other = row is None or self._row is None or row.name != self._row.name
         self._row = row
-        shown = (
-            None
-            if row is None
-            else (row.name, row.published_by, row.subscribed_by, row.own_publishers)
-        )
+        shown = None if row is None else (row.name, row.published_by, row.subscribed_by, row.own_publishers)
         if shown != self._shown:
             self._shown = shown
             self._fold()

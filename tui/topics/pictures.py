@@ -35,10 +35,7 @@ class TopicPictures:
     """Shows the newest image of a topic in its detail, or why it cannot be shown."""
 
     def __init__(
-        self,
-        detail: TopicDetail,
-        is_wanted: Callable[[Sample], bool],
-        row: Callable[[], TopicRow | None],
+        self, detail: TopicDetail, is_wanted: Callable[[Sample], bool], row: Callable[[], TopicRow | None]
     ) -> None:
         """Pass `is_wanted`, which says after decoding whether an image is still to be shown.
 

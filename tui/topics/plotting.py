@@ -33,9 +33,7 @@ class Plotting:
     sheet.
     """
 
-    def __init__(
-        self, screen: Screen[Any], table: TopicsTable, detail: TopicDetail, plot: TopicPlot
-    ) -> None:
+    def __init__(self, screen: Screen[Any], table: TopicsTable, detail: TopicDetail, plot: TopicPlot) -> None:
         self.plot = plot
         self._screen = screen
         self._table = table
@@ -43,7 +41,6 @@ class Plotting:
 
     @property
     def place(self) -> PlotPlace:
-        """Where the plot is shown."""
         if not self._screen.has_class("-plot"):
             return PlotPlace.NONE
         return PlotPlace.ALONE if self._screen.has_class("-plot-alone") else PlotPlace.BESIDE
@@ -84,7 +81,6 @@ class Plotting:
 
     @property
     def paused(self) -> bool:
-        """Whether the message or the plot is paused."""
         plot = self.plot.paused and self.place is not PlotPlace.NONE
         return plot or self._detail.echo.paused
 

@@ -124,7 +124,6 @@ class TopicsScreen(DeckScreen):
 
     @property
     def filter(self) -> Input:
-        """The input of the filter."""
         return self.query_one("#topics-filter", Input)
 
     def watch_topics(self) -> set[str]:
@@ -275,7 +274,6 @@ class TopicsScreen(DeckScreen):
         self.set_focus(self.filter)
 
     def filter_messages(self) -> None:
-        """Focus the expression that filters messages."""
         self.detail.show_as_endpoints(False)
         self.detail.filter.open()
 
@@ -293,7 +291,6 @@ class TopicsScreen(DeckScreen):
 
     @property
     def shows_image(self) -> bool:
-        """Whether the chosen topic carries images."""
         return carries_images(self.table.chosen_row)
 
     def toggle_picture(self) -> None:
@@ -340,9 +337,7 @@ class TopicsScreen(DeckScreen):
         qos = to_hear(row.published_by)
         echo = self.detail.echo
         path = echo.at_cursor or () if echo.has_focus else ()
-        return ros2_words.echo(
-            row.name, path, reliability=qos.reliability, durability=qos.durability
-        )
+        return ros2_words.echo(row.name, path, reliability=qos.reliability, durability=qos.durability)
 
     # Display
 
@@ -360,7 +355,6 @@ class TopicsScreen(DeckScreen):
 
     @property
     def _shows_picture(self) -> bool:
-        """Whether a live picture is on the screen."""
         in_front = self.detail.front is self.detail.picture and not self.plotting.covers_all
         return in_front and not self.detail.echo.paused
 

@@ -72,9 +72,7 @@ def ends(row: TopicRow) -> str:
     """Who publishes and who subscribes, by name where known."""
     publishers = names(row.published_by, counted=True)
     if not publishers and (row.publishers or not row.own_publishers):
-        publishers = ngettext("{n} publisher", "{n} publishers", row.publishers).format(
-            n=row.publishers
-        )
+        publishers = ngettext("{n} publisher", "{n} publishers", row.publishers).format(n=row.publishers)
     if row.own_publishers:
         publishers = f"{publishers}, {OURSELVES}" if publishers else OURSELVES
     subscribers = names(row.subscribed_by, counted=True) or ngettext(

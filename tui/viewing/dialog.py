@@ -70,7 +70,6 @@ class CopyViewAll(Action["ViewDialog"]):
 
     @classmethod
     async def run(cls, target: ViewDialog) -> None:
-        """Copy both, a line each."""
         target.copy(f"{target.opened.ssh}\n{target.opened.url}")
 
 
@@ -87,7 +86,6 @@ class EndView(Action["ViewDialog"]):
 
     @classmethod
     async def run(cls, target: ViewDialog) -> None:
-        """End it and close the dialog."""
         target.end()
 
 
@@ -112,12 +110,10 @@ class ViewDialog(Dialog[None]):
         return Content("\n".join([*map(plain, lines), "", ending]))
 
     def copy(self, text: str) -> None:
-        """Copy text to the clipboard of the terminal."""
         self.deck.copy_to_clipboard(text)
         self.deck.notify(_("Copied."), markup=False)
 
     def end(self) -> None:
-        """End the viewer, and close this dialog."""
         self._end()
         self.dismiss()
 

@@ -49,7 +49,6 @@ class ViewProcess:
 
     @property
     def ended(self) -> bool:
-        """Whether it has ended."""
         return self._process.returncode is not None
 
     async def fault(self) -> str:
@@ -57,7 +56,6 @@ class ViewProcess:
         return await self._words if self._process.returncode else ""
 
     async def end(self) -> None:
-        """End it, by closing what it reads from."""
         await _end(self._process)
 
 

@@ -33,11 +33,9 @@ class View:
         self._busy = asyncio.Lock()
 
     def open(self) -> None:
-        """Open it, or say where it is open."""
         self._app.run_worker(self._open(), group="view")
 
     async def end(self) -> None:
-        """End it, if it is open."""
         process, self._process = self._process, None
         if self._timer is not None:
             self._timer.stop()
@@ -83,10 +81,4 @@ class View:
             await self.end()
 
     def _complain(self, words: str) -> None:
-        self._app.notify(
-            words,
-            title=_("There is no viewer"),
-            severity="warning",
-            timeout=FAULT_S,
-            markup=False,
-        )
+        self._app.notify(words, title=_("There is no viewer"), severity="warning", timeout=FAULT_S, markup=False)

@@ -56,9 +56,7 @@ class WallReader:
             if _is_published(update, topic):
                 metres = _number(self._values.get(topic, {}).get("data"))
                 yield _current(update, topic, _distance(_(label), metres, bounds))
-        of_speed = next(
-            (one for one in (ODOMETRY, WHEEL_COMMANDS) if _is_published(update, one)), ""
-        )
+        of_speed = next((one for one in (ODOMETRY, WHEEL_COMMANDS) if _is_published(update, one)), "")
         if of_speed:
             speed = speed_in(of_speed, self._values.get(of_speed, {}))
             yield _current(update, of_speed, _speed(speed))

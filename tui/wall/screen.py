@@ -7,14 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 from textual.containers import Container, Vertical
 from textual.widgets import Static
 
-from robot.topics import (
-    BATTERY,
-    ODOMETRY,
-    SAFETY_STATE,
-    SONAR_FRONT,
-    SONAR_REAR,
-    WHEEL_COMMANDS,
-)
+from robot.topics import BATTERY, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
 from text.i18n import N_, _
 from text.plain import plain
 from tui.actions import bindings
@@ -166,7 +159,6 @@ class WallScreen(DeckScreen):
         self._show_state(self.feed.update)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw in the current language."""
         del message
         for panel in (self.query_one(CameraPanel), self.query_one(VoicePanel)):
             panel.words_changed()

@@ -69,7 +69,6 @@ class Drawing(OneStyle, Widget):
     """
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Start with nothing to draw."""
         super().__init__(id=id, classes=classes)
         self._lines: list[Line] = []
         self._trouble: Trouble | None = None
@@ -84,16 +83,13 @@ class Drawing(OneStyle, Widget):
 
     @property
     def has_value(self) -> bool:
-        """Whether there is anything to draw."""
         raise NotImplementedError
 
     def draw(self, width: int, height: int) -> list[Line]:
         """Draw the values into this many cells; missing lines stay blank."""
         raise NotImplementedError
 
-    def show_trouble(
-        self, trouble: Trouble | None, detail: str = "", age_s: float | None = None
-    ) -> None:
+    def show_trouble(self, trouble: Trouble | None, detail: str = "", age_s: float | None = None) -> None:
         """Say why nothing arrives (None: all is well), and the age of the newest message."""
         # An age that is not shown is no reason to redraw.
         state = (trouble, detail, None if trouble is None else age_s)
@@ -127,7 +123,6 @@ class Drawing(OneStyle, Widget):
         return trouble_words(self._trouble)
 
     def redraw(self) -> None:
-        """Redraw what has changed."""
         width, height = self.size
         if not self.is_mounted or width < 1 or height < 1:
             return

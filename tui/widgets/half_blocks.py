@@ -83,10 +83,7 @@ def row_segments(picture: Pixels, row: int) -> list[Segment]:
     pairs = (packed[0] << 24) | packed[1]
     starts = np.flatnonzero(np.diff(pairs, prepend=-1))
     ends = np.append(starts[1:], len(pairs))
-    return [
-        _segment(int(pairs[start]), int(end - start))
-        for start, end in zip(starts, ends, strict=True)
-    ]
+    return [_segment(int(pairs[start]), int(end - start)) for start, end in zip(starts, ends, strict=True)]
 
 
 def _segment(pair: int, cells: int) -> Segment:

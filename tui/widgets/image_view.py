@@ -83,9 +83,7 @@ class ImageView(OneStyle, Widget):
         self._headline = ""
         self._detail = ""
 
-    def show(
-        self, rgb: Pixels, caption: str = "", scale: ImageScale | None = None, hz: str = ""
-    ) -> None:
+    def show(self, rgb: Pixels, caption: str = "", scale: ImageScale | None = None, hz: str = "") -> None:
         """Show a picture of shape (height, width, 3) at any size, with a line of text below it.
 
         A scale is shown between picture and text; the text ends with the rate. Raises `ValueError`
@@ -115,7 +113,6 @@ class ImageView(OneStyle, Widget):
 
     @property
     def has_picture(self) -> bool:
-        """Whether a picture is shown."""
         return self._newest is not None
 
     @property
@@ -227,8 +224,7 @@ class ImageView(OneStyle, Widget):
         now = self._shown = half_blocks.steadied(had, fresh, self._bits)
         top, left = self._margins(now, width, height)
         regions = [
-            Region(left + column, top + row, cells, 1)
-            for row, column, cells in half_blocks.changed_spans(had, now)
+            Region(left + column, top + row, cells, 1) for row, column, cells in half_blocks.changed_spans(had, now)
         ]
         if regions:
             self.refresh(*regions)
@@ -268,10 +264,7 @@ class ImageView(OneStyle, Widget):
         room = width - cell_len(scale.first) - cell_len(scale.last) - 2
         cells = min(WIDEST_SCALE, max(0, room))
         colours = scale.colours[[n * len(scale.colours) // max(1, cells) for n in range(cells)]]
-        ramp = [
-            Segment(" ", Style.from_color(None, Color.from_rgb(*colour)))
-            for colour in colours.tolist()
-        ]
+        ramp = [Segment(" ", Style.from_color(None, Color.from_rgb(*colour))) for colour in colours.tolist()]
         words = [Segment(f"{scale.first} ", base), *ramp, Segment(f" {scale.last}", base)]
         strip = cut(words, min(width, sum(segment.cell_length for segment in words)), base)
         return in_row(strip, (width - strip.cell_length) // 2, width, base)

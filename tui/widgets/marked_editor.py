@@ -91,12 +91,7 @@ class MarkedEditor(TextArea):
 
     def __init__(self, text: str = "", *, id: str | None = None) -> None:
         super().__init__(
-            self.shown(text),
-            id=id,
-            soft_wrap=True,
-            show_line_numbers=True,
-            tab_behavior="focus",
-            compact=True,
+            self.shown(text), id=id, soft_wrap=True, show_line_numbers=True, tab_behavior="focus", compact=True
         )
         self.indent_width = 2
         # A blinking cursor would send bytes twice a second for as long as the screen is open.
@@ -176,9 +171,7 @@ class MarkedEditor(TextArea):
         mark = Strip([Segment(MARK, self._style("gutter"))], 1)
         return Strip.join([strip.crop(0, before), mark, strip.crop(after)])
 
-    def get_component_rich_style(
-        self, *names: str, partial: bool = False, default: Style | None = None
-    ) -> Style:
+    def get_component_rich_style(self, *names: str, partial: bool = False, default: Style | None = None) -> Style:
         """Give the cursor's line only a background, so that its tokens keep their colours."""
         style = super().get_component_rich_style(*names, partial=partial, default=default)
         if "text-area--cursor-line" in names:

@@ -37,7 +37,6 @@ class NewestPicture:
         self._decoding = False
 
     def take(self, sample: Sample) -> None:
-        """Decode this one next."""
         self._waiting = sample
         if not self._decoding:
             self._decoding = True
@@ -48,9 +47,7 @@ class NewestPicture:
             while self._waiting is not None:
                 sample, self._waiting = self._waiting, None
                 try:
-                    found = await asyncio.to_thread(
-                        read_picture, COMPRESSED, sample.value, self._fit
-                    )
+                    found = await asyncio.to_thread(read_picture, COMPRESSED, sample.value, self._fit)
                 except ImageError as error:
                     self._refuse(sample, error)
                 else:

@@ -29,11 +29,7 @@ AT_WORK = (NodeState.READY, NodeState.RUNNING)
 
 LATE = ("◔", N_("running"), "warn")
 """For a node that runs, but was not ready in time."""
-AILING = {
-    STUCK: ("✗", N_("stuck"), "bad"),
-    HALTED: ("✗", N_("halted"), "bad"),
-    THREAD: ("✗", N_("running"), "bad"),
-}
+AILING = {STUCK: ("✗", N_("stuck"), "bad"), HALTED: ("✗", N_("halted"), "bad"), THREAD: ("✗", N_("running"), "bad")}
 """For a node whose process is there, and which is not at work."""
 MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
 LONGEST_S = 1000.0 * DAY_S

@@ -21,7 +21,6 @@ class OneStyle(Base):
     __style: Style | None = None
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Some lines, all in the current style."""
         self.__drawing = True
         try:
             return super().render_lines(crop)
@@ -30,7 +29,6 @@ class OneStyle(Base):
 
     @property
     def rich_style(self) -> Style:
-        """Style of the widget itself."""
         if not self.__drawing:
             return super().rich_style
         if self.__style is None:

@@ -7,7 +7,6 @@ class Recalled:
     """The newest texts, and the place among them; past the newest is what was begun."""
 
     def __init__(self, most: int) -> None:
-        """Keep so many texts."""
         self._most = most
         self._said: list[str] = []
         self._at = 0

@@ -100,9 +100,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         Binding("enter", "open", show=False),
     ]
 
-    def __init__(
-        self, *, header: bool = True, id: str | None = None, classes: str | None = None
-    ) -> None:
+    def __init__(self, *, header: bool = True, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._top = 1 if header else 0
         self._columns: tuple[Column, ...] = ()
@@ -158,7 +156,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         return super().render_lines(crop)
 
     def render_line(self, y: int) -> Strip:
-        """The header or a row."""
         width, base = self.size.width, self.rich_style
         if y < self._top:
             style = self.get_component_rich_style("rows--header")
@@ -179,11 +176,9 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._choose_near(max(0, min((at or 0) + by, len(self._rows) - 1)), -1 if by < 0 else 1)
 
     def action_page(self, pages: int) -> None:
-        """Choose the row a page away."""
         self.action_move(pages * max(1, self.size.height - self._top - 1))
 
     def action_open(self) -> None:
-        """Report that the chosen row was opened."""
         if self._chosen:
             self.post_message(self.Opened(self, self._chosen))
 
@@ -291,9 +286,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         look = self.get_component_rich_style(name)
         return type(look)(color=look.color, bold=look.bold)
 
-    def _strip(
-        self, cells: Sequence[Cell], mark: str, base: Style, width: int, *, plain: bool = False
-    ) -> Strip:
+    def _strip(self, cells: Sequence[Cell], mark: str, base: Style, width: int, *, plain: bool = False) -> Strip:
         segments = [Segment(mark, base)]
         widths = self._room_for(len(cells))
         for column, cell, room in zip(self._columns, cells, widths):  # noqa: B905

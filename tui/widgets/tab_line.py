@@ -61,12 +61,10 @@ class TabLine(Widget):
             self.refresh(layout=True)
 
     def get_content_width(self, container: Size, viewport: Size) -> int:
-        """Return the width of its text."""
         del container, viewport
         return self.render().cell_length
 
     def action_choose(self, key: str) -> None:
-        """Report that a tab was clicked."""
         self.post_message(self.Selected(key))
 
     def render(self) -> Content:

@@ -41,7 +41,6 @@ class SubmitForm(Action[FormTarget]):
 
     @classmethod
     async def run(cls, target: FormTarget) -> None:
-        """Check and submit it."""
         target.submit()
 
 

@@ -18,9 +18,7 @@ class YamlEditor(MarkedEditor):
     """Edits YAML; Enter starts a new line with the indentation of the current one."""
 
     def escaped(self, character: str) -> str:
-        """Return the YAML escape for a character."""
         return escaped(character)
 
     def tokens_of(self, line: str) -> Iterable[Token]:
-        """Return the tokens of YAML."""
         return tokens(line)

@@ -107,7 +107,6 @@ class YamlForm(Vertical, Acting, Working):
         yield Static(markup=False)
 
     def on_mount(self) -> None:
-        """Show the form of the type."""
         if self.type_name:
             self.load(self.type_name)
         else:
@@ -115,12 +114,10 @@ class YamlForm(Vertical, Acting, Working):
 
     @property
     def editor(self) -> YamlEditor:
-        """The editor with the message."""
         return self.query_one(YamlEditor)
 
     @property
     def text(self) -> str:
-        """The text in the form."""
         return self.editor.text
 
     @property
@@ -223,7 +220,6 @@ class YamlForm(Vertical, Acting, Working):
         self.relabel()
 
     def _take(self, text: str, found: Mapping[str, Value] | Wrong) -> None:
-        """Show the result of checking this text."""
         self._checked = text
         if isinstance(found, (YamlError, FieldError, UnknownTypeError)):
             self.error, self._value = found, None

@@ -51,7 +51,6 @@ class TypeField(Vertical):
         self._chosen = ""
 
     def compose(self) -> ComposeResult:
-        """The field above the list."""
         yield Field(compact=True, select_on_focus=False)
         listed = OptionList(markup=False, compact=True)
         listed.can_focus = False
@@ -63,12 +62,10 @@ class TypeField(Vertical):
 
     @property
     def value(self) -> str:
-        """The text in it."""
         return self.field.value.strip()
 
     @property
     def is_listing(self) -> bool:
-        """Whether the list is open."""
         return self.has_class("-listing")
 
     def know(self, types: tuple[str, ...]) -> None:

@@ -58,19 +58,11 @@ class Frames:
             at = transform(value, "transform")
         except NotDrawnError as error:
             raise NotDrawnError(
-                say(
-                    "{child} in {parent}: {reason}",
-                    child=child,
-                    parent=parent,
-                    reason=reason_of(error),
-                )
+                say("{child} in {parent}: {reason}", child=child, parent=parent, reason=reason_of(error))
             ) from None
         self._parents[child] = parent
         place = rerun.Transform3D(
-            translation=at.translation,
-            quaternion=at.rotation,
-            parent_frame=parent,
-            child_frame=child,
+            translation=at.translation, quaternion=at.rotation, parent_frame=parent, child_frame=child
         )
         yield from self.need(parent)
         yield from self._axes(child)
@@ -79,11 +71,7 @@ class Frames:
     def _check(self, parent: str, child: str) -> None:
         if not parent or not child or parent == child:
             raise NotDrawnError(
-                say(
-                    "a transform from '{parent}' to '{child}' joins no two frames",
-                    parent=parent,
-                    child=child,
-                )
+                say("a transform from '{parent}' to '{child}' joins no two frames", parent=parent, child=child)
             )
         if self._would_close_a_loop(parent, child):
             raise NotDrawnError(
@@ -111,9 +99,7 @@ class Frames:
 
 def newest_of(messages: Sequence[Message]) -> Message:
     """Return one message with the newest transform of every frame in these, oldest first."""
-    found = {
-        str(one["child_frame_id"]): one for message in messages for one in message["transforms"]
-    }
+    found = {str(one["child_frame_id"]): one for message in messages for one in message["transforms"]}
     return {"transforms": list(found.values())}
 
 

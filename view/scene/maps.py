@@ -22,9 +22,7 @@ def grid(topic: str, message: Message) -> Iterator[Drawn]:
     shape = rerun.GridMap(
         # A picture begins at the top, a map at the bottom.
         data=found.cells[::-1].tobytes(),
-        format=rerun.components.ImageFormat(
-            width=width, height=height, color_model="L", channel_datatype="U8"
-        ),
+        format=rerun.components.ImageFormat(width=width, height=height, color_model="L", channel_datatype="U8"),
         cell_size=found.cell_m,
         translation=found.origin.translation,
         quaternion=found.origin.rotation,

@@ -8,14 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from space.reading.fields import NotDrawnError, listed, whole
-from space.reading.figures import (
-    MarkerAction,
-    MarkerKind,
-    kind_name,
-    marker_action,
-    marker_key,
-    read_figure,
-)
+from space.reading.figures import MarkerAction, MarkerKind, kind_name, marker_action, marker_key, read_figure
 from text.plain import plain
 from text.sentences import say
 from view.scene.drawn import Drawn, each, frame_name, topic_path
@@ -46,9 +39,7 @@ def marker(topic: str, message: Message) -> Iterator[Drawn]:
     else:
         kind = whole(message, "type")
         if kind not in _SHAPES:
-            raise NotDrawnError(
-                say("there is no shape for markers of type {kind}", kind=kind_name(kind))
-            )
+            raise NotDrawnError(say("there is no shape for markers of type {kind}", kind=kind_name(kind)))
         figure = read_figure(message)
         shapes, frame = (_SHAPES[kind](figure),), frame_name(figure.frame)
         yield Drawn(path, shapes, frame=frame, lifetime_s=figure.lifetime_s)
@@ -73,9 +64,7 @@ def _arrow(figure: MarkerFigure) -> Any:  # noqa: ANN401 - rerun comes without t
     begin, end = figure.at.points(figure.way)
     # Without points, x of the scale is the length.
     wide = figure.size[0] if len(figure.points) > 1 else figure.size[1]
-    return rerun.Arrows3D(
-        origins=[begin], vectors=[end - begin], radii=wide / 2, colors=_colours(figure)
-    )
+    return rerun.Arrows3D(origins=[begin], vectors=[end - begin], radii=wide / 2, colors=_colours(figure))
 
 
 def _solid(figure: MarkerFigure) -> Solids:

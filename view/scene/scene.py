@@ -93,18 +93,12 @@ class ViewScene:
     def every_one_of(self, topics: Iterable[TopicRow]) -> frozenset[str]:
         """Return those of which every message counts; of the others, the newest will do."""
         return frozenset(
-            row.name
-            for row in topics
-            if row.name in (TF, TF_STATIC) or not EVERY_ONE.isdisjoint(row.type_names)
+            row.name for row in topics if row.name in (TF, TF_STATIC) or not EVERY_ONE.isdisjoint(row.type_names)
         )
 
     def seen_small(self, topics: Iterable[TopicRow]) -> frozenset[str]:
         """Return those with pictures that come over a network: the newest, small, will do."""
-        return frozenset(
-            row.name
-            for row in topics
-            if row.from_afar and not PICTURE_TYPES.isdisjoint(row.type_names)
-        )
+        return frozenset(row.name for row in topics if row.from_afar and not PICTURE_TYPES.isdisjoint(row.type_names))
 
     def draw(self, samples: Iterable[Sample]) -> Iterator[tuple[float, Drawn]]:
         """Yield what is drawn, with its time (unix time, seconds), in the order of arrival."""

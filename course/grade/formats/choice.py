@@ -19,18 +19,14 @@ SINGLE = ("gradescope", CLASSROOM50)
 """Those of a single submission."""
 
 
-def writer_of(
-    name: str, count: int, environ: Mapping[str, str] = os.environ
-) -> Callable[[Sequence[Grade]], str]:
+def writer_of(name: str, count: int, environ: Mapping[str, str] = os.environ) -> Callable[[Sequence[Grade]], str]:
     """Return what writes this format.
 
     Raises:
         UsageError: if it is not for so many folders, or does not know whose submission it is.
     """
     if name in SINGLE and count != 1:
-        raise UsageError(
-            say("--format {name} is for one folder, and there are {n}", name=name, n=count)
-        )
+        raise UsageError(say("--format {name} is for one folder, and there are {n}", name=name, n=count))
     if name == CLASSROOM50:
         assignment = classroom50.Assignment.from_environment(environ)
         return lambda grades: classroom50.written(grades[0], assignment)

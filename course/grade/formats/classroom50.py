@@ -54,8 +54,7 @@ class Assignment:
         if missing:
             raise UsageError(
                 say(
-                    "--format classroom50: the runner of Classroom 50 sets {names}; set them to "
-                    "try it elsewhere",
+                    "--format classroom50: the runner of Classroom 50 sets {names}; set them to try it elsewhere",
                     names=", ".join(missing),
                 )
             )

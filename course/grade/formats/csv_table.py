@@ -21,9 +21,7 @@ def written(grades: Sequence[Grade]) -> str:
     steps = [step.id for step in grades[0].lesson.steps]
     out = io.StringIO()
     writer = csv.writer(out)
-    writer.writerow(
-        ["student", "lesson", "state", "points", "max_points", *steps, "seconds", "seed", "message"]
-    )
+    writer.writerow(["student", "lesson", "state", "points", "max_points", *steps, "seconds", "seed", "message"])
     for grade in grades:
         said = [f"{one.step.id}: {words}" for one in grade.steps if (words := message(one))]
         writer.writerow(

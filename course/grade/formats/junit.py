@@ -59,9 +59,7 @@ def _suite(number: int, grade: Grade) -> ET.Element:
         ET.SubElement(properties, "property", {"name": name, "value": plain(value)})
     suite.extend(_case(grade, step) for step in grade.steps)
     ET.SubElement(suite, "system-out").text = "\n".join(remarks(grade))
-    ET.SubElement(suite, "system-err").text = (
-        "" if grade.state is not GradeState.UNGRADED else grade.state.value
-    )
+    ET.SubElement(suite, "system-err").text = "" if grade.state is not GradeState.UNGRADED else grade.state.value
     return suite
 
 

@@ -125,10 +125,7 @@ def _table(has_numpy: bool) -> dict[type, Callable[[Any], tuple[Any, ...]]]:
 
 
 def _plain_values(values: Mapping[str, object]) -> dict[str, object]:
-    return {
-        name: value if isinstance(value, (str, int, float)) else str(value)
-        for name, value in values.items()
-    }
+    return {name: value if isinstance(value, (str, int, float)) else str(value) for name, value in values.items()}
 
 
 @lru_cache(maxsize=1)
@@ -148,9 +145,7 @@ def _of_field_error(error: FieldError) -> tuple[Any, ...]:
     return field_error, (missing, error.field, error.message, error.line, error.column)
 
 
-def field_error(
-    missing: bool, field: str, message: str, line: int | None, column: int | None
-) -> FieldError:
+def field_error(missing: bool, field: str, message: str, line: int | None, column: int | None) -> FieldError:
     """Put an error about a field together again."""
     from graph.messages.making import FieldError, NoSuchFieldError
 

@@ -233,7 +233,6 @@ class Server:
             self.leave()
 
     def _say_at_last(self, *words: object) -> None:
-        """Say it, and wait a moment for room."""
         until_s = time.monotonic() + LAST_WORDS_S
         self._go_on()
         self._say(*words)
@@ -243,7 +242,6 @@ class Server:
                 self._wire.flush()
 
     def leave(self) -> None:
-        """Have it be over."""
         if not self._over:
             self._over = True
             self._alarm(LEFT_WITHIN_S)

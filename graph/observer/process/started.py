@@ -104,7 +104,6 @@ class ObserverProcess:
         self.kill()
 
     def kill(self) -> None:
-        """Kill it, and close what leads to it."""
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGKILL)
             self._process.wait()

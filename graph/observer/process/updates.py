@@ -27,9 +27,7 @@ ENDS = ("published_by", "subscribed_by")
 _LIGHT = tuple(each.name for each in fields(TopicRow) if each.name not in ENDS)
 _light = attrgetter(*_LIGHT)
 
-Shortened = tuple[
-    float, str, "Mapping[str, tuple[Sample, ...]]", dict[str, Any], "list[Any] | None"
-]
+Shortened = tuple[float, str, "Mapping[str, tuple[Sample, ...]]", dict[str, Any], "list[Any] | None"]
 """Time, error and samples as they are; the lists that have changed; the topics, if they have."""
 
 
@@ -41,11 +39,8 @@ class Shortener:
         self._places: dict[str, int] = {}
 
     def shortened(self, update: GraphUpdate) -> Shortened:
-        """Return what is to be sent."""
         last, self._last = self._last, update
-        changed = {
-            name: now for name in LISTS if (now := getattr(update, name)) != getattr(last, name)
-        }
+        changed = {name: now for name in LISTS if (now := getattr(update, name)) != getattr(last, name)}
         topics = [self._row(row, last.topics) for row in update.topics]
         as_before = topics == list(range(len(last.topics)))
         self._places = {row.name: place for place, row in enumerate(update.topics)}
@@ -72,9 +67,7 @@ class Lengthener:
         time_s, error, samples, changed, topics = short
         last = self._last
         rows = last.topics if topics is None else tuple(self._row(each) for each in topics)
-        self._last = replace(
-            last, time_s=time_s, error=error, samples=samples, topics=rows, **changed
-        )
+        self._last = replace(last, time_s=time_s, error=error, samples=samples, topics=rows, **changed)
         return self._last
 
     def _row(self, short: Any) -> TopicRow:  # noqa: ANN401

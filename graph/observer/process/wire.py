@@ -28,7 +28,6 @@ class Wire:
     """One end; whoever has it owns the socket, and may use it from one thread at a time."""
 
     def __init__(self, end: socket.socket) -> None:
-        """Take over an end of a pair."""
         self._socket = end
         end.setblocking(False)
         for option in (socket.SO_SNDBUF, socket.SO_RCVBUF):

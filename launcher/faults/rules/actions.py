@@ -28,8 +28,7 @@ def made_outside(failure: Failure) -> Words | None:
         return None
     call = _MAKERS[found[1]]
     return say(
-        "A node makes no actions; they have classes of their own: {call}, from rclpy.action import"
-        " {name}.",
+        "A node makes no actions; they have classes of their own: {call}, from rclpy.action import {name}.",
         call=call,
         name=call.partition("(")[0],
     )
@@ -64,8 +63,7 @@ def _of_server(of: Any, name: str, what: str) -> Words | None:  # noqa: ANN401
     fields = list(of.request.get_fields_and_field_types())
     if name == "goal" or name in fields:
         return say(
-            "{what} is the goal's handle; the goal itself is {what}.request:"
-            " {what}.request.{field}.",
+            "{what} is the goal's handle; the goal itself is {what}.request: {what}.request.{field}.",
             what=what,
             field=name if name in fields else next(iter(fields), "x"),
         )
@@ -83,9 +81,7 @@ def result(failure: Failure) -> Words | None:
     action, value = kind.removesuffix("_GetResult_Response"), level.values.get("value")
     if value is None:
         return say(
-            "The action's callback has to return the result in every case: return"
-            " {action}.Result().",
-            action=action,
+            "The action's callback has to return the result in every case: return {action}.Result().", action=action
         )
     given: str = name_of(type(value))
     if isinstance(value, type):
@@ -99,9 +95,7 @@ def result(failure: Failure) -> Words | None:
 
 def feedback(failure: Failure) -> Words | None:
     """`publish_feedback` was given something else than feedback."""
-    level = next(
-        (each for each in failure.below("rclpy") if each.function == "publish_feedback"), None
-    )
+    level = next((each for each in failure.below("rclpy") if each.function == "publish_feedback"), None)
     if level is None or not isinstance(failure.error, (TypeError, AssertionError)):
         return None
     value = level.values.get("feedback")

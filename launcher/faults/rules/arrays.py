@@ -30,12 +30,9 @@ def arrays(failure: Failure) -> Words | None:
         and found[0][1].size != 1
     ):
         return say(
-            "{what} has many values, and if asks one question: any({what}) or all({what}).",
-            what=_question(statement),
+            "{what} has many values, and if asks one question: any({what}) or all({what}).", what=_question(statement)
         )
-    calls = [
-        each.func.attr for each in failure.all(ast.Call) if isinstance(each.func, ast.Attribute)
-    ]
+    calls = [each.func.attr for each in failure.all(ast.Call) if isinstance(each.func, ast.Attribute)]
     if "reshape" in calls and isinstance(error, ValueError) and found:
         return say(
             "{what} has {count} values, which is not height × width × channels: look at"

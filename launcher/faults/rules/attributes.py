@@ -89,8 +89,7 @@ def unsettable(failure: Failure) -> Words | None:
         if isinstance(each.ctx, ast.Store) and isinstance(found, property):
             if is_from(of, "rclpy", "Node"):
                 return say(
-                    "self.{name} is rclpy's own in every node, and cannot be set: take another"
-                    " name, self.my_{name}.",
+                    "self.{name} is rclpy's own in every node, and cannot be set: take another name, self.my_{name}.",
                     name=each.attr,
                 )
             return say("{name} can be read, and not be set.", name=shown(each))
@@ -174,17 +173,8 @@ def of_module(failure: Failure) -> Words | None:
     same = [each for each in known if each.casefold() == name.casefold()]
     meant = same[0] if same else nearest(name, known)
     if meant:
-        return say(
-            "{module} has no {name}; did you mean {meant}?",
-            module=module.__name__,
-            name=name,
-            meant=meant,
-        )
-    return say(
-        "{module} has no {name}: is it spelled right, capitals included?",
-        module=module.__name__,
-        name=name,
-    )
+        return say("{module} has no {name}; did you mean {meant}?", module=module.__name__, name=name, meant=meant)
+    return say("{module} has no {name}: is it spelled right, capitals included?", module=module.__name__, name=name)
 
 
 def shadowing(module: ModuleType | None, folder: str) -> Words | None:
@@ -194,10 +184,7 @@ def shadowing(module: ModuleType | None, folder: str) -> Words | None:
     if file.rpartition("/")[0] != folder:
         return None
     if name in sys.stdlib_module_names or name in ("rclpy", "numpy", "cv2", "std_msgs", "tf2_ros"):
-        return say(
-            "Your own file {name}.py hides the module {name}: give the file another name.",
-            name=name,
-        )
+        return say("Your own file {name}.py hides the module {name}: give the file another name.", name=name)
     return None
 
 
@@ -208,9 +195,7 @@ def of_class(failure: Failure) -> Words | None:
         return None
     kind, name = found
     if is_service_class(kind) or is_action_class(kind):
-        parts = (
-            ("Request", "Response") if is_service_class(kind) else ("Goal", "Result", "Feedback")
-        )
+        parts = ("Request", "Response") if is_service_class(kind) else ("Goal", "Result", "Feedback")
         return say(
             "{type} has the parts {parts}, written like this: {type}.{first}.",
             type=kind.__name__,
@@ -238,16 +223,11 @@ def of_routine(failure: Failure) -> Words | None:
     what = shown(node.value) if node is not None else found[0].__name__
     if found[0].__name__.startswith("create_") and is_of_rclpy(found[0]):
         return say(
-            "{what} makes what is asked for: keep what it gives, self.x = {what}(…), and use that:"
-            " self.x.{name}.",
+            "{what} makes what is asked for: keep what it gives, self.x = {what}(…), and use that: self.x.{name}.",
             what=what,
             name=found[1],
         )
-    return say(
-        "{what} is a function: its brackets are missing, {what}().{name}.",
-        what=what,
-        name=found[1],
-    )
+    return say("{what} is a function: its brackets are missing, {what}().{name}.", what=what, name=found[1])
 
 
 def of_rclpy(failure: Failure) -> Words | None:
@@ -262,9 +242,7 @@ def of_rclpy(failure: Failure) -> Words | None:
         return future(what, of)
     if is_from(of, "rclpy", "Subscription") and name == "publish":
         return say(
-            "{what} is a subscription, which hears; what publishes is made by"
-            " self.create_publisher(…).",
-            what=what,
+            "{what} is a subscription, which hears; what publishes is made by self.create_publisher(…).", what=what
         )
     if is_from(of, "rclpy", "Parameter"):
         return parameter(what)
@@ -273,15 +251,10 @@ def of_rclpy(failure: Failure) -> Words | None:
             if (key, name) in OTHER_NAMES:
                 return _other(what, of, name, OTHER_NAMES[key, name])
     if isinstance(of, dict):
-        return say(
-            '{what} is a dictionary: its values are had by key, {what}["{name}"].',
-            what=what,
-            name=name,
-        )
+        return say('{what} is a dictionary: its values are had by key, {what}["{name}"].', what=what, name=name)
     if isinstance(of, tuple) and name in _CHANGES:
         return say(
-            "{what} is of type {type}, which cannot be changed: make a new one, such as"
-            " list({what}).",
+            "{what} is of type {type}, which cannot be changed: make a new one, such as list({what}).",
             what=what,
             type=type(of).__name__,
         )
@@ -298,31 +271,12 @@ def of_rclpy(failure: Failure) -> Words | None:
 def _other(what: str, of: Any, name: str, meant: str) -> Words:  # noqa: ANN401
     kind = type(of).__name__
     if not meant:
-        return say(
-            "{what} is of type {type} already: {name} is not needed.",
-            what=what,
-            type=kind,
-            name=name,
-        )
+        return say("{what} is of type {type} already: {name} is not needed.", what=what, type=kind, name=name)
     if meant.startswith("."):
         return say(
-            "{type} of rclpy has no {name}: write {what}{meant}.",
-            type=kind,
-            name=name,
-            what=what,
-            meant=meant,
+            "{type} of rclpy has no {name}: write {what}{meant}.", type=kind, name=name, what=what, meant=meant
         )
     return say("{type} has no {name}: {meant} does that.", type=kind, name=name, meant=meant)
 
 
-RULES = (
-    unsettable,
-    unset_field,
-    of_taken,
-    of_none,
-    of_module,
-    of_class,
-    of_routine,
-    of_rclpy,
-    own_attributes.unmade,
-)
+RULES = (unsettable, unset_field, of_taken, of_none, of_module, of_class, of_routine, of_rclpy, own_attributes.unmade)

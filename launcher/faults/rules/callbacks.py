@@ -73,8 +73,7 @@ def not_handed_over(instead: object = None) -> Words:
             name=instead if instead.isidentifier() else "on_timer",
         )
     return say(
-        "The method was called where it had to be handed over: write its name without brackets,"
-        " self.on_timer."
+        "The method was called where it had to be handed over: write its name without brackets, self.on_timer."
     )
 
 
@@ -96,19 +95,13 @@ def asks_for_other(owner: str, callback: Any) -> Words | None:  # noqa: ANN401
     me = "self, " if function is not None else ""
     if function is not None and not function.__code__.co_argcount:
         return say(
-            "The first argument of a method is self: def {name}({arguments}).",
-            name=name,
-            arguments=_ARGUMENTS[owner],
+            "The first argument of a method is self: def {name}({arguments}).", name=name, arguments=_ARGUMENTS[owner]
         )
     if owner == TIMER:
-        return say(
-            "A timer gives its callback nothing: def {name}({me}).", name=name, me=me.rstrip(", ")
-        )
+        return say("A timer gives its callback nothing: def {name}({me}).", name=name, me=me.rstrip(", "))
     if owner == SUBSCRIPTION:
         return say(
-            "A subscription gives its callback the message, and nothing else: def {name}({me}msg).",
-            name=name,
-            me=me,
+            "A subscription gives its callback the message, and nothing else: def {name}({me}msg).", name=name, me=me
         )
     if owner == FEEDBACK:
         return say(
@@ -119,16 +112,11 @@ def asks_for_other(owner: str, callback: Any) -> Words | None:  # noqa: ANN401
         )
     if owner == GOAL:
         return say(
-            "An action's server gives its callback the goal's handle, and nothing else: def"
-            " {name}({me}goal_handle).",
+            "An action's server gives its callback the goal's handle, and nothing else: def {name}({me}goal_handle).",
             name=name,
             me=me,
         )
-    return say(
-        "A service gives its callback two things: def {name}({me}request, response).",
-        name=name,
-        me=me,
-    )
+    return say("A service gives its callback two things: def {name}({me}request, response).", name=name, me=me)
 
 
 def _answering(failure: Failure) -> tuple[str, Any] | None:
@@ -166,14 +154,12 @@ def response(failure: Failure) -> Words | None:
         return None
     if isinstance(answer, type):
         return say(
-            "{name} returns the class {type}, and not the response: fill response, and write return"
-            " response.",
+            "{name} returns the class {type}, and not the response: fill response, and write return response.",
             name=name,
             type=name_of(answer),
         )
     return say(
-        "{name} has to return the response, and returns {given}: fill response, and write return"
-        " response.",
+        "{name} has to return the response, and returns {given}: fill response, and write return response.",
         name=name,
         given=name_of(type(answer)) if is_message(answer) else type(answer).__name__,
     )
@@ -189,8 +175,7 @@ def swapped(failure: Failure) -> Words | None:
             name.startswith("req") and kind.endswith("_Response")
         ):
             return say(
-                "A service hands over the request first, and then the response: def {name}(self,"
-                " request, response).",
+                "A service hands over the request first, and then the response: def {name}(self, request, response).",
                 name=failure.own.function,
             )
     return None
@@ -199,11 +184,7 @@ def swapped(failure: Failure) -> Words | None:
 def done(failure: Failure) -> Words | None:
     """A callback of a future does not take the future."""
     inner = failure.inner
-    if (
-        inner is None
-        or not isinstance(failure.error, TypeError)
-        or not inner.is_in("rclpy", "task")
-    ):
+    if inner is None or not isinstance(failure.error, TypeError) or not inner.is_in("rclpy", "task"):
         return None
     method = _unfit_for_done(failure)
     if method is None:
@@ -220,9 +201,7 @@ def _unfit_for_done(failure: Failure) -> ast.FunctionDef | None:
     given = {
         shown(each.args[0]).rpartition(".")[2]
         for each in ast.walk(failure.tree)
-        if isinstance(each, ast.Call)
-        and shown(each.func).endswith(".add_done_callback")
-        and each.args
+        if isinstance(each, ast.Call) and shown(each.func).endswith(".add_done_callback") and each.args
     }
     for each in ast.walk(failure.tree):
         if isinstance(each, ast.FunctionDef) and each.name in given:

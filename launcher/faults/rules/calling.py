@@ -9,15 +9,7 @@ import re
 from types import ModuleType
 from typing import Any
 
-from launcher.faults.failure import (
-    ENTERING,
-    UNKNOWN,
-    Failure,
-    fields_of,
-    is_message,
-    name_of,
-    shown,
-)
+from launcher.faults.failure import ENTERING, UNKNOWN, Failure, fields_of, is_message, name_of, shown
 from launcher.faults.remedy import is_none, of_list, remedy
 from launcher.faults.rules import signatures
 from launcher.faults.rules.field_lists import is_listlike
@@ -53,15 +45,12 @@ def not_callable(failure: Failure) -> Words | None:
             there = getattr(value, last, None) or getattr(value, last.title(), None)
             if callable(there):
                 return say(
-                    "{what} is a module; what is meant is in it: {what}.{name}().",
-                    what=what,
-                    name=there.__name__,
+                    "{what} is a module; what is meant is in it: {what}.{name}().", what=what, name=there.__name__
                 )
             return say("{what} is a module: name what is meant in it, {what}.x.", what=what)
         if isinstance(value, (list, tuple, dict, array.array)) and call.args:
             return say(
-                "{what} is of type {type}: one of its values is had with square brackets,"
-                " {what}[{index}].",
+                "{what} is of type {type}: one of its values is had with square brackets, {what}[{index}].",
                 what=what,
                 type=type(value).__name__,
                 index=shown(call.args[0]),
@@ -92,9 +81,7 @@ def not_indexable(failure: Failure) -> Words | None:
         if is_message(value):
             return _of_message(what, value, index)
         if inspect.isroutine(value):
-            return say(
-                "{what} is a function: it is called with round brackets, {what}(…).", what=what
-            )
+            return say("{what} is a function: it is called with round brackets, {what}(…).", what=what)
         if isinstance(value, (list, tuple, array.array)) and isinstance(index, str):
             return say(
                 "{what} is a list: its values have numbers, {what}[0], not names. If a dictionary"
@@ -102,11 +89,7 @@ def not_indexable(failure: Failure) -> Words | None:
                 what=what,
             )
         if isinstance(value, (list, tuple, array.array, str)) and isinstance(index, float):
-            return say(
-                "An index is a whole number: {what}[int({index})].",
-                what=what,
-                index=shown(each.slice),
-            )
+            return say("An index is a whole number: {what}[int({index})].", what=what, index=shown(each.slice))
         if isinstance(value, str) and isinstance(index, str):
             return say(
                 "{what} is a text. If it is JSON, read it first: json.loads({what})[{index!r}].",
@@ -115,8 +98,7 @@ def not_indexable(failure: Failure) -> Words | None:
             )
         if isinstance(value, (str, tuple)) and isinstance(each.ctx, ast.Store):
             return say(
-                "{what} is of type {type}, which cannot be changed: make a new one, such as"
-                " list({what}).",
+                "{what} is of type {type}, which cannot be changed: make a new one, such as list({what}).",
                 what=what,
                 type=type(value).__name__,
             )
@@ -218,9 +200,7 @@ def _of_single(
     if type(value) not in (int, float) or node is not call.args[0]:
         return None
     if function is len:
-        return say(
-            "{what} is one number: only a list or a text has a length.", what=shown(call.args[0])
-        )
+        return say("{what} is one number: only a list or a text has a length.", what=shown(call.args[0]))
     if function not in _MANY:
         return None
     return say(
@@ -244,8 +224,7 @@ def unsorted(failure: Failure) -> Words | None:
         kinds = sorted({name_of(type(each)) for each in value}) if isinstance(value, list) else []
         if len(kinds) > 1:
             return say(
-                "Values of the types {types} have no order among each other: make numbers of all,"
-                " or texts.",
+                "Values of the types {types} have no order among each other: make numbers of all, or texts.",
                 types=", ".join(kinds),
             )
     return None
@@ -267,10 +246,7 @@ def _counted(call: ast.Call, node: ast.expr, value: Any) -> Words | None:  # noq
 
 def _summed(what: str, values: Any) -> Words | None:  # noqa: ANN401
     if any(isinstance(each, str) for each in values):
-        return say(
-            "{what} has texts in it, and sum adds numbers: sum(float(v) for v in {what}).",
-            what=what,
-        )
+        return say("{what} has texts in it, and sum adds numbers: sum(float(v) for v in {what}).", what=what)
     return None
 
 
@@ -281,9 +257,7 @@ def not_iterable(failure: Failure) -> Words | None:
     statement = failure.statement
     gone = [statement.iter] if isinstance(statement, ast.For) else []
     gone += [each.iter for each in failure.all(ast.comprehension)]
-    if isinstance(statement, ast.Assign) and isinstance(
-        statement.targets[0], (ast.Tuple, ast.List)
-    ):
+    if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], (ast.Tuple, ast.List)):
         gone.append(statement.value)
     for each in gone:
         value = failure.value(each)
@@ -292,9 +266,7 @@ def not_iterable(failure: Failure) -> Words | None:
         if isinstance(value, int):
             return say("{what} is a number: for i in range({what}) counts to it.", what=shown(each))
         if isinstance(value, float):
-            return say(
-                "{what} is one number, and not a list that is gone through.", what=shown(each)
-            )
+            return say("{what} is one number, and not a list that is gone through.", what=shown(each))
         words = remedy(failure, each)
         if words is not None:
             return words
@@ -325,9 +297,7 @@ def _no_pairs(failure: Failure, gone: list[ast.expr]) -> Words | None:
 def context(failure: Failure) -> Words | None:
     """`with` was used with something that is not made for it."""
     statement = failure.statement
-    if not isinstance(failure.error, (TypeError, AttributeError)) or not isinstance(
-        statement, ast.With
-    ):
+    if not isinstance(failure.error, (TypeError, AttributeError)) or not isinstance(statement, ast.With):
         return None
     if not failure.is_own or not _is_about_with(failure):
         return None
@@ -343,8 +313,7 @@ def context(failure: Failure) -> Words | None:
         if isinstance(value, type) or inspect.isroutine(value):
             return remedy(failure, item.context_expr)
         return say(
-            "{what} cannot stand behind with: only files, locks and the like can.",
-            what=shown(item.context_expr),
+            "{what} cannot stand behind with: only files, locks and the like can.", what=shown(item.context_expr)
         )
     return None
 
@@ -360,8 +329,7 @@ def awaited(failure: Failure) -> Words | None:
     if not isinstance(failure.error, TypeError) or found is None or not failure.is_own:
         return None
     return say(
-        "{what} cannot be awaited: await goes with a future, such as await"
-        " self.client.call_async(request).",
+        "{what} cannot be awaited: await goes with a future, such as await self.client.call_async(request).",
         what=shown(found.value),
     )
 
@@ -384,9 +352,7 @@ def _is_join(call: ast.Call) -> bool:
 def _bytes(call: ast.Call, value: Any) -> Words | None:  # noqa: ANN401
     if isinstance(value, (list, tuple)) and value and isinstance(value[0], bytes):
         what = shown(call.args[0])
-        return say(
-            '{what} is a list of single bytes: b"".join({what}) puts them together.', what=what
-        )
+        return say('{what} is a list of single bytes: b"".join({what}) puts them together.', what=what)
     if isinstance(value, (list, tuple)) and _is_join(call):
         return say(
             "join puts texts together, and {what} has other values: [str(v) for v in {what}].",
@@ -395,14 +361,4 @@ def _bytes(call: ast.Call, value: Any) -> Words | None:  # noqa: ANN401
     return None
 
 
-RULES = (
-    context,
-    raised,
-    awaited,
-    not_callable,
-    not_indexable,
-    signatures.arguments,
-    unsorted,
-    builtin,
-    not_iterable,
-)
+RULES = (context, raised, awaited, not_callable, not_indexable, signatures.arguments, unsorted, builtin, not_iterable)

@@ -23,14 +23,10 @@ def of_super(failure: Failure) -> Words | None:
         if me is UNKNOWN:
             continue
         if not is_from(me, "rclpy", "Node"):
-            return say(
-                "The class {name} is not a node yet: class {name}(Node).", name=type(me).__name__
-            )
+            return say("The class {name} is not a node yet: class {name}(Node).", name=type(me).__name__)
         if not call.args and not call.keywords:
             return say('A node needs a name: super().__init__("my_node").')
-        return say(
-            'A node is given its name, and nothing before or after it: super().__init__("my_node").'
-        )
+        return say('A node is given its name, and nothing before or after it: super().__init__("my_node").')
     return None
 
 
@@ -69,18 +65,14 @@ def unwritten_init(failure: Failure) -> Words | None:
         own = vars(kind).get(_INIT)
         if own is not None and not own.__code__.co_argcount:
             return say(
-                "The first argument of a method is self: def {name}({arguments}).",
-                name=_INIT,
-                arguments="self",
+                "The first argument of a method is self: def {name}({arguments}).", name=_INIT, arguments="self"
             )
         if call.args or call.keywords or own is not None:
             continue
         like = next((each for each in vars(kind) if _is_like_init(each)), "")
         if like:
             return say(
-                "{name} is not {init}, with two underscores on either side, and is never run.",
-                name=like,
-                init=_INIT,
+                "{name} is not {init}, with two underscores on either side, and is never run.", name=like, init=_INIT
             )
         return say(
             'The node has no name yet: in {name}, def __init__(self): super().__init__("my_node").',

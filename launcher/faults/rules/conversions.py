@@ -118,7 +118,4 @@ def each_of(values: list[Any]) -> Iterator[Way]:
     yield "[int(v) for v in …]", lambda: [int(each) for each in values]
     yield "[str(v) for v in …]", lambda: [str(each) for each in values]
     yield "[v for row in … for v in row]", lambda: [each for row in values for each in row]
-    yield (
-        "[float(v) for row in … for v in row]",
-        lambda: [float(each) for row in values for each in row],
-    )
+    yield ("[float(v) for row in … for v in row]", lambda: [float(each) for row in values for each in row])

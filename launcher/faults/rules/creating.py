@@ -37,9 +37,7 @@ FITS: dict[str, Callable[[Any], bool]] = {
     "action_name": lambda value: isinstance(value, str),
     "callback": callable,
     "execute_callback": callable,
-    "qos_profile": lambda value: (
-        is_from(value, "rclpy", "QoSProfile") or (type(value) is int and value >= 0)
-    ),
+    "qos_profile": lambda value: is_from(value, "rclpy", "QoSProfile") or (type(value) is int and value >= 0),
     "timer_period_sec": lambda value: type(value) in (int, float) and value >= 0,
     "node": lambda value: is_from(value, "rclpy", "Node"),
     "name": lambda value: isinstance(value, str),
@@ -91,8 +89,7 @@ def _callback(failure: Failure, level: TraceLevel, given: dict[str, Any]) -> Wor
     callback = given["callback"]
     if isinstance(failure.error, ValueError) and inspect.isbuiltin(callback):
         return say(
-            "rclpy asks what a callback takes, and Python does not tell it of {name}: write lambda"
-            " msg: {name}(msg).",
+            "rclpy asks what a callback takes, and Python does not tell it of {name}: write lambda msg: {name}(msg).",
             name=callback.__name__,
         )
     return asks_for_other(SUBSCRIPTION, callback)
@@ -162,8 +159,7 @@ def _wrong(level: TraceLevel, name: str, value: Any) -> Words | None:  # noqa: A
         return of_message(name, type(value))
     if name == "timer_period_sec":
         return say(
-            "{call}: the period comes first, as a number of seconds: self.create_timer(0.5,"
-            " self.on_timer).",
+            "{call}: the period comes first, as a number of seconds: self.create_timer(0.5, self.on_timer).",
             call=call,
         )
     if name == "node":
@@ -198,8 +194,7 @@ def _wrong_type(call: str, name: str, value: Any) -> Words | None:  # noqa: ANN4
         if not home:
             home, kind = _EXAMPLES[name]
         return say(
-            "{call}: the type is a class that is imported, and stands without quotes:"
-            " from {home} import {type}.",
+            "{call}: the type is a class that is imported, and stands without quotes: from {home} import {type}.",
             call=call,
             home=home,
             type=kind,
@@ -219,9 +214,7 @@ def _wrong_type(call: str, name: str, value: Any) -> Words | None:  # noqa: ANN4
                 kind=kind,
             )
     return say(
-        "{call}: {name} is a class that is imported, such as from std_msgs.msg import Float32.",
-        call=call,
-        name=name,
+        "{call}: {name} is a class that is imported, such as from std_msgs.msg import Float32.", call=call, name=name
     )
 
 

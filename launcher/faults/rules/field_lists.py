@@ -32,7 +32,6 @@ class FieldSlot(NamedTuple):
     """Its type, as ROS writes it."""
 
     def takes(self, value: Any) -> bool:  # noqa: ANN401
-        """Whether a message takes this value for it."""
         return takes(self.kind, self.name, value)
 
     def first_fitting(self, ways: Iterator[Way]) -> str:
@@ -63,9 +62,7 @@ def _hollow(message: Any) -> Words | None:  # noqa: ANN401
     for name, of in fields_of(message).items():
         value, parts = getattr(message, name), LIST.fullmatch(of)
         if parts is not None and isinstance(value, (list, tuple)):
-            words = _value_in_list(
-                FieldSlot(type(message), name, of), parts["of"] or parts["fixed"], list(value)
-            )
+            words = _value_in_list(FieldSlot(type(message), name, of), parts["of"] or parts["fixed"], list(value))
         else:
             words = _hollow(value) if is_message(value) else None
         if words is not None:
@@ -107,11 +104,7 @@ def value_of_list(
     if isinstance(value, array.array):
         return _typed(field, what, of, value)
     if isinstance(value, range) and of in FLOATS:
-        return say(
-            "The values of {field} are floats: [float(v) for v in {what}].",
-            field=field.name,
-            what=what,
-        )
+        return say("The values of {field} are floats: [float(v) for v in {what}].", field=field.name, what=what)
     return _value_in_list(field, of, list(value))
 
 
@@ -134,16 +127,11 @@ def _array(field: FieldSlot, what: str, of: str, value: Any) -> Words:  # noqa: 
         )
     if made.endswith(".tobytes()"):
         return say(
-            "The field {field} takes bytes: {made}. CvBridge().cv2_to_imgmsg(…) makes a whole"
-            " Image of an array.",
+            "The field {field} takes bytes: {made}. CvBridge().cv2_to_imgmsg(…) makes a whole Image of an array.",
             field=field.name,
             made=made,
         )
-    return say(
-        "The field {field} takes a list, not an array of numpy: {made}.",
-        field=field.name,
-        made=made,
-    )
+    return say("The field {field} takes a list, not an array of numpy: {made}.", field=field.name, made=made)
 
 
 def _typed(field: FieldSlot, what: str, of: str, value: Any) -> Words | None:  # noqa: ANN401
@@ -151,8 +139,7 @@ def _typed(field: FieldSlot, what: str, of: str, value: Any) -> Words | None:  #
     if not field.takes(value.tolist()):
         return _value_in_list(field, of, value.tolist())
     return say(
-        "The values of {field} are of type {type}: {what}.tolist() makes a list of them that"
-        " is converted.",
+        "The values of {field} are of type {type}: {what}.tolist() makes a list of them that is converted.",
         field=field.name,
         type=of,
         what=what,
@@ -183,9 +170,7 @@ def _no_list(
     if value is None:
         return is_none_here(what)
     if isinstance(value, Iterator):
-        return say(
-            "The field {field} is a list, which list({what}) makes.", field=field.name, what=what
-        )
+        return say("The field {field} is a list, which list({what}) makes.", field=field.name, what=what)
     made = field.first_fitting(listing(what, value, int(parts["count"] or 1)))
     if made:
         return say("The field {field} is a list: write {made}.", field=field.name, made=made)
@@ -218,10 +203,7 @@ def _unfit(
     if bits and isinstance(value, int):
         return _beyond(field.name, bits, index, value)
     if of == "octet" and not isinstance(value, bytes):
-        return say(
-            "The field {field} is a list of single bytes: [bytes([b]) for b in data].",
-            field=field.name,
-        )
+        return say("The field {field} is a list of single bytes: [bytes([b]) for b in data].", field=field.name)
     if of == "boolean" and not isinstance(value, bool):
         return say("The values of {field} are True or False.", field=field.name)
     if "/" in of and isinstance(value, type):
@@ -269,10 +251,7 @@ def _number(field: FieldSlot, of: str, values: list[Any], index: int) -> Words:
     if "row" in made:
         return say("The field {field} is one flat list: {made}.", field=field.name, made=made)
     if of in FLOATS:
-        return say(
-            "The values of {field} are floats: write 1.0, not 1, or [float(v) for v in …].",
-            field=field.name,
-        )
+        return say("The values of {field} are floats: write 1.0, not 1, or [float(v) for v in …].", field=field.name)
     return say("The values of {field} are whole numbers: [int(v) for v in …].", field=field.name)
 
 
@@ -286,6 +265,4 @@ def is_listlike(value: Any) -> bool:  # noqa: ANN401
     """Whether it holds several values, and is not a text."""
     if _is_of_numpy(value):
         return hasattr(value, "size") and getattr(value, "shape", ()) != ()
-    return isinstance(value, (Sequence, AbstractSet, dict, array.array)) and not isinstance(
-        value, str
-    )
+    return isinstance(value, (Sequence, AbstractSet, dict, array.array)) and not isinstance(value, str)

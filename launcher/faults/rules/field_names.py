@@ -6,15 +6,7 @@ import ast
 from collections.abc import Iterator
 from typing import Any
 
-from launcher.faults.failure import (
-    UNKNOWN,
-    Failure,
-    fields_of,
-    is_message,
-    is_message_class,
-    name_of,
-    shown,
-)
+from launcher.faults.failure import UNKNOWN, Failure, fields_of, is_message, is_message_class, name_of, shown
 from launcher.faults.remedy import listed
 from launcher.faults.rules.conversions import first_fitting, listing, single, takes
 from text.sentences import Words, say
@@ -41,12 +33,7 @@ def no_field(kind: Any, name: str) -> Words:  # noqa: ANN401 - a class of messag
         return special
     way = next((way for way in _leaves(kind) if _is_run_together(name, way)), "")
     if way:
-        return say(
-            "{type} has no field {field}; did you mean {meant}?",
-            type=name_of(kind),
-            field=name,
-            meant=way,
-        )
+        return say("{type} has no field {field}; did you mean {meant}?", type=name_of(kind), field=name, meant=way)
     paths = list(_inside(kind, name))
     if paths:
         return say(
@@ -57,19 +44,11 @@ def no_field(kind: Any, name: str) -> Words:  # noqa: ANN401 - a class of messag
         )
     meant = nearest(name, fields)
     if meant:
-        return say(
-            "{type} has no field {field}; did you mean {meant}?",
-            type=name_of(kind),
-            field=name,
-            meant=meant,
-        )
+        return say("{type} has no field {field}; did you mean {meant}?", type=name_of(kind), field=name, meant=meant)
     if not fields:
         return say("{type} has no fields at all.", type=name_of(kind))
     return say(
-        "{type} has no field {field}. It has: {fields}.",
-        type=name_of(kind),
-        field=name,
-        fields=listed(fields),
+        "{type} has no field {field}. It has: {fields}.", type=name_of(kind), field=name, fields=listed(fields)
     )
 
 
@@ -119,19 +98,13 @@ def _of_header(kind: Any, name: str) -> Words | None:  # noqa: ANN401
     meant = {"secs": "sec", "nsec": "nanosec", "nsecs": "nanosec", "nanosecs": "nanosec"}.get(name)
     if meant is None:
         return None
-    return say(
-        "{type} has no field {field}; did you mean {meant}?",
-        type=kind.__name__,
-        field=name,
-        meant=meant,
-    )
+    return say("{type} has no field {field}; did you mean {meant}?", type=kind.__name__, field=name, meant=meant)
 
 
 def time_now() -> Words:
     """Say how the time of this moment is had."""
     return say(
-        "The time of this moment is self.get_clock().now(), and for a message"
-        " self.get_clock().now().to_msg()."
+        "The time of this moment is self.get_clock().now(), and for a message self.get_clock().now().to_msg()."
     )
 
 
@@ -157,9 +130,7 @@ def _named(failure: Failure, call: ast.Call, kind: Any) -> Words:  # noqa: ANN40
             return say(
                 "The fields of a message are given by name: {type}({arguments}).",
                 type=shown(call.func),
-                arguments=", ".join(
-                    f"{name}={each}" for (name, _), each in zip(pairs, made, strict=True)
-                ),
+                arguments=", ".join(f"{name}={each}" for (name, _), each in zip(pairs, made, strict=True)),
             )
     way = next(_leaves(kind), "")
     if "." in way and "data" not in fields:
@@ -188,9 +159,7 @@ def _expression(failure: Failure, kind: Any, field: str, node: ast.expr) -> str:
         return "" if "/" in inner or "[" in inner or "<" in inner else what
     if takes(kind, field, value):
         return what
-    return first_fitting(kind, field, single(what, value)) or first_fitting(
-        kind, field, listing(what, value)
-    )
+    return first_fitting(kind, field, single(what, value)) or first_fitting(kind, field, listing(what, value))
 
 
 RULES = (unknown_field, positional_field)

@@ -61,9 +61,7 @@ def _of_comma(field: FieldSlot, what: str, value: Any) -> Words | None:  # noqa:
     if not isinstance(value, tuple) or len(value) != 1 or not field.takes(value[0]):
         return None
     return say(
-        "{what} is one value in a tuple, as a comma at the end of a line makes it: take that comma"
-        " away.",
-        what=what,
+        "{what} is one value in a tuple, as a comma at the end of a line makes it: take that comma away.", what=what
     )
 
 
@@ -120,18 +118,14 @@ def _published(failure: Failure, value: Any, kind: Any) -> Words | None:  # noqa
         )
     if is_message(value):
         return say(
-            "This publisher was made for {wanted}, and is given {given}.",
-            wanted=name,
-            given=name_of(type(value)),
+            "This publisher was made for {wanted}, and is given {given}.", wanted=name, given=name_of(type(value))
         )
     if _suits(fields_of(kind).get("data", ""), value):
         data = FieldSlot(kind, "data", fields_of(kind)["data"])
         ways = (*single(what, value), *listing(what, value))
         made = what if data.takes(value) else data.first_fitting(iter(ways))
         return say(
-            "publish takes a whole message: self.pub.publish({type}(data={what})).",
-            type=name,
-            what=made or "…",
+            "publish takes a whole message: self.pub.publish({type}(data={what})).", type=name, what=made or "…"
         )
     return say("publish takes a whole message of type {type}, not {what}.", type=name, what=what)
 
@@ -146,25 +140,17 @@ def _suits(of: str, value: Any) -> bool:  # noqa: ANN401
 
 
 def _asked(failure: Failure, value: Any, pair: Any, wanted: Any) -> Words | None:  # noqa: ANN401
-    what, name = (
-        _argument(failure, "call", "call_async", "send_goal", "send_goal_async"),
-        name_of(wanted),
-    )
+    what, name = (_argument(failure, "call", "call_async", "send_goal", "send_goal_async"), name_of(wanted))
     part = f"{pair.__name__}.{name.rpartition('.')[2]}"
     if value is wanted:
         return no_brackets(what, part)
-    return say(
-        "A call takes a request of type {type}: make one, {type}(), fill it, and hand it over.",
-        type=part,
-    )
+    return say("A call takes a request of type {type}: make one, {type}(), fill it, and hand it over.", type=part)
 
 
 def no_brackets(what: str, kind: str) -> Words:
     """Say that a class was taken for an object of it."""
     return say(
-        "{what} is the class {type} itself: with brackets, {type}(), a message is made of it.",
-        what=what,
-        type=kind,
+        "{what} is the class {type} itself: with brackets, {type}(), a message is made of it.", what=what, type=kind
     )
 
 
@@ -176,7 +162,6 @@ def _argument(failure: Failure, *names: str) -> str:
 
 
 def _given(failure: Failure, field: str) -> ast.AST | None:
-    """Return the expression that the field was given."""
     if failure.own is None:
         return None
     made = len(failure.levels) > 1 and failure.levels[-2].function == "__init__"
@@ -211,9 +196,7 @@ def _one(field: FieldSlot, what: str, value: Any) -> Words | None:  # noqa: ANN4
 
 def _byte(field: FieldSlot, what: str, value: Any) -> Words:  # noqa: ANN401
     if isinstance(value, int) and 0 <= value < 256:
-        return say(
-            "The field {field} is a single byte: bytes([{what}]).", field=field.name, what=what
-        )
+        return say("The field {field} is a single byte: bytes([{what}]).", field=field.name, what=what)
     return field.is_given(what, value)
 
 
@@ -226,11 +209,7 @@ def _float(field: FieldSlot, what: str, value: Any) -> Words:  # noqa: ANN401
             value=value,
         )
     if isinstance(value, int) and re.fullmatch(r"-?\d+", what):
-        return say(
-            "The field {field} is a float: write {value}.0, not {value}.",
-            field=field.name,
-            value=what,
-        )
+        return say("The field {field} is a float: write {value}.0, not {value}.", field=field.name, value=what)
     made = field.first_fitting(single(what, value))
     if made and not is_listlike(value):
         return say("The field {field} is a float: write {made}.", field=field.name, made=made)
@@ -240,11 +219,7 @@ def _float(field: FieldSlot, what: str, value: Any) -> Words:  # noqa: ANN401
 def _no_number(field: FieldSlot, what: str, value: Any) -> Words:  # noqa: ANN401
     """Say that a value is many, or a text that is no number, or something else."""
     if isinstance(value, str):
-        return say(
-            "The field {field} is a number, and {what} is a text that is none.",
-            field=field.name,
-            what=what,
-        )
+        return say("The field {field} is a number, and {what} is a text that is none.", field=field.name, what=what)
     if is_listlike(value) and not isinstance(value, dict) and len(value):
         first = next(iter(value))
         if field.takes(first) and not isinstance(value, AbstractSet):
@@ -258,11 +233,7 @@ def _no_number(field: FieldSlot, what: str, value: Any) -> Words:  # noqa: ANN40
 
 def _text(name: str, what: str, value: Any) -> Words:  # noqa: ANN401
     if isinstance(value, (bytes, bytearray)):
-        return say(
-            "The field {field} is a text, and {what} are bytes: {what}.decode().",
-            field=name,
-            what=what,
-        )
+        return say("The field {field} is a text, and {what} are bytes: {what}.decode().", field=name, what=what)
     return say("The field {field} is a text: write str({what}).", field=name, what=what)
 
 
@@ -286,15 +257,12 @@ def _whole(field: FieldSlot, what: str, bits: re.Match[str], value: Any) -> Word
     made = field.first_fitting(single(what, value))
     if made and isinstance(value, float):
         return say(
-            "The field {field} is a whole number: int({what}) cuts the fraction off, round({what})"
-            " rounds.",
+            "The field {field} is a whole number: int({what}) cuts the fraction off, round({what}) rounds.",
             field=field.name,
             what=what,
         )
     if made and not is_listlike(value):
-        return say(
-            "The field {field} is a whole number: write {made}.", field=field.name, made=made
-        )
+        return say("The field {field} is a whole number: write {made}.", field=field.name, made=made)
     return _no_number(field, what, value)
 
 
@@ -309,11 +277,7 @@ def _unsuitable(field: FieldSlot, what: str, value: Any) -> Words | None:  # noq
     if is_message(value):
         return of_message(what, type(value))
     if isinstance(value, type):
-        return say(
-            "{what} is a class, and the field {field} takes one value.",
-            what=what,
-            field=field.name,
-        )
+        return say("{what} is a class, and the field {field} takes one value.", what=what, field=field.name)
     if inspect.isroutine(value):
         called = f"({what})" if what.startswith("lambda") else what
         return say("{what} is a function: the brackets are missing, {what}().", what=called)
@@ -335,8 +299,7 @@ def _message(message: Any, name: str, what: str, of: str, value: Any) -> Words: 
         )
     if of in ("builtin_interfaces/Time", "builtin_interfaces/Duration"):
         return say(
-            "The field {field} is a message of type {type}. The time now is"
-            " self.get_clock().now().to_msg().",
+            "The field {field} is a message of type {type}. The time now is self.get_clock().now().to_msg().",
             field=name,
             type=kind,
         )

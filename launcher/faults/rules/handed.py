@@ -8,15 +8,7 @@ import re
 import typing
 from typing import TYPE_CHECKING
 
-from launcher.faults.failure import (
-    UNKNOWN,
-    Failure,
-    TraceLevel,
-    is_from,
-    is_message,
-    name_of,
-    shown,
-)
+from launcher.faults.failure import UNKNOWN, Failure, TraceLevel, is_from, is_message, name_of, shown
 from launcher.faults.remedy import listed, of_text
 from launcher.faults.rules.callbacks import not_handed_over
 from text.sentences import say
@@ -93,8 +85,7 @@ def _unlike_duration(function: object, level: TraceLevel) -> Words | None:
 
 def _duration(function: str, name: str, value: float) -> Words:
     return say(
-        "{function}: {name} is a Duration of rclpy: Duration(seconds={value}), from"
-        " rclpy.duration import Duration.",
+        "{function}: {name} is a Duration of rclpy: Duration(seconds={value}), from rclpy.duration import Duration.",
         function=function,
         name=name,
         value=str(value),
@@ -140,27 +131,13 @@ def _no_policy(level: TraceLevel) -> Words | None:
         return None
     meant = nearest(name, known)
     if meant:
-        return say(
-            "{what} has no argument {name}; did you mean {meant}?",
-            what="QoSProfile",
-            name=name,
-            meant=meant,
-        )
-    return say(
-        "{what} has no argument {name}; it has: {known}.",
-        what="QoSProfile",
-        name=name,
-        known=listed(known),
-    )
+        return say("{what} has no argument {name}; did you mean {meant}?", what="QoSProfile", name=name, meant=meant)
+    return say("{what} has no argument {name}; it has: {known}.", what="QoSProfile", name=name, known=listed(known))
 
 
 def text_for_number(failure: Failure) -> Words | None:
     """A function of ROS or of Python was given a number in quotes."""
-    if (
-        failure.own is None
-        or failure.is_own
-        or not isinstance(failure.error, (TypeError, ValueError))
-    ):
+    if failure.own is None or failure.is_own or not isinstance(failure.error, (TypeError, ValueError)):
         return None
     if "str" not in str(failure.error) and "digits" not in str(failure.error):
         return None
@@ -169,9 +146,7 @@ def text_for_number(failure: Failure) -> Words | None:
             value = failure.value(each)
             if isinstance(value, str) and isinstance(each, ast.Constant) and _is_number(value):
                 return say(
-                    "{call}: a number stands without quotes, {value}.",
-                    call=shown(call.func),
-                    value=value.strip(),
+                    "{call}: a number stands without quotes, {value}.", call=shown(call.func), value=value.strip()
                 )
             words = of_text(shown(each), value) if isinstance(value, str) else None
             if words is not None:
@@ -189,9 +164,7 @@ def group(failure: Failure) -> Words | None:
         for each in (*call.args, *(keyword.value for keyword in call.keywords)):
             value = failure.value(each)
             if isinstance(value, type) and value.__module__ == "rclpy.callback_groups":
-                return say(
-                    "{what} is a class: the brackets are missing, {what}().", what=shown(each)
-                )
+                return say("{what} is a class: the brackets are missing, {what}().", what=shown(each))
     return None
 
 
@@ -217,8 +190,7 @@ def executor(failure: Failure) -> Words | None:
         cls = next((each for each in nodes if isinstance(each, type)), None)
         if cls is not None:
             return say(
-                "The executor was given the class {name}: make a node of it first,"
-                " executor.add_node({name}()).",
+                "The executor was given the class {name}: make a node of it first, executor.add_node({name}()).",
                 name=cls.__name__,
             )
     return None
@@ -253,8 +225,7 @@ def picture(failure: Failure) -> Words | None:
         )
     if "cvim" in values and type(values["cvim"]).__module__ != "numpy":
         return say(
-            "{call} takes an array of numpy, height × width × channels of uint8, and is given"
-            " {given}.",
+            "{call} takes an array of numpy, height × width × channels of uint8, and is given {given}.",
             call=shown(call.func),
             given=name_of(type(values["cvim"])),
         )
@@ -269,10 +240,7 @@ def substitution(failure: Failure) -> Words | None:
     name = level.values.get("topic", level.values.get("srv_name"))
     if not isinstance(name, str) or "{" not in name:
         return None
-    return say(
-        'The f is missing in front of the name: f"{name}" puts the value of a variable there.',
-        name=name,
-    )
+    return say('The f is missing in front of the name: f"{name}" puts the value of a variable there.', name=name)
 
 
 RULES = (

@@ -113,9 +113,7 @@ def missing_module(name: str, folder: str) -> Words:
     first, _, rest = name.partition(".")
     if first in OF_ROS1:
         return say(
-            "{name} is of ROS 1; this is ROS 2: import rclpy, and a class of its own, class"
-            " MyNode(Node).",
-            name=first,
+            "{name} is of ROS 1; this is ROS 2: import rclpy, and a class of its own, class MyNode(Node).", name=first
         )
     if rest and first not in (*OF_ROS, *OF_CPP):
         return _within(name, first, rest, folder)
@@ -133,16 +131,11 @@ def missing_module(name: str, folder: str) -> Words:
     if meant:
         return say("There is no module {name}; did you mean {meant}?", name=first, meant=meant)
     if first in OF_PYPI:
-        return say(
-            "The module {name} is not installed: pip install {package}.",
-            name=first,
-            package=OF_PYPI[first],
-        )
+        return say("The module {name} is not installed: pip install {package}.", name=first, package=OF_PYPI[first])
     if first.endswith(("_msgs", "_srvs", "_interfaces")):
         return missing_messages(first, "", [])
     return say(
-        "The module {name} is not installed; put its file beside this one, or install it with pip.",
-        name=first,
+        "The module {name} is not installed; put its file beside this one, or install it with pip.", name=first
     )
 
 
@@ -171,9 +164,7 @@ def _within(name: str, first: str, rest: str, folder: str) -> Words:
         return say("The package {package} has no {kind}.", package=first, kind=f".{rest}")
     meant = next(iter(near(rest, [*KINDS, *_modules_of(first)], cutoff=0.7)), "")
     if meant:
-        return say(
-            "There is no module {name}; did you mean {meant}?", name=name, meant=f"{first}.{meant}"
-        )
+        return say("There is no module {name}; did you mean {meant}?", name=name, meant=f"{first}.{meant}")
     return say("The module {package} has no {name}.", package=first, name=rest)
 
 
@@ -200,8 +191,7 @@ def misplaced(failure: Failure) -> Words | None:
     spec = getattr(module, "__spec__", None)
     if getattr(spec, "_initializing", False):
         return say(
-            "{module} and this file import each other: move what both need into a third file.",
-            module=module.__name__,
+            "{module} and this file import each other: move what both need into a third file.", module=module.__name__
         )
     return _elsewhere(name, module.__name__, dir(module))
 
@@ -209,29 +199,20 @@ def misplaced(failure: Failure) -> Words | None:
 def _elsewhere(name: str, module: str, known: list[str]) -> Words:
     if module == "rclpy" and name in ROS1:
         home = home_of(name, module)
-        return (
-            say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
-            if home
-            else ros1(name)
-        )
+        return say("{name} is in {home}: from {home} import {name}.", name=name, home=home) if home else ros1(name)
     home = home_of(name, module)
     if home:
         return say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
     meant = nearest(name, [each for each in known if not each.startswith("_")])
     if meant:
-        return say(
-            "{module} has no {name}; did you mean {meant}?", module=module, name=name, meant=meant
-        )
+        return say("{module} has no {name}; did you mean {meant}?", module=module, name=name, meant=meant)
     if module in PACKAGES:
         return say(
-            "{name} is in the modules .msg, .srv or .action of a package: from {module}.msg import"
-            " ….",
+            "{name} is in the modules .msg, .srv or .action of a package: from {module}.msg import ….",
             name=name,
             module=module,
         )
-    return say(
-        "{module} has no {name}: is it spelled right, capitals included?", module=module, name=name
-    )
+    return say("{module} has no {name}: is it spelled right, capitals included?", module=module, name=name)
 
 
 RULES = (relative, missing, misplaced)

@@ -22,16 +22,12 @@ def several(failure: Failure) -> Words | None:
             isinstance(call.func, ast.Attribute)
             and call.func.attr in _LOGS
             and len(call.args) != 1
-            and (
-                "logger" in shown(call.func)
-                or is_from(failure.value(call.func.value), "rclpy", "RcutilsLogger")
-            )
+            and ("logger" in shown(call.func) or is_from(failure.value(call.func.value), "rclpy", "RcutilsLogger"))
         ):
             text = failure.value(call.args[0]) if call.args else ""
             if isinstance(text, str) and _PLACE.search(text):
                 return say(
-                    "The logger does not fill in {place} as printf does:"
-                    " {call}({text} % ({values})).",
+                    "The logger does not fill in {place} as printf does: {call}({text} % ({values})).",
                     place=_PLACE.findall(text)[0],
                     call=shown(call.func),
                     text=shown(call.args[0]),
@@ -40,8 +36,7 @@ def several(failure: Failure) -> Words | None:
             if not call.args:
                 return say('The text is missing: {call}("…").', call=shown(call.func))
             return say(
-                'The logger takes one text, not several as print does: {call}(f"{text}'
-                ' {{{value}}}").',
+                'The logger takes one text, not several as print does: {call}(f"{text} {{{value}}}").',
                 call=shown(call.func),
                 text=_text_of(call.args[0]),
                 value=shown(call.args[1]),
@@ -62,17 +57,9 @@ def unfit(failure: Failure) -> Words | None:
         meant = next((each for each in _OPTIONS if each.startswith(unknown)), "")
         meant = meant or nearest(unknown, _OPTIONS)
         if meant:
-            return say(
-                "{what} has no argument {name}; did you mean {meant}?",
-                what=what,
-                name=unknown,
-                meant=meant,
-            )
+            return say("{what} has no argument {name}; did you mean {meant}?", what=what, name=unknown, meant=meant)
         return say(
-            "{what} has no argument {name}; it has: {known}.",
-            what=what,
-            name=unknown,
-            known=", ".join(_OPTIONS),
+            "{what} has no argument {name}; it has: {known}.", what=what, name=unknown, known=", ".join(_OPTIONS)
         )
     message = inner.values.get("message")
     if call.args and not isinstance(message, str):

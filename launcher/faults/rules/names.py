@@ -77,8 +77,7 @@ def local(failure: Failure) -> Words | None:
             name=name,
         )
     return say(
-        "{name} has no value yet: it is given one only below, or in a branch that was not taken."
-        " Give it one before.",
+        "{name} has no value yet: it is given one only below, or in a branch that was not taken. Give it one before.",
         name=name,
     )
 
@@ -90,9 +89,7 @@ def unknown(failure: Failure) -> Words | None:
         return None
     name = getattr(error, "name", None) or _quoted(error)
     if name in OTHER_WORDS:
-        return say(
-            "In Python it is written {meant}, not {name}.", meant=OTHER_WORDS[name], name=name
-        )
+        return say("In Python it is written {meant}, not {name}.", meant=OTHER_WORDS[name], name=name)
     if name == "this" and failure.named("self") is not UNKNOWN:
         return say("In Python it is written {meant}, not {name}.", meant="self", name=name)
     if name in ("self", "this"):
@@ -133,9 +130,7 @@ def _dunder(failure: Failure, name: str) -> Words | None:
     values = [each.value for each in failure.all(ast.Constant)]
     if name not in ("name", "main", "_name_") or "__main__" not in values:
         return None
-    return say(
-        "{name} has two underscores on either side here: {meant}.", name=name, meant="__name__"
-    )
+    return say("{name} has two underscores on either side here: {meant}.", name=name, meant="__name__")
 
 
 _CYRILLIC = str.maketrans("асеорхукАСЕОРХКМТВН", "aceopxykACEOPXKMTBH")
@@ -180,9 +175,7 @@ def _importable(failure: Failure, name: str) -> Words | None:
 def _module(failure: Failure, name: str) -> Words | None:
     """Say that a module is not imported, if what is asked of the name is in it."""
     asked = [
-        each.attr
-        for each in failure.all(ast.Attribute)
-        if isinstance(each.value, ast.Name) and each.value.id == name
+        each.attr for each in failure.all(ast.Attribute) if isinstance(each.value, ast.Name) and each.value.id == name
     ]
     if not asked or name in ("this", "antigravity"):
         return None
@@ -212,9 +205,7 @@ def _misspelt(failure: Failure, name: str) -> Words | None:
         return say("{name} is unknown here; did you mean {meant}?", name=name, meant=meant)
     of_self = next(iter(near(name, dir(me), cutoff=0.75)), "") if me is not UNKNOWN else ""
     if of_self:
-        return say(
-            "{name} is unknown here; did you mean {meant}?", name=name, meant=f"self.{of_self}"
-        )
+        return say("{name} is unknown here; did you mean {meant}?", name=name, meant=f"self.{of_self}")
     return None
 
 

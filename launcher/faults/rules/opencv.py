@@ -30,9 +30,7 @@ def opencv(failure: Failure) -> Words | None:
     error = failure.error
     if type(error).__module__ != "cv2" and type(error).__name__ != "CvBridgeError":
         return None
-    names = [
-        each.func.attr for each in failure.all(ast.Call) if isinstance(each.func, ast.Attribute)
-    ]
+    names = [each.func.attr for each in failure.all(ast.Call) if isinstance(each.func, ast.Attribute)]
     if {"imshow", "waitKey", "namedWindow", "destroyAllWindows"} & set(names):
         return say("This OpenCV has no windows: publish the picture, and look at it in Topics.")
     if type(error).__name__ == "CvBridgeError":
@@ -40,22 +38,19 @@ def opencv(failure: Failure) -> Words | None:
         if words is not None:
             return words
         return say(
-            "The picture has another encoding than is asked for: look at msg.encoding, or ask for"
-            ' "passthrough".'
+            'The picture has another encoding than is asked for: look at msg.encoding, or ask for "passthrough".'
         )
     for call in failure.all(ast.Call):
         for each in call.args:
             value = failure.value(each)
             if is_message(value):
                 return say(
-                    "{what} is a message, not a picture:"
-                    ' CvBridge().imgmsg_to_cv2({what}, "bgr8") makes one of it.',
+                    '{what} is a message, not a picture: CvBridge().imgmsg_to_cv2({what}, "bgr8") makes one of it.',
                     what=shown(each),
                 )
             if value is None or getattr(value, "size", 1) == 0:
                 return say(
-                    "{what} is not a picture, or is an empty one: was it read, has one arrived?",
-                    what=shown(each),
+                    "{what} is not a picture, or is an empty one: was it read, has one arrived?", what=shown(each)
                 )
     return _named(failure) or _shapes(failure)
 
@@ -71,10 +66,7 @@ def _encoding(failure: Failure) -> Words | None:
     name = next((level.values[each] for each in names if each in level.values), "")
     picture = level.values.get("cvim")
     if isinstance(name, str) and name != "passthrough" and encoding(name) is None:
-        return say(
-            "ROS has no encoding {name!r}; the usual ones are bgr8, rgb8, mono8, 16UC1 and 32FC1.",
-            name=name,
-        )
+        return say("ROS has no encoding {name!r}; the usual ones are bgr8, rgb8, mono8, 16UC1 and 32FC1.", name=name)
     if picture is None or not hasattr(picture, "shape"):
         return None
     return say(
@@ -142,12 +134,7 @@ def _whole(failure: Failure, call: str, node: ast.expr | None, found: re.Match[s
             name=found["name"],
             what=what,
         )
-    return say(
-        "{call}: {name} is a whole number, and {what} is none.",
-        call=call,
-        name=found["name"],
-        what=what,
-    )
+    return say("{call}: {name} is a whole number, and {what} is none.", call=call, name=found["name"], what=what)
 
 
 def _is_number(value: object) -> bool:
@@ -171,12 +158,7 @@ def _items(failure: Failure, call: str, node: ast.expr | None, found: re.Match[s
     if isinstance(node, (ast.Tuple, ast.List)):
         parts = ", ".join(_as_whole(failure, each) for each in node.elts)
         made = f"({parts})"
-    return say(
-        "{call}: the values of {name} are whole numbers: {made}.",
-        call=call,
-        name=found["name"],
-        made=made,
-    )
+    return say("{call}: the values of {name} are whole numbers: {made}.", call=call, name=found["name"], made=made)
 
 
 def _as_whole(failure: Failure, node: ast.expr) -> str:
@@ -223,27 +205,16 @@ def _array(failure: Failure, call: str, node: ast.expr | None, found: re.Match[s
     value, what = failure.value(node), shown(node) or "x"
     if isinstance(value, str) and found["name"] in ("src", "img", "image"):
         return say(
-            "{call}: {name} is a picture, and {what} a text: cv2.imread({what}) reads the picture"
-            " of a file.",
+            "{call}: {name} is a picture, and {what} a text: cv2.imread({what}) reads the picture of a file.",
             call=call,
             name=found["name"],
             what=what,
         )
-    return say(
-        "{call}: {name} is an array of numpy, and {what} is none.",
-        call=call,
-        name=found["name"],
-        what=what,
-    )
+    return say("{call}: {name} is an array of numpy, and {what} is none.", call=call, name=found["name"], what=what)
 
 
 def _text(_failure: Failure, call: str, node: ast.expr | None, found: re.Match[str]) -> Words:
-    return say(
-        "{call}: {name} is a text: str({what}).",
-        call=call,
-        name=found["name"],
-        what=shown(node) or "x",
-    )
+    return say("{call}: {name} is a text: str({what}).", call=call, name=found["name"], what=shown(node) or "x")
 
 
 def _file(_failure: Failure, call: str, node: ast.expr | None, found: re.Match[str]) -> Words:
@@ -258,18 +229,8 @@ def _file(_failure: Failure, call: str, node: ast.expr | None, found: re.Match[s
 def _number(failure: Failure, call: str, node: ast.expr | None, found: re.Match[str]) -> Words:
     value, what = failure.value(node), shown(node) or "x"
     if isinstance(value, str) and re.fullmatch(r"\s*-?\d+(\.\d*)?\s*", value):
-        return say(
-            "{call}: {name} is a number: float({what}).",
-            call=call,
-            name=found["name"],
-            what=what,
-        )
-    return say(
-        "{call}: {name} is a number, and {what} is none.",
-        call=call,
-        name=found["name"],
-        what=what,
-    )
+        return say("{call}: {name} is a number: float({what}).", call=call, name=found["name"], what=what)
+    return say("{call}: {name} is a number, and {what} is none.", call=call, name=found["name"], what=what)
 
 
 def _shapes(failure: Failure) -> Words:

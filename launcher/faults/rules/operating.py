@@ -23,11 +23,7 @@ SIGNS: dict[type[ast.AST], str] = {
 def clocks(failure: Failure) -> Words | None:
     """Two times of different clocks were compared."""
     inner = failure.inner
-    if (
-        inner is None
-        or not isinstance(failure.error, TypeError)
-        or not inner.is_in("rclpy", "time")
-    ):
+    if inner is None or not isinstance(failure.error, TypeError) or not inner.is_in("rclpy", "time"):
         return None
     if not is_from(inner.values.get("other"), "rclpy", "Time"):
         return None
@@ -40,11 +36,7 @@ def clocks(failure: Failure) -> Words | None:
 def percent(failure: Failure) -> Words | None:
     """The values for a text with % do not fit it."""
     found = failure.first(ast.BinOp)
-    if (
-        not isinstance(failure.error, (TypeError, ValueError))
-        or not failure.is_own
-        or found is None
-    ):
+    if not isinstance(failure.error, (TypeError, ValueError)) or not failure.is_own or found is None:
         return None
     if not isinstance(found.op, ast.Mod) or not isinstance(failure.value(found.left), str):
         return None
@@ -67,19 +59,14 @@ def percent(failure: Failure) -> Words | None:
 def formatted(failure: Failure) -> Words | None:
     """A value in an f-string has no such format."""
     found = failure.first(ast.FormattedValue) or failure.first(ast.JoinedStr)
-    if (
-        not isinstance(failure.error, (TypeError, ValueError))
-        or not failure.is_own
-        or found is None
-    ):
+    if not isinstance(failure.error, (TypeError, ValueError)) or not failure.is_own or found is None:
         return None
     for each in failure.all(ast.FormattedValue):
         if each.format_spec is None:
             continue
         if failure.type_of(each.value) is float and shown(each.format_spec).endswith("d'"):
             return say(
-                "{what} is of type float, and d in a format is for whole numbers: .0f rounds, or"
-                " int({what}).",
+                "{what} is of type float, and d in a format is for whole numbers: .0f rounds, or int({what}).",
                 what=shown(each.value),
             )
         return remedy(failure, each.value) or say(
@@ -116,12 +103,8 @@ def written(failure: Failure) -> Words | None:
             if failure.type_of(each) is str or isinstance(each, ast.JoinedStr):
                 of = shown(getattr(call.func, "value", None))
                 if getattr(call.func, "attr", "") in ("split", "strip", "startswith", "replace"):
-                    return say(
-                        "{what} are bytes: {what}.decode() makes a text of them first.", what=of
-                    )
-                return say(
-                    "Bytes go there, and {what} is a text: {what}.encode().", what=shown(each)
-                )
+                    return say("{what} are bytes: {what}.decode() makes a text of them first.", what=of)
+                return say("Bytes go there, and {what} is a text: {what}.encode().", what=shown(each))
     return say("Text and bytes do not go together: text.encode() makes bytes, data.decode() text.")
 
 
@@ -149,9 +132,7 @@ def _pairs(failure: Failure) -> list[tuple[ast.expr, str, ast.expr]]:
             for left, op, right in zip(values, compare.ops, values[1:], strict=False)
             if type(op) in SIGNS
         ]
-    pairs += [
-        (each.target, SIGNS[type(each.op)], each.value) for each in failure.all(ast.AugAssign)
-    ]
+    pairs += [(each.target, SIGNS[type(each.op)], each.value) for each in failure.all(ast.AugAssign)]
     return pairs
 
 
@@ -189,9 +170,7 @@ def _plain(failure: Failure, left: ast.expr, sign: str, right: ast.expr) -> Word
         if kind is str and other in (int, float):
             return _text(node, left if node is right else right, sign)
         if {kind, other} == {str, bytes}:
-            return say(
-                "Text and bytes do not go together: text.encode() makes bytes, data.decode() text."
-            )
+            return say("Text and bytes do not go together: text.encode() makes bytes, data.decode() text.")
         if kind in (list, tuple, array.array) and other in (int, float):
             return say(
                 "{what} is a list, which cannot be calculated with as a whole: [v {sign} … for v in"
@@ -201,9 +180,7 @@ def _plain(failure: Failure, left: ast.expr, sign: str, right: ast.expr) -> Word
             )
     if set(kinds) == {list, tuple} and sign == "+":
         return say(
-            "A list and a tuple are not added: list({left}) + list({right}).",
-            left=shown(left),
-            right=shown(right),
+            "A list and a tuple are not added: list({left}) + list({right}).", left=shown(left), right=shown(right)
         )
     if kinds[0] in (list, tuple, array.array):
         return say(
@@ -238,27 +215,21 @@ def _is_word(value: object, node: ast.expr, sign: str) -> bool:
 
 def _text(text: ast.expr, number: ast.expr, sign: str) -> Words:
     if sign != "+":
-        return say(
-            "{text} is a text, even if it looks like a number: float({text}).", text=shown(text)
-        )
+        return say("{text} is a text, even if it looks like a number: float({text}).", text=shown(text))
     if isinstance(text, ast.Constant):
         return say(
-            'A text and a number cannot be added: str({number}), or in one f-string, f"{text}'
-            ' {{{number}}}".',
+            'A text and a number cannot be added: str({number}), or in one f-string, f"{text} {{{number}}}".',
             number=shown(number),
             text=str(text.value).strip(),
         )
     return say(
-        "{text} is a text and {number} a number: float({text}) to calculate, str({number}) to write"
-        " both.",
+        "{text} is a text and {number} a number: float({text}) to calculate, str({number}) to write both.",
         text=shown(text),
         number=shown(number),
     )
 
 
-def _times(
-    left: ast.expr, right: ast.expr, first: type | None, second: type | None
-) -> Words | None:
+def _times(left: ast.expr, right: ast.expr, first: type | None, second: type | None) -> Words | None:
     """Say how the time of a message and that of a clock become one kind."""
     if first is second and first is not None and first.__module__.startswith("builtin_interfaces."):
         return say(
@@ -285,9 +256,7 @@ def _is_plain(kind: type) -> bool:
 
 
 def _is_time(kind: type) -> bool:
-    return kind.__module__ in ("rclpy.time", "rclpy.duration") or kind.__module__.startswith(
-        "builtin_interfaces."
-    )
+    return kind.__module__ in ("rclpy.time", "rclpy.duration") or kind.__module__.startswith("builtin_interfaces.")
 
 
 def serialized(failure: Failure) -> Words | None:
@@ -327,10 +296,7 @@ def _dumped(value: Any) -> Words:  # noqa: ANN401
         return say("Bytes are no JSON: data.decode() makes a text of them.")
     if type(value).__module__ == "numpy":
         return say("Values of numpy are no JSON: array.tolist(), float(x) or int(x).")
-    return say(
-        "{type} is not JSON: only texts, numbers, lists and dictionaries are.",
-        type=type(value).__name__,
-    )
+    return say("{type} is not JSON: only texts, numbers, lists and dictionaries are.", type=type(value).__name__)
 
 
 RULES = (clocks, serialized, written, percent, formatted, operands)

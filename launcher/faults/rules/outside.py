@@ -27,17 +27,13 @@ def files(failure: Failure) -> Words | None:
         return say("{name} is a folder, not a file.", name=str(name))
     if isinstance(error, PermissionError) and name:
         return say(
-            "{name} may not be opened: whose is it? For a device, is the user in its group"
-            " (dialout, video, audio)?",
+            "{name} may not be opened: whose is it? For a device, is the user in its group (dialout, video, audio)?",
             name=str(name),
         )
     if isinstance(error, ConnectionRefusedError):
         return say("Nobody listens there: is the server running, and is the port right?")
     if isinstance(error, EOFError):
-        return say(
-            "A node has no keyboard: input() gets nothing. Take a parameter, or a topic that is"
-            " published to."
-        )
+        return say("A node has no keyboard: input() gets nothing. Take a parameter, or a topic that is published to.")
     return None
 
 
@@ -59,10 +55,7 @@ def device(failure: Failure) -> Words | None:
         return None
     number = getattr(error, "errno", None)
     if port.upper().startswith("COM") and sys.platform != "win32":
-        return say(
-            "{port} is a name of Windows: here a serial port is /dev/ttyUSB0 or /dev/ttyACM0.",
-            port=port,
-        )
+        return say("{port} is a name of Windows: here a serial port is /dev/ttyUSB0 or /dev/ttyACM0.", port=port)
     if number == errno.ENOENT:
         return say("{port} is not there: is the device plugged in?", port=port)
     if number == errno.EACCES:
@@ -79,20 +72,13 @@ def texts(failure: Failure) -> Words | None:
     if isinstance(error, UnicodeDecodeError):
         return say('The bytes are not UTF-8: decode("utf-8", errors="replace").')
     if isinstance(error, UnicodeEncodeError):
-        return say(
-            'The text has letters that {encoding} has not: encode("utf-8").',
-            encoding=error.encoding,
-        )
+        return say('The text has letters that {encoding} has not: encode("utf-8").', encoding=error.encoding)
     if kind == "JSONDecodeError":
         document = str(getattr(error, "doc", ""))
         if not document.strip():
-            return say(
-                "The text is empty, which is not JSON: catch the exception, and move nothing."
-            )
+            return say("The text is empty, which is not JSON: catch the exception, and move nothing.")
         if document.lstrip().startswith(("{'", "['")):
-            return say(
-                "JSON has double quotes, and this has single ones: json.dumps writes it right."
-            )
+            return say("JSON has double quotes, and this has single ones: json.dumps writes it right.")
         return say("The text is not JSON: catch the exception, and move nothing.")
     if type(error).__module__.startswith("yaml.") and hasattr(error, "problem_mark"):
         mark = error.problem_mark

@@ -82,12 +82,7 @@ def _taken(failure: Failure, of: Any) -> Words | None:  # noqa: ANN401
 
 def taken_name(failure: Failure) -> Words | None:
     """A name that rclpy uses itself in each node has another value, or another method."""
-    nodes = [
-        value
-        for level in failure.levels
-        for value in level.values.values()
-        if is_from(value, "rclpy", "Node")
-    ]
+    nodes = [value for level in failure.levels for value in level.values.values() if is_from(value, "rclpy", "Node")]
     for node in nodes:
         base = next(each for each in type(node).__mro__ if each.__module__.startswith("rclpy."))
         used = {*dir(base), *inspect.unwrap(vars(base)["__init__"]).__code__.co_names}
@@ -101,8 +96,7 @@ def taken_name(failure: Failure) -> Words | None:
         clash = sorted(name for name in made & used if not name.startswith("__"))
         if clash:
             return say(
-                "{name} is a name that rclpy uses itself in every node: give yours another one.",
-                name=clash[0],
+                "{name} is a name that rclpy uses itself in every node: give yours another one.", name=clash[0]
             )
     return None
 
@@ -111,9 +105,7 @@ def _assigned_names(failure: Failure) -> set[str]:
     return {
         each.attr
         for each in ast.walk(failure.tree)
-        if isinstance(each, ast.Attribute)
-        and isinstance(each.ctx, ast.Store)
-        and shown(each.value) == "self"
+        if isinstance(each, ast.Attribute) and isinstance(each.ctx, ast.Store) and shown(each.value) == "self"
     }
 
 
@@ -133,8 +125,7 @@ def _outside(failure: Failure, cls: ast.ClassDef, name: str) -> Words | None:
     for each in failure.tree.body:
         if isinstance(each, ast.FunctionDef) and each.name == name and each.args.args:
             return say(
-                "{name} (line {line}) stands outside of the class {owner}: indent it, as deep as"
-                " the other methods.",
+                "{name} (line {line}) stands outside of the class {owner}: indent it, as deep as the other methods.",
                 name=name,
                 line=each.lineno,
                 owner=cls.name,
@@ -183,8 +174,7 @@ def _only_there(failure: Failure, name: str, method: ast.FunctionDef, node: ast.
             line=line,
         )
     return say(
-        "self.{name} is only made in {method} (line {line}), which has not run yet:"
-        " make it in __init__.",
+        "self.{name} is only made in {method} (line {line}), which has not run yet: make it in __init__.",
         name=name,
         method=method.name,
         line=line,
@@ -238,12 +228,7 @@ def _near_own(of: Any, name: str) -> Words | None:  # noqa: ANN401
         return (
             say("The node has no {name}; did you mean self.{meant}?", name=name, meant=meant)
             if is_from(of, "rclpy", "Node")
-            else say(
-                "{type} has no {name}; did you mean {meant}?",
-                type=type(of).__name__,
-                name=name,
-                meant=meant,
-            )
+            else say("{type} has no {name}; did you mean {meant}?", type=type(of).__name__, name=name, meant=meant)
         )
     return None
 
@@ -264,14 +249,11 @@ def of_node(name: str) -> Words | None:
     if name in _LOGGER:
         return say("A node logs by self.get_logger().info(…), .warn(…) and .error(…).")
     if name in _OF_RCLPY:
-        return say(
-            "{name} is of rclpy, not of the node: {instead}.", name=name, instead=_OF_RCLPY[name]
-        )
+        return say("{name} is of rclpy, not of the node: {instead}.", name=name, instead=_OF_RCLPY[name])
     maker = _MADE_BY.get(name.strip("_"))
     if maker:
         return say(
-            "self.{name} is made nowhere: keep what {maker} gives, self.{name} ="
-            " self.{maker}(…), in __init__.",
+            "self.{name} is made nowhere: keep what {maker} gives, self.{name} = self.{maker}(…), in __init__.",
             name=name,
             maker=maker,
         )
@@ -281,13 +263,11 @@ def of_node(name: str) -> Words | None:
 def _made_nowhere(failure: Failure, of: Any, name: str) -> Words:  # noqa: ANN401
     if failure.own_class is not None and _stores(failure.own_class, name):
         return say(
-            "self.{name} is changed here, and has no value before: give it one in __init__,"
-            " self.{name} = 0.",
+            "self.{name} is changed here, and has no value before: give it one in __init__, self.{name} = 0.",
             name=name,
         )
     return say(
-        "{type} has no {name}: it is made nowhere in this class. Make it in __init__, self.{name}"
-        " = ….",
+        "{type} has no {name}: it is made nowhere in this class. Make it in __init__, self.{name} = ….",
         type=type(of).__name__,
         name=name,
     )
@@ -300,7 +280,5 @@ def near(kind: str, name: str, known: list[str]) -> Words:
     if meant:
         return say("{type} has no {name}; did you mean {meant}?", type=kind, name=name, meant=meant)
     return say(
-        "{type} has no {name}: is it spelled right, or is something else meant than {type}?",
-        type=kind,
-        name=name,
+        "{type} has no {name}: is it spelled right, or is something else meant than {type}?", type=kind, name=name
     )

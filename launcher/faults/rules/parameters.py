@@ -19,14 +19,10 @@ if TYPE_CHECKING:
     from text.sentences import Words
     from text.yaml_tree import Tree
 
-_OF_TYPE = re.compile(
-    r"set parameter '(.+?)' to '(.*)' of type '(\w+)', expecting type '(\w+)'", re.DOTALL
-)
+_OF_TYPE = re.compile(r"set parameter '(.+?)' to '(.*)' of type '(\w+)', expecting type '(\w+)'", re.DOTALL)
 """What rclpy says of a parameter of the wrong type."""
 _FILE = re.compile(r"parse params file: '(?:--params-file )?(?P<file>[^']+)'")
-_MIXED = re.compile(
-    r"same type. Value type '(?P<type>\w+)' do not belong at line_num (?P<line>\d+)"
-)
+_MIXED = re.compile(r"same type. Value type '(?P<type>\w+)' do not belong at line_num (?P<line>\d+)")
 """What rcl_yaml_param_parser says of a file, and of a list in it."""
 _ABOVE = "before ros__parameters"
 _BOOLEAN = re.compile(r"(?<![\w'\"])(?:y|n|yes|no|on|off|true|false)(?![\w'\"])", re.IGNORECASE)
@@ -45,9 +41,7 @@ def parameters(failure: Failure) -> Words | None:
     given = level.values.get("parameter_list")
     if is_from(given, "rclpy", "Parameter"):
         return say("{call} takes a list, even of one parameter: [parameter].", call=level.function)
-    if isinstance(given, (list, tuple)) and not all(
-        is_from(each, "rclpy", "Parameter") for each in given
-    ):
+    if isinstance(given, (list, tuple)) and not all(is_from(each, "rclpy", "Parameter") for each in given):
         return say(
             "{call} takes a list of parameters: [Parameter('speed', value=2.0)], from"
             " rclpy.parameter import Parameter.",
@@ -69,8 +63,7 @@ def parameter_value(failure: Failure) -> Words | None:
                 types=listed(sorted({name_of(type(each)) for each in value})),
             )
         return say(
-            "A parameter is a number, a text, True or False, or a list of one of them, and not"
-            " {type}.",
+            "A parameter is a number, a text, True or False, or a list of one of them, and not {type}.",
             type=name_of(value if isinstance(value, type) else type(value)),
         )
     if isinstance(failure.error, ValueError) and inner.function == "__init__":
@@ -86,14 +79,7 @@ def parameter_value(failure: Failure) -> Words | None:
 
 def listing(failure: Failure) -> Words | None:
     """Parameters were declared or asked for by something that is no list of them."""
-    level = next(
-        (
-            e
-            for e in failure.below("rclpy")
-            if e.function in ("declare_parameters", "get_parameters")
-        ),
-        None,
-    )
+    level = next((e for e in failure.below("rclpy") if e.function in ("declare_parameters", "get_parameters")), None)
     if level is None:
         return None
     names, pairs = level.values.get("names"), level.values.get("parameters")
@@ -102,8 +88,7 @@ def listing(failure: Failure) -> Words | None:
     fits = isinstance(pairs, (list, tuple)) and all(isinstance(e, (list, tuple)) for e in pairs)
     if level.function == "declare_parameters" and not fits:
         return say(
-            "declare_parameters takes a list of pairs, each in brackets of its own:"
-            " [('speed', 1.0), ('turn', 0.5)]."
+            "declare_parameters takes a list of pairs, each in brackets of its own: [('speed', 1.0), ('turn', 0.5)]."
         )
     return None
 
@@ -125,8 +110,7 @@ def told(failure: Failure) -> Words | None:
         if isinstance(error, ValueError) and inspect.isbuiltin(callback):
             return None
         return say(
-            "The callback gets a list of the parameters, and returns SetParametersResult:"
-            " def {name}({me}params).",
+            "The callback gets a list of the parameters, and returns SetParametersResult: def {name}({me}params).",
             name=name if name.isidentifier() else "on_change",
             me="self, " if inspect.ismethod(callback) else "",
         )
@@ -155,8 +139,7 @@ def declared(failure: Failure) -> Words | None:
         )
     if wanted == "STRING" and given in _NUMBERS:
         return say(
-            "{name} is declared as a text, and {value} without quotes is a number: put it in"
-            " quotes.",
+            "{name} is declared as a text, and {value} without quotes is a number: put it in quotes.",
             name=name,
             value=value,
         )
@@ -164,8 +147,7 @@ def declared(failure: Failure) -> Words | None:
         return say("{name} is declared as a boolean: true or false, without quotes.", name=name)
     if wanted in _NUMBERS and given == "BOOL":
         return say(
-            "{name} is declared as a number, and ROS takes yes, no, on, off, y, n, true and false"
-            " for booleans.",
+            "{name} is declared as a number, and ROS takes yes, no, on, off, y, n, true and false for booleans.",
             name=name,
         )
     if wanted in _NUMBERS and given == "STRING":
@@ -193,9 +175,7 @@ def in_file(failure: Failure) -> Words | None:
         _check(read(text, _RULES))
     except UnicodeDecodeError as error:
         return say(
-            "{file}, line {line}: this is not UTF-8 text.",
-            file=name,
-            line=raw.count(b"\n", 0, error.start) + 1,
+            "{file}, line {line}: this is not UTF-8 text.", file=name, line=raw.count(b"\n", 0, error.start) + 1
         )
     except YamlError as error:
         return say(

@@ -12,17 +12,12 @@ from text.sentences import Words, say
 from text.suggestions import nearest
 
 UNHEARD = N_(
-    "A Buffer hears nothing by itself: self.listener = TransformListener(self.buffer, self)"
-    " in __init__ fills it."
+    "A Buffer hears nothing by itself: self.listener = TransformListener(self.buffer, self) in __init__ fills it."
 )
 SENTENCES = {
     "NotInitializedException": N_("rclpy.init() has to be called before a node is made."),
-    "ExternalShutdownException": N_(
-        "The node was asked to end: catch ExternalShutdownException around rclpy.spin."
-    ),
-    "KeyboardInterrupt": N_(
-        "Ctrl-C is the exception KeyboardInterrupt: catch it around rclpy.spin."
-    ),
+    "ExternalShutdownException": N_("The node was asked to end: catch ExternalShutdownException around rclpy.spin."),
+    "KeyboardInterrupt": N_("Ctrl-C is the exception KeyboardInterrupt: catch it around rclpy.spin."),
     "ParameterAlreadyDeclaredException": N_("The parameter is declared twice."),
     "InvalidParameterTypeException": N_(
         "The parameter has another type than its default: 1.0 is a double, 1 an integer."
@@ -40,12 +35,8 @@ SENTENCES = {
         "Both frames are there, and nothing joins them: a transform between them is missing, or is"
         " published under another name."
     ),
-    "InvalidArgumentException": N_(
-        "The name of a frame is empty, or begins with a slash: base_link, without one."
-    ),
-    "NoTypeSupportImportedException": N_(
-        "The type's package is not built for Python: is it built and sourced?"
-    ),
+    "InvalidArgumentException": N_("The name of a frame is empty, or begins with a slash: base_link, without one."),
+    "NoTypeSupportImportedException": N_("The type's package is not built for Python: is it built and sourced?"),
 }
 """By the name of the exception's class."""
 _PACKAGES = ("rclpy", "tf2_py", "tf2_ros", "builtins")
@@ -68,13 +59,9 @@ def undeclared(failure: Failure) -> Words | None:
         known = list(node._parameters) if is_from(node, "rclpy", "Node") else []  # noqa: SLF001
         meant = nearest(name.strip("'"), known)
         if meant:
-            return say(
-                "No parameter {name} is declared; did you mean {meant!r}?", name=name, meant=meant
-            )
+            return say("No parameter {name} is declared; did you mean {meant!r}?", name=name, meant=meant)
         return say(
-            "Declare the parameter before you read it, in __init__: self.declare_parameter({name},"
-            " 0.0).",
-            name=name,
+            "Declare the parameter before you read it, in __init__: self.declare_parameter({name}, 0.0).", name=name
         )
     if kind == "ParameterUninitializedException":
         return say(
@@ -108,14 +95,7 @@ def bad_name(failure: Failure) -> Words | None:
         return None
     values = failure.inner.values if failure.inner is not None else {}
     at = values.get("invalid_index", 0)
-    name = next(
-        (
-            each
-            for each in values.values()
-            if isinstance(each, str) and each != values.get("error_msg")
-        ),
-        "",
-    )
+    name = next((each for each in values.values() if isinstance(each, str) and each != values.get("error_msg")), "")
     sign = name[at] if isinstance(at, int) and at < len(name) else ""
     if "InvalidNodeNameException" in kinds:
         return say(
@@ -143,9 +123,7 @@ def started_twice(failure: Failure) -> Words | None:
     if isinstance(failure.error, RuntimeError) and "init" in called and kind == "RuntimeError":
         return say("rclpy.init() was called a second time: once, in main, is enough.")
     if "shutdown" in called and kind in ("RCLError", "RuntimeError"):
-        return say(
-            "rclpy has been shut down already: write rclpy.try_shutdown(), not rclpy.shutdown()."
-        )
+        return say("rclpy has been shut down already: write rclpy.try_shutdown(), not rclpy.shutdown().")
     return None
 
 
@@ -179,21 +157,13 @@ def is_spun_twice(failure: Failure) -> bool:
 def spun(failure: Failure) -> Words | None:
     """`rclpy.spin` was given a class, or nothing that is a node."""
     level = next(
-        (
-            each
-            for each in failure.levels
-            if each.is_in("rclpy") and each.function in ("spin", "spin_once")
-        ),
-        None,
+        (each for each in failure.levels if each.is_in("rclpy") and each.function in ("spin", "spin_once")), None
     )
     if level is None or "node" not in level.values:
         return None
     node = level.values["node"]
     if isinstance(node, type):
-        return say(
-            "rclpy.spin was given a class: make a node of it first, node = {name}().",
-            name=node.__name__,
-        )
+        return say("rclpy.spin was given a class: make a node of it first, node = {name}().", name=node.__name__)
     if not is_from(node, "rclpy", "Node"):
         return say("rclpy.spin was given {type}, not a node.", type=name_of(type(node)))
     return None
@@ -202,21 +172,13 @@ def spun(failure: Failure) -> Words | None:
 def two_types(failure: Failure) -> Words | None:
     """A topic was used with two types in one node, or a name of rclpy's own was taken."""
     level = next(
-        (
-            each
-            for each in failure.below("rclpy")
-            if each.function in ("create_publisher", "create_subscription")
-        ),
+        (each for each in failure.below("rclpy") if each.function in ("create_publisher", "create_subscription")),
         None,
     )
     if level is None or type(failure.error).__name__ not in ("RCLError", "RuntimeError"):
         return None
     node, topic = level.values["self"], level.values.get("final_topic", level.values.get("topic"))
-    others = {
-        each.msg_type.__name__
-        for each in (*node.publishers, *node.subscriptions)
-        if each.topic_name == topic
-    }
+    others = {each.msg_type.__name__ for each in (*node.publishers, *node.subscriptions) if each.topic_name == topic}
     if not others:
         return None
     return say(
@@ -229,11 +191,7 @@ def two_types(failure: Failure) -> Words | None:
 def severity(failure: Failure) -> Words | None:
     """One line of the program logs with two severities."""
     inner = failure.inner
-    if (
-        inner is None
-        or not isinstance(failure.error, ValueError)
-        or not inner.is_in("rclpy", "rcutils_logger")
-    ):
+    if inner is None or not isinstance(failure.error, ValueError) or not inner.is_in("rclpy", "rcutils_logger"):
         return None
     return say(
         "A line of a program logs always alike, with one severity, one name, one filter: write two"

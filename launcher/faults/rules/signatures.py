@@ -61,9 +61,7 @@ def _unbound(
                 owner=shown(call.func.value),
                 name=call.func.attr,
             )
-    on_class = isinstance(call.func, ast.Attribute) and isinstance(
-        failure.value(call.func.value), type
-    )
+    on_class = isinstance(call.func, ast.Attribute) and isinstance(failure.value(call.func.value), type)
     if on_class and next(iter(signature.parameters), "") == "self":
         assert isinstance(call.func, ast.Attribute)
         return say(
@@ -99,9 +97,7 @@ def _says(
 ) -> Words:
     parameters = list(signature.parameters.values())[int(called_on) :]
     known = [each.name for each in parameters]
-    takes = ", ".join(
-        each.name for each in parameters if each.default is each.empty and each.kind in (0, 1)
-    )
+    takes = ", ".join(each.name for each in parameters if each.default is each.empty and each.kind in (0, 1))
     what = shown(call.func)
     extra = next((name for name in names if name not in known), "")
     if extra == "queue_size" and "qos_profile" in known:
@@ -111,21 +107,11 @@ def _says(
             takes=takes,
         )
     if extra:
-        meant = next((each for each in known if each.startswith(extra)), "") or nearest(
-            extra, known
-        )
+        meant = next((each for each in known if each.startswith(extra)), "") or nearest(extra, known)
         if meant:
-            return say(
-                "{what} has no argument {name}; did you mean {meant}?",
-                what=what,
-                name=extra,
-                meant=meant,
-            )
+            return say("{what} has no argument {name}; did you mean {meant}?", what=what, name=extra, meant=meant)
         return say(
-            "{what} has no argument {name}; it has: {known}.",
-            what=what,
-            name=extra,
-            known=listed(known) or "-",
+            "{what} has no argument {name}; it has: {known}.", what=what, name=extra, known=listed(known) or "-"
         )
     missing = [
         each.name
@@ -134,8 +120,7 @@ def _says(
     ]
     if missing == ["qos_profile"]:
         return say(
-            "The last argument is missing, the queue depth: {what}({takes}), such as 10"
-            " for qos_profile.",
+            "The last argument is missing, the queue depth: {what}({takes}), such as 10 for qos_profile.",
             what=what,
             takes=takes,
         )
@@ -151,8 +136,7 @@ def _says(
         by_name = ["depth"]
     if shown(call.func) == "rclpy.init" and isinstance(call.args[0], ast.Constant):
         return say(
-            "rclpy.init takes no name: rclpy.init(). The name is given to the node,"
-            ' super().__init__("my_node").'
+            'rclpy.init takes no name: rclpy.init(). The name is given to the node, super().__init__("my_node").'
         )
     if not takes and by_name:
         return say(
@@ -165,9 +149,4 @@ def _says(
     given = listed([shown(each) for each in call.args])
     if not places and given:
         return say("{what} takes nothing, and is given {given}.", what=what, given=given)
-    return say(
-        "{what} takes {takes}, and is given {given}.",
-        what=what,
-        takes=places,
-        given=given or say("nothing"),
-    )
+    return say("{what} takes {takes}, and is given {given}.", what=what, takes=places, given=given or say("nothing"))

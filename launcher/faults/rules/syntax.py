@@ -73,17 +73,14 @@ def encoding_of(data: bytes) -> Words | None:
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or _is_wide(data):
         return say("The file is stored as UTF-16: save it as UTF-8, in the editor's Save As.")
     if b"\0" in data:
-        return say(
-            "The file has zero bytes in it: it is not a text, or was not written to its end."
-        )
+        return say("The file has zero bytes in it: it is not a text, or was not written to its end.")
     try:
         data.decode()
     except UnicodeDecodeError as error:
         if re.match(rb"[^\n]*(\n[^\n]*)?coding[:=]\s*[-\w.]+", data):
             return None
         return say(
-            "The file is not stored as UTF-8 (line {line}): save it as UTF-8, in the editor's Save"
-            " As.",
+            "The file is not stored as UTF-8 (line {line}): save it as UTF-8, in the editor's Save As.",
             line=data[: error.start].count(b"\n") + 1,
         )
     return None
@@ -118,9 +115,7 @@ def _copied(line: str, lines: list[str]) -> Words | None:
     if stripped.startswith(("```", "~~~")) or any(each.startswith("```") for each in lines[:1]):
         return say("The line ``` is of the text that this was copied from: delete it.")
     if stripped.startswith((">>>", "$ ", "In [")) and not stripped.startswith(">>>>>>>"):
-        return say(
-            "The sign in front of the line is the prompt that was copied with it: delete it."
-        )
+        return say("The sign in front of the line is the prompt that was copied with it: delete it.")
     if stripped.startswith(_MARKS) and stripped[:7] in _MARKS:
         return say("git has marked a conflict here: choose one of the two, and delete the marks.")
     return None
@@ -137,17 +132,12 @@ def _signs(line: str, error: SyntaxError) -> Words | None:
     for sign in code:
         if sign in OTHER_SIGNS:
             return say(
-                "The sign {sign} is that of a text processor: Python has {meant}.",
-                sign=sign,
-                meant=OTHER_SIGNS[sign],
+                "The sign {sign} is that of a text processor: Python has {meant}.", sign=sign, meant=OTHER_SIGNS[sign]
             )
-    if any(
-        each in line for each in "\u00a0\u2007\u202f\u200b\u200c\u200d\ufeff\u3000"
-    ) and "non-printable" in str(error.msg):
-        return say(
-            "In this line is an invisible sign, as copying from a page brings along: type"
-            " its blanks again."
-        )
+    if any(each in line for each in "\u00a0\u2007\u202f\u200b\u200c\u200d\ufeff\u3000") and "non-printable" in str(
+        error.msg
+    ):
+        return say("In this line is an invisible sign, as copying from a page brings along: type its blanks again.")
     for name in re.findall(r"[^\W\d]\w*", code):
         words = mixed(name) if not name.isascii() else None
         if words is not None:
@@ -166,14 +156,10 @@ def _indentation(error: SyntaxError, lines: list[str]) -> Words | None:
         above = lines[int(opened[1]) - 1]
     if opened and not any(each.strip() for each in lines[int(opened[1]) :]):
         return say(
-            "Below {above!r} nothing stands: what belongs to it is indented; pass does nothing.",
-            above=above.strip(),
+            "Below {above!r} nothing stands: what belongs to it is indented; pass does nothing.", above=above.strip()
         )
     if "expected an indented block" in str(error.msg):
-        return say(
-            "The lines below {above!r} have to be indented, four blanks deeper.",
-            above=above.strip(),
-        )
+        return say("The lines below {above!r} have to be indented, four blanks deeper.", above=above.strip())
     return _said(error) or say("The indentation is wrong: four blanks a level, and no tabs.")
 
 
@@ -187,10 +173,7 @@ def _depth(line: str) -> Words | None:
     found = re.match(r"\s*(else|elif|except|finally)\b", line)
     if not found:
         return None
-    return say(
-        "{word} belongs to an if, for or try at the same depth, directly below its block.",
-        word=found[1],
-    )
+    return say("{word} belongs to an if, for or try at the same depth, directly below its block.", word=found[1])
 
 
 def _colon(line: str, error: SyntaxError) -> Words | None:
@@ -222,50 +205,26 @@ _HABITS = (
         r"^\s*except\s+\w+(\s+\w+\s*:|\s*,)",
         N_("The name of the exception comes behind as: except Exception as error:."),
     ),
-    (
-        r"^\s*raise\s+\w+\s*,",
-        N_('An exception is given its text in brackets: raise ValueError("…").'),
-    ),
+    (r"^\s*raise\s+\w+\s*,", N_('An exception is given its text in brackets: raise ValueError("…").')),
     (r"^\s*(if|while)\b.*\bthen\b", N_("Python has no then: behind the condition comes a colon.")),
     (r"lambda[^:]*:\s*return\b", N_("A lambda has no return: its value stands behind the colon.")),
-    (
-        r"^\s*import\s+([\w.]+\s+)?from\b",
-        N_("It is the other way round: from rclpy.node import Node."),
-    ),
+    (r"^\s*import\s+([\w.]+\s+)?from\b", N_("It is the other way round: from rclpy.node import Node.")),
     (r"^\s*from\s+[\w.]+\s+import\s*$", N_("What is to be imported is missing behind import.")),
-    (
-        r"^\s*from\s+[\w.]+\s+import\s.*,\s*$",
-        N_("The comma at the end of an import has nothing behind it."),
-    ),
-    (
-        r"^\s*(import|from)\s+\w+/",
-        N_("A module is named with points, not with /: from std_msgs.msg import String."),
-    ),
-    (
-        r"^\s*(import|from)\s+\w+-\w",
-        N_("The name of a module has no hyphen in Python: perhaps it is _."),
-    ),
+    (r"^\s*from\s+[\w.]+\s+import\s.*,\s*$", N_("The comma at the end of an import has nothing behind it.")),
+    (r"^\s*(import|from)\s+\w+/", N_("A module is named with points, not with /: from std_msgs.msg import String.")),
+    (r"^\s*(import|from)\s+\w+-\w", N_("The name of a module has no hyphen in Python: perhaps it is _.")),
     (r"^\s*#?\s*using\s+namespace\b", N_("This line is of C++: Python imports, import rclpy.")),
     (r"^\s*def\s*\(", N_("The function has no name: def main():.")),
     (
         r"^\s*def\s+\w+\(.*\b(int|float|str|string|double|bool)\s+\w+",
         N_("An argument is written without its type, or with a colon: def f(x: int):."),
     ),
-    (
-        r"^\s*(public|private|static)\b",
-        N_("Python has no public, private and static: leave the word out."),
-    ),
+    (r"^\s*(public|private|static)\b", N_("Python has no public, private and static: leave the word out.")),
     (r";\s*;", N_("One ; too many: in Python none is needed at the end of a line.")),
     (r"=\s+=|=\s*\+\s*$", N_("The equals sign stands alone here: x = 1, or x += 1.")),
-    (
-        r"^\s*(assert|if|elif|while)\b[^=!<>(]*[^=!<>(]=[^=]",
-        N_("A comparison has two equals signs: ==."),
-    ),
+    (r"^\s*(assert|if|elif|while)\b[^=!<>(]*[^=!<>(]=[^=]", N_("A comparison has two equals signs: ==.")),
     (r"\w\.\.\w", N_("Between two names stands one point.")),
-    (
-        r"(\band|\bor|\bnot|[-+*/%=])\s*$",
-        N_("The line ends in the middle: something is missing at its end."),
-    ),
+    (r"(\band|\bor|\bnot|[-+*/%=])\s*$", N_("The line ends in the middle: something is missing at its end.")),
 )
 """What is written otherwise in Python, and how."""
 
@@ -303,35 +262,20 @@ def _keyword(line: str) -> Words | None:
     found = re.search(r"(?:\.|\bdef\s+|^\s*)([a-z]+)\s*(?:=(?!=)|\(self)", code)
     names = re.findall(r"\.([a-z]+)\b", code) + ([found[1]] if found else [])
     word = next((each for each in names if keyword.iskeyword(each)), "")
-    if word and word not in (
-        "lambda",
-        "not",
-        "await",
-        "yield",
-        "return",
-        "if",
-        "while",
-        "elif",
-        "assert",
-    ):
+    if word and word not in ("lambda", "not", "await", "yield", "return", "if", "while", "elif", "assert"):
         return say("{word} is a word of Python itself: take another name, {word}_.", word=word)
     return None
 
 
 def _said(error: SyntaxError) -> Words | None:
     message = str(error.msg)
-    if message.startswith(("unterminated string", "EOL while")) and _has_mark_inside(
-        error.text or ""
-    ):
+    if message.startswith(("unterminated string", "EOL while")) and _has_mark_inside(error.text or ""):
         return say(
             'A quotation mark is missing at the end of a text, or stands within it: "don\'t" is'
             " written in the other kind of marks."
         )
     if message.startswith("f-string"):
-        return say(
-            "In the curly brackets of an f-string stands an expression, and other quotes than"
-            " around it."
-        )
+        return say("In the curly brackets of an f-string stands an expression, and other quotes than around it.")
     found = re.search(r"in call to '(\w+)'", message)
     if found and found[1] != "print":
         return say("{name} is a function: {name}(…), in round brackets.", name=found[1])

@@ -25,10 +25,7 @@ def place_of(failure: Failure, program: str) -> tuple[str, int] | None:
         each.lineno
         for each in ast.walk(tree)
         if isinstance(each, ast.Call)
-        and any(
-            word.arg == "target" and _last_name(word.value) == begins[0].function
-            for word in each.keywords
-        )
+        and any(word.arg == "target" and _last_name(word.value) == begins[0].function for word in each.keywords)
     ]
     return (program, min(found)) if found else None
 

@@ -48,27 +48,17 @@ def _among_several(failure: Failure, call: ast.Call) -> Words | None:
 
 def _no_number(what: str, value: str) -> Words:
     if not value.strip():
-        return say(
-            "{what} is an empty text, which is not a number: ask if {what}: first.", what=what
-        )
+        return say("{what} is an empty text, which is not a number: ask if {what}: first.", what=what)
     try:
         float(value)
     except ValueError:
         pass
     else:
-        return say(
-            "{value} has a fraction: int(float({what})) cuts it off.",
-            value=value.strip(),
-            what=what,
-        )
+        return say("{value} has a fraction: int(float({what})) cuts it off.", value=value.strip(), what=what)
     if "," in value:
-        return say(
-            "{value} is not a number: a fraction is written with a point.", value=value.strip()
-        )
+        return say("{value} is not a number: a fraction is written with a point.", value=value.strip())
     return say(
-        "The text {value!r} is not a number ({what}): catch ValueError, or look at it first.",
-        value=value,
-        what=what,
+        "The text {value!r} is not a number ({what}): catch ValueError, or look at it first.", value=value, what=what
     )
 
 
@@ -82,17 +72,11 @@ def mathematics(failure: Failure) -> Words | None:
             continue
         name, what = function.__name__, shown(call.args[0]) if call.args else "x"
         if name in ("acos", "asin"):
-            return say(
-                "{name} takes -1 to 1: limit it before, max(-1.0, min(1.0, {what})).",
-                name=name,
-                what=what,
-            )
+            return say("{name} takes -1 to 1: limit it before, max(-1.0, min(1.0, {what})).", name=name, what=what)
         if name == "sqrt":
             return say("{name} has no value for {what}: it is negative.", name=name, what=what)
         if name in ("log", "log10", "log2"):
-            return say(
-                "{name} has no value for {what}: it is negative, or zero.", name=name, what=what
-            )
+            return say("{name} has no value for {what}: it is negative, or zero.", name=name, what=what)
         return say("{name} has no value for {what}.", name=name, what=what)
     return None
 
@@ -120,10 +104,7 @@ def pause(failure: Failure) -> Words | None:
         return None
     for call in failure.all(ast.Call):
         if shown(call.func) in ("time.sleep", "sleep") and call.args:
-            return say(
-                "{what} is negative: nobody sleeps for less than 0 seconds.",
-                what=shown(call.args[0]),
-            )
+            return say("{what} is negative: nobody sleeps for less than 0 seconds.", what=shown(call.args[0]))
     return None
 
 
@@ -134,17 +115,14 @@ def unpacked(failure: Failure) -> Words | None:
         return None
     if "unpack" not in str(failure.error):
         return None
-    if isinstance(statement, ast.Assign) and isinstance(
-        statement.targets[0], (ast.Tuple, ast.List)
-    ):
+    if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], (ast.Tuple, ast.List)):
         names, given = statement.targets[0].elts, failure.value(statement.value)
     elif isinstance(statement, ast.For) and isinstance(statement.target, (ast.Tuple, ast.List)):
         names, given = statement.target.elts, UNKNOWN
         if not isinstance(failure.node, (ast.Tuple, ast.For)):
             return None
         return say(
-            "Each round has other than {count} values for the names {names}; enumerate() or zip()"
-            " give pairs.",
+            "Each round has other than {count} values for the names {names}; enumerate() or zip() give pairs.",
             count=len(names),
             names=", ".join(map(shown, names)),
         )
@@ -187,8 +165,7 @@ def index(failure: Failure) -> Words | None:
             continue
         if not len(of) and isinstance(each.ctx, ast.Store) and hasattr(of, "append"):
             return say(
-                "{what} is empty, and {what}[…] = … changes only what is there: {what}.append(…)"
-                " adds a value.",
+                "{what} is empty, and {what}[…] = … changes only what is there: {what}.append(…) adds a value.",
                 what=what,
             )
         if not len(of) and isinstance(each.value, (ast.Name, ast.Attribute)):
@@ -204,15 +181,9 @@ def index(failure: Failure) -> Words | None:
                 index=number,
             )
         if len(of):
-            return say(
-                "{what} has {count} values, [0] to [{last}].",
-                what=what,
-                count=len(of),
-                last=len(of) - 1,
-            )
+            return say("{what} has {count} values, [0] to [{last}].", what=what, count=len(of), last=len(of) - 1)
     if failure.is_own and any(
-        isinstance(each.func, ast.Attribute) and each.func.attr == "pop"
-        for each in failure.all(ast.Call)
+        isinstance(each.func, ast.Attribute) and each.func.attr == "pop" for each in failure.all(ast.Call)
     ):
         return say("The list is empty: there is nothing to take out.")
     return say("The list has no value of that number: is it empty, or shorter than expected?")
@@ -227,27 +198,12 @@ def key(failure: Failure) -> Words | None:
         of, what = failure.value(each.value), shown(each.value)
         if not isinstance(of, dict):
             continue
-        meant = (
-            nearest(wanted, [k for k in of if isinstance(k, str)])
-            if isinstance(wanted, str)
-            else ""
-        )
+        meant = nearest(wanted, [k for k in of if isinstance(k, str)]) if isinstance(wanted, str) else ""
         if meant:
+            return say("{what} has no key {key!r}; did you mean {meant!r}?", what=what, key=wanted, meant=meant)
+        if not of or isinstance(each.ctx, ast.Store) or isinstance(getattr(each, "parent", None), ast.Subscript):
             return say(
-                "{what} has no key {key!r}; did you mean {meant!r}?",
-                what=what,
-                key=wanted,
-                meant=meant,
-            )
-        if (
-            not of
-            or isinstance(each.ctx, ast.Store)
-            or isinstance(getattr(each, "parent", None), ast.Subscript)
-        ):
-            return say(
-                "{what} has no key {key!r} yet: {what}[{key!r}] = … puts a value there first.",
-                what=what,
-                key=wanted,
+                "{what} has no key {key!r} yet: {what}[{key!r}] = … puts a value there first.", what=what, key=wanted
             )
         return say(
             "{what} has no key {key!r}; it has {known}. {what}.get({key!r}) gives None instead.",
@@ -268,10 +224,7 @@ def zero(failure: Failure) -> Words | None:
             by = each.right if isinstance(each, ast.BinOp) else each.value
             if isinstance(by, ast.Constant):
                 continue
-            return say(
-                "{what} is 0 here, and nothing is divided by 0: ask before, if {what} != 0.",
-                what=shown(by),
-            )
+            return say("{what} is 0 here, and nothing is divided by 0: ask before, if {what} != 0.", what=shown(by))
     return say("Divided by zero: ask before whether it is 0.")
 
 
@@ -279,9 +232,7 @@ def recursion(failure: Failure) -> Words | None:
     """A function calls itself without end."""
     if not isinstance(failure.error, RecursionError) or failure.own is None:
         return None
-    return say(
-        "{name} calls itself again and again, and never comes to an end.", name=failure.own.function
-    )
+    return say("{name} calls itself again and again, and never comes to an end.", name=failure.own.function)
 
 
 def thread(failure: Failure) -> Words | None:
@@ -304,11 +255,7 @@ def thread(failure: Failure) -> Words | None:
 def asserted(failure: Failure) -> Words | None:
     """The learner's own assert."""
     statement = failure.statement
-    if (
-        not isinstance(failure.error, AssertionError)
-        or not failure.is_own
-        or not isinstance(statement, ast.Assert)
-    ):
+    if not isinstance(failure.error, AssertionError) or not failure.is_own or not isinstance(statement, ast.Assert):
         return None
     return say("What your own assert asks for does not hold: {what}.", what=shown(statement.test))
 

@@ -4,14 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from launcher.profile.steps.checks import (
-    CheckDocument,
-    EndsCheck,
-    FieldCheck,
-    LogCheck,
-    PublishCheck,
-    kind_of,
-)
+from launcher.profile.steps.checks import CheckDocument, EndsCheck, FieldCheck, LogCheck, PublishCheck, kind_of
 from launcher.profile.steps.draw import draw
 from launcher.profile.steps.expressions import ExpressionError, evaluate, expressions
 from text.sentences import say
@@ -31,9 +24,7 @@ PASSIVE = ("field", "log", "nothing", "python", "image", "rate")
 """What may stand in `then`: what only looks."""
 
 
-def check_steps(
-    document: ProfileDocument, nodes: Collection[str], tree: Branch, problems: Problems
-) -> None:
+def check_steps(document: ProfileDocument, nodes: Collection[str], tree: Branch, problems: Problems) -> None:
     """Check the steps and values of a profile with these nodes."""
     _check_values(document.values, tree, problems)
     if problems.found:
@@ -70,11 +61,7 @@ def _check_values(values: Mapping[str, ValueDocument], tree: Branch, problems: P
 
 
 def _check_checks(
-    checks: tuple[CheckDocument, ...],
-    above: Where,
-    nodes: Collection[str],
-    tree: Branch,
-    problems: Problems,
+    checks: tuple[CheckDocument, ...], above: Where, nodes: Collection[str], tree: Branch, problems: Problems
 ) -> None:
     for index, check in enumerate(checks):
         where = (*above, index)
@@ -114,9 +101,7 @@ def _texts(value: Any, where: Where) -> Iterator[tuple[Where, str]]:  # noqa: AN
             yield from _texts(inner, (*where, index))
 
 
-def _check_text(
-    text: str, where: Where, values: Mapping[str, Drawn], tree: Branch, problems: Problems
-) -> None:
+def _check_text(text: str, where: Where, values: Mapping[str, Drawn], tree: Branch, problems: Problems) -> None:
     try:
         for expression in expressions(text):
             evaluate(expression, values)

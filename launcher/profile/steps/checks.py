@@ -114,9 +114,7 @@ class QosCheck(CheckDocument):
     """The QoS of publishers or subscriptions."""
 
     qos: RosName = Field(description="The QoS of this topic.")
-    of: Literal["publisher", "subscription"] = Field(
-        "publisher", description="Whose: publisher or subscription."
-    )
+    of: Literal["publisher", "subscription"] = Field("publisher", description="Whose: publisher or subscription.")
     by: RosName | None = Field(None, description="Only this node's.")
     reliability: Literal["reliable", "best_effort"] | None = None
     durability: Literal["volatile", "transient_local"] | None = None
@@ -153,9 +151,7 @@ class PublishCheck(CheckDocument):
     message: dict[str, Any] = Field({}, description="Its fields.")
     repeat: Times = Field(1, description="So many times.")
     every: Seconds = Field(0.1, description="With repeat: seconds between two messages.")
-    then: tuple[Check, ...] = Field(
-        strict=False, min_length=1, description="What must be seen after that."
-    )
+    then: tuple[Check, ...] = Field(strict=False, min_length=1, description="What must be seen after that.")
 
 
 class NothingCheck(CheckDocument):
@@ -208,9 +204,7 @@ class LogCheck(CheckDocument):
 
     log: str = Field(description="This node of the profile logs a line.")
     matches: Pattern = Field(description="It has this regular expression.")
-    level: Literal["debug", "info", "warn", "error", "fatal"] | None = Field(
-        None, description="With this severity."
-    )
+    level: Literal["debug", "info", "warn", "error", "fatal"] | None = Field(None, description="With this severity.")
     lines: Times = Field(1, description="So many such lines.")
 
 
@@ -264,9 +258,7 @@ class PythonCheck(CheckDocument):
         description="A function of the lesson's folder: `checks.py:left_right`."
     )
     topics: dict[RosName, TypeName] = Field({}, description="Topics that it is given, with types.")
-    over: Seconds | None = Field(
-        None, description="It is asked only after so many seconds of messages."
-    )
+    over: Seconds | None = Field(None, description="It is asked only after so many seconds of messages.")
 
 
 KINDS: dict[str, type[CheckDocument]] = {

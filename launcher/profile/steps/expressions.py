@@ -44,10 +44,7 @@ _BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
 }
-_UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {
-    ast.UAdd: operator.pos,
-    ast.USub: operator.neg,
-}
+_UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {ast.UAdd: operator.pos, ast.USub: operator.neg}
 
 
 class ExpressionError(ValueError):
@@ -87,10 +84,7 @@ def filled(value: Any, values: Mapping[str, Drawn], language: str = "en") -> Any
     `language`: the one that the text is in, where a number gets its decimal comma.
     """
     if isinstance(value, dict):
-        return {
-            key: filled(inner, values, key if key in LANGUAGES else "en")
-            for key, inner in value.items()
-        }
+        return {key: filled(inner, values, key if key in LANGUAGES else "en") for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
         return type(value)(filled(inner, values) for inner in value)
     if not isinstance(value, str):

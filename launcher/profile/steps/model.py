@@ -50,9 +50,7 @@ class StepDocument(Document):
     needs: tuple[str, ...] = Field(
         (), strict=False, description="Steps that must have passed before this one is judged."
     )
-    checks: tuple[Check, ...] = Field(
-        strict=False, min_length=1, description="What must be seen, in order."
-    )
+    checks: tuple[Check, ...] = Field(strict=False, min_length=1, description="What must be seen, in order.")
     hints: tuple[Texts, ...] = Field(
         (), strict=False, max_length=3, description="Shown one after the other when asked for."
     )

@@ -18,12 +18,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("action_name", help="Name of the ROS action to get info (e.g. '/fibonacci')")
     add("-t", "--show-types", action="store_true", help="Additionally show the action type")
-    add(
-        "-c",
-        "--count",
-        action="store_true",
-        help="Only display the number of action clients and action servers",
-    )
+    add("-c", "--count", action="store_true", help="Only display the number of action clients and action servers")
 
 
 def main(args: argparse.Namespace) -> int | str | None:

@@ -31,17 +31,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     options.answers(parser)
     add = parser.add_argument
     add("action_name", help="Name of the ROS action (e.g. '/fibonacci')")
-    add(
-        "action_type",
-        help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')",
-    )
+    add("action_type", help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')")
     goal = parser.add_mutually_exclusive_group()
-    goal.add_argument(
-        "goal",
-        nargs="?",
-        default="{}",
-        help="Goal request values in YAML format (e.g. '{order: 10}')",
-    )
+    goal.add_argument("goal", nargs="?", default="{}", help="Goal request values in YAML format (e.g. '{order: 10}')")
     goal.add_argument("--stdin", action="store_true", help="Read goal from standard input")
     add("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
 

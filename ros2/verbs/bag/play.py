@@ -103,9 +103,7 @@ def _play(bag: Bag, args: argparse.Namespace) -> bool:
     try:
         rules = (rule.split(":=") for rule in args.remap)
         names = {naming.absolute(old): naming.absolute(new) for old, new in rules}
-        publisher = BagPublisher(
-            bag, ros, lambda topic: _refusal(topic, args), names=names, gives_way=False
-        )
+        publisher = BagPublisher(bag, ros, lambda topic: _refusal(topic, args), names=names, gives_way=False)
         left_out = publisher.progress.left_out
         for name, reason in left_out.items():
             if reason:
@@ -121,11 +119,7 @@ def _play(bag: Bag, args: argparse.Namespace) -> bool:
             while True:
                 time.sleep(args.delay)
                 publisher.play(
-                    stop,
-                    lambda _progress: None,
-                    rate=args.rate,
-                    start_s=args.start_offset,
-                    until_s=until_s,
+                    stop, lambda _progress: None, rate=args.rate, start_s=args.start_offset, until_s=until_s
                 )
                 if not args.loop:
                     break

@@ -29,8 +29,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "-o",
         "--output",
-        help="Destination of the bagfile to create, defaults to a timestamped folder in the "
-        "current directory.",
+        help="Destination of the bagfile to create, defaults to a timestamped folder in the current directory.",
     )
     add("-s", "--storage", default="mcap", choices=["mcap"], help="Storage identifier to be used")
     named = parser.add_mutually_exclusive_group()
@@ -52,8 +51,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--include-hidden-topics",
         action="store_true",
-        help="Discover and record hidden topics as well. "
-        "These are topics used internally by ROS 2 implementation.",
+        help="Discover and record hidden topics as well. These are topics used internally by ROS 2 implementation.",
     )
     add("--disable-keyboard-controls", action="store_true", help="There are none here.")
     bags.ignore(parser, "-p --polling-interval", "--max-cache-size", "--node-name", "--log-level")
@@ -102,9 +100,7 @@ def _fault(args: argparse.Namespace, folder: Path) -> str:
     for name in ("exclude_regex", "exclude_topics", "exclude_topic_types"):
         if getattr(args, name) and not several:
             option = f"--{name.replace('_', '-')}"
-            return (
-                f"{option} argument requires either --all, --all-topics, --topic-types or --regex"
-            )
+            return f"{option} argument requires either --all, --all-topics, --topic-types or --regex"
     try:
         re.compile(args.regex)
         re.compile(args.exclude_regex)
@@ -127,9 +123,7 @@ def _wanted(args: argparse.Namespace) -> Callable[[str, Sequence[str]], bool]:
             return True
         if is_hidden(name) and not args.include_hidden_topics:
             return False
-        if not everything and not (
-            (args.regex and re.search(args.regex, name)) or not kept_types.isdisjoint(types)
-        ):
+        if not everything and not ((args.regex and re.search(args.regex, name)) or not kept_types.isdisjoint(types)):
             return False
         if args.exclude_regex and re.search(args.exclude_regex, name):
             return False

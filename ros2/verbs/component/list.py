@@ -23,11 +23,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     options.of_graph(parser)
     options.answers(parser)
     add = parser.add_argument
-    add(
-        "container_node_name",
-        nargs="?",
-        help="Name of the container node to list components from",
-    )
+    add("container_node_name", nargs="?", help="Name of the container node to list components from")
     add("--containers-only", action="store_true", help="List found containers nodes only")
 
 

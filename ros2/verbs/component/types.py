@@ -17,9 +17,7 @@ INDEX = Path("share/ament_index/resource_index/rclcpp_components")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "package_name", nargs="?", help="Name of the package to list components from"
-    )
+    parser.add_argument("package_name", nargs="?", help="Name of the package to list components from")
 
 
 def main(args: argparse.Namespace) -> str | None:

@@ -15,9 +15,7 @@ SUMMARY = "Output an interface prototype"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("type", help='Show an interface definition (e.g. "std_msgs/msg/String")')
-    parser.add_argument(
-        "--no-quotes", action="store_true", help="if true output has no outer quotes."
-    )
+    parser.add_argument("--no-quotes", action="store_true", help="if true output has no outer quotes.")
 
 
 def main(args: argparse.Namespace) -> int | str | None:

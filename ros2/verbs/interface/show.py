@@ -29,13 +29,9 @@ PRIMITIVES = frozenset(f"{name}{bits}" for name in ("int", "uint") for bits in (
 def arguments(parser: argparse.ArgumentParser) -> None:
     comments = parser.add_mutually_exclusive_group()
     comments.add_argument(
-        "--all-comments",
-        action="store_true",
-        help="Show all comments, including for nested interface definitions",
+        "--all-comments", action="store_true", help="Show all comments, including for nested interface definitions"
     )
-    comments.add_argument(
-        "--no-comments", action="store_true", help="Show no comments or whitespace"
-    )
+    comments.add_argument("--no-comments", action="store_true", help="Show no comments or whitespace")
     parser.add_argument(
         "type",
         help="Show an interface definition (e.g. 'example_interfaces/msg/String'). Passing '-' "

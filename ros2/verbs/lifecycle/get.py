@@ -22,9 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     options.answers(parser)
     add = parser.add_argument
     add(
-        "node_name",
-        nargs="?",
-        help="Name of the ROS node. If no name is provided, then get the state for all nodes.",
+        "node_name", nargs="?", help="Name of the ROS node. If no name is provided, then get the state for all nodes."
     )
     add("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
 

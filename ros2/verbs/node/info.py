@@ -18,11 +18,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     options.of_graph(parser)
     add = parser.add_argument
     add("node_name", help="Node name to request information")
-    add(
-        "--include-hidden",
-        action="store_true",
-        help="Display hidden topics, services, and actions as well",
-    )
+    add("--include-hidden", action="store_true", help="Display hidden topics, services, and actions as well")
 
 
 def main(args: argparse.Namespace) -> int | str | None:

@@ -23,17 +23,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("node_name", nargs="?", help="Name of the ROS node")
     add("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
-    add(
-        "--param-prefixes",
-        nargs="+",
-        default=[],
-        help="Only list parameters with the provided prefixes",
-    )
+    add("--param-prefixes", nargs="+", default=[], help="Only list parameters with the provided prefixes")
     add("--param-type", action="store_true", help="Print parameter types with parameter names")
-    add(
-        "--filter",
-        help="Only list parameters that match the given regular expression",
-    )
+    add("--filter", help="Only list parameters that match the given regular expression")
 
 
 def main(args: argparse.Namespace) -> int | str | None:
@@ -49,19 +41,13 @@ def main(args: argparse.Namespace) -> int | str | None:
         else:
             serving = dict(me.node.get_service_names_and_types())
             found = sorted(
-                node
-                for node in set(naming.nodes(me.node, hidden=hidden))
-                if f"{node}/list_parameters" in serving
+                node for node in set(naming.nodes(me.node, hidden=hidden)) if f"{node}/list_parameters" in serving
             )
-        silent = [
-            str(told) for node in found if (told := _tell(me, node, args, pattern)) is not None
-        ]
+        silent = [str(told) for node in found if (told := _tell(me, node, args, pattern)) is not None]
     return "\n".join(silent) or None
 
 
-def _tell(
-    me: Guest, node: str, args: argparse.Namespace, pattern: re.Pattern[str]
-) -> NoAnswerError | None:
+def _tell(me: Guest, node: str, args: argparse.Namespace, pattern: re.Pattern[str]) -> NoAnswerError | None:
     """Print what a node has; return why it did not say."""
     try:
         response = parameters.call(me, node, "ListParameters", prefixes=args.param_prefixes)
@@ -69,10 +55,7 @@ def _tell(
         lines = [plain(name) for name in names]
         if args.param_type:
             described = parameters.call(me, node, "DescribeParameters", names=names)
-            lines = [
-                f"{plain(each.name)} (type: {parameters.TYPES[each.type]})"
-                for each in described.descriptors
-            ]
+            lines = [f"{plain(each.name)} (type: {parameters.TYPES[each.type]})" for each in described.descriptors]
     except NoAnswerError as error:
         return error
     if not args.node_name:

@@ -22,11 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("node_name", help="Name of the ROS node")
     add("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
     add("parameter_file", help="Parameter file")
-    add(
-        "--no-use-wildcard",
-        action="store_true",
-        help="Do not load parameters in the '/**' namespace into the node",
-    )
+    add("--no-use-wildcard", action="store_true", help="Do not load parameters in the '/**' namespace into the node")
 
 
 def main(args: argparse.Namespace) -> int | str | None:
@@ -43,9 +39,6 @@ def main(args: argparse.Namespace) -> int | str | None:
         return str(error)
     except YamlError as error:
         return f"{file}:{error.line}:{error.column}: {localized(error.message)}"
-    wanted = [
-        Parameter(name=name, value=parameters.typed_value(name, value))
-        for name, value in found.items()
-    ]
+    wanted = [Parameter(name=name, value=parameters.typed_value(name, value)) for name, value in found.items()]
     done, failed = "Set parameter {name} successful", "Set parameter {name} failed"
     return parameters.write(args, wanted, done=done, failed=failed)

@@ -37,24 +37,14 @@ def arguments(parser: ArgumentParser) -> None:
         help="The package.xml format.",
     )  # fmt: skip
     parser.add_argument(
-        "--description",
-        default="TODO: Package description",
-        help="The description given in the package.xml",
+        "--description", default="TODO: Package description", help="The description given in the package.xml"
+    )
+    parser.add_argument("--license", default=NO_LICENSE, help="The license attached to this package")
+    parser.add_argument(
+        "--destination-directory", type=Path, default=Path(), help="Directory where to create the package directory"
     )
     parser.add_argument(
-        "--license", default=NO_LICENSE, help="The license attached to this package"
-    )
-    parser.add_argument(
-        "--destination-directory",
-        type=Path,
-        default=Path(),
-        help="Directory where to create the package directory",
-    )
-    parser.add_argument(
-        "--build-type",
-        default="ament_cmake",
-        choices=BUILD_TYPES,
-        help="The build type to process the package with",
+        "--build-type", default="ament_cmake", choices=BUILD_TYPES, help="The build type to process the package with"
     )
     parser.add_argument("--dependencies", nargs="+", default=[], help="list of dependencies")
     parser.add_argument("--maintainer-email", default="", help="email address of the maintainer")
@@ -78,10 +68,7 @@ def main(args: Namespace) -> int | str | None:
     if args.node_name == args.package_name:
         # Its file would hide the package of the same name.
         args.node_name += "_node"
-        print(
-            "[WARNING] node name can not be equal to the package name: "
-            f"it is called '{args.node_name}'"
-        )
+        print(f"[WARNING] node name can not be equal to the package name: it is called '{args.node_name}'")
     folder = args.destination_directory / args.package_name
     if folder.exists():
         return f"\nAborted!\nThe directory already exists: {folder}"

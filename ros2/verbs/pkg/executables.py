@@ -14,9 +14,7 @@ SUMMARY = "Output a list of package specific executables"
 
 def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("package_name", nargs="?", help="The package name")
-    parser.add_argument(
-        "--full-path", action="store_true", help="Show the full path of each executable"
-    )
+    parser.add_argument("--full-path", action="store_true", help="Show the full path of each executable")
 
 
 def main(args: Namespace) -> str | None:

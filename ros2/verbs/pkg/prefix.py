@@ -14,9 +14,7 @@ SUMMARY = "Output the prefix path of a package"
 
 def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("package_name", help="The package name")
-    parser.add_argument(
-        "--share", action="store_true", help="Show share directory for the package prefix"
-    )
+    parser.add_argument("--share", action="store_true", help="Show share directory for the package prefix")
 
 
 def main(args: Namespace) -> str | None:

@@ -33,13 +33,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "otherwise the service request will be published with default values",
     )
     values.add_argument("--stdin", action="store_true", help="Read values from standard input")
-    add(
-        "-r",
-        "--rate",
-        metavar="N",
-        type=float,
-        help="Repeat the call at a specific rate in Hz",
-    )
+    add("-r", "--rate", metavar="N", type=float, help="Repeat the call at a specific rate in Hz")
 
 
 def main(args: argparse.Namespace) -> int | str | None:

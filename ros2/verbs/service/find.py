@@ -23,9 +23,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int | str | None:
     with joined(args, settled=True) as me:
-        known = naming.shown(
-            me.node.get_service_names_and_types(), hidden=args.include_hidden_services
-        )
+        known = naming.shown(me.node.get_service_names_and_types(), hidden=args.include_hidden_services)
     names = [name for name, types in known if args.service_type in types]
     if args.count_services:
         print(len(names))

@@ -17,25 +17,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     options.of_graph(parser)
     add = parser.add_argument
     add("-t", "--show-types", action="store_true", help="Additionally show the service type")
-    add(
-        "-c",
-        "--count-services",
-        action="store_true",
-        help="Only display the number of services discovered",
-    )
-    add(
-        "--include-hidden-services",
-        action="store_true",
-        help="Consider hidden services as well",
-    )
+    add("-c", "--count-services", action="store_true", help="Only display the number of services discovered")
+    add("--include-hidden-services", action="store_true", help="Consider hidden services as well")
 
 
 def main(args: argparse.Namespace) -> int | str | None:
     """Print their names, with types if asked."""
     with joined(args, settled=True) as me:
-        services = naming.shown(
-            me.node.get_service_names_and_types(), hidden=args.include_hidden_services
-        )
+        services = naming.shown(me.node.get_service_names_and_types(), hidden=args.include_hidden_services)
     if args.count_services:
         print(len(services))
         return None

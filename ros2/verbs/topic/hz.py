@@ -39,8 +39,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--wall-time",
         action="store_true",
-        help="calculates rate using wall time which can be helpful when clock is not published "
-        "during simulation",
+        help="calculates rate using wall time which can be helpful when clock is not published during simulation",
     )
     options.qos(parser, "subscribe", "sensor_data")
     options.hidden_topics(parser)
@@ -79,7 +78,4 @@ def main(args: argparse.Namespace) -> int | str | None:
             elif gaps.values and last >= printed + EVERY_S:
                 printed = last
                 mean = gaps.mean
-                print(
-                    f"average rate: {1 / mean if mean > 0 else 0:.3f}\n\t{gaps.spread}",
-                    flush=True,
-                )
+                print(f"average rate: {1 / mean if mean > 0 else 0:.3f}\n\t{gaps.spread}", flush=True)

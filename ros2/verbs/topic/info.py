@@ -51,7 +51,6 @@ def main(args: argparse.Namespace) -> int | str | None:
 
 
 def _named(info: TopicEndpointInfo) -> TopicEndpointInfo:
-    """Keep each name in its line."""
     info.node_name = plain(info.node_name)
     info.node_namespace = plain(info.node_namespace)
     info.topic_type = plain(info.topic_type)

@@ -18,12 +18,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     options.of_graph(parser)
     add = parser.add_argument
     add("-t", "--show-types", action="store_true", help="Additionally show the topic type")
-    add(
-        "-c",
-        "--count-topics",
-        action="store_true",
-        help="Only display the number of topics discovered",
-    )
+    add("-c", "--count-topics", action="store_true", help="Only display the number of topics discovered")
     options.hidden_topics(parser)
     add("-v", "--verbose", action="store_true", help="List full details about each topic")
 
@@ -31,9 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int | str | None:
     """Print their names, with types or numbers of endpoints if asked."""
     with joined(args, settled=True) as me:
-        topics = naming.shown(
-            me.node.get_topic_names_and_types(), hidden=args.include_hidden_topics
-        )
+        topics = naming.shown(me.node.get_topic_names_and_types(), hidden=args.include_hidden_topics)
         if args.count_topics:
             print(len(topics))
         elif args.verbose:
@@ -46,9 +39,7 @@ def main(args: argparse.Namespace) -> int | str | None:
     return None
 
 
-def _print_ends(
-    topics: list[tuple[str, list[str]]], title: str, what: str, count: Callable[[str], int]
-) -> None:
+def _print_ends(topics: list[tuple[str, list[str]]], title: str, what: str, count: Callable[[str], int]) -> None:
     print(f"{title} topics:")
     for name, types in topics:
         if ends := naming.count(name, count):

@@ -49,21 +49,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="Publishing rate in Hz (default: 1)",
     )
     add(
-        "-p",
-        "--print",
-        metavar="N",
-        type=int,
-        default=1,
-        help="Only print every N-th published message (default: 1)",
+        "-p", "--print", metavar="N", type=int, default=1, help="Only print every N-th published message (default: 1)"
     )
     times = parser.add_mutually_exclusive_group()
     times.add_argument("-1", "--once", action="store_true", help="Publish one message and exit")
     times.add_argument(
-        "-t",
-        "--times",
-        type=options.unsigned_int,
-        default=0,
-        help="Publish this number of times and then exit",
+        "-t", "--times", type=options.unsigned_int, default=0, help="Publish this number of times and then exit"
     )
     add(
         "-w",
@@ -101,16 +92,10 @@ def main(args: argparse.Namespace) -> int | str | None:
     if values is None:
         return "The passed value needs to be a dictionary in YAML format"
     draft = filled(kind, values)
-    default = QoSProfile(
-        depth=1,
-        reliability=ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL,
-    )
+    default = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     times, arrives = 1 if args.once else args.times, Duration(seconds=ARRIVES_S)
     with joined(args, args.node_name) as me:
-        publisher = me.node.create_publisher(
-            kind, args.topic_name, options.chosen_qos(args, default)
-        )
+        publisher = me.node.create_publisher(kind, args.topic_name, options.chosen_qos(args, default))
         if trouble := _await_subscriptions(args, publisher, times):
             return trouble
         print("publisher: beginning loop", flush=True)
@@ -152,10 +137,7 @@ def _await_subscriptions(args: argparse.Namespace, publisher: Publisher, times: 
     while (found := publisher.get_subscription_count()) < wanted:
         waited = time.monotonic() - start
         if args.max_wait_time_secs is not None and waited >= args.max_wait_time_secs:
-            return (
-                f"Timed out waiting for subscribers: Expected {wanted} subcribers but only got "
-                f"{found} subscribers"
-            )
+            return f"Timed out waiting for subscribers: Expected {wanted} subcribers but only got {found} subscribers"
         if looks % LOOKS_A_LINE == 0:
             print(f"Waiting for at least {wanted} matching subscription(s)...", flush=True)
         looks += 1

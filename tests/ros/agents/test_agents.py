@@ -39,15 +39,9 @@ from tests.waiting import until, wait_until
 pytestmark = pytest.mark.nightly
 REPEAT_FOR_S = 1.0
 GATED: dict[str, Any] = {
-    "sonar": {
-        "run": "nodes.mock_sonar",
-        "params": {"pattern": "constant", "value": 3.0, "rate": 10.0},
-    },
+    "sonar": {"run": "nodes.mock_sonar", "params": {"pattern": "constant", "value": 3.0, "rate": 10.0}},
     # It holds the first command that it ever hears for `settle_s`.
-    "safety_stop": {
-        "run": "nodes.safety_stop",
-        "params": {"gate": True, "rate": 20.0, "settle_s": 0.1},
-    },
+    "safety_stop": {"run": "nodes.safety_stop", "params": {"gate": True, "rate": 20.0, "settle_s": 0.1}},
     "electronic_differential": {
         "run": "nodes.electronic_differential",
         "params": {"drive_topic": "/drive_safe", "rate": 20.0, "max_age_s": 0.5},
@@ -80,7 +74,6 @@ async def running(
 
 @asynccontextmanager
 async def screen() -> AsyncIterator[SupervisorClient]:
-    """A screen at which a person can answer."""
     link = await attach()
     await link.attend()
     try:
@@ -96,14 +89,12 @@ class Agent:
         self.client = client
 
     async def call(self, tool: str, **arguments: object) -> dict[str, Any]:
-        """Call a tool that answers; return its facts."""
         result = await self.client.call_tool(tool, arguments)
         assert not result.is_error, result.content
         facts: dict[str, Any] = result.structured_content
         return facts
 
     async def refused(self, tool: str, **arguments: object) -> str:
-        """Call a tool that refuses; return why."""
         result = await self.client.call_tool(tool, arguments)
         assert result.is_error, result.content
         (block,) = result.content
@@ -111,7 +102,6 @@ class Agent:
         return block.text
 
     async def proposed(self, *commands: dict[str, object], reason: str = "") -> str:
-        """Propose; return the id."""
         proposal = (await self.call("propose", commands=list(commands), reason=reason))["proposal"]
         assert isinstance(proposal, str)
         return proposal
@@ -119,9 +109,7 @@ class Agent:
 
 def command(*options: str) -> StdioServerParameters:
     """The command that an agent is told to start."""
-    return StdioServerParameters(
-        command=sys.executable, args=["-m", "tui", "mcp", *options], env=dict(os.environ)
-    )
+    return StdioServerParameters(command=sys.executable, args=["-m", "tui", "mcp", *options], env=dict(os.environ))
 
 
 @asynccontextmanager
@@ -133,7 +121,6 @@ async def agent(*options: str, name: str = "claude") -> AsyncIterator[Agent]:
 
 
 def drive(speed: float, steering: float = 0.0) -> dict[str, object]:
-    """A drive."""
     return {"action": "drive", "speed": speed, "steering": steering}
 
 
@@ -143,7 +130,6 @@ def speeds(peer: Peer) -> list[AckermannDriveStamped]:
 
 
 def moved(told: list[AckermannDriveStamped]) -> bool:
-    """Whether the wheels were told to turn."""
     return any(one.drive.speed != 0.0 for one in told)
 
 
@@ -244,8 +230,7 @@ async def test_it_looks_and_drives_only_as_far_as_the_person_lets_it(
         lines = [line for line in await link.history(None, 200) if line.source == "agent"]
         (does,) = [line.text for line in lines if line.severity is Severity.INFO]
         assert does == (
-            f"agent “claude” does {answer['proposal']}: "
-            "drives at 0.2 m/s, steering 0.1 rad, for 1 s: 0.20 m at most"
+            f"agent “claude” does {answer['proposal']}: drives at 0.2 m/s, steering 0.1 rad, for 1 s: 0.20 m at most"
         )
 
 
@@ -259,9 +244,7 @@ async def test_an_agent_that_goes_away_leaves_a_robot_that_stands(
         async with agent("--approve", "always") as claude:
             await lets(claude)
             proposal = await claude.proposed(drive(0.1))
-            executing = asyncio.create_task(
-                claude.client.call_tool("execute", {"proposal": proposal})
-            )
+            executing = asyncio.create_task(claude.client.call_tool("execute", {"proposal": proposal}))
             await until(lambda: moved(told), "wheels that turn")
         with contextlib.suppress(Exception):
             await executing
@@ -301,11 +284,7 @@ HELLO = {
     "jsonrpc": "2.0",
     "id": 1,
     "method": "initialize",
-    "params": {
-        "protocolVersion": "2025-06-18",
-        "capabilities": {},
-        "clientInfo": {"name": "raw", "version": "1"},
-    },
+    "params": {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "raw", "version": "1"}},
 }
 
 
@@ -316,7 +295,6 @@ def _own_config(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @contextmanager
 def http() -> Iterator[tuple[DeckProcess, str, str]]:
-    """The program, its address, and the token."""
     (token,) = deck("mcp", "--show-token").lines
     process = DeckProcess("mcp", "--http", "--port", "0", "--lang", "en")
     try:
@@ -331,7 +309,6 @@ def http() -> Iterator[tuple[DeckProcess, str, str]]:
 
 
 def status(address: str, **headers: str) -> int:
-    """Return the status of a request."""
     body = json.dumps(HELLO).encode()
     given = {
         "Content-Type": "application/json",

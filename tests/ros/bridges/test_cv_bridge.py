@@ -21,7 +21,6 @@ RED = (0, 0, 255)
 
 @pytest.fixture
 def bridge() -> CvBridge:
-    """A bridge."""
     return CvBridge()
 
 
@@ -82,9 +81,7 @@ def test_the_order_of_bytes_is_the_messages(bridge: CvBridge) -> None:
         ("bgr8", "bayer_rggb8", "Unsupported conversion"),
     ],
 )
-def test_what_makes_no_sense_is_refused(
-    bridge: CvBridge, source: str, target: str, words: str
-) -> None:
+def test_what_makes_no_sense_is_refused(bridge: CvBridge, source: str, target: str, words: str) -> None:
     message = bridge.cv2_to_imgmsg(picture(*ENCODINGS[source]), source)
     with pytest.raises(CvBridgeError, match=words):
         bridge.imgmsg_to_cv2(message, target)

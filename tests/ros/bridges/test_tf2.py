@@ -39,9 +39,7 @@ def at(seconds: float) -> Time:
     return Time(nanoseconds=int(seconds * S))
 
 
-def transform(
-    parent: str, child: str, x: float = 0.0, *, yaw: float = 0.0, time: float = 0.0
-) -> Any:
+def transform(parent: str, child: str, x: float = 0.0, *, yaw: float = 0.0, time: float = 0.0) -> Any:
     """Return where a frame is: so far ahead of its parent, and turned to the left."""
     found = TransformStamped(child_frame_id=child)
     found.header.frame_id = parent
@@ -106,7 +104,6 @@ def test_why_there_is_no_transform(
 
 @pytest.fixture
 def nodes(ros_domain: int) -> Iterator[tuple[Node, Node]]:
-    """One node that tells, and one that listens."""
     context = Context()
     rclpy.init(context=context, domain_id=ros_domain)
     made = (Node("teller", context=context), Node("listener", context=context))
@@ -184,8 +181,5 @@ def test_a_buffer_that_nothing_fills_says_which_line_asks_it(
     assert len(told) == 1
     fault = warning_in(told[0].partition("]: ")[2], "/nowhere")
     assert fault is not None
-    assert (fault.file, fault.source_line) == (
-        __file__,
-        'assert not each.can_transform("base_link", "tool", NEWEST)',
-    )
+    assert (fault.file, fault.source_line) == (__file__, 'assert not each.can_transform("base_link", "tool", NEWEST)')
     assert "TransformListener(self.buffer, self)" in fault.meaning

@@ -79,9 +79,7 @@ def test_where_only_the_supervisor_hangs_ps_names_the_nodes_and_down_ends_them(
     told = deck("ps")
     assert told.process.returncode == 1
     (words,) = told.errors
-    assert (
-        f"(domain {ros_domain}): the supervisor (pid {session['supervisor_pid']}) does not" in words
-    )
+    assert f"(domain {ros_domain}): the supervisor (pid {session['supervisor_pid']}) does not" in words
     assert all(f"{name} ({pid})" in words for name, pid in pids.items())
     told = deck("ps", "--json")
     (silent,) = json.loads("\n".join(told.lines))
@@ -93,9 +91,7 @@ def test_where_only_the_supervisor_hangs_ps_names_the_nodes_and_down_ends_them(
     assert not any(map(alive, pids.values()))
 
 
-def test_a_stop_that_is_remembered_is_told_with_the_way_to_release_it(
-    tmp_path: Path, ros_domain: int
-) -> None:
+def test_a_stop_that_is_remembered_is_told_with_the_way_to_release_it(tmp_path: Path, ros_domain: int) -> None:
     path = str(written(tmp_path, ONE, "one.yaml"))
     told = (
         f"■ EMERGENCY STOP in domain {ros_domain}: its robot does not move until the stop is"
@@ -115,9 +111,7 @@ def test_a_stop_that_is_remembered_is_told_with_the_way_to_release_it(
 
 
 @pytest.mark.parametrize("words", [["logs", "-f"], ["down"]])
-def test_a_command_whose_supervisor_is_killed_meanwhile_says_so(
-    tmp_path: Path, words: list[str]
-) -> None:
+def test_a_command_whose_supervisor_is_killed_meanwhile_says_so(tmp_path: Path, words: list[str]) -> None:
     """It hangs, so that the command is sure to wait for it."""
     deck("up", str(written(tmp_path, ONE, "one.yaml")))
     supervisor = running()[0].supervisor_pid
@@ -136,9 +130,7 @@ def test_a_command_whose_supervisor_is_killed_meanwhile_says_so(
 def is_connected(pid: int) -> bool:
     """Whether a process has a connected Unix socket besides the pair that is asyncio's own."""
     connected = {
-        words[6]
-        for line in Path("/proc/net/unix").read_text().splitlines()
-        if (words := line.split())[5] == "03"
+        words[6] for line in Path("/proc/net/unix").read_text().splitlines() if (words := line.split())[5] == "03"
     }
     links = []
     for held in Path(f"/proc/{pid}/fd").iterdir():
@@ -163,9 +155,7 @@ def test_two_at_once_are_told_apart_by_name(tmp_path: Path, other_domain: int) -
     assert deck("down").lines == ["two stopped, 2 nodes"]
 
 
-def test_a_second_one_in_the_same_domain_is_refused_where_the_two_collide(
-    tmp_path: Path, ros_domain: int
-) -> None:
+def test_a_second_one_in_the_same_domain_is_refused_where_the_two_collide(tmp_path: Path, ros_domain: int) -> None:
     deck("up", str(written(tmp_path, ONE, "one.yaml")))
     for command in ("up", "run"):
         second = deck(command, str(written(tmp_path, TWO, "two.yaml")))

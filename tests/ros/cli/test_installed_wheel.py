@@ -20,8 +20,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Installed:
 def test_a_lesson_runs(installed: Installed, warm: str) -> None:
     profile = installed.site.parent / "mine.yaml"
     profile.write_text(
-        "extends: 02-sonar-safety\n"
-        f"nodes: {{sonar_front: {{warm: {warm}}}, safety_stop: {{warm: {warm}}}}}\n"
+        f"extends: 02-sonar-safety\nnodes: {{sonar_front: {{warm: {warm}}}, safety_stop: {{warm: {warm}}}}}\n"
     )
     said = installed.deck("run", str(profile), "--for", "4", "--lang", "en")
     assert "[sonar_front]" in said

@@ -42,10 +42,7 @@ class Lesson:
 
     def answered(self) -> list[dict[str, str]]:
         """Return what the brain has told of each answer of the model."""
-        told = [
-            {value.key: value.value for value in message.status[0].values}
-            for message in list(self._states)
-        ]
+        told = [{value.key: value.value for value in message.status[0].values} for message in list(self._states)]
         return [state for state in told if state.get("total_s")]
 
 

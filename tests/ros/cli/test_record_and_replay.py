@@ -56,9 +56,7 @@ def test_when_nothing_came_it_says_so_and_fails(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["/a//b", "/1st", "/a/", "sönar"])
-def test_what_is_no_topic_name_is_refused_before_anything_is_recorded(
-    name: str, tmp_path: Path
-) -> None:
+def test_what_is_no_topic_name_is_refused_before_anything_is_recorded(name: str, tmp_path: Path) -> None:
     run = deck("record", name, "-o", str(tmp_path / "bag"))
     assert run.process.returncode == 2
     assert f"'{name}' is not a valid topic name; write it as /sensor/sonar_front" in run.errors[0]
@@ -97,9 +95,7 @@ def write_drive(folder: Path, seconds: int) -> Path:
     return folder
 
 
-def test_messages_are_heard_in_their_order_and_latched_ones_too(
-    ros_domain: int, tmp_path: Path
-) -> None:
+def test_messages_are_heard_in_their_order_and_latched_ones_too(ros_domain: int, tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "walk", seconds=1.0)
     with Peer(ros_domain) as peer:
         numbers, names = peer.hear("/number", Float32), peer.hear("/map_name", String)
@@ -112,9 +108,7 @@ def test_messages_are_heard_in_their_order_and_latched_ones_too(
     assert [message.data for message in numbers] == [float(count) for count in range(11)]
     assert names[0].data == "kitchen"
     assert f"publishing walk in domain {ros_domain}: 2 topics, 1 s" in run.lines[0]
-    assert any(
-        line.startswith("not published: /battery: ") and "other_msgs" in line for line in run.lines
-    )
+    assert any(line.startswith("not published: /battery: ") and "other_msgs" in line for line in run.lines)
     assert run.lines[-1] == "published: 1 s of 1 s · 12 messages"
     assert own_words("\n".join(run.errors)) == ""
 
@@ -123,15 +117,10 @@ def test_what_moves_a_robot_is_left_out_by_default(ros_domain: int, tmp_path: Pa
     bag = write_drive(tmp_path / "drive", seconds=1)
     with Peer(ros_domain) as peer:
         moving = [peer.hear("/cmd_vel", Twist), peer.hear("/ai_command", String)]
-        stops, distances = (
-            peer.hear("/emergency_stop", Bool),
-            peer.hear("/sensor/sonar_front", Float32),
-        )
+        stops, distances = (peer.hear("/emergency_stop", Bool), peer.hear("/sensor/sonar_front", Float32))
         run = DeckProcess("replay", str(bag), "--publish")
         assert run.finish() == 0
-        wait_until(
-            lambda: len(distances) == 11, lambda: f"11 distances; there are {len(distances)}"
-        )
+        wait_until(lambda: len(distances) == 11, lambda: f"11 distances; there are {len(distances)}")
         assert [len(heard) for heard in (*moving, stops)] == [0, 0, 0]
     left_out = [line.split(": ")[1] for line in run.lines if line.startswith("not published")]
     assert left_out == ["/ai_command", "/cmd_vel", "/cmd_vel_stamped", "/emergency_stop"]
@@ -155,9 +144,7 @@ def test_from_the_middle_and_again(ros_domain: int, tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "walk", seconds=1.0)
     with Peer(ros_domain) as peer:
         numbers, names = peer.hear("/number", Float32), peer.hear("/map_name", String)
-        run = DeckProcess(
-            "replay", str(bag), "--publish", "--start", "0.8", "--loop", "--rate", "4"
-        )
+        run = DeckProcess("replay", str(bag), "--publish", "--start", "0.8", "--loop", "--rate", "4")
         wait_until(lambda: len(numbers) >= 6, "the second time round")
         run.signal(signal.SIGTERM)
         assert run.finish() == 0
@@ -166,9 +153,7 @@ def test_from_the_middle_and_again(ros_domain: int, tmp_path: Path) -> None:
     assert names[0].data == "kitchen"
 
 
-def test_a_topic_recorded_without_its_slash_is_published_as_ros_resolves_it(
-    ros_domain: int, tmp_path: Path
-) -> None:
+def test_a_topic_recorded_without_its_slash_is_published_as_ros_resolves_it(ros_domain: int, tmp_path: Path) -> None:
     write_mcap(tmp_path / "walk_0.mcap", topic="chatter")
     with Peer(ros_domain) as peer:
         heard = peer.hear("/chatter", String)

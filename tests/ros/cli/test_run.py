@@ -59,9 +59,7 @@ def test_nodes_that_fail_are_named_and_the_exit_code_says_so(tmp_path: Path) -> 
     run = deck("run", str(path), "--for", "0.5", "--json")
     assert run.process.returncode == 1
     nodes = {node["node"]: node for node in run.events()[-1]["nodes"]}
-    assert {name for name, node in nodes.items() if not node["healthy"]} == {
-        *("bad", "late", "stuck")
-    }
+    assert {name for name, node in nodes.items() if not node["healthy"]} == {*("bad", "late", "stuck")}
     assert nodes["bad"]["exit_code"] == 3
     assert nodes["missing"]["state"] == "exited"
     assert "not ready within 0.5 s" in nodes["late"]["detail"]
@@ -91,11 +89,7 @@ def test_a_signal_stops_in_order_dependants_first(number: signal.Signals, tmp_pa
     run.signal(number)
     assert run.finish() == 0
     events = run.events()
-    ends = [
-        event["node"]
-        for event in events
-        if event["event"] == "status" and event["state"] == "exited"
-    ]
+    ends = [event["node"] for event in events if event["event"] == "status" and event["state"] == "exited"]
     assert ends == ["top", "base"]
     assert events[-1]["event"] == "summary"
     assert run.errors == []
@@ -120,10 +114,7 @@ def test_the_second_ctrl_c_does_not_wait(tmp_path: Path) -> None:
 
 
 def test_a_reader_that_goes_stops_the_nodes_and_harms_nobody(tmp_path: Path) -> None:
-    path = written(
-        tmp_path,
-        'nodes: {talker: {exec: [sh, -c, "echo pid $$; sleep 1; while :; do echo x; done"]}}',
-    )
+    path = written(tmp_path, 'nodes: {talker: {exec: [sh, -c, "echo pid $$; sleep 1; while :; do echo x; done"]}}')
     reader, writer = os.pipe()
     process = subprocess.Popen(
         [sys.executable, "-m", "tui", "run", str(path)],
@@ -190,9 +181,7 @@ VALUES = {
 @pytest.mark.parametrize("warm", [True, False])
 def test_parameters_reach_the_node_with_their_types(warm: bool, tmp_path: Path) -> None:
     names = json.dumps(sorted(VALUES))
-    (tmp_path / "tell_parameters.py").write_text(
-        PARAMETERS.replace("NAMES", repr(names)), encoding="utf-8"
-    )
+    (tmp_path / "tell_parameters.py").write_text(PARAMETERS.replace("NAMES", repr(names)), encoding="utf-8")
     params = dict(VALUES, mixed=[1, 2.5])
     node = {"run": "./tell_parameters.py", "params": params, "warm": warm, "ready": {"node": "x"}}
     written(tmp_path, json.dumps({"nodes": {"teller": node}}, ensure_ascii=False))
@@ -200,9 +189,7 @@ def test_parameters_reach_the_node_with_their_types(warm: bool, tmp_path: Path) 
     line = run.said("[teller] teller {")
     got = json.loads(line.partition("[teller] teller ")[2])
     assert got == VALUES
-    assert {name: type(value) for name, value in got.items()} == {
-        name: type(value) for name, value in VALUES.items()
-    }
+    assert {name: type(value) for name, value in got.items()} == {name: type(value) for name, value in VALUES.items()}
 
 
 def gone(process: psutil.Process) -> bool:

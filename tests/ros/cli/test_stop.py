@@ -23,9 +23,7 @@ async def test_a_stop_is_confirmed_by_those_that_obey_it(start: Launch, ros_doma
     assert "Ctrl+R" in done.errors[0]
 
 
-async def test_a_stop_that_nobody_confirms_holds_and_is_no_success(
-    start: Launch, ros_domain: int
-) -> None:
+async def test_a_stop_that_nobody_confirms_holds_and_is_no_success(start: Launch, ros_domain: int) -> None:
     await start({"node": {"exec": SLEEPER}})
     with NodeProcess(NODE, ros_domain, arguments=DEAF) as node:
         node.wait_for_words("listens to")

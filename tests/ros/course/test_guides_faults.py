@@ -56,9 +56,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-async def test_the_guides_files_run_and_their_faults_are_explained(
-    start: Launch, folder: Path
-) -> None:
+async def test_the_guides_files_run_and_their_faults_are_explained(start: Launch, folder: Path) -> None:
     (folder / "talk.py").write_text(TALK)
     client = await start(
         {
@@ -86,9 +84,7 @@ async def test_the_guides_files_run_and_their_faults_are_explained(
     assert sum(END in fault for _, fault, _ in ends) > len(ends) / 2, ends
 
 
-def test_in_the_shell_they_run_as_well_and_their_ends_are_explained(
-    folder: Path, ros_domain: int
-) -> None:
+def test_in_the_shell_they_run_as_well_and_their_ends_are_explained(folder: Path, ros_domain: int) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "tui", "shell", "-c", IN_THE_SHELL],
         cwd=folder,

@@ -63,8 +63,7 @@ rclpy.shutdown()
 KINDS = yaml.safe_load(Path(__file__).with_name("kinds.yaml").read_text("utf-8"))
 PASSING: dict[str, dict[str, Any]] = KINDS["passing"]
 FAILING, UNJUDGED = (
-    {name: (row["check"], row["said"]) for name, row in KINDS[group].items()}
-    for group in ("failing", "unjudged")
+    {name: (row["check"], row["said"]) for name, row in KINDS[group].items()} for group in ("failing", "unjudged")
 )
 
 
@@ -77,9 +76,7 @@ def all_checks() -> dict[str, dict[str, Any]]:
 
 
 @pytest.fixture(scope="module")
-def results(
-    domain_pool: DomainPool, tmp_path_factory: pytest.TempPathFactory
-) -> dict[str, CheckResult]:
+def results(domain_pool: DomainPool, tmp_path_factory: pytest.TempPathFactory) -> dict[str, CheckResult]:
     """What the judge says of each: all at the same time, in one session."""
     folder = tmp_path_factory.mktemp("lesson")
     shutil.copy(Path(__file__).with_name("actor.py"), folder)
@@ -135,18 +132,14 @@ def test_what_holds_passes(name: str, results: dict[str, CheckResult]) -> None:
 
 
 @pytest.mark.parametrize("name", FAILING)
-def test_what_does_not_hold_fails_and_says_what_was_seen(
-    name: str, results: dict[str, CheckResult]
-) -> None:
+def test_what_does_not_hold_fails_and_says_what_was_seen(name: str, results: dict[str, CheckResult]) -> None:
     found = results[f"fail-{name}"]
     assert found.state is State.FAILED
     assert FAILING[name][1] in found.seen
 
 
 @pytest.mark.parametrize("name", UNJUDGED)
-def test_a_fault_of_the_lesson_is_not_the_learners(
-    name: str, results: dict[str, CheckResult]
-) -> None:
+def test_a_fault_of_the_lesson_is_not_the_learners(name: str, results: dict[str, CheckResult]) -> None:
     found = results[f"none-{name}"]
     assert found.state is State.UNJUDGED
     assert UNJUDGED[name][1] in found.seen

@@ -31,9 +31,7 @@ NAMES = [folder.name for folder in folders(SHIPPED)]
 
 @pytest.fixture(scope="module")
 def complaints(
-    request: pytest.FixtureRequest,
-    domain_pool: DomainPool,
-    tmp_path_factory: pytest.TempPathFactory,
+    request: pytest.FixtureRequest, domain_pool: DomainPool, tmp_path_factory: pytest.TempPathFactory
 ) -> dict[str, list[str]]:
     """By lesson, what does not prove what it should; all at once, which is quicker."""
     place = tmp_path_factory.mktemp("proof")
@@ -60,19 +58,11 @@ async def _all(chosen: list[LessonFolder], domains: list[int]) -> list[tuple[str
     """Return lesson and complaint, of all that have one; whole robots one at a time, at the end."""
     robots = [lesson for lesson in chosen if len(lesson.profile.nodes) > NODES_OF_MANY]
     others = [lesson for lesson in chosen if lesson not in robots]
-    found = await asyncio.gather(
-        _proven(others, domains[:PROVEN_AT_ONCE]), _graded(others, domains[PROVEN_AT_ONCE:])
-    )
-    return [
-        *found[0],
-        *found[1],
-        *await _proven(robots, domains[:1]),
-        *await _graded(robots, domains[:1]),
-    ]
+    found = await asyncio.gather(_proven(others, domains[:PROVEN_AT_ONCE]), _graded(others, domains[PROVEN_AT_ONCE:]))
+    return [*found[0], *found[1], *await _proven(robots, domains[:1]), *await _graded(robots, domains[:1])]
 
 
 async def _proven(chosen: list[LessonFolder], domains: list[int]) -> list[tuple[str, str]]:
-    """Try each starter and each mistake."""
     everything = [each for lesson in chosen for each in variants(lesson)]
     others = [each for each in everything if each.name != "solution"]
     return [
@@ -83,7 +73,6 @@ async def _proven(chosen: list[LessonFolder], domains: list[int]) -> list[tuple[
 
 
 async def _graded(chosen: list[LessonFolder], domains: list[int]) -> list[tuple[str, str]]:
-    """Grade each solution by the command."""
     waiting = list(chosen)
     found: list[tuple[str, str]] = []
 

@@ -21,14 +21,10 @@ from tests.waiting import wait_until
 
 
 def value(*sent: Sent) -> dict[str, Any]:
-    """A message as a peer takes it."""
     return {
         "transforms": [
             {
-                "header": {
-                    "stamp": {"sec": int(one.stamp_s), "nanosec": 0},
-                    "frame_id": one.parent,
-                },
+                "header": {"stamp": {"sec": int(one.stamp_s), "nanosec": 0}, "frame_id": one.parent},
                 "child_frame_id": one.child,
                 "transform": {
                     "translation": dict(zip("xyz", one.translation, strict=True)),
@@ -46,9 +42,7 @@ def frames(watcher: Watcher, child: str) -> list[FrameRow]:
 
 def see(watcher: Watcher, child: str, test: Any, what: str) -> FrameRow:
     """Wait for a row of this frame that passes."""
-    return wait_until(
-        lambda: next((row for row in frames(watcher, child) if test(row)), None), f"{child}: {what}"
-    )
+    return wait_until(lambda: next((row for row in frames(watcher, child) if test(row)), None), f"{child}: {what}")
 
 
 def repeat(peer: Peer, hz: float, *sent: Sent) -> None:
@@ -81,9 +75,7 @@ def watcher(module_watcher: Watcher) -> Iterator[Watcher]:
     wait_until(lambda: not module_watcher.update.frames, "no frames any more")
 
 
-def test_two_publishers_on_both_topics_are_told_apart(
-    peers: tuple[Peer, Peer], watcher: Watcher
-) -> None:
+def test_two_publishers_on_both_topics_are_told_apart(peers: tuple[Peer, Peer], watcher: Watcher) -> None:
     driver, arm = peers
     repeat(driver, 50, Sent("odom", "base_link", 5.0, (1.0, 2.0, 0.0)))
     latch(arm, Sent("base_link", "camera_link", 0.0, (0.15, 0.0, 0.25)))
@@ -126,10 +118,7 @@ def messages(draw: st.DrawFn) -> TFMessage:
 
 def told(reader: TransformReader, raw: bytes) -> list[Any]:
     names, found = reader.read(raw)
-    return [
-        (*pair, *fields[:2], *map(repr, fields[4:]))
-        for pair, fields in zip(names, found, strict=True)
-    ]
+    return [(*pair, *fields[:2], *map(repr, fields[4:])) for pair, fields in zip(names, found, strict=True)]
 
 
 def expected(message: TFMessage) -> list[Any]:
@@ -152,6 +141,4 @@ def test_any_message_is_read_as_rclpy_reads_it(sent: list[TFMessage]) -> None:
     reader = TransformReader(decoder(TF_MESSAGE))
     for message in (*sent, *reversed(sent)):
         raw = bytes(serialize_message(message))
-        assert (
-            told(reader, raw) == expected(message) == expected(deserialize_message(raw, TFMessage))
-        )
+        assert told(reader, raw) == expected(message) == expected(deserialize_message(raw, TFMessage))

@@ -35,8 +35,7 @@ def watcher(module_domain: int, nodes: subprocess.Popen[bytes]) -> Iterator[Watc
     watcher = Watcher(module_domain)
     watcher.observer.watch_inner_states(True)
     wait_until(
-        lambda: {row.node for row in watcher.update.lifecycles if row.state} == whole(NAMES),
-        "the states of all",
+        lambda: {row.node for row in watcher.update.lifecycles if row.state} == whole(NAMES), "the states of all"
     )
     yield watcher
     watcher.close()

@@ -50,9 +50,7 @@ def test_an_empty_message_of_every_type_survives(type_name: str) -> None:
     assert deserialize_message(serialize_message(to_message(cls, tree)), cls) == message
 
 
-@settings(
-    max_examples=150, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True
-)
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(data=st.data())
 def test_any_message_survives_the_way_there_and_back(data: st.DataObject) -> None:
     type_name = data.draw(st.sampled_from(TYPES))
@@ -100,11 +98,7 @@ def test_nothing_a_person_types_leads_to_more_than_a_field_error(type_name: str,
         ("std_msgs/msg/String", {"data": "a\0b"}, "data: a ROS string cannot hold"),
         ("std_msgs/msg/String", {"data": "\ud800"}, "is not valid Unicode"),
         ("std_msgs/msg/Empty", {"data": 1}, "data: it has no fields at all"),
-        (
-            "std_msgs/msg/Header",
-            {"frame_idd": ""},
-            "frame_idd: no such field; did you mean frame_id?",
-        ),
+        ("std_msgs/msg/Header", {"frame_idd": ""}, "frame_idd: no such field; did you mean frame_id?"),
         ("std_msgs/msg/Header", {"stamp": 5}, "stamp: expected fields by name, got 5"),
         ("std_msgs/msg/Header", {"stamp": {"sec": "x"}}, "stamp.sec: expected a whole number"),
         ("sensor_msgs/msg/JointState", {"name": ["a", 2]}, "name[1]: expected a string, got 2"),
@@ -174,9 +168,7 @@ def test_a_type_that_cannot_be_had_says_why(load: Any, name: str, word: str) -> 
     assert word in str(raised.value)
 
 
-def test_a_broken_package_is_an_unknown_type(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_broken_package_is_an_unknown_type(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "broken_msgs" / "msg"
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("raise RuntimeError('half installed')")
@@ -193,9 +185,7 @@ MESSAGES = [
     Image(height=1, width=2, encoding="rgb8", step=6, data=[1, 2, 3, 4, 5, 255]),
     JointState(name=["a", "б"], position=[0.5, -1.0], velocity=[], effort=[1e300]),
     TFMessage(transforms=[TransformStamped(child_frame_id="camera"), TransformStamped()]),
-    DiagnosticArray(
-        status=[DiagnosticStatus(level=b"\x02", name="x", values=[KeyValue(key="k", value="v")])]
-    ),
+    DiagnosticArray(status=[DiagnosticStatus(level=b"\x02", name="x", values=[KeyValue(key="k", value="v")])]),
     ByteMultiArray(data=[b"\x01", b"\xff"]),
     Int8MultiArray(data=[-1, 2]),
     Odometry(child_frame_id="base_link"),
@@ -236,10 +226,7 @@ def test_every_type_of_jazzys_is_told_to_a_bag_so_that_it_is_understood(name: st
     bag_decoder(TypeText(name, bag_definition(name)))
 
 
-IDL = (
-    "module my_msgs { module msg { struct Names {"
-    " sequence<wstring<3>> names; int8 n; wstring last; }; }; };"
-)
+IDL = "module my_msgs { module msg { struct Names { sequence<wstring<3>> names; int8 n; wstring last; }; }; };"
 
 
 @pytest.mark.parametrize(
@@ -250,8 +237,7 @@ IDL = (
         ('wstring X="a"\r\nwstring[] names\r\nint8 n\r\nwstring last\r\n', False),
         (
             IDL.replace(
-                "module msg {",
-                'module msg { const wstring X = L"a"; typedef sequence<wstring> wstring__many;',
+                "module msg {", 'module msg { const wstring X = L"a"; typedef sequence<wstring> wstring__many;'
             ).replace("sequence<wstring<3>> n", "wstring__many n"),
             True,
         ),
@@ -268,21 +254,15 @@ def test_wide_texts_are_read_with_what_is_around_them(text: str, is_idl: bool) -
 
 
 HASHES = {
-    "ackermann_msgs/msg/AckermannDrive": (
-        "RIHS01_acf287a224a947dd1b0b87d6d76cdb73f497b0237b8fc73be2173b2ebbb82c99"
-    ),
+    "ackermann_msgs/msg/AckermannDrive": ("RIHS01_acf287a224a947dd1b0b87d6d76cdb73f497b0237b8fc73be2173b2ebbb82c99"),
     "ackermann_msgs/msg/AckermannDriveStamped": (
         "RIHS01_48ca7612a08d3bb72744fd98b71b7cf2ea24c6ad50fa4e1aa0bbad963c90d8cf"
     ),
-    "example_interfaces/srv/AddTwoInts": (
-        "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
-    ),
+    "example_interfaces/srv/AddTwoInts": ("RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"),
     "example_interfaces/action/Fibonacci": (
         "RIHS01_9508051da1ea4658de144b09bd0690ff3de52104683d847aed764d2915906f51"
     ),
-    "tf2_msgs/msg/TFMessage": (
-        "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"
-    ),
+    "tf2_msgs/msg/TFMessage": ("RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"),
 }
 
 
@@ -325,10 +305,7 @@ def test_a_message_tells_types_bounds_defaults_and_constants() -> None:
     assert [(f.name, f.type_name, f.default) for f in part.fields][3] == ("w", "float64", 1.0)
     (part,) = definition("sensor_msgs/msg/CameraInfo").parts
     fields = {field.name: field for field in part.fields}
-    assert (fields["header"].message, fields["header"].type_name) == (
-        "std_msgs/msg/Header",
-        "std_msgs/Header",
-    )
+    assert (fields["header"].message, fields["header"].type_name) == ("std_msgs/msg/Header", "std_msgs/Header")
     assert fields["k"].type_name == "float64[9]"
     (part,) = definition("rcl_interfaces/msg/ParameterDescriptor").parts
     bounded = next(field for field in part.fields if field.name == "integer_range")
@@ -341,9 +318,7 @@ def test_a_message_tells_types_bounds_defaults_and_constants() -> None:
     assert part.fields == ()
 
 
-@pytest.mark.parametrize(
-    "name", ["std_msgs/msg/Nope", "nope_msgs/msg/Bool", "std_msgs/Bool", "a/b/c", "", "x/srv/Y"]
-)
+@pytest.mark.parametrize("name", ["std_msgs/msg/Nope", "nope_msgs/msg/Bool", "std_msgs/Bool", "a/b/c", "", "x/srv/Y"])
 def test_a_type_that_is_not_there_says_so(name: str) -> None:
     with pytest.raises(UnknownTypeError):
         definition(name)

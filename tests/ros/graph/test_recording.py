@@ -50,9 +50,7 @@ def test_what_is_published_is_in_the_bag_byte_for_byte(ros_domain: int, tmp_path
     assert read_by_rosbags(tmp_path / "bag") == {"/numbers": raw}
 
 
-def test_latched_messages_of_before_are_recorded_and_later_topics_taken_up(
-    ros_domain: int, tmp_path: Path
-) -> None:
+def test_latched_messages_of_before_are_recorded_and_later_topics_taken_up(ros_domain: int, tmp_path: Path) -> None:
     recorder = Recorder(ros_domain, "localhost", tmp_path / "bag")
     with Peer(ros_domain) as peer:
         peer.publisher("/tf_static", TFMessage, LATCHED).publish(
@@ -82,7 +80,6 @@ while not recorder.status.error:
 
 
 def recording(domain: int, folder: Path) -> subprocess.Popen[str]:
-    """A recorder in a process of its own."""
     return subprocess.Popen(
         [sys.executable, "-c", RECORD, str(domain), str(folder)],
         cwd=ROOT,
@@ -128,9 +125,7 @@ def test_a_recorder_does_not_pass_for_somebody_who_obeys(ros_domain: int, tmp_pa
     watcher.close()
 
 
-def test_lost_messages_are_counted(
-    ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_lost_messages_are_counted(ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # A publisher on a busy machine may be too slow to fill the whole queue between two turns.
     monkeypatch.setattr(recording_tap, "DEEP", 5)
     recorder = Recorder(ros_domain, "localhost", tmp_path / "bag")

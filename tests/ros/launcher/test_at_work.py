@@ -166,9 +166,7 @@ async def _ailing(client: SupervisorClient, name: str, kind: str, meaning: str =
     return fault
 
 
-async def test_who_is_stuck_or_has_lost_a_thread_is_not_healthy(
-    start: Launch, tmp_path: Path
-) -> None:
+async def test_who_is_stuck_or_has_lost_a_thread_is_not_healthy(start: Launch, tmp_path: Path) -> None:
     """A callback that waits for itself; one that only works for long is none."""
     programs = {
         "calls": own(tick="self.client.call(Trigger.Request())"),
@@ -203,18 +201,13 @@ async def test_who_is_stuck_or_has_lost_a_thread_is_not_healthy(
     assert well(client.nodes["works"])
 
 
-async def test_who_waits_for_what_nobody_brings_is_not_healthy(
-    start: Launch, tmp_path: Path
-) -> None:
+async def test_who_waits_for_what_nobody_brings_is_not_healthy(start: Launch, tmp_path: Path) -> None:
     """For a service or action that nobody offers, or an answer that nobody takes in.
 
     Whoever waits for a service that comes, is idle, or has its answers called back is healthy.
     """
     # What is sent before it is known who offers it is lost.
-    served = {
-        "group": "MutuallyExclusiveCallbackGroup()",
-        "begin": "self.client.wait_for_service()",
-    }
+    served = {"group": "MutuallyExclusiveCallbackGroup()", "begin": "self.client.wait_for_service()"}
     programs = {
         "goal": (own(begin=GOAL), "the action /count, which nobody offers"),
         "served": (own(begin="self.action.wait_for_server()"), "the action /count, which nobody"),
@@ -246,9 +239,7 @@ async def test_who_waits_for_what_nobody_brings_is_not_healthy(
     assert "__init__ has been stuck since" in fault.exception
     assert fault.source_line == "rclpy.spin_until_future_complete(self, future)"
     fault = await _ailing(client, "pool_out", STUCK)
-    assert (
-        fault.exception == "nothing of the node pool_out is called any more: no executor spins it"
-    )
+    assert fault.exception == "nothing of the node pool_out is called any more: no executor spins it"
     assert fault.source_line == "rclpy.spin_until_future_complete(self, future)"
 
     async def went_on() -> bool:
@@ -260,18 +251,13 @@ async def test_who_waits_for_what_nobody_brings_is_not_healthy(
             assert well(client.nodes[name]), name
 
 
-async def test_who_never_spins_or_waits_in_a_circle_is_not_healthy(
-    start: Launch, tmp_path: Path
-) -> None:
+async def test_who_never_spins_or_waits_in_a_circle_is_not_healthy(start: Launch, tmp_path: Path) -> None:
     """Nor is a deadlock of several threads; a loop that publishes, and a debugger, are neither."""
     programs = {
         "hangs": (own(begin="while True: time.sleep(0.1)"), "rclpy.spin(node)"),
         "waits": (own(main="node = Own()\nwhile True: time.sleep(0.1)"), "rclpy.spin(node)"),
         "asks": (own(begin="self.client.call(Trigger.Request())"), "spin_until_future_complete"),
-        "grouped": (
-            own(tick="self.client.call(Trigger.Request())", main=IN_TWO_THREADS),
-            "callback group",
-        ),
+        "grouped": (own(tick="self.client.call(Trigger.Request())", main=IN_TWO_THREADS), "callback group"),
         "pooled": (own(begin=IN_EVERY_THREAD, main=IN_TWO_THREADS), "Every thread"),
         "publishes": (own(main=PUBLISHES), ""),
         "turns": (own(main=SPINS_NOW_AND_THEN), ""),

@@ -104,8 +104,7 @@ def expected(
 
 @pytest.mark.timeout(AT_MOST_S + 30)
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=() if name in GATE else NIGHTLY, id=name) for name in MISTAKES],
+    "name", [pytest.param(name, marks=() if name in GATE else NIGHTLY, id=name) for name in MISTAKES]
 )
 def test_a_mistake_is_explained(
     name: str, told: dict[str, tuple[NodeFault | None, str]], expected: dict[str, tuple[str, str]]
@@ -159,7 +158,6 @@ def test_what_only_the_log_tells_is_explained() -> None:
     )
     assert "same name" in warning_of("Publisher already registered for provided node name.")
     assert "SetParametersResult" in warning_of(
-        "node.py:911: UserWarning: Callback returned an invalid type, it should return"
-        " SetParameterResult."
+        "node.py:911: UserWarning: Callback returned an invalid type, it should return SetParameterResult."
     )
     assert not warning_of("all is well")

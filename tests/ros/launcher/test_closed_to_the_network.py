@@ -37,14 +37,12 @@ JOINS = 3
 
 @pytest.fixture
 def robot() -> Iterator[Machine]:
-    """The machine that a robot runs on."""
     with Machine(ROBOT) as machine:
         yield machine
 
 
 @pytest.fixture
 def neighbour(robot: Machine) -> Iterator[Machine]:
-    """Another, with a cable to the robot's."""
     with Machine(NEIGHBOUR, beside=robot) as machine:
         yield machine
 
@@ -135,15 +133,11 @@ def test_the_network_neither_sees_nor_drives_a_local_robot(
 
 
 @pytest.mark.parametrize("program", ["run", "record"])
-def test_no_process_of_deck_listens_to_a_cable(
-    robot: Machine, ros_domain: int, tmp_path: Path, program: str
-) -> None:
+def test_no_process_of_deck_listens_to_a_cable(robot: Machine, ros_domain: int, tmp_path: Path, program: str) -> None:
     # Fast DDS reads this one of the current folder, too.
     (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").write_text(PLANTED)
     words = {"run": (profile(tmp_path, "localhost"),), "record": ("-o", str(tmp_path / "bag"))}
-    session = DeckProcess(
-        program, *words[program], "--domain", str(ros_domain), within=robot.inside(tmp_path)
-    )
+    session = DeckProcess(program, *words[program], "--domain", str(ros_domain), within=robot.inside(tmp_path))
     try:
         assert _addresses_listened_at(robot) == {"127.0.0.1"}
     finally:

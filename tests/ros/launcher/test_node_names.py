@@ -22,15 +22,9 @@ print(*(node.get_name() for node in nodes))
 
 @pytest.mark.parametrize(
     ("given", "names"),
-    [
-        ("mine", "mine listener mine"),
-        ("listener", "talker listener talker"),
-        ("talker", "talker listener talker"),
-    ],
+    [("mine", "mine listener mine"), ("listener", "talker listener talker"), ("talker", "talker listener talker")],
 )
-def test_only_the_first_is_named_anew(
-    given: str, names: str, tmp_path: Path, ros_domain: int
-) -> None:
+def test_only_the_first_is_named_anew(given: str, names: str, tmp_path: Path, ros_domain: int) -> None:
     file = tmp_path / "nodes.py"
     file.write_text(TALKER)
     done = subprocess.run(

@@ -29,9 +29,7 @@ def write(file: Path, text: str) -> None:
     file.write_text(textwrap.dedent(text))
 
 
-async def test_a_save_restarts_it_once_and_a_syntax_error_leaves_it_running(
-    start: Launch, tmp_path: Path
-) -> None:
+async def test_a_save_restarts_it_once_and_a_syntax_error_leaves_it_running(start: Launch, tmp_path: Path) -> None:
     file = tmp_path / "own.py"
     write(file, WELL.format(number=1))
     client = await start({"own": {"exec": ["python", "own.py"]}})
@@ -114,9 +112,7 @@ CANCELS = ", cancel_callback=lambda goal: CancelResponse.ACCEPT"
 HASTY = 'self.create_publisher(String, "/said", rclpy.qos.qos_profile_sensor_data)'
 
 
-def own(
-    begin: str = TIMER, tick: str = "pass", spin: str = "rclpy.spin(node)", call: str = MAIN
-) -> str:
+def own(begin: str = TIMER, tick: str = "pass", spin: str = "rclpy.spin(node)", call: str = MAIN) -> str:
     return NODE.format(begin=begin, tick=tick, spin=spin, call=call)
 
 
@@ -125,9 +121,7 @@ async def _fault(client: SupervisorClient, name: str) -> NodeFault:
     return found
 
 
-async def test_what_is_wrong_without_an_error_is_told_as_well(
-    start: Launch, tmp_path: Path
-) -> None:
+async def test_what_is_wrong_without_an_error_is_told_as_well(start: Launch, tmp_path: Path) -> None:
     """A callback that blocks, a forgotten spin, a main that nobody calls, a QoS that does not fit.
 
     Each in a node of its own. A callback blocks nothing where there are several threads, nor does
@@ -135,9 +129,7 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
     """
     write(tmp_path / "slow.py", own(tick="time.sleep(1.0)"))
     several = "rclpy.spin(node, rclpy.executors.MultiThreadedExecutor(2))"
-    write(
-        tmp_path / "pool.py", own(tick='time.sleep(1.0); print("slept", flush=True)', spin=several)
-    )
+    write(tmp_path / "pool.py", own(tick='time.sleep(1.0); print("slept", flush=True)', spin=several))
     write(tmp_path / "spinless.py", own(spin="pass"))
     write(tmp_path / "uncalled.py", own(call=""))
     write(tmp_path / "turns.py", own(spin='rclpy.spin(node)\n    rclpy.spin(Node("second"))'))
@@ -181,9 +173,7 @@ async def test_what_is_wrong_without_an_error_is_told_as_well(
 async def test_a_node_is_exchanged_for_ones_own_and_back(start: Launch, tmp_path: Path) -> None:
     write(tmp_path / "decks.py", own())
     write(tmp_path / "mine.py", WELL.format(number="sys.argv[1:]").replace("time", "sys, time", 1))
-    client = await start(
-        {"own": {"run": "./decks.py", "params": {"period": 2.0}}, "other": {"run": "./decks.py"}}
-    )
+    client = await start({"own": {"run": "./decks.py", "params": {"period": 2.0}}, "other": {"run": "./decks.py"}})
     await until_state(client, "own", NodeState.READY)
     await client.exchange("own", tmp_path / "mine.py")
     # With the name and the parameters that the profile gives it.

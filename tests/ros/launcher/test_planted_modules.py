@@ -53,7 +53,6 @@ def deck(folder: Path, command: list[str], *words: str, **environ: str) -> str:
 
 
 def taken(folder: Path) -> str:
-    """Which planted modules were run."""
     path = folder.parent / "taken"
     return path.read_text() if path.exists() else ""
 

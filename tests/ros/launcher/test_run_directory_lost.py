@@ -39,9 +39,7 @@ async def made_again(client: SupervisorClient) -> Path:
 
 
 @pytest.mark.parametrize("what", ["the whole directory", "the session's folder", "the socket"])
-async def test_what_is_removed_is_made_again_and_told(
-    start: Launch, tmp_path: Path, what: str
-) -> None:
+async def test_what_is_removed_is_made_again_and_told(start: Launch, tmp_path: Path, what: str) -> None:
     client = await start(NODE)
     pid = await running_pid(client, "node")
     if what == "the socket":
@@ -59,9 +57,6 @@ async def test_what_is_removed_is_made_again_and_told(
     await until(lambda: client.nodes["node"].pid not in (pid, None), "another process")
     record = json.loads((folder / "session.json").read_text())
     await until(
-        lambda: (
-            json.loads((folder / "session.json").read_text())["processes"]["node"][0]
-            == client.nodes["node"].pid
-        ),
+        lambda: json.loads((folder / "session.json").read_text())["processes"]["node"][0] == client.nodes["node"].pid,
         lambda: f"its new process in the record {record}",
     )

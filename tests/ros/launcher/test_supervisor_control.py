@@ -50,9 +50,7 @@ class RawClient:
 
 
 async def raw(client: SupervisorClient) -> RawClient:
-    ends = await asyncio.open_unix_connection(
-        sock=connect(run_dir() / client.session.run_id), limit=1 << 26
-    )
+    ends = await asyncio.open_unix_connection(sock=connect(run_dir() / client.session.run_id), limit=1 << 26)
     return RawClient(*ends)
 
 
@@ -158,9 +156,7 @@ async def test_events_begin_with_what_is_and_end_with_why_it_ended(start: Launch
     await other.aclose()
 
 
-async def test_the_same_profile_is_not_started_twice_in_a_domain(
-    start: Launch, ros_domain: int
-) -> None:
+async def test_the_same_profile_is_not_started_twice_in_a_domain(start: Launch, ros_domain: int) -> None:
     client = await start(NODE)
     with pytest.raises(AlreadyRunningError) as caught:
         await start(NODE)

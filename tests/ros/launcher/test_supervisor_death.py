@@ -87,9 +87,7 @@ async def own(tmp_path: Path, ros_domain: int) -> AsyncIterator[Any]:
 
 async def test_the_supervisor_killed_takes_everything_with_it(start: Launch) -> None:
     """Its nodes, their children, and what has left for a session of its own."""
-    client = await start(
-        {"deaf": {"exec": script(DEAF_FAMILY)}, "other": {"exec": SLEEPER, "restart": "always"}}
-    )
+    client = await start({"deaf": {"exec": script(DEAF_FAMILY)}, "other": {"exec": SLEEPER, "restart": "always"}})
     await running_pid(client, "other")
     run_id = client.session.run_id
     await until(lambda: len(of_run(run_id)) == 5, "the deaf node, its two children, the other")
@@ -121,9 +119,7 @@ async def test_a_background_session_outlives_whoever_started_it(own: Any) -> Non
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-async def test_a_signal_to_the_supervisor_is_an_orderly_stop(
-    start: Launch, tmp_path: Path, number: int
-) -> None:
+async def test_a_signal_to_the_supervisor_is_an_orderly_stop(start: Launch, tmp_path: Path, number: int) -> None:
     note = tmp_path / "note"
     text = f"""
         import time
@@ -145,9 +141,7 @@ async def test_a_second_signal_skips_the_waiting(start: Launch) -> None:
     # One after the other, each would be waited for 10 s: a minute in all.
     names = [f"deaf_{number}" for number in range(6)]
     needs = [[], *([name] for name in names)]
-    client = await start(
-        {name: {**run, "needs": need} for name, need in zip(names, needs, strict=False)}
-    )
+    client = await start({name: {**run, "needs": need} for name, need in zip(names, needs, strict=False)})
     for name in names:
         await said(client, name, "up")
     kill(client.session.supervisor_pid, signal.SIGINT)

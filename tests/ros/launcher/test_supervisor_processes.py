@@ -12,16 +12,7 @@ import pytest
 
 from launcher.processes.table import read_marks, read_process
 from launcher.status import NodeState
-from tests.ros.supervised import (
-    SLEEPER,
-    Launch,
-    alive,
-    kill,
-    running_pid,
-    said,
-    script,
-    until_state,
-)
+from tests.ros.supervised import SLEEPER, Launch, alive, kill, running_pid, said, script, until_state
 from tests.waiting import until
 
 if TYPE_CHECKING:
@@ -66,9 +57,7 @@ async def test_each_node_leads_a_session_and_a_group_of_its_own(start: Launch) -
         assert (read_marks(pid) or {}).get("DECK_RUN_ID") == client.session.run_id
 
 
-async def test_a_node_gets_its_environment_and_no_terminal(
-    start: Launch, tmp_path: Path, ros_domain: int
-) -> None:
+async def test_a_node_gets_its_environment_and_no_terminal(start: Launch, tmp_path: Path, ros_domain: int) -> None:
     text = """
         import json, os
         print("env", json.dumps([dict(os.environ), os.getcwd(), os.read(0, 9).hex()]))
@@ -86,13 +75,7 @@ async def test_a_node_gets_its_environment_and_no_terminal(
 ENDS: dict[str, tuple[str, NodeState, int | None, str | None, str]] = {
     "well": ("pass", NodeState.EXITED, 0, None, "ended"),
     "code": ("raise SystemExit(3)", NodeState.FAILED, 3, None, "exit code 3"),
-    "abort": (
-        "import os; print('dying'); os.abort()",
-        NodeState.FAILED,
-        None,
-        "SIGABRT",
-        "killed by SIGABRT: dying",
-    ),
+    "abort": ("import os; print('dying'); os.abort()", NodeState.FAILED, None, "SIGABRT", "killed by SIGABRT: dying"),
     "error": ("1/0", NodeState.FAILED, 1, None, "exit code 1: ZeroDivisionError: division by zero"),
 }
 """What a node does, and how that is told."""
@@ -106,9 +89,7 @@ async def test_how_a_node_ended_is_told(start: Launch) -> None:
         assert (status.detail, status.pid) == (detail, None)
 
 
-async def test_a_node_that_is_interrupted_while_it_starts_ends_without_a_word(
-    start: Launch,
-) -> None:
+async def test_a_node_that_is_interrupted_while_it_starts_ends_without_a_word(start: Launch) -> None:
     client = await start({"node": {"run": "nodes.hello"}})
     for _ in range(15):
         kill(await pid_of(client, "node"), signal.SIGINT)
@@ -153,9 +134,7 @@ def is_named(client: SupervisorClient, name: str, pid: int) -> bool:
 
 
 async def test_a_deaf_grandchild_is_ended_with_its_node(start: Launch) -> None:
-    client = await start(
-        {name: {"exec": script(FORK_OFF, "deaf", *way.split())} for name, way in WAYS.items()}
-    )
+    client = await start({name: {"exec": script(FORK_OFF, "deaf", *way.split())} for name, way in WAYS.items()})
     grandchildren = {name: int(await said(client, name, "grandchild")) for name in WAYS}
     stopping = asyncio.ensure_future(client.stop())
     for name, pid in grandchildren.items():

@@ -12,14 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from launcher.processes.shared_memory import SHARED_MEMORY, held_segments, port_numbers
-from launcher.processes.table import (
-    NODE_MARK,
-    RUN_MARK,
-    command_line,
-    processes,
-    read_marks,
-    read_process,
-)
+from launcher.processes.table import NODE_MARK, RUN_MARK, command_line, processes, read_marks, read_process
 from launcher.processes.usage import proportional_memory
 from launcher.status import NodeState, Severity
 from tests.domains import domain_of
@@ -75,7 +68,6 @@ def module(folder: Path, name: str, text: str) -> dict[str, Any]:
 
 
 def probes(client: SupervisorClient) -> list[int]:
-    """The probe processes of a session."""
     return [
         process.pid
         for process in processes()
@@ -84,9 +76,7 @@ def probes(client: SupervisorClient) -> list[int]:
     ]
 
 
-async def test_nodes_become_ready_in_the_order_of_their_needs(
-    start: Launch, tmp_path: Path
-) -> None:
+async def test_nodes_become_ready_in_the_order_of_their_needs(start: Launch, tmp_path: Path) -> None:
     """By their name in the graph, a topic's publisher and a service; the probe goes after."""
     talker = module(tmp_path, "talker_module", TALKER)
     client = await start(
@@ -110,9 +100,7 @@ async def test_nodes_become_ready_in_the_order_of_their_needs(
     await until(lambda: not probes(client), "the end of the probe")
 
 
-async def test_a_warm_node_is_a_process_of_its_own_in_every_respect(
-    start: Launch, tmp_path: Path
-) -> None:
+async def test_a_warm_node_is_a_process_of_its_own_in_every_respect(start: Launch, tmp_path: Path) -> None:
     """Its title, session, parent and marks; and its pages are shared with the others."""
     talker = module(tmp_path, "talker_module", TALKER)
     client = await start({"one": talker, "two": {**talker, "params": {"delay": 0.0}}})
@@ -137,18 +125,13 @@ async def test_a_warm_node_is_a_process_of_its_own_in_every_respect(
     assert alive(pids[1])
 
 
-async def test_a_topic_of_another_type_or_too_seldom_is_not_what_was_promised(
-    start: Launch, tmp_path: Path
-) -> None:
+async def test_a_topic_of_another_type_or_too_seldom_is_not_what_was_promised(start: Launch, tmp_path: Path) -> None:
     """Nodes that await it would never hear a message; the row tells what is there instead."""
     talker = module(tmp_path, "talker_module", TALKER)
     ticker = module(tmp_path, "ticker_module", TICKER)
     client = await start(
         {
-            "wrong": {
-                **talker,
-                "ready": {"topic": "/said", "type": "std_msgs/msg/Float32", "within": 3},
-            },
+            "wrong": {**talker, "ready": {"topic": "/said", "type": "std_msgs/msg/Float32", "within": 3}},
             "right": {**talker, "ready": {"topic": "/said", "type": "std_msgs/msg/String"}},
             "seldom": {**ticker, "ready": {"topic": "/ticks", "rate": 500, "within": 3}},
             "often": {**ticker, "ready": {"topic": "/ticks", "rate": 10}},
@@ -158,8 +141,7 @@ async def test_a_topic_of_another_type_or_too_seldom_is_not_what_was_promised(
     await until_state(client, "often", NodeState.READY)
     status = await until_state(client, "wrong", NodeState.RUNNING)
     assert status.detail == (
-        "not ready within 3 s: /said is published as std_msgs/msg/String,"
-        " expected std_msgs/msg/Float32"
+        "not ready within 3 s: /said is published as std_msgs/msg/String, expected std_msgs/msg/Float32"
     )
     await until_state(client, "seldom", NodeState.RUNNING)
     await until(

@@ -86,10 +86,7 @@ async def test_a_signal_ends_a_session_though_a_start_hangs(
 
 
 @pytest.fixture
-async def stopped(
-    start: Launch, monkeypatch: pytest.MonkeyPatch
-) -> AsyncIterator[SupervisorClient]:
-    """A session whose supervisor has been suspended."""
+async def stopped(start: Launch, monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[SupervisorClient]:
     monkeypatch.setattr("launcher.client.client.HEARD_IN_A_HURRY_S", 0.5)
     client = await start({"node": {"exec": SLEEPER}})
     await running_pid(client, "node")
@@ -99,17 +96,13 @@ async def stopped(
         kill(client.session.supervisor_pid, signal.SIGKILL)
 
 
-async def test_a_supervisor_that_hangs_is_killed_with_all_its_nodes(
-    stopped: SupervisorClient,
-) -> None:
+async def test_a_supervisor_that_hangs_is_killed_with_all_its_nodes(stopped: SupervisorClient) -> None:
     supervisor, node = stopped.session.supervisor_pid, stopped.nodes["node"].pid
     first = asyncio.ensure_future(stopped.shutdown())
     await asyncio.sleep(0)
     with pytest.raises(SilentSupervisorError) as error:
         await soon(stopped.shutdown(now=True))
-    assert str(error.value) == (
-        f"the supervisor (pid {supervisor}) did not answer; it was killed with all its nodes"
-    )
+    assert str(error.value) == (f"the supervisor (pid {supervisor}) did not answer; it was killed with all its nodes")
     with pytest.raises(SilentSupervisorError):
         await soon(first)
     assert node is not None
@@ -117,9 +110,7 @@ async def test_a_supervisor_that_hangs_is_killed_with_all_its_nodes(
     assert not alive(supervisor)
 
 
-async def test_a_node_of_which_any_process_is_suspended_is_not_healthy_till_it_goes_on(
-    start: Launch,
-) -> None:
+async def test_a_node_of_which_any_process_is_suspended_is_not_healthy_till_it_goes_on(start: Launch) -> None:
     parent = """\
         import subprocess, sys
         child = subprocess.Popen([sys.executable, "-I", "-S", "-c", "import time; time.sleep(999)"])

@@ -54,13 +54,9 @@ def test_a_voice_sets_the_whole_robot_in_motion(ros_domain: int) -> None:
             assert "VOICE_COMMAND" in text(wait_for(mic, "a voice"))
             wait_until(lambda: any(c.data == "вперед" for c in commands), "вперед")
             wait_until(lambda: any(d.drive.speed == 0.5 for d in drives), "/drive forward")
+            wait_until(lambda: any(w.velocity[0] == pytest.approx(0.5 / 0.0325) for w in wheels), "turning wheels")
             wait_until(
-                lambda: any(w.velocity[0] == pytest.approx(0.5 / 0.0325) for w in wheels),
-                "turning wheels",
-            )
-            wait_until(
-                lambda: heads and heads[-1].position[0] == pytest.approx(math.radians(45)),
-                "the head at 45 degrees",
+                lambda: heads and heads[-1].position[0] == pytest.approx(math.radians(45)), "the head at 45 degrees"
             )
             wait_until(lambda: any("drive on" in text(reply) for reply in speaker), "the reply")
             started[2].wait_for_words("The loudspeaker plays")

@@ -114,8 +114,7 @@ def test_what_was_heard_becomes_motion_and_words(robot: Robot) -> None:
     """The model is told the distance and the words; its drive ends by itself, its reply is said."""
     robot.peer.say("/sensor/sonar_front", Float32(data=2.5))
     wait_until(
-        lambda: _asks(robot, "go on") and "Distance ahead: 2.50 m" in _content(robot),
-        "the distance in the question",
+        lambda: _asks(robot, "go on") and "Distance ahead: 2.50 m" in _content(robot), "the distance in the question"
     )
     wait_until(lambda: 0.3 in robot.speeds(), "/drive by the model")
     wait_until(lambda: robot.speeds()[-1:] == [0.0], "the stop after the repetitions")
@@ -152,19 +151,13 @@ def endless(exchange: Exchange) -> None:
         (lambda exchange: exchange.fails(500), "server", "failed (500)"),
         (lambda exchange: exchange.says(""), "empty", "is empty"),
         (endless, "too long", "has no end"),
-        (
-            lambda exchange: exchange.fails(200, "<html>", "text/html"),
-            "not an API",
-            "not the address",
-        ),
+        (lambda exchange: exchange.fails(200, "<html>", "text/html"), "not an API", "not the address"),
         (obeys(answer({**DRIVE, "speed": 9})), "shape", "nor is the second"),
         (obeys(answer({**DRIVE, "action": "fly"})), "shape", "nor is the second"),
         (obeys(GO[:-20]), "shape", "nor is the second"),
     ],
 )
-def test_whatever_a_server_does_wrong_the_robot_stands(
-    robot: Robot, script: Script, fault: str, words: str
-) -> None:
+def test_whatever_a_server_does_wrong_the_robot_stands(robot: Robot, script: Script, fault: str, words: str) -> None:
     """Each has its own words, on the log and on /brain_state, and no wheel moves."""
     robot.server.script = script
     wait_until(lambda: _fails(robot), "the failure")
@@ -206,9 +199,7 @@ def test_a_stop_does_not_wait_for_the_model(robot: Robot, said: str) -> None:
     stopped.set()
     robot.server.script = obeys(answer(say="Another one."))
     if said not in by_topic:
-        wait_until(
-            lambda: _asks(robot, "and now?") and robot.said("Another one"), "the next answer"
-        )
+        wait_until(lambda: _asks(robot, "and now?") and robot.said("Another one"), "the next answer")
     assert not any(robot.speeds())
 
 
@@ -221,9 +212,7 @@ def _asks(robot: Robot, words: str) -> bool:
     """Say something; whether the server is asked about it."""
     before = len(robot.server.exchanges)
     robot.hear(words)
-    return comes(
-        lambda: any(words in str(each.request) for each in robot.server.exchanges[before:]), 2.0
-    )
+    return comes(lambda: any(words in str(each.request) for each in robot.server.exchanges[before:]), 2.0)
 
 
 def _fails(robot: Robot) -> bool:

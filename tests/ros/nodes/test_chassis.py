@@ -65,7 +65,6 @@ class Stage:
         self._timer = self.peer.node.create_timer(0.1, lambda: publisher.publish(message))
 
     def quiet(self) -> None:
-        """Command nothing any more."""
         if self._timer is not None:
             self.peer.node.destroy_timer(self._timer)
             self._timer = None
@@ -74,17 +73,14 @@ class Stage:
         """Wait until the robot really moves (1 forward, -1 backward)."""
         self.poses.clear()
         wait_until(
-            lambda: (
-                len(self.poses) > 2 and way * (x_of(self.poses[-1]) - x_of(self.poses[0])) > 0.005
-            ),
+            lambda: len(self.poses) > 2 and way * (x_of(self.poses[-1]) - x_of(self.poses[0])) > 0.005,
             "a moving robot",
         )
 
     def wait_standing(self, poses: int = 6) -> None:
         self.poses.clear()
         wait_until(
-            lambda: len(self.poses) > poses and len({*map(x_of, self.poses[-poses:])}) == 1,
-            "a standing robot",
+            lambda: len(self.poses) > poses and len({*map(x_of, self.poses[-poses:])}) == 1, "a standing robot"
         )
 
     def assert_stands(self) -> None:
@@ -116,9 +112,7 @@ def x_of(message: PoseStamped) -> float:
 def wheels(speed_rad_s: float, steering_rad: float = 0.0) -> JointState:
     names = ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
     return JointState(
-        name=names,
-        position=[math.nan, math.nan, steering_rad],
-        velocity=[speed_rad_s, speed_rad_s, math.nan],
+        name=names, position=[math.nan, math.nan, steering_rad], velocity=[speed_rad_s, speed_rad_s, math.nan]
     )
 
 

@@ -36,9 +36,7 @@ def person(ros_domain: int) -> Iterator[Peer]:
 
 
 @contextlib.asynccontextmanager
-async def lesson(
-    folder: Path, domain: int, name: str, changes: dict[str, Any]
-) -> AsyncIterator[SupervisorClient]:
+async def lesson(folder: Path, domain: int, name: str, changes: dict[str, Any]) -> AsyncIterator[SupervisorClient]:
     """Run a lesson with nodes exchanged, by the way that README tells."""
     shutil.copytree(COURSE, folder, dirs_exist_ok=True)
     path = folder / "mine.yaml"
@@ -51,7 +49,6 @@ async def lesson(
 
 
 def turns(wheels: list[Any]) -> bool:
-    """Whether a wheel has been asked to turn."""
     return any(abs(message.velocity[0]) > 0.1 for message in wheels)
 
 
@@ -65,9 +62,7 @@ BRAIN = {
 }
 
 
-async def test_the_whole_robot_hears_answers_and_drives(
-    tmp_path: Path, ros_domain: int, person: Peer
-) -> None:
+async def test_the_whole_robot_hears_answers_and_drives(tmp_path: Path, ros_domain: int, person: Peer) -> None:
     wheels = person.hear("/wheel_commands", JointState)
     answers = person.hear("/audio/speaker_raw", ByteMultiArray)
     changes = {node: {"run": f"./{file}.py"} for node, file in BRAIN.items()}
@@ -80,9 +75,7 @@ async def test_the_whole_robot_hears_answers_and_drives(
             await until(lambda: turns(wheels), "wheels that turn", 60)
 
 
-async def test_a_json_drives_and_turns_the_head(
-    tmp_path: Path, ros_domain: int, person: Peer
-) -> None:
+async def test_a_json_drives_and_turns_the_head(tmp_path: Path, ros_domain: int, person: Peer) -> None:
     wheels = person.hear("/wheel_commands", JointState)
     changes = {name: {"run": f"./{name}.py"} for name in ("head_controller", "llm_parser")}
     async with lesson(tmp_path, ros_domain, "10-llm-json", changes) as client:

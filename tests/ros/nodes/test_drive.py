@@ -65,9 +65,7 @@ def test_words_of_both_languages_drive(peer: Peer, ros_domain: int, lang: str) -
         heard = peer.hear("/drive", AckermannDriveStamped)
         node.wait_for_words("[ai_driver_translator]")
         expected = [(0.5, 0.0), (0.3, 0.5), (0.3, -0.5), (-0.3, 0.0), (0.0, 0.0)]
-        for word, (speed, steering) in zip(
-            ("ВПЕРЁД ", "left", "направо", "back", "Стоп!"), expected, strict=True
-        ):
+        for word, (speed, steering) in zip(("ВПЕРЁД ", "left", "направо", "back", "Стоп!"), expected, strict=True):
             heard.clear()
             wait_until(
                 lambda word=word, way=(speed, steering): drives(peer, heard, word, *way),  # type: ignore[misc]
@@ -79,9 +77,7 @@ def test_words_of_both_languages_drive(peer: Peer, ros_domain: int, lang: str) -
 # ---------------------------------------------------------------- wheels
 
 
-def test_the_course_s_left_turn_reaches_the_wheels(
-    peer: Peer, heard: list[JointState], ros_domain: int
-) -> None:
+def test_the_course_s_left_turn_reaches_the_wheels(peer: Peer, heard: list[JointState], ros_domain: int) -> None:
     with NodeThread("nodes.electronic_differential", ros_domain) as node:
         peer.say("/drive", drive(0.3, 0.5))
         message = wait_for_rims(heard, 0.2508, 0.3492)
@@ -92,9 +88,7 @@ def test_the_course_s_left_turn_reaches_the_wheels(
         node.wait_for_words("Turning left: 0.30 m/s, steering 0.50 rad -> left 0.25, right 0.35")
 
 
-def test_too_much_is_limited_with_a_word(
-    peer: Peer, heard: list[JointState], ros_domain: int
-) -> None:
+def test_too_much_is_limited_with_a_word(peer: Peer, heard: list[JointState], ros_domain: int) -> None:
     params: dict[str, object] = {"max_speed": 0.2, "max_steering": 0.1}
     with NodeThread("nodes.electronic_differential", ros_domain, params=params) as node:
         peer.say("/drive", drive(-0.4, 0.4))
@@ -143,9 +137,7 @@ def test_the_outer_wheel_of_a_tight_curve_stays_within_its_limit(
 
 
 @pytest.mark.parametrize("qos", [LATCHED, 10], ids=["latched", "volatile"])
-def test_the_emergency_stop_holds_the_wheels(
-    peer: Peer, heard: list[JointState], ros_domain: int, qos: Any
-) -> None:
+def test_the_emergency_stop_holds_the_wheels(peer: Peer, heard: list[JointState], ros_domain: int, qos: Any) -> None:
     with NodeThread("nodes.electronic_differential", ros_domain, params={"rate": 20}) as node:
         peer.say("/drive", drive(0.3))
         wait_for_rims(heard, 0.3, 0.3)
@@ -161,9 +153,7 @@ def test_the_emergency_stop_holds_the_wheels(
         wait_for_rims(heard, 0.2, 0.2)
 
 
-def test_a_command_that_is_not_renewed_becomes_a_stop(
-    peer: Peer, heard: list[JointState], ros_domain: int
-) -> None:
+def test_a_command_that_is_not_renewed_becomes_a_stop(peer: Peer, heard: list[JointState], ros_domain: int) -> None:
     params: dict[str, object] = {"max_age_s": 0.3, "rate": 20}
     with NodeThread("nodes.electronic_differential", ros_domain, params=params) as node:
         wait_until(lambda: heard, "standing wheels, before they turn for a moment")

@@ -27,18 +27,9 @@ if TYPE_CHECKING:
     from rclpy.task import Future
 
 MODULE = "nodes.drive_to_point"
-SIMULATED: dict[str, object] = {
-    "simulate": "always",
-    "max_speed": 0.5,
-    "stale_after_s": 20.0,
-    "patience_s": 60.0,
-}
+SIMULATED: dict[str, object] = {"simulate": "always", "max_speed": 0.5, "stale_after_s": 20.0, "patience_s": 60.0}
 """A busy machine that stands for some seconds shall end no drive."""
-SUCCEEDED, CANCELED, ABORTED = (
-    GoalStatus.STATUS_SUCCEEDED,
-    GoalStatus.STATUS_CANCELED,
-    GoalStatus.STATUS_ABORTED,
-)
+SUCCEEDED, CANCELED, ABORTED = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 
 
 class Asker:
@@ -52,7 +43,6 @@ class Asker:
         self.handle: Any = None
 
     def ask(self, x: float, y: float, tolerance: float = 0.0) -> bool:
-        """Send a goal; whether it was accepted."""
         goal = DriveToPoint.Goal(x=x, y=y, tolerance=tolerance)
         self.feedback.clear()
 
@@ -177,9 +167,7 @@ def test_the_emergency_stop_ends_a_drive_and_holds(peer: Peer, ros_domain: int, 
         assert asker.end()[0] == SUCCEEDED
 
 
-def test_odometry_that_falls_silent_or_is_no_number_ends_a_drive(
-    peer: Peer, ros_domain: int
-) -> None:
+def test_odometry_that_falls_silent_or_is_no_number_ends_a_drive(peer: Peer, ros_domain: int) -> None:
     params: dict[str, object] = {"simulate": "never", "stale_after_s": 0.5}
     with NodeThread(MODULE, ros_domain, params=params) as node:
         drive = peer.hear("/drive", AckermannDriveStamped)
@@ -215,9 +203,7 @@ def test_goals_that_make_no_sense_are_refused_with_a_word(peer: Peer, ros_domain
         assert not drive
 
 
-def test_it_ends_in_the_middle_of_a_drive_with_a_stop_and_a_result(
-    peer: Peer, ros_domain: int
-) -> None:
+def test_it_ends_in_the_middle_of_a_drive_with_a_stop_and_a_result(peer: Peer, ros_domain: int) -> None:
     with NodeProcess(MODULE, ros_domain, params=SIMULATED) as node:
         drive = peer.hear("/drive", AckermannDriveStamped)
         asker = Asker(peer)

@@ -120,13 +120,8 @@ def test_of_two_sonars_the_one_that_speaks_too_rarely_is_named(gate: Gate, ros_d
         gate.wait_for_state("free")
         gate.states.clear()
         wait_until(lambda: len(gate.states) > 3, "that it has been alone for a while")
-        with (
-            Peer(ros_domain, "forgotten") as forgotten,
-            forgotten.saying(FRONT, Float32(data=9.0), 1.4),
-        ):
-            wait_until(
-                lambda: values(gate.states[-1])["front_too_rare"] == "/forgotten", "its name"
-            )
+        with Peer(ros_domain, "forgotten") as forgotten, forgotten.saying(FRONT, Float32(data=9.0), 1.4):
+            wait_until(lambda: values(gate.states[-1])["front_too_rare"] == "/forgotten", "its name")
             gate.wait_for_state("blocked_forward")
             gate.process.wait_for_words("/forgotten speaks too rarely")
 
@@ -151,9 +146,7 @@ def test_it_slows_down_in_proportion_and_is_fast_again_after(gate: Gate) -> None
     gate.wait_for_speed(-0.4)
 
 
-def test_without_the_gate_it_only_warns_and_does_not_flood_the_log(
-    peer: Peer, ros_domain: int
-) -> None:
+def test_without_the_gate_it_only_warns_and_does_not_flood_the_log(peer: Peer, ros_domain: int) -> None:
     with NodeThread("nodes.safety_stop", ros_domain, lang="ru") as node:
         peer.say(FRONT, Float32(data=1.25))
         node.wait_for_words("Путь свободен (1,25 м)")
@@ -180,9 +173,7 @@ def test_without_the_gate_it_only_warns_and_does_not_flood_the_log(
         ("en", math.inf, True, "Nothing in range ahead; the emergency stop holds the wheels.", ""),
     ],
 )
-def test_what_is_ahead_is_told_in_words(
-    lang: str, metres: float, stopped: bool, logged: str, told: str
-) -> None:
+def test_what_is_ahead_is_told_in_words(lang: str, metres: float, stopped: bool, logged: str, told: str) -> None:
     log, zone = Log(), SafetyZone(0.5, 1.0, 60.0)
     say = TranslatedLogger(log, lang)  # type: ignore[arg-type]
     sensor = DistanceSensor("front")
@@ -372,7 +363,6 @@ def test_starting_and_ending_never_turns_a_wheel(gate: Gate, ros_domain: int) ->
 
 
 def turns(wheels: list[JointState]) -> int:
-    """How many of these commands turn a wheel."""
     return sum(any(speed for speed in message.velocity[:2]) for message in wheels)
 
 
@@ -396,9 +386,7 @@ def test_a_gate_that_was_held_up_obeys_nothing_that_has_waited(gate: Gate) -> No
     gate.wait_for_speed(0.2)
 
 
-@pytest.mark.parametrize(
-    "gate", [{"apart": "tests.ros.drowsy_gate", "max_age_s": 0.5}], indirect=True
-)
+@pytest.mark.parametrize("gate", [{"apart": "tests.ros.drowsy_gate", "max_age_s": 0.5}], indirect=True)
 def test_a_gate_that_is_held_up_while_it_takes_a_command_in_does_not_obey_it(gate: Gate) -> None:
     gate.see(3.0)
     gate.peer.say(KEYS, drive(0.3))

@@ -57,7 +57,6 @@ class ServoBench:
             self._line.set_fault(fault)
 
     def at(self, servo: int) -> float:
-        """Pulse of a servo now, us."""
         with self._lock:
             return self.servos.pulse_us(servo)
 
@@ -80,9 +79,7 @@ PAN = 1
 class Head:
     """The head in a process of its own, and somebody who asks it."""
 
-    def __init__(
-        self, peer: Peer, domain: int, port: object, *, mortal: bool = False, **params: object
-    ) -> None:
+    def __init__(self, peer: Peer, domain: int, port: object, *, mortal: bool = False, **params: object) -> None:
         given = {"port": port, "battery_every_s": 0.4, "rest_rate": 10, "speed": 360, **params}
         self.process = NodeProcess("nodes.head_controller", domain, params=given, mortal=mortal)
         self.peer = peer
@@ -118,9 +115,7 @@ class Head:
 
     def wait_pose(self, pan: float, tilt: float) -> None:
         def there() -> bool:
-            return [math.degrees(angle) for angle in self.states[-1].position] == pytest.approx(
-                [pan, tilt]
-            )
+            return [math.degrees(angle) for angle in self.states[-1].position] == pytest.approx([pan, tilt])
 
         self.states.clear()
         wait_until(lambda: self.states and there(), f"{pan}, {tilt} on /head_state")
@@ -153,9 +148,7 @@ def bench(tmp_path: Path) -> Iterator[ServoBench]:
 
 
 @pytest.fixture(scope="module")
-def lasting(
-    module_domain: int, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[tuple[Head, ServoBench]]:
+def lasting(module_domain: int, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Head, ServoBench]]:
     bench = ServoBench(tmp_path_factory.mktemp("head") / "lsc16")
     with Peer(module_domain) as peer, Head(peer, module_domain, bench.path) as head:
         yield head, bench
@@ -189,13 +182,7 @@ def wait_at(bench: ServoBench, pulses_us: dict[int, int]) -> None:
 def test_servos_go_where_the_head_is_asked_to_look_and_no_faster(
     peer: Peer, ros_domain: int, bench: ServoBench
 ) -> None:
-    params: dict[str, Any] = {
-        "speed": 180,
-        "pan_trim": 9,
-        "tilt_reversed": True,
-        "tilt_servo": 7,
-        "tilt_min": -20,
-    }
+    params: dict[str, Any] = {"speed": 180, "pan_trim": 9, "tilt_reversed": True, "tilt_servo": 7, "tilt_min": -20}
     with Head(peer, ros_domain, bench.path, **params) as head:
         head.wait_says(f"The head at {bench.path}", "the commanded position", "answers")
         head.wait_unknown()
@@ -233,9 +220,7 @@ def test_a_cable_pulled_while_the_head_moves_is_no_arrival(head: tuple[Head, Ser
     bench.fail(UNPLUGGED)
     wait_until(lambda: first.done() and second.done(), "answers")
     assert (first.result().sum, second.result().sum) == (0, 0)
-    node.wait_says(
-        "Refused: pan 90°, tilt 0°", f"Refused: pan 0°, tilt 0° — no connection to {bench.path}"
-    )
+    node.wait_says("Refused: pan 90°, tilt 0°", f"Refused: pan 0°, tilt 0° — no connection to {bench.path}")
     assert node.turn(1, 1) == 0
     node.wait_unknown()
     node.wait_told(DiagnosticStatus.ERROR, "no such port")
@@ -247,9 +232,7 @@ def test_a_cable_pulled_while_the_head_moves_is_no_arrival(head: tuple[Head, Ser
     node.wait_pose(-30, 10)
 
 
-def test_a_controller_that_falls_silent_is_told_and_gets_no_moves(
-    head: tuple[Head, ServoBench],
-) -> None:
+def test_a_controller_that_falls_silent_is_told_and_gets_no_moves(head: tuple[Head, ServoBench]) -> None:
     node, bench = head
     assert node.turn(10, 0) == 1
     bench.fail(SILENT)

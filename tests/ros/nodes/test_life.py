@@ -59,9 +59,7 @@ def assert_ended_well(process: NodeProcess) -> None:
     assert "rror" not in process.output
 
 
-def test_every_node_ends_with_code_0_and_no_traceback(
-    peer: Peer, module_domain: int, tmp_path: Path
-) -> None:
+def test_every_node_ends_with_code_0_and_no_traceback(peer: Peer, module_domain: int, tmp_path: Path) -> None:
     """On one of the two signals each: it is the same code in all that hears both."""
     params: dict[str, dict[str, object]] = {
         "safety_stop": {"gate": True},
@@ -76,8 +74,7 @@ def test_every_node_ends_with_code_0_and_no_traceback(
     for at in range(0, len(NODES), AT_ONCE):
         modules = list(NODES)[at : at + AT_ONCE]
         started = [
-            NodeProcess(f"nodes.{each}", module_domain, params=params.get(each, {}), cold=True)
-            for each in modules
+            NodeProcess(f"nodes.{each}", module_domain, params=params.get(each, {}), cold=True) for each in modules
         ]
         try:
             for process, module in zip(started, modules, strict=True):

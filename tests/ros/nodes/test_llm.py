@@ -74,9 +74,7 @@ class Parser:
 
         return comes(came, within_s=1.0)
 
-    def _turn(
-        self, request: AddTwoInts.Request, response: AddTwoInts.Response
-    ) -> AddTwoInts.Response:
+    def _turn(self, request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
         self.asked.append((request.a, request.b))
         response.sum = self.sum
         return response
@@ -130,12 +128,8 @@ def test_one_bad_command_and_nothing_moves(parser: Parser) -> None:
     assert parser.asked == []
 
 
-@pytest.mark.parametrize(
-    "parser", [{"head": False, "params": {"head_timeout": 3.0}}], indirect=True
-)
-def test_a_head_that_never_answers_is_given_up_and_newer_commands_win(
-    parser: Parser, ros_domain: int
-) -> None:
+@pytest.mark.parametrize("parser", [{"head": False, "params": {"head_timeout": 3.0}}], indirect=True)
+def test_a_head_that_never_answers_is_given_up_and_newer_commands_win(parser: Parser, ros_domain: int) -> None:
     with NodeThread("nodes.head_controller", ros_domain, params={"move_time": 30.0}) as slow:
         slow.wait_for_words("ready for set_head_position")
         parser.send(HEAD, {**HEAD, "pan": 5})

@@ -126,10 +126,7 @@ def run_in_one_process(starts: list[tuple[str, list[str]]], domain: int, lang: s
 
 
 def test_a_bad_parameter_ends_the_start_with_one_line_and_code_2(ros_domain: int) -> None:
-    starts = [
-        (f"nodes.{name}", ["--ros-args", "-p", f"{key}:={value}"])
-        for name, key, value, _ in BAD_STARTS
-    ]
+    starts = [(f"nodes.{name}", ["--ros-args", "-p", f"{key}:={value}"]) for name, key, value, _ in BAD_STARTS]
     lines = iter(run_in_one_process(starts, ros_domain, "en"))
     for _name, _key, _value, words in BAD_STARTS:
         assert words in next(lines)
@@ -137,9 +134,7 @@ def test_a_bad_parameter_ends_the_start_with_one_line_and_code_2(ros_domain: int
     assert not list(lines)
 
 
-def test_wrong_arguments_end_with_code_2_and_the_help_tells_every_parameter(
-    ros_domain: int,
-) -> None:
+def test_wrong_arguments_end_with_code_2_and_the_help_tells_every_parameter(ros_domain: int) -> None:
     starts = [("nodes.mock_sonar", words) for words, _code, _said in OTHER_STARTS]
     said = "\n".join(run_in_one_process(starts, ros_domain, "ru"))
     assert "Traceback" not in said

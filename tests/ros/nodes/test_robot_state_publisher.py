@@ -35,9 +35,7 @@ def buffer_of(fixed: Sequence[TFMessage], moved: Sequence[TFMessage]) -> Transfo
             place, turn, stamp = one.transform.translation, one.transform.rotation, one.header.stamp
             transform = Transform.of((place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
             stamp_s = stamp.sec + stamp.nanosec / 1e9
-            found = Stamped(
-                one.header.frame_id, one.child_frame_id, stamp_s, transform, static=static
-            )
+            found = Stamped(one.header.frame_id, one.child_frame_id, stamp_s, transform, static=static)
             buffer.add([found])
     return buffer
 
@@ -54,9 +52,7 @@ def joints(position: dict[str, float], stamp_s: int = 0) -> JointState:
     return message
 
 
-def test_the_description_and_what_is_fixed_wait_for_whoever_comes_late(
-    peer: Peer, ros_domain: int
-) -> None:
+def test_the_description_and_what_is_fixed_wait_for_whoever_comes_late(peer: Peer, ros_domain: int) -> None:
     with NodeProcess(MODULE, ros_domain) as node:
         node.wait_for_words("deck_robot: 13 links, 8 joints move", "/joint_states, /head_state")
         described = peer.hear("/robot_description", String, LATCHED)
@@ -98,9 +94,7 @@ ARM = """<robot name='arm'>
 </robot>"""
 
 
-def test_a_file_is_published_as_utf_8_whatever_it_is_written_in(
-    peer: Peer, ros_domain: int, tmp_path: Path
-) -> None:
+def test_a_file_is_published_as_utf_8_whatever_it_is_written_in(peer: Peer, ros_domain: int, tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     first = '<?xml version="1.0" encoding="{}"?>\n'
     text = ARM.replace("hand", "рука")

@@ -30,9 +30,7 @@ def test_the_camera_films_a_blue_sky(peer: Peer, ros_domain: int, encoding: str)
     assert (first.width, first.height, first.step) == (640, 480, 1920)
     assert first.encoding == encoding
     assert first.header.frame_id == "camera_color_optical_frame"
-    stamps = [
-        picture.header.stamp.sec * 10**9 + picture.header.stamp.nanosec for picture in pictures
-    ]
+    stamps = [picture.header.stamp.sec * 10**9 + picture.header.stamp.nanosec for picture in pictures]
     assert stamps == sorted(set(stamps))
     picture = np.frombuffer(first.data, np.uint8).reshape(480, 640, 3)
     blue, red = picture[2, 320, 0], picture[2, 320, 2]
@@ -45,9 +43,7 @@ def picture(encoding: str = "bgr8", **changes: int) -> Image:
     return Image(encoding=encoding, data=array("B", bytes(24)), **sizes)
 
 
-def test_the_vision_stub_takes_both_orders_and_refuses_what_is_no_picture(
-    peer: Peer, ros_domain: int
-) -> None:
+def test_the_vision_stub_takes_both_orders_and_refuses_what_is_no_picture(peer: Peer, ros_domain: int) -> None:
     with NodeThread("nodes.vlm_agent_stub", ros_domain, params={"period": 0.2}) as node:
         node.wait_for_words("[WARN]", "No picture yet")
         for encoding in ("bgr8", "rgb8"):
@@ -84,9 +80,7 @@ def test_nobody_speaks_until_there_is_a_period(peer: Peer, ros_domain: int) -> N
         assert heard == []
         value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=0.2)
         request = SetParameters.Request(parameters=[Parameter(name="period", value=value)])
-        assert (
-            peer.ask("/audio_system/set_parameters", SetParameters, request).results[0].successful
-        )
+        assert peer.ask("/audio_system/set_parameters", SetParameters, request).results[0].successful
         wait_until(lambda: len(heard) >= 2, "two phrases")
 
 
@@ -110,8 +104,5 @@ def test_the_place_of_the_camera_is_latched(peer: Peer, ros_domain: int) -> None
 def test_a_camera_that_publishes_by_best_effort_is_seen(peer: Peer, ros_domain: int) -> None:
     peer.publisher(CAMERA, Image, qos_profile_sensor_data)
     picture = Image(encoding="bgr8", width=4, height=2, step=12, data=array("B", bytes(24)))
-    with (
-        NodeThread("nodes.vlm_agent_stub", ros_domain, params={"period": 0.2}) as node,
-        peer.saying(CAMERA, picture),
-    ):
+    with NodeThread("nodes.vlm_agent_stub", ros_domain, params={"period": 0.2}) as node, peer.saying(CAMERA, picture):
         node.wait_for_words("Picture 4x2 -> JPEG")

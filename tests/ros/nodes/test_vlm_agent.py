@@ -34,7 +34,6 @@ def camera(ros_domain: int) -> Iterator[NodeProcess]:
 
 
 def pictures(server: ModelServer) -> list[str]:
-    """Return what came of pictures, as addresses."""
     contents = [each.request["messages"][1]["content"] for each in server.exchanges]
     return [parts[0]["image_url"]["url"] for parts in contents if isinstance(parts, list)]
 

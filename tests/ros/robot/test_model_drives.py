@@ -47,9 +47,7 @@ def robot(ros_domain: int, model_folder: Path) -> Iterator[tuple[ModelServer, Pe
     """Bring the robot up with a model, and a microphone that is never silent."""
     with ModelServer(obeys(drive(0.5))) as server:
         write_settings(model_folder, server.url, budget={"calls_per_minute": 10_000})
-        up = deck(
-            "up", "robot", "--set", "mock_audio.first_after=0.1", "--set", "mock_audio.period=0.3"
-        )
+        up = deck("up", "robot", "--set", "mock_audio.first_after=0.1", "--set", "mock_audio.period=0.3")
         try:
             assert (up.process.returncode, up.errors) == (0, [])
             with Peer(ros_domain) as peer:

@@ -37,15 +37,10 @@ def wheels() -> JointState:
 
 @pytest.mark.parametrize(
     ("topic", "message", "owner"),
-    [
-        ("/drive_safe", setpoint(), "safety_stop"),
-        ("/wheel_commands", wheels(), "electronic_differential"),
-    ],
+    [("/drive_safe", setpoint(), "safety_stop"), ("/wheel_commands", wheels(), "electronic_differential")],
     ids=["drive_safe", "wheel_commands"],
 )
-def test_the_slowest_command_counts(
-    robot: RobotNodes, topic: str, message: Any, owner: str
-) -> None:
+def test_the_slowest_command_counts(robot: RobotNodes, topic: str, message: Any, owner: str) -> None:
     # The gate drives nobody: no source has asked for anything.
     robot.wheels.assert_stands()
     with Peer(robot.domain, "evil") as evil, evil.saying(topic, message, 0.02):

@@ -33,9 +33,7 @@ pytestmark = pytest.mark.nightly
 
 
 @pytest.fixture(scope="module")
-def module_nodes(
-    module_domain: int, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[RobotNodes]:
+def module_nodes(module_domain: int, tmp_path_factory: pytest.TempPathFactory) -> Iterator[RobotNodes]:
     nodes = RobotNodes(module_domain, tmp_path_factory.mktemp("still") / "devices")
     nodes.start(*shuffled(NODES, 1))
     yield nodes
@@ -59,7 +57,6 @@ Fall = Callable[[str], None]
 
 @pytest.fixture(params=["killed", "hung"])
 def fall(request: pytest.FixtureRequest, nodes: RobotNodes) -> Fall:
-    """How a node goes."""
     if request.param == "killed":
         return lambda name: nodes.end(name, number=signal.SIGKILL)
     return nodes.hang
@@ -79,9 +76,7 @@ def wait_back_and_still(nodes: RobotNodes, *names: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["chassis", "electronic_differential", "safety_stop"])
-def test_without_a_node_the_wheels_stand_until_a_new_command(
-    nodes: RobotNodes, fall: Fall, name: str
-) -> None:
+def test_without_a_node_the_wheels_stand_until_a_new_command(nodes: RobotNodes, fall: Fall, name: str) -> None:
     nodes.wheels.drive()
     nodes.wheels.wait_moving()
     fall(name)
@@ -169,10 +164,7 @@ def test_what_was_commanded_before_a_fault_is_over_does_not_count(nodes: RobotNo
     # Straight to the chassis, and believed for long.
     set_parameter(peer, "chassis", "max_age_s", 60.0)
     nodes.end("electronic_differential")
-    troubles: tuple[tuple[str, Any, Any], ...] = (
-        ("driver_fault", "left", "none"),
-        ("battery", 5.0, 7.4),
-    )
+    troubles: tuple[tuple[str, Any, Any], ...] = (("driver_fault", "left", "none"), ("battery", 5.0, 7.4))
     for trouble, value, fine in troubles:
         wheels.command("/wheel_commands", partial(wheel_command, way * 4.0, STEERING))
         wheels.wait_moving(way)

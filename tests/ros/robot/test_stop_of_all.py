@@ -60,9 +60,7 @@ class States:
     def __init__(self, peer: Peer) -> None:
         self.of: dict[str, dict[str, str]] = {}
         self.when: dict[tuple[str, str], float] = {}
-        self._topic = peer.node.create_subscription(
-            DiagnosticArray, STATE, self._hear, LATCHED_OF_MANY
-        )
+        self._topic = peer.node.create_subscription(DiagnosticArray, STATE, self._hear, LATCHED_OF_MANY)
 
     def _hear(self, message: DiagnosticArray) -> None:
         for status in message.status:
@@ -82,9 +80,7 @@ class States:
         wait_until(lambda: self.agree(word, *names), f"engaged {engaged} from {names}")
 
 
-def node(
-    domain: int, name: str, *remaps: str, module: str = "electronic_differential"
-) -> NodeProcess:
+def node(domain: int, name: str, *remaps: str, module: str = "electronic_differential") -> NodeProcess:
     arguments = ("--ros-args", "-r", f"__node:={name}", *remaps)
     return NodeProcess(f"nodes.{module}", domain, arguments=arguments)
 
@@ -117,9 +113,7 @@ def test_who_cannot_hear_it_takes_it_from_the_state_of_another(
             states.wait(False, "/hears", "/deaf")
 
 
-def test_who_hears_nobody_takes_it_from_the_disk(
-    ros_domain: int, peer: Peer, states: States
-) -> None:
+def test_who_hears_nobody_takes_it_from_the_disk(ros_domain: int, peer: Peer, states: States) -> None:
     with node(ros_domain, "hears"), node(ros_domain, "alone", *ALONE) as alone:
         states.wait(False, "/hears")
         alone.wait_for_words("listens to")
@@ -175,8 +169,7 @@ def test_a_release_that_a_frozen_node_hears_late_frees_no_later_stop(
             return [(one.name, dict_of(one)["engaged"]) for one in statuses]
 
         wait_until(
-            lambda: not (Counter(spoken) - Counter(name for name, _ in after_the_thaw())),
-            "three words of each",
+            lambda: not (Counter(spoken) - Counter(name for name, _ in after_the_thaw())), "three words of each"
         )
         assert {engaged for _, engaged in after_the_thaw()} == {"true"}
 
@@ -211,9 +204,7 @@ def test_who_restarts_while_it_is_released_is_free(
             wait_until(lambda: not stop_file(ros_domain).exists(), "the file gone")
 
 
-def test_a_file_that_appears_is_a_stop_and_one_that_vanishes_no_release(
-    ros_domain: int, states: States
-) -> None:
+def test_a_file_that_appears_is_a_stop_and_one_that_vanishes_no_release(ros_domain: int, states: States) -> None:
     with node(ros_domain, "one"), node(ros_domain, "two"):
         states.wait(False, "/one", "/two")
         place = stop_file(ros_domain)
@@ -240,9 +231,7 @@ def test_an_old_latched_stop_that_was_released_does_not_stop_who_comes_later(
         with node(ros_domain, "second") as second:
             second.wait_for_words("listens to")
             states.wait(False, "/second")
-            wait_until(
-                lambda: forgetful.publisher(STOP, Bool).get_subscription_count() == 4, "its matches"
-            )
+            wait_until(lambda: forgetful.publisher(STOP, Bool).get_subscription_count() == 4, "its matches")
             told = peer.hear(STATE, DiagnosticArray)
             wait_until(lambda: len(told) > 4, "what they say then")
             assert states.engaged("/first", "/second") == {"false"}
@@ -250,9 +239,7 @@ def test_an_old_latched_stop_that_was_released_does_not_stop_who_comes_later(
 
 def bare(domain: int, word: str) -> None:
     environment = {**os.environ, **DISCOVERY, "ROS_DOMAIN_ID": str(domain)}
-    subprocess.run(
-        [sys.executable, "-c", BARE, word], env=environment, check=True, timeout=DEADLINE_S
-    )
+    subprocess.run([sys.executable, "-c", BARE, word], env=environment, check=True, timeout=DEADLINE_S)
 
 
 def pub_once(domain: int, word: str) -> None:
@@ -277,8 +264,7 @@ def test_a_publisher_that_lives_a_tenth_of_a_second_stops_and_releases_all(
     names = [f"/node{number}" for number in range(4)]
     modules = ["electronic_differential", "safety_stop", "drive_to_point", "safety_stop"]
     processes = [
-        node(ros_domain, name.strip("/"), module=module)
-        for name, module in zip(names, modules, strict=True)
+        node(ros_domain, name.strip("/"), module=module) for name, module in zip(names, modules, strict=True)
     ]
     try:
         states.wait(False, *names)
@@ -294,9 +280,7 @@ def test_a_publisher_that_lives_a_tenth_of_a_second_stops_and_releases_all(
             process.close()
 
 
-def test_two_who_contradict_each_other_end_in_a_stop_that_names_them(
-    ros_domain: int, states: States
-) -> None:
+def test_two_who_contradict_each_other_end_in_a_stop_that_names_them(ros_domain: int, states: States) -> None:
     with (
         node(ros_domain, "hears") as hears,
         node(ros_domain, "deaf", *DEAF),
@@ -304,17 +288,11 @@ def test_two_who_contradict_each_other_end_in_a_stop_that_names_them(
         Peer(ros_domain, "releases") as releases,
     ):
         states.wait(False, "/hears", "/deaf")
-        with (
-            releases.saying(STOP, Bool(data=False), 0.05),
-            stops.saying(STOP, Bool(data=True), 0.1),
-        ):
+        with releases.saying(STOP, Bool(data=False), 0.05), stops.saying(STOP, Bool(data=True), 0.1):
             hears.wait_for_words("while another keeps giving it")
+            wait_until(lambda: states.of["/hears"].get("contradicted") == "true", "word of contradiction")
             wait_until(
-                lambda: states.of["/hears"].get("contradicted") == "true", "word of contradiction"
-            )
-            wait_until(
-                lambda: {"/stops", "/releases"} <= set(states.of["/hears"]["publishers"].split()),
-                "their names",
+                lambda: {"/stops", "/releases"} <= set(states.of["/hears"]["publishers"].split()), "their names"
             )
             states.wait(True, "/hears", "/deaf")
             seen = dict(states.when)

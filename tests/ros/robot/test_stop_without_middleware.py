@@ -53,9 +53,7 @@ async def test_the_screens_road_stops_and_releases_nodes_that_hear_nobody(
         await until(lambda: not place(ros_domain).exists(), "the file gone")
 
 
-async def test_stop_and_release_are_carried_in_their_order(
-    session: SupervisorClient, ros_domain: int
-) -> None:
+async def test_stop_and_release_are_carried_in_their_order(session: SupervisorClient, ros_domain: int) -> None:
     for _ in range(20):
         session.emergency_stop(True, time.time_ns())
         session.emergency_stop(False, time.time_ns())

@@ -76,9 +76,7 @@ def hung(module_domain: int) -> Iterator[int]:
         yield module_domain
 
 
-def test_the_others_are_listed_and_the_one_that_hangs_is_named(
-    hung: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_others_are_listed_and_the_one_that_hangs_is_named(hung: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", str(hung))
     listed = typed("param", "list", "--timeout", "1")
     assert listed.code == 1
@@ -98,18 +96,14 @@ def test_the_others_are_listed_and_the_one_that_hangs_is_named(
     ],
     ids=" ".join,
 )
-def test_whoever_does_not_answer_is_named(
-    hung: int, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]
-) -> None:
+def test_whoever_does_not_answer_is_named(hung: int, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", str(hung))
     asked = typed(*words, "--timeout", "0.5")
     assert asked.code == 1
     assert f"{'/never' if words[0] == 'service' else '/hung'} has not answered" in asked.err
 
 
-def test_a_service_whose_node_dies_of_the_call_is_told(
-    ros_domain: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_service_whose_node_dies_of_the_call_is_told(ros_domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", str(ros_domain))
     with program(MORTAL, ros_domain):
         asked = typed("service", "call", "/die", "std_srvs/srv/Trigger", "--timeout", "60")
@@ -120,14 +114,7 @@ def test_a_service_whose_node_dies_of_the_call_is_told(
 @contextmanager
 def goal(domain: int) -> Iterator[subprocess.Popen[str]]:
     """A goal that is on its way for ever, once it is accepted."""
-    words = (
-        "action",
-        "send_goal",
-        "/count",
-        "example_interfaces/action/Fibonacci",
-        "--timeout",
-        "1",
-    )
+    words = ("action", "send_goal", "/count", "example_interfaces/action/Fibonacci", "--timeout", "1")
     with subprocess.Popen(
         [sys.executable, "-m", "ros2", *words],
         cwd=ROOT,

@@ -39,6 +39,4 @@ def test_a_transform_is_described_as_by_the_real_program() -> None:
     straight = described(Transform())
     assert "Quaternion (xyzw) [0.000, 0.000, 0.000, 1.000]" in straight
     up = described(read(["0", "0", "0", "0", "1.5707963267948966", "0", "a", "b"]).transform)
-    assert f"RPY (degree) [0.000, {math.degrees(math.pi / 2):.3f}, 0.000]" in up.replace(
-        "-0.0", "0.0"
-    )
+    assert f"RPY (degree) [0.000, {math.degrees(math.pi / 2):.3f}, 0.000]" in up.replace("-0.0", "0.0")

@@ -47,21 +47,14 @@ def test_lists_of_the_graph() -> None:
     verbose = out("topic", "list", "-v")
     assert verbose.startswith("Published topics:\n * ")
     assert " * /word [std_msgs/msg/String] 1 publisher\n" in verbose
-    assert verbose.endswith(
-        "\n\nSubscribed topics:\n * /ai_command [std_msgs/msg/String] 1 subscriber\n\n"
-    )
+    assert verbose.endswith("\n\nSubscribed topics:\n * /ai_command [std_msgs/msg/String] 1 subscriber\n\n")
     assert "/add [example_interfaces/srv/AddTwoInts]\n" in out("service", "list", "-t")
     assert out("action", "list", "-t") == "/fibonacci [example_interfaces/action/Fibonacci]\n"
 
 
 def test_topic_info() -> None:
-    assert (
-        out("topic", "info", "/word")
-        == "Type: std_msgs/msg/String\nPublisher count: 1\nSubscription count: 0\n"
-    )
-    verbose = re.sub(
-        r"(hash: RIHS01_|GID: )[0-9a-f.]+", r"\1...", out("topic", "info", "-v", "/word")
-    )
+    assert out("topic", "info", "/word") == "Type: std_msgs/msg/String\nPublisher count: 1\nSubscription count: 0\n"
+    verbose = re.sub(r"(hash: RIHS01_|GID: )[0-9a-f.]+", r"\1...", out("topic", "info", "-v", "/word"))
     assert verbose == (
         "Type: std_msgs/msg/String\n\nPublisher count: 1\n\n"
         "Node name: turtle\nNode namespace: /\nTopic type: std_msgs/msg/String\n"
@@ -99,9 +92,7 @@ def test_echo() -> None:
         "name:\n- left\n- right\nposition: []\nvelocity:\n- 1.5\n- -0.25\neffort: []\n---\n"
     )
     assert out("topic", "echo", "--once", "/wheels", "--field", "velocity[1]") == "-0.25\n---\n"
-    assert out("topic", "echo", "--once", "/wheels", "--field", "header.frame_id", "--csv") == (
-        "base_link\n---\n"
-    )
+    assert out("topic", "echo", "--once", "/wheels", "--field", "header.frame_id", "--csv") == ("base_link\n---\n")
     assert re.sub(r"^\d+,\d+", "T", out("topic", "echo", "--once", "/wheels", "--csv")) == (
         "T,base_link,left,right,,1.5,-0.25,\n"
     )
@@ -134,17 +125,13 @@ def test_rate() -> None:
 
 
 def test_pub(world: World) -> None:
-    said = out(
-        "topic", "pub", "-t", "2", "-r", "50", "/ai_command", "std_msgs/msg/String", "data: вперед"
-    )
+    said = out("topic", "pub", "-t", "2", "-r", "50", "/ai_command", "std_msgs/msg/String", "data: вперед")
     said = said.removeprefix("Waiting for at least 1 matching subscription(s)...\n")
     one = "publishing #{}: std_msgs.msg.String(data='вперед')\n\n"
     assert said == "publisher: beginning loop\n" + one.format(1) + one.format(2)
     wait_until(lambda: len(world.heard) >= 2, "both messages")
     assert [message.data for message in world.heard] == ["вперед"] * 2
-    waited = typed(
-        "topic", "pub", "--once", "/x", "std_msgs/msg/String", "--max-wait-time-secs", "0.1"
-    )
+    waited = typed("topic", "pub", "--once", "/x", "std_msgs/msg/String", "--max-wait-time-secs", "0.1")
     assert (waited.code, waited.err) == (
         1,
         "Timed out waiting for subscribers: Expected 1 subcribers but only got 0 subscribers\n",
@@ -184,9 +171,7 @@ def test_parameters(tmp_path: Path) -> None:
     names = out("param", "list", "/turtle").splitlines()
     assert {"  gains", "  name", "  on", "  safe.near", "  speed", "  use_sim_time"} <= set(names)
     assert out("param", "list", "--filter", "speed") == "/turtle:\n  speed\n"
-    assert out("param", "list", "/turtle", "--filter", "^on", "--param-type") == (
-        "  on (type: boolean)\n"
-    )
+    assert out("param", "list", "/turtle", "--filter", "^on", "--param-type") == ("  on (type: boolean)\n")
     assert out("param", "get", "/turtle", "safe.near") == "Integer value is: 3\n"
     assert out("param", "get", "turtle", "on") == "Boolean value is: True\n"
     assert out("param", "get", "/turtle", "name", "--hide-type") == "лис\n"
@@ -254,17 +239,13 @@ def test_interfaces() -> None:
 def test_as_a_program_it_ends_quietly() -> None:
     """By Ctrl-C, and where the reader of its output goes first."""
     command = [sys.executable, "-P", "-m", "ros2", "topic", "echo", "/distance"]
-    with subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as echo:
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as echo:
         assert echo.stdout is not None
         assert next(filter(own_words, echo.stdout)) == "data: 0.25\n"
         echo.send_signal(signal.SIGINT)
         _rest, err = echo.communicate(timeout=DEADLINE_S)
         assert (echo.returncode, err) == (signal.SIGINT, "")
-    with subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as echo:
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as echo:
         assert echo.stdout is not None
         echo.stdout.readline()
         echo.stdout.close()

@@ -49,10 +49,7 @@ def test_what_is_published_arrives_as_it_was_filled_in(world: World) -> None:
         (ros2_words.service_type("/add"), "AddTwoInts"),
         (ros2_words.call("/add", "example_interfaces/srv/AddTwoInts", {"a": -2, "b": 5}), "sum=3"),
         (ros2_words.action_info("/fibonacci"), "    /turtle [example_interfaces/action/Fibonacci]"),
-        (
-            ros2_words.send_goal("/fibonacci", "example_interfaces/action/Fibonacci", {"order": 3}),
-            "SUCCEEDED",
-        ),
+        (ros2_words.send_goal("/fibonacci", "example_interfaces/action/Fibonacci", {"order": 3}), "SUCCEEDED"),
     ],
 )
 def test_it_shows_what_it_is_for(line: str, shown: str) -> None:

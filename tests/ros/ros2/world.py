@@ -36,9 +36,7 @@ class World(Peer):
         self._distance = self.publisher("/distance", Float32)
         node.create_timer(EVERY_S, self._publish)
         node.create_service(AddTwoInts, "/add", self._add)
-        self._action = ActionServer(
-            node, Fibonacci, "/fibonacci", self._count, goal_callback=_accepts
-        )
+        self._action = ActionServer(node, Fibonacci, "/fibonacci", self._count, goal_callback=_accepts)
         node.declare_parameter("speed", 0.5, _LIMITED)
         node.declare_parameter("safe.near", value=3)
         node.declare_parameter("name", "лис")
@@ -47,7 +45,6 @@ class World(Peer):
         node.add_on_set_parameters_callback(_refuses)
 
     def close(self) -> None:
-        """End it."""
         self._action.destroy()
         super().close()
 
@@ -75,8 +72,7 @@ class World(Peer):
 
 
 _LIMITED = ParameterDescriptor(
-    description="metres a second",
-    floating_point_range=[FloatingPointRange(from_value=0.0, to_value=2.0)],
+    description="metres a second", floating_point_range=[FloatingPointRange(from_value=0.0, to_value=2.0)]
 )
 
 

@@ -17,9 +17,7 @@ from tests.ros.shell.conftest import DECK, WITHIN_S, Run
 from tests.waiting import wait_until
 
 
-def test_a_command_runs_in_the_domain_and_its_exit_code_is_passed_on(
-    run: Run, ros_domain: int
-) -> None:
+def test_a_command_runs_in_the_domain_and_its_exit_code_is_passed_on(run: Run, ros_domain: int) -> None:
     seen = run(
         "echo $ROS_DOMAIN_ID $ROS_AUTOMATIC_DISCOVERY_RANGE; which ros2 python3;"
         " python3 -c 'import rclpy, sys; print(sys.executable)'; exit 7"
@@ -50,17 +48,13 @@ def test_a_real_ros2_is_preferred_unless_it_is_broken(run: Run, tmp_path: Path) 
         assert run("which ros2", PATH=path).stdout.strip() == str(wanted)
 
 
-@pytest.mark.parametrize(
-    ("shell", "settings", "extra"), [("bash", ".bashrc", {}), ("sh", "shrc", {"ENV": "shrc"})]
-)
+@pytest.mark.parametrize(("shell", "settings", "extra"), [("bash", ".bashrc", {}), ("sh", "shrc", {"ENV": "shrc"})])
 def test_the_prompt_tells_the_domain_and_the_users_settings_are_read(
     shell: str, settings: str, extra: Mapping[str, str], home: Path, ros_domain: int
 ) -> None:
     (home / settings).write_text("PS1='mine> '; PATH=/usr/bin:/bin; tried() { echo it $1; }\n")
     env = {**os.environ, "SHELL": f"/bin/{shell}", **{k: str(home / v) for k, v in extra.items()}}
-    terminal = pexpect.spawn(
-        DECK[0], list(DECK[1:]), env=env, cwd=str(home), encoding="utf-8", timeout=WITHIN_S
-    )
+    terminal = pexpect.spawn(DECK[0], list(DECK[1:]), env=env, cwd=str(home), encoding="utf-8", timeout=WITHIN_S)
     terminal.expect_exact(f"(domain {ros_domain}) mine> ")
     terminal.sendline("tried works; which ros2; exit 3")
     terminal.expect_exact("it works")

@@ -34,9 +34,7 @@ def speech_in(messages: list[ByteMultiArray]) -> bytes:
     return b"".join(sound for sound in map(from_message, messages) if text_in(sound) is None)
 
 
-def test_a_spoken_file_drives_the_wheels_and_is_answered_aloud(
-    peer: Peer, ros_domain: int, tmp_path: Path
-) -> None:
+def test_a_spoken_file_drives_the_wheels_and_is_answered_aloud(peer: Peer, ros_domain: int, tmp_path: Path) -> None:
     file = tmp_path / "said.wav"
     file.write_bytes(wav_of(EspeakVoice().speak("robot forward", "en")))
     heard = peer.hear("/audio/heard", String)
@@ -44,12 +42,7 @@ def test_a_spoken_file_drives_the_wheels_and_is_answered_aloud(
     wheels = peer.hear("/wheel_commands", JointState)
     answers = peer.hear("/say", String)
     played = peer.hear("/audio/speaker_raw", ByteMultiArray)
-    gate: dict[str, object] = {
-        "gate": True,
-        "max_age_s": 0.0,
-        "slow_distance": 0.0,
-        "settle_s": 0.0,
-    }
+    gate: dict[str, object] = {"gate": True, "max_age_s": 0.0, "slow_distance": 0.0, "settle_s": 0.0}
     differential: dict[str, object] = {"drive_topic": "/drive_safe", "max_age_s": 60.0}
     nodes: dict[str, dict[str, object]] = {
         "hearing": {},

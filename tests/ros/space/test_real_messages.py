@@ -34,13 +34,9 @@ def read(type_name: str, *messages: Any) -> list[Drawable]:
 
 
 def cloud(count: int = 1000, *, dtype: str = "<f4") -> PointCloud2:
-    """A cloud along a diagonal."""
     kind = PointField.FLOAT32 if dtype.endswith("4") else PointField.FLOAT64
     size = int(dtype[-1])
-    fields = [
-        PointField(name=name, offset=size * at, datatype=kind, count=1)
-        for at, name in enumerate("xyz")
-    ]
+    fields = [PointField(name=name, offset=size * at, datatype=kind, count=1) for at, name in enumerate("xyz")]
     made = PointCloud2(height=1, width=count, fields=fields, point_step=3 * size)
     made.header.frame_id = "lidar"
     made.is_bigendian = dtype.startswith(">")
@@ -62,12 +58,8 @@ def test_a_real_cloud(dtype: str) -> None:
 @pytest.mark.parametrize("type_name", KINDS)
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(data=st.data())
-def test_whatever_is_in_a_message_is_drawn_or_a_sentence(
-    type_name: str, data: st.DataObject
-) -> None:
-    tree = to_tree(
-        to_message(load_message(type_name), data.draw(trees_of(load_message(type_name))))
-    )
+def test_whatever_is_in_a_message_is_drawn_or_a_sentence(type_name: str, data: st.DataObject) -> None:
+    tree = to_tree(to_message(load_message(type_name), data.draw(trees_of(load_message(type_name)))))
     reader = KINDS[type_name].make()
     with contextlib.suppress(NotDrawnError):
         reader.read(tree, 0.0)

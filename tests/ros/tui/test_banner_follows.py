@@ -34,9 +34,7 @@ class Screen:
         self._inbox = GraphInbox(lambda: None)
         link = SimpleNamespace(emergency_stop=StopRoad(folder, domain))
         self.observer = Observer(domain, "localhost")
-        self.feed = SimpleNamespace(
-            graph=self.observer, update=None, link=link, nodes={}, watching=True, replay=None
-        )
+        self.feed = SimpleNamespace(graph=self.observer, update=None, link=link, nodes={}, watching=True, replay=None)
         self.notes: list[str] = []
         self.emergency = EmergencyControl(cast("Any", self), cast("Any", self.feed), lambda: None)
         self._workers: list[asyncio.Future[Any]] = []
@@ -63,7 +61,6 @@ class Screen:
         await until(held, lambda: f"{what}; {self.emergency.state}", WITHIN_S)
 
     def says(self, engaged: bool) -> bool:
-        """Whether the node has said so."""
         node = self.emergency.state.nodes.get(NODE)
         return node is not None and node.engaged == engaged
 
@@ -75,7 +72,6 @@ class Screen:
         self.notes.append(words)
 
     async def close(self) -> None:
-        """Let go of the graph."""
         await asyncio.gather(*self._workers)
         self.observer.stop()
 
@@ -88,19 +84,14 @@ async def screen(ros_domain: int, tmp_path: Path) -> AsyncIterator[Screen]:
     await screen.close()
 
 
-async def test_a_volatile_word_of_one_who_leaves_stops_and_releases(
-    screen: Screen, ros_domain: int
-) -> None:
+async def test_a_volatile_word_of_one_who_leaves_stops_and_releases(screen: Screen, ros_domain: int) -> None:
     """No gate is there to tell of it, and nobody whose word is latched."""
     with NodeProcess("nodes.electronic_differential", ros_domain):
         await screen.until(lambda: screen.says(False), "the node's word")
         screen.emergency.engage()
         await screen.until(lambda: screen.says(True), "the stop")
         assert screen.words.startswith("■ EMERGENCY STOP since ")
-        with (
-            Peer(ros_domain, "passer_by") as other,
-            other.saying("/emergency_stop", Bool(data=False)),
-        ):
+        with Peer(ros_domain, "passer_by") as other, other.saying("/emergency_stop", Bool(data=False)):
             await screen.until(lambda: screen.says(False), "the release")
         await screen.until(lambda: not screen.words, "no banner over wheels that may turn")
         assert any("released elsewhere" in note for note in screen.notes)
@@ -110,9 +101,7 @@ async def test_a_volatile_word_of_one_who_leaves_stops_and_releases(
         await screen.until(lambda: not screen.words and screen.says(False), "our release")
 
 
-async def test_a_stop_that_only_the_screen_has_heard_is_passed_on_and_shown(
-    screen: Screen, ros_domain: int
-) -> None:
+async def test_a_stop_that_only_the_screen_has_heard_is_passed_on_and_shown(screen: Screen, ros_domain: int) -> None:
     """By a publisher that was gone before the node found it."""
     deaf = ("--ros-args", "-r", "/emergency_stop:=/nobody_says")
     with NodeProcess("nodes.electronic_differential", ros_domain, arguments=deaf):
@@ -131,9 +120,7 @@ async def test_a_stop_that_only_the_screen_has_heard_is_passed_on_and_shown(
         await screen.until(lambda: not screen.words and screen.says(False), "the release")
 
 
-async def test_a_node_that_hangs_is_named_until_it_has_heard_of_the_release(
-    screen: Screen, ros_domain: int
-) -> None:
+async def test_a_node_that_hangs_is_named_until_it_has_heard_of_the_release(screen: Screen, ros_domain: int) -> None:
     with (
         NodeProcess("nodes.electronic_differential", ros_domain) as node,
         NodeProcess("nodes.safety_stop", ros_domain),

@@ -70,9 +70,7 @@ def begin_everything(watcher: Watcher, hung: Process) -> list[Any]:
     wait_until(lambda: len(watcher.update.actions) == 2, "both actions")
     wait_until(lambda: watcher.serves("/slow"), "the service")
     os.kill(hung.process.pid, signal.SIGSTOP)
-    waiting: list[Future[Any]] = [
-        observer.call("/slow", ADD, {"a": n, "b": 1}, timeout_s=60.0) for n in range(30)
-    ]
+    waiting: list[Future[Any]] = [observer.call("/slow", ADD, {"a": n, "b": 1}, timeout_s=60.0) for n in range(30)]
     waiting.append(observer.parameters("/hung", timeout_s=60.0))
     waiting.append(observer.set_parameters("/hung", {"use_sim_time": True}, timeout_s=60.0))
     for n in range(3):

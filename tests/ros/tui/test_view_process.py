@@ -28,7 +28,6 @@ asyncio.run(main())
 
 @pytest.fixture(autouse=True)
 def folders(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    """Where temporary folders are made."""
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     return tmp_path
@@ -47,7 +46,6 @@ def family(pid: int) -> list[int]:
 
 
 def kept_in(place: Path) -> list[Path]:
-    """Return the folders of viewers in a place."""
     return list(place.glob(f"{PREFIX}*"))
 
 

@@ -32,7 +32,6 @@ DATA = struct.Struct("<BIQ")
 
 @pytest.fixture
 def served(ros_domain: int) -> Iterator[DeckProcess]:
-    """The server in the test's own domain."""
     with ExitStack() as stack:
         process = DeckProcess("foxglove", "--domain", str(ros_domain), "--lang", "en")
         stack.callback(process.close)

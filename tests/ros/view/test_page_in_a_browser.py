@@ -34,23 +34,16 @@ def number_on(picture: NDArray[np.uint8]) -> int | None:
 
 
 @pytest.mark.slow
-def test_it_shows_what_the_camera_sees_now_and_asks_nobody_else(
-    shown: Shown, tmp_path: Path
-) -> None:
+def test_it_shows_what_the_camera_sees_now_and_asks_nobody_else(shown: Shown, tmp_path: Path) -> None:
     """Its colours to the pixel, and later a later picture; nothing leaves this machine."""
     with Browser(tmp_path, (800, 500)) as browser:
         browser.open(shown.url)
         first = wait_until(lambda: number_on(browser.picture()), "the picture", WITHIN_S, 0.3)
         later = wait_until(
-            lambda: (now := number_on(browser.picture())) != first and now,
-            "a later picture",
-            WITHIN_S,
-            0.3,
+            lambda: (now := number_on(browser.picture())) != first and now, "a later picture", WITHIN_S, 0.3
         )
         assert first != later
-        outside = browser.evaluate(
-            "fetch('https://example.com/').then(() => 'let out', () => 'refused')"
-        )
+        outside = browser.evaluate("fetch('https://example.com/').then(() => 'let out', () => 'refused')")
         assert outside == "refused"
         assert "re_viewer_bg.wasm" in "".join(browser.requests)
         # What the policy refuses is not even asked for.
@@ -61,11 +54,7 @@ def test_it_shows_what_the_camera_sees_now_and_asks_nobody_else(
 def test_nobody_but_this_machine_can_reach_it(shown: Shown) -> None:
     """Deck's process and Rerun's: where they listen, and whom they are connected with."""
     own = psutil.Process(shown.process.process.pid)
-    found = [
-        connection
-        for one in (own, *own.children(recursive=True))
-        for connection in one.net_connections("tcp")
-    ]
+    found = [connection for one in (own, *own.children(recursive=True)) for connection in one.net_connections("tcp")]
     listening = {one.laddr.ip for one in found if one.status == psutil.CONN_LISTEN}
     assert listening == {"127.0.0.1"}
     assert {one.raddr.ip for one in found if one.raddr} <= {"127.0.0.1"}

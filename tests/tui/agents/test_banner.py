@@ -104,7 +104,5 @@ async def test_what_an_agent_does_begins_a_chain() -> None:
         assert isinstance(screen, FlowScreen)
         does = say("agent “{agent}” does {id}: {words}", agent="claude", id="p1", words="drives")
         opener.link.say(LogEvent((LogLine("agent", 1, NOW_S, Severity.WARN, does, "", "agent"),)))
-        chains = await until(
-            lambda: [one for one in screen.chains if one.first.lane.value == "agent"], "a chain"
-        )
+        chains = await until(lambda: [one for one in screen.chains if one.first.lane.value == "agent"], "a chain")
         assert [one.first.text for one in chains] == ["agent “claude” does p1: drives"]

@@ -184,8 +184,7 @@ async def test_it_finds_an_action_by_name_and_does_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("language", "typed", "title"),
-    [("ru", "plot", "Топики › График (Plot)"), ("en", "plot", "Topics › Plot")],
+    ("language", "typed", "title"), [("ru", "plot", "Топики › График (Plot)"), ("en", "plot", "Topics › Plot")]
 )
 async def test_an_action_of_another_screen_is_found_in_either_language_with_its_place(
     language: str, typed: str, title: str
@@ -214,14 +213,11 @@ def test_every_action_of_every_screen_has_its_place() -> None:
         # What every screen inherits is offered on each of them.
         own = vars(screen).get("BINDINGS", ())
         bound = {each.id for each in own if each.id in REGISTRY}
-        placed = {
-            action.id for place in PLACES if place.show.screen == name for action in place.actions
-        }
+        placed = {action.id for place in PLACES if place.show.screen == name for action in place.actions}
         assert name == "picker" or bound <= placed, name
 
 
 def in_front(app: DeckApp, name: str) -> bool:
-    """Whether this screen is."""
     return getattr(app.screen, "tab", "") == name
 
 

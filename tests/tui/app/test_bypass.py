@@ -21,9 +21,7 @@ KINDS = {"/drive_safe": DRIVE, "/wheel_commands": JOINTS}
 GATE, DIFFERENTIAL = "/safety_stop", "/electronic_differential"
 
 
-def graph(
-    at_s: float = 0.0, kinds: Mapping[str, str] = KINDS, **by: tuple[str, ...]
-) -> GraphUpdate:
+def graph(at_s: float = 0.0, kinds: Mapping[str, str] = KINDS, **by: tuple[str, ...]) -> GraphUpdate:
     """The lesson's graph with these publishers, by topic without its slash."""
     changed = {f"/{name}": nodes for name, nodes in by.items()}
     others = [row for row in TOPICS if row.name not in changed]
@@ -95,9 +93,7 @@ def test_without_a_gate_of_its_own_it_takes_two() -> None:
     """A lesson whose wheels are published by hand, or the course's own nodes, only watched."""
     for nodes in ({}, {"hello": NODES["ai_brain"]}):
         assert named(graph(wheel_commands=("/_ros2cli_7",)), nodes) == []
-        assert named(graph(wheel_commands=(DIFFERENTIAL, "/evil")), nodes) == [
-            ("/wheel_commands", "/evil")
-        ]
+        assert named(graph(wheel_commands=(DIFFERENTIAL, "/evil")), nodes) == [("/wheel_commands", "/evil")]
 
 
 def test_a_name_is_waited_for() -> None:

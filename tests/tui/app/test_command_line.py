@@ -66,9 +66,7 @@ async def test_an_unknown_word_is_warned_of_and_sent_all_the_same() -> None:
         ("en", "", None),
     ],
 )
-async def test_words_of_both_languages_are_completed(
-    language: str, start: str, whole: str | None
-) -> None:
+async def test_words_of_both_languages_are_completed(language: str, start: str, whole: str | None) -> None:
     set_language(language)
     assert await WordSuggester().get_suggestion(start) == whole
 

@@ -12,13 +12,7 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 from textual.widget import Widget
 
-from tests.tui.recorded import (
-    RecordedGraph,
-    RecordedOpener,
-    RecordedSession,
-    lesson_samples,
-    lesson_update,
-)
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession, lesson_samples, lesson_update
 from tests.tui.snapshots import LESSON_9, settle
 from tests.waiting import until
 from tui.app import DeckApp
@@ -58,9 +52,7 @@ class Isolated:
 async def isolated() -> AsyncIterator[Isolated]:
     graph = RecordedGraph()
     journal: list[tuple[str, str]] = []
-    app = DeckApp(
-        RecordedOpener(graph=graph), LESSON_9, journal=lambda *noted: journal.append(noted)
-    )
+    app = DeckApp(RecordedOpener(graph=graph), LESSON_9, journal=lambda *noted: journal.append(noted))
     with isolating():
         async with app.run_test(size=(120, 40)) as pilot:
             await settle(pilot)
@@ -160,9 +152,7 @@ async def test_a_screen_that_cannot_be_laid_out_gives_way_to_one_that_can() -> N
             assert "09-brain" in words
             assert "space" in words
             assert await deck.stops()
-            await until(
-                lambda: "EMERGENCY STOP" in shown(deck.app.screen.query_one(Plainly)), "the stop"
-            )
+            await until(lambda: "EMERGENCY STOP" in shown(deck.app.screen.query_one(Plainly)), "the stop")
         await deck.pilot.press("f2")
         await until(lambda: isinstance(deck.app.screen, LessonDeck), "the deck")
         await until(lambda: deck.app.screen.query(Panel), "its panels")
@@ -186,9 +176,7 @@ async def test_a_fault_of_the_emergency_stop_does_not_keep_the_panels_waiting() 
     async with isolated() as deck:
         with broken(type(deck.app.emergency), "see"):
             samples = lesson_samples()
-            turned = replace(
-                samples["/head_state"][0], value={"name": ["pan_joint"], "position": [-0.5]}
-            )
+            turned = replace(samples["/head_state"][0], value={"name": ["pan_joint"], "position": [-0.5]})
             deck.graph.show(lesson_update(samples={**samples, "/head_state": (turned,)}))
             await deck.pilot.pause()
             assert "29° right" in shown(deck.app.screen.query_one(HeadView))

@@ -50,13 +50,10 @@ async def test_a_screen_shows_it_as_text_and_goes_on(monkeypatch: pytest.MonkeyP
     """Names, types, peers, messages and what is pasted into a field: as text, markup and all."""
     monkeypatch.setenv("TERM", "xterm-256color")
     troubled = [
-        replace(row, trouble=trouble, name=f"/{trouble.name}")
-        for row, trouble in zip(TOPICS, Trouble, strict=False)
+        replace(row, trouble=trouble, name=f"/{trouble.name}") for row, trouble in zip(TOPICS, Trouble, strict=False)
     ]
     rows = sorted((*TOPICS, *map(poisoned, (*TOPICS, *troubled))), key=lambda row: row.name)
-    samples = {
-        poisoned(name): tuple(map(poisoned, ones)) for name, ones in lesson_samples().items()
-    }
+    samples = {poisoned(name): tuple(map(poisoned, ones)) for name, ones in lesson_samples().items()}
     update = lesson_update(topics=tuple(rows), samples={**lesson_samples(), **samples})
     opener = RecordedOpener(graph=RecordedGraph(update))
     app = DeckApp(opener, LESSON_9, "topics", driver_class=Writing)

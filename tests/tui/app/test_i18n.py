@@ -37,9 +37,7 @@ def test_the_nearest_wish_for_a_language_counts(
 
 def test_russian_counts_by_its_own_rules() -> None:
     set_language("ru")
-    forms = [
-        ngettext("Starts {n} node", "Starts {n} nodes", n).format(n=n) for n in (1, 2, 5, 11, 21)
-    ]
+    forms = [ngettext("Starts {n} node", "Starts {n} nodes", n).format(n=n) for n in (1, 2, 5, 11, 21)]
     assert forms == [
         "Запускает 1 узел",
         "Запускает 2 узла",
@@ -80,9 +78,7 @@ def test_translations_fill_in_the_same_values() -> None:
                 assert fields(text) <= fields(ids[0]) | fields(ids[-1]), entry.id
 
 
-@pytest.mark.parametrize(
-    "name", ["std_msgs", "std_msgs/msg/Strin", "no_such_msgs/msg/Any", "std_msgs/srv/Any"]
-)
+@pytest.mark.parametrize("name", ["std_msgs", "std_msgs/msg/Strin", "no_such_msgs/msg/Any", "std_msgs/srv/Any"])
 def test_a_type_that_is_not_there(name: str) -> None:
     set_language("ru")
     with pytest.raises(UnknownTypeError) as found:
@@ -95,10 +91,7 @@ def test_a_type_that_is_not_there(name: str) -> None:
     ("row", "words"),
     [
         (ParameterRow("a", "double", 1.0, "", "0.1 .. 60 s", False, 0.1, 60.0), "0.1…60 с"),
-        (
-            ParameterRow("a", "integer", 1, "", "0 .. 9 rad/s", True, 0, 9),
-            "только чтение, 0…9 рад/с",
-        ),
+        (ParameterRow("a", "integer", 1, "", "0 .. 9 rad/s", True, 0, 9), "только чтение, 0…9 рад/с"),
         (ParameterRow("a", "double", 1.0, "", "0 .. 1 furlong", False, 0.0, 1.0), "0…1 furlong"),
         (ParameterRow("a", "double", 1.0, "", "0 .. 2 s", False, 0.0, 1.0), "0…1, 0 .. 2 s"),
         (ParameterRow("a", "string", "", "", "text, may be empty"), "строка, может быть пустой"),

@@ -132,9 +132,7 @@ def outside(*rows: NodeRow) -> tuple[str, ...]:
     return found.now
 
 
-def test_a_process_that_deck_has_started_is_its_own_under_any_name(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_process_that_deck_has_started_is_its_own_under_any_name(monkeypatch: pytest.MonkeyPatch) -> None:
     marks = {STARTED_HERE: {"DECK_RUN_ID": "run"}, 8: {}, 9: {"DECK_RUN_ID": "another"}}
     monkeypatch.setattr("launcher.processes.table.process_numbers", lambda: [*marks, 65536 + 8])
     monkeypatch.setattr("launcher.processes.table.read_marks", marks.get)
@@ -151,9 +149,7 @@ def test_a_process_that_deck_has_started_is_its_own_under_any_name(
     assert outside(NodeRow("/camera", processes=(STARTED_HERE,)), NodeRow("/new")) == ()
 
 
-def test_of_two_by_one_name_it_is_told_by_what_decks_own_has_not_printed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_of_two_by_one_name_it_is_told_by_what_decks_own_has_not_printed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("launcher.processes.table.process_numbers", lambda: [8])
     monkeypatch.setattr("launcher.processes.table.read_marks", lambda _pid: {})
     here = Outside()

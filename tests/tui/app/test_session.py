@@ -27,14 +27,7 @@ from launcher.errors import ProfileError, ProfileProblem, SessionError
 from launcher.events import ClosedEvent, StraysEvent
 from launcher.status import NodeState, Stray, Who
 from tests.dying_supervisor import DyingSupervisor
-from tests.tui.recorded import (
-    LINES,
-    NOW_S,
-    SESSION,
-    RecordedOpener,
-    RecordedSession,
-    lesson_update,
-)
+from tests.tui.recorded import LINES, NOW_S, SESSION, RecordedOpener, RecordedSession, lesson_update
 from tests.tui.snapshots import LESSON_9, opened, settle
 from tests.waiting import until
 from text.sentences import say
@@ -85,9 +78,7 @@ async def test_leaving_an_attached_session_leaves_it_running_and_names_what_ends
         await pilot.press("q")
         await pilot.pause()
         assert opener.link.asked == [("aclose",)]
-        assert app.sessions.parting_words == (
-            "left running: 09-brain in domain 42; `deck down 09-brain` ends it"
-        )
+        assert app.sessions.parting_words == ("left running: 09-brain in domain 42; `deck down 09-brain` ends it")
         assert app.return_code == 0
 
 
@@ -213,9 +204,7 @@ async def test_a_session_that_ends_leaves_no_node_ready_and_no_panel_that_seems_
         (SessionError(say("the supervisor does not answer")), 1),
     ],
 )
-async def test_what_was_named_and_cannot_be_opened_ends_the_program_with_words(
-    error: Exception, code: int
-) -> None:
+async def test_what_was_named_and_cannot_be_opened_ends_the_program_with_words(error: Exception, code: int) -> None:
     app = DeckApp(RecordedOpener(refusal=error), LESSON_9)
     async with app.run_test() as pilot:
         await settle(pilot)
@@ -235,9 +224,7 @@ async def test_what_an_earlier_run_left_behind_is_offered_for_stopping() -> None
         assert opener.link.asked == [("stop_strays", "camera")]
 
 
-@pytest.mark.parametrize(
-    ("size", "kept"), [(8, KEPT_SAMPLES), (5_000_000, KEPT_BYTES // 5_000_000)]
-)
+@pytest.mark.parametrize(("size", "kept"), [(8, KEPT_SAMPLES), (5_000_000, KEPT_BYTES // 5_000_000)])
 def test_many_and_large_messages_do_not_pile_up(size: int, kept: int) -> None:
     inbox = GraphInbox(lambda: None)
     for at_s in range(2 * KEPT_SAMPLES):

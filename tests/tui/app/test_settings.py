@@ -31,10 +31,7 @@ def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
         ('{"theme": ', "settings.json:1:11: "),
         ("[]", "expected an object"),
         ('{"colour": "red"}', "unknown setting 'colour'; available: theme, language, keys, lesson"),
-        (
-            '{"theme": "pink"}',
-            "theme: unknown value 'pink'; available: textual-dark, textual-light",
-        ),
+        ('{"theme": "pink"}', "theme: unknown value 'pink'; available: textual-dark, textual-light"),
         ('{"language": "fr"}', "language: unknown value 'fr'; available: en, ru"),
         ('{"theme": 7}', "theme: unknown value 7"),
         ('{"theme": []}', "theme: unknown value []"),
@@ -48,9 +45,7 @@ def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
         ("\x00", "settings.json:1:1: "),
     ],
 )
-def test_a_broken_file_is_refused_with_place_and_mend(
-    tmp_path: Path, text: str, words: str
-) -> None:
+def test_a_broken_file_is_refused_with_place_and_mend(tmp_path: Path, text: str, words: str) -> None:
     path = tmp_path / "settings.json"
     path.write_text(text)
     with pytest.raises(SettingsError) as refused:

@@ -20,9 +20,7 @@ from tui.frame.title_bar import TitleBar
     ],
 )
 @pytest.mark.parametrize("width", [80, 120])
-async def test_a_dead_guardian_stands_in_the_title(
-    language: str, short: str, whole: str, width: int
-) -> None:
+async def test_a_dead_guardian_stands_in_the_title(language: str, short: str, whole: str, width: int) -> None:
     set_language(language)
     opener = RecordedOpener()
     async with opened(opener, size=(width, 40)) as (app, pilot):

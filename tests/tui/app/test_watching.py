@@ -10,12 +10,7 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from graph.data import GraphUpdate
-from tests.tui.recorded import (
-    TOPICS,
-    RecordedGraph,
-    RecordedOpener,
-    lesson_update,
-)
+from tests.tui.recorded import TOPICS, RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.recorded_lesson import topic
 from tests.tui.snapshots import settle
 from tui.app import DeckApp

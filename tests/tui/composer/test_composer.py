@@ -74,15 +74,11 @@ async def test_sending_publishes_exactly_what_stands_there(stage: ComposerStage)
     await stage.write(text)
     await stage.pilot.press("ctrl+s")
     await stage.pilot.pause()
-    assert stage.graph.published == [
-        ("/llm_raw_json", "std_msgs/msg/String", {"data": text}, False)
-    ]
+    assert stage.graph.published == [("/llm_raw_json", "std_msgs/msg/String", {"data": text}, False)]
     assert stage.told() == ["· /llm_result: waiting for an answer"]
 
 
-async def test_the_trail_is_followed_also_while_another_screen_is_in_front(
-    stage: ComposerStage,
-) -> None:
+async def test_the_trail_is_followed_also_while_another_screen_is_in_front(stage: ComposerStage) -> None:
     assert stage.graph.followed >= FOLLOWED
     await stage.write(VALID)
     await stage.pilot.press("ctrl+s", "f5")
@@ -177,9 +173,7 @@ async def test_a_megabyte_is_not_pasted(stage: ComposerStage) -> None:
         assert stage.screen.editor.text == text
 
 
-async def test_escape_gives_the_keys_back_that_enter_has_given_to_the_editor(
-    stage: ComposerStage,
-) -> None:
+async def test_escape_gives_the_keys_back_that_enter_has_given_to_the_editor(stage: ComposerStage) -> None:
     await stage.write("")
     await stage.press("7", "3", "enter", "4", "5", "escape", "4")
     assert stage.screen.editor.text == "45", "typed only after Enter"

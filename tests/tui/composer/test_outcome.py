@@ -36,9 +36,7 @@ def drive(topic: str, speed: float, steering: float) -> Sample:
 
 
 def wheels(left: float, right: float) -> Sample:
-    return joints(
-        "/wheel_commands", rear_left_wheel_joint=(0.0, left), rear_right_wheel_joint=(0.0, right)
-    )
+    return joints("/wheel_commands", rear_left_wheel_joint=(0.0, left), rear_right_wheel_joint=(0.0, right))
 
 
 def head(pan: float, tilt: float) -> Sample:
@@ -54,9 +52,7 @@ def told(trail: OutcomeTrail, after_s: float = 1.0) -> list[tuple[str, str, str]
     return [(entry.mark, entry.topic, entry.text) for entry in trail.entries(SENT_S + after_s)]
 
 
-def begun(
-    before: dict[str, Sample] | None = None, listeners: tuple[str, ...] = ("llm_parser",)
-) -> OutcomeTrail:
+def begun(before: dict[str, Sample] | None = None, listeners: tuple[str, ...] = ("llm_parser",)) -> OutcomeTrail:
     return OutcomeTrail(SENT_S, listeners, LOOK_AND_DRIVE, before or {})
 
 
@@ -105,10 +101,7 @@ def test_what_safety_holds_back_is_told_with_its_reason() -> None:
     trail.see(
         {
             "/drive": [at(0.02, drive("/drive", 0.2, -0.3))],
-            "/drive_safe": [
-                at(0.03, drive("/drive_safe", 0.0, 0.0)),
-                at(0.4, drive("/drive_safe", 0.0, -0.3)),
-            ],
+            "/drive_safe": [at(0.03, drive("/drive_safe", 0.0, 0.0)), at(0.4, drive("/drive_safe", 0.0, -0.3))],
             "/safety_state": [at(0.41, safety("obstacle at 0.3 m"))],
         }
     )

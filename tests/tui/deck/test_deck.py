@@ -174,9 +174,7 @@ async def test_a_state_is_shown_in_place_of_ready_and_follows_the_node() -> None
         assert states(app)["camera"] == "✗ failed configure failed"
 
 
-async def test_of_16_colours_good_bad_and_plain_words_have_their_own(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+async def test_of_16_colours_good_bad_and_plain_words_have_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("textual.constants.COLOR_SYSTEM", "auto")
     monkeypatch.delenv("COLORTERM", raising=False)
     monkeypatch.setenv("TERM", "linux")

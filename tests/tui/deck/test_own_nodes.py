@@ -34,14 +34,10 @@ def lesson_opener(profile: Path, file: str = "", fault: NodeFault | None = None)
     """Lesson 2, its sonar by Deck or by a file."""
     command = "./mock_sonar.py" if file else "nodes.mock_sonar"
     nodes = {
-        "sonar_front": NodeStatus(
-            "sonar_front", command, NodeState.READY, pid=7, file=file, fault=fault
-        ),
+        "sonar_front": NodeStatus("sonar_front", command, NodeState.READY, pid=7, file=file, fault=fault),
         "safety_stop": NodeStatus("safety_stop", "nodes.safety_stop", NodeState.READY, pid=8),
     }
-    session = replace(
-        SESSION, name=LESSON, profile=str(profile), lesson="2", title={}, panels=("sonar",)
-    )
+    session = replace(SESSION, name=LESSON, profile=str(profile), lesson="2", title={}, panels=("sonar",))
     return RecordedOpener(link=RecordedSession(session, nodes, ()))
 
 
@@ -49,9 +45,7 @@ def asked(opener: RecordedOpener) -> Callable[[], object]:
     return lambda: opener.link.asked or None
 
 
-async def test_decks_node_is_exchanged_for_the_file_of_the_lessons_folder_which_is_made(
-    course: Path,
-) -> None:
+async def test_decks_node_is_exchanged_for_the_file_of_the_lessons_folder_which_is_made(course: Path) -> None:
     opener = lesson_opener(PROFILES / f"{LESSON}.yaml")
     async with opened(opener) as (app, pilot):
         await pilot.press("u")
@@ -69,9 +63,7 @@ async def test_decks_node_is_exchanged_for_the_file_of_the_lessons_folder_which_
 async def test_a_mistake_in_ones_own_file_stands_at_its_node_with_place_line_and_mend() -> None:
     file = f"/home/eve/deck-course/{LESSON}/mock_sonar.py"
     words = "AssertionError: The 'data' field must be of type 'float'"
-    mend = say(
-        "The field {field} is a float: write {value}.0, not {value}.", field="data", value="1"
-    )
+    mend = say("The field {field} is a float: write {value}.0, not {value}.", field="data", value="1")
     fault = NodeFault("crash", file, 31, 0, f"        {MISTAKE}", words, mend)
     opener = lesson_opener(PROFILES / f"{LESSON}.yaml", file, fault)
     async with opened(opener, size=(80, 24)) as (app, _pilot):
@@ -90,9 +82,7 @@ async def test_a_node_that_is_not_at_work_is_not_counted_as_ready(kind: str, wor
         assert "● ready" in seen(app), "the other one is"
 
 
-async def test_which_editor_is_asked_once_and_kept(
-    course: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_which_editor_is_asked_once_and_kept(course: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("micro", "vim"):
         (course / name).write_text("#!/bin/sh\n")
         (course / name).chmod(0o755)

@@ -13,14 +13,7 @@ from textual.widgets import Static
 from graph.data import NodeRow, ParameterRow, ParametersResult, Sample
 from launcher.status import NodeState, NodeStatus
 from tests.tui.recorded import RecordedGraph, RecordedOpener
-from tests.tui.recorded_devices import (
-    AT_S,
-    STATUSES,
-    of_chassis,
-    status,
-    update,
-    with_drivers,
-)
+from tests.tui.recorded_devices import AT_S, STATUSES, of_chassis, status, update, with_drivers
 from tests.tui.screen_stage import ScreenStage, on_stage
 from tests.tui.snapshots import opened, settle
 from tests.waiting import until

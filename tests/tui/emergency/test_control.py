@@ -19,15 +19,7 @@ from launcher.status import NodeState
 from robot.safety.stop_file import BY_SCREEN, StopFile
 from robot.safety.stop_record import Stop
 from robot.topics import EMERGENCY_STOP, SAFETY_STATE
-from tests.tui.recorded import (
-    NOW_S,
-    TOPICS,
-    RecordedGraph,
-    RecordedOpener,
-    RecordedSession,
-    lesson_update,
-    sample,
-)
+from tests.tui.recorded import NOW_S, TOPICS, RecordedGraph, RecordedOpener, RecordedSession, lesson_update, sample
 from tests.tui.recorded_emergency import GATE, held, obeyed, said, word
 from tests.tui.snapshots import opened, seen, settle
 from text.i18n import set_language
@@ -222,13 +214,8 @@ async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(
         assert f"⚠ Refused: {refused}" in app.screen.query_one(TitleBar).text
 
 
-@pytest.mark.parametrize(
-    ("language", "words"),
-    [("en", " ⚠ too rare: mock_sonar "), ("ru", " ⚠ редко: mock_sonar ")],
-)
-async def test_who_speaks_too_rarely_is_named_whole_on_a_small_terminal(
-    language: str, words: str
-) -> None:
+@pytest.mark.parametrize(("language", "words"), [("en", " ⚠ too rare: mock_sonar "), ("ru", " ⚠ редко: mock_sonar ")])
+async def test_who_speaks_too_rarely_is_named_whole_on_a_small_terminal(language: str, words: str) -> None:
     set_language(language)
     told = {"verdict": "blocked_forward", "front": "silent", "front_too_rare": "/mock_sonar"}
     values = [{"key": key, "value": value} for key, value in told.items()]

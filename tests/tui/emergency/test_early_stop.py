@@ -13,15 +13,7 @@ from textual.pilot import Pilot
 from launcher.errors import UsageError
 from launcher.status import NodeState
 from robot.topics import EMERGENCY_STOP
-from tests.tui.recorded import (
-    NODES,
-    NOW_S,
-    TOPICS,
-    RecordedGraph,
-    RecordedOpener,
-    RecordedSession,
-    lesson_update,
-)
+from tests.tui.recorded import NODES, NOW_S, TOPICS, RecordedGraph, RecordedOpener, RecordedSession, lesson_update
 from tests.tui.recorded_emergency import GATE, obeyed, word
 from tests.tui.snapshots import LESSON_9, opened, settle
 from tests.waiting import until
@@ -52,7 +44,6 @@ class SlowOpener(RecordedOpener):
 
 
 def starting() -> RecordedSession:
-    """A session whose nodes are all still starting."""
     nodes = {name: replace(node, state=NodeState.STARTING) for name, node in NODES.items()}
     return RecordedSession(nodes=nodes)
 
@@ -64,10 +55,7 @@ def deaf() -> RecordedGraph:
 
 async def shows(app: DeckApp, words: str) -> None:
     """Wait until the title says this."""
-    await until(
-        lambda: words in app.screen.query_one(TitleBar).text,
-        lambda: app.screen.query_one(TitleBar).text,
-    )
+    await until(lambda: words in app.screen.query_one(TitleBar).text, lambda: app.screen.query_one(TitleBar).text)
 
 
 async def is_on(app: DeckApp, pilot: Pilot[Any]) -> None:
@@ -77,9 +65,7 @@ async def is_on(app: DeckApp, pilot: Pilot[Any]) -> None:
 
 
 @pytest.mark.parametrize("key", ["space", "ctrl+x"])
-async def test_a_stop_pressed_while_a_profile_opens_waits_and_is_given_when_it_is_open(
-    key: str,
-) -> None:
+async def test_a_stop_pressed_while_a_profile_opens_waits_and_is_given_when_it_is_open(key: str) -> None:
     opener = SlowOpener()
     app = DeckApp(opener, LESSON_9, "deck")
     async with app.run_test(size=(120, 40)) as pilot:
@@ -127,9 +113,7 @@ async def test_while_nodes_start_of_which_none_listens_yet_none_is_ended() -> No
         assert ("stop",) not in opener.link.asked
 
 
-async def test_where_none_listens_once_all_have_started_they_are_ended(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+async def test_where_none_listens_once_all_have_started_they_are_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(control, "SEEN_WITHIN_S", 0.0)
     opener = RecordedOpener(link=starting(), graph=deaf())
     async with opened(opener) as (app, pilot):
@@ -157,8 +141,7 @@ async def test_released_while_it_waits_it_ends_no_node() -> None:
         await shows(app, WAITS)
         await pilot.press("ctrl+r")
         await until(
-            lambda: not [worker for worker in app.workers if worker.group == "emergency"],
-            "the end of all waiting",
+            lambda: not [worker for worker in app.workers if worker.group == "emergency"], "the end of all waiting"
         )
         assert ("stop",) not in opener.link.asked
         assert not app.emergency.state.engaged
@@ -191,8 +174,7 @@ async def test_what_could_not_be_opened_takes_its_stop_with_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("language", "words"),
-    [("en", f"{WAITS} · ^r releases"), ("ru", "■ АВАРИЙНЫЙ СТОП · ждёт узла")],
+    ("language", "words"), [("en", f"{WAITS} · ^r releases"), ("ru", "■ АВАРИЙНЫЙ СТОП · ждёт узла")]
 )
 async def test_it_says_so_on_a_small_terminal(language: str, words: str) -> None:
     set_language(language)

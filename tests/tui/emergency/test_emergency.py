@@ -19,7 +19,6 @@ NOTHING = Emergency()
 
 
 def after(*steps: GraphUpdate, begin: Emergency = NOTHING) -> Emergency:
-    """How things stand when all this was seen."""
     for step in steps:
         begin = begin.seen(step)
     return begin
@@ -47,9 +46,7 @@ def test_a_stop_that_no_node_has_taken_stays_and_is_told() -> None:
         free = word(GATE, False, NOW_S + seconds, since_s=NOW_S - 60)
         state = after(obeyed(free, at_s=NOW_S + seconds), begin=state)
         assert state.engaged
-    assert (
-        stop_words(state, "^r")[0] == "■ EMERGENCY STOP · not obeyed by safety_stop · ^r releases"
-    )
+    assert stop_words(state, "^r")[0] == "■ EMERGENCY STOP · not obeyed by safety_stop · ^r releases"
 
 
 def test_who_looks_later_sees_what_is_held_and_for_how_long() -> None:
@@ -57,9 +54,7 @@ def test_who_looks_later_sees_what_is_held_and_for_how_long() -> None:
     held = word(GATE, True, NOW_S, since_s=since_s, by="topic", remembered="true")
     state = after(obeyed(held, at_s=NOW_S))
     assert state.engaged
-    assert stop_words(state, "^r")[0] == (
-        "■ EMERGENCY STOP (from earlier) since 2026-05-04 03:02 · ^r releases"
-    )
+    assert stop_words(state, "^r")[0] == ("■ EMERGENCY STOP (from earlier) since 2026-05-04 03:02 · ^r releases")
 
 
 @pytest.mark.parametrize(
@@ -76,9 +71,7 @@ def test_who_looks_later_sees_what_is_held_and_for_how_long() -> None:
 )
 def test_it_is_said_who_has_given_it(more: dict[str, Any], words: str) -> None:
     free = word(CHASSIS, False, NOW_S, since_s=0.0)
-    state = after(
-        obeyed(free, at_s=NOW_S), obeyed(word(CHASSIS, True, NOW_S + 1, **more), at_s=NOW_S + 1)
-    )
+    state = after(obeyed(free, at_s=NOW_S), obeyed(word(CHASSIS, True, NOW_S + 1, **more), at_s=NOW_S + 1))
     assert stop_words(state, "^r")[-2].startswith(f"■ EMERGENCY STOP {words} ·")
 
 
@@ -151,9 +144,7 @@ def test_an_old_latched_stop_that_the_nodes_have_released_since_is_none() -> Non
     ],
 )
 def test_words_of_a_node_that_make_no_sense_are_none(status: Any) -> None:
-    one = Sample(
-        EMERGENCY_STATE, "diagnostic_msgs/msg/DiagnosticArray", NOW_S, 0.0, 9, {"status": status}
-    )
+    one = Sample(EMERGENCY_STATE, "diagnostic_msgs/msg/DiagnosticArray", NOW_S, 0.0, 9, {"status": status})
     assert not Emergency().seen(lesson_update(samples={EMERGENCY_STATE: (one,)})).nodes
 
 
@@ -182,9 +173,7 @@ def test_the_gates_word_does_not_undo_a_stop_that_was_said_here() -> None:
 
 
 @pytest.mark.parametrize("by_another", [False, True])
-def test_what_the_gate_said_before_it_heard_of_a_release_does_not_stop_anew(
-    by_another: bool,
-) -> None:
+def test_what_the_gate_said_before_it_heard_of_a_release_does_not_stop_anew(by_another: bool) -> None:
     state = Emergency().seen(gate_says("emergency_stop", NOW_S))
     state = state.seen(said(False, NOW_S + 1)) if by_another else state.released(NOW_S + 1)
     assert not state.engaged

@@ -67,9 +67,7 @@ async def test_messages_and_log_lines_meet_in_one_chain() -> None:
         await at.hear(*voice(0.0))
         rows = at.rows()
         assert "13 steps in 1012 ms" in rows[0]
-        assert [row.split()[2] for row in rows[2:6]] == [
-            *("/audio/mic_raw", "ai_brain", "ai_brain", "ai_brain")
-        ]
+        assert [row.split()[2] for row in rows[2:6]] == [*("/audio/mic_raw", "ai_brain", "ai_brain", "ai_brain")]
 
 
 async def test_the_cursor_walks_and_the_whole_of_a_step_is_shown() -> None:
@@ -136,9 +134,7 @@ def test_of_the_past_what_is_repeated_is_kept_twice_and_the_rest_is_bounded() ->
     past, now = Past(), update()
     for at_s in range(500):
         told = {"header": {"stamp": at_s}, "speed": 0.1, "wheels": np.zeros(4)}
-        past.take(
-            update(came("/drive", told, at_s), came("/ai_command", {"data": str(at_s)}, at_s))
-        )
+        past.take(update(came("/drive", told, at_s), came("/ai_command", {"data": str(at_s)}, at_s)))
     kept = past.before(now, {"/drive", "/ai_command"}).samples
     assert [one.received_s - NOW_S for one in kept["/drive"]] == [0, 1]
     newest = [str(number) for number in range(500 - KEPT, 500)]

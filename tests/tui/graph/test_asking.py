@@ -78,9 +78,7 @@ def timeout_field(stage: GraphStage) -> Input:
     return stage.screen.query_one("#call-timeout", Input)
 
 
-async def test_the_time_out_is_chosen_below_the_form_and_each_service_keeps_its_own(
-    service: GraphStage,
-) -> None:
+async def test_the_time_out_is_chosen_below_the_form_and_each_service_keeps_its_own(service: GraphStage) -> None:
     service.graph.hold_calls = True
     assert timeout_field(service).value == "5"
     timeout_field(service).focus()

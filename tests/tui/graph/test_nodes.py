@@ -101,9 +101,7 @@ def tab_words(stage: GraphStage) -> str:
     return stage.screen.query_one(TabLine).render().plain
 
 
-async def test_what_lasts_is_counted_on_the_tab_and_listed_the_worst_first(
-    later: Callable[[float], None],
-) -> None:
+async def test_what_lasts_is_counted_on_the_tab_and_listed_the_worst_first(later: Callable[[float], None]) -> None:
     async with opened(RecordedGraph(update=ill_graph())) as stage:
         assert "Findings 0" in tab_words(stage)
         later(LATER_S)
@@ -113,12 +111,7 @@ async def test_what_lasts_is_counted_on_the_tab_and_listed_the_worst_first(
         await stage.wait_for("✗ error · incompatible QoS")
         assert stage.graph.measured
         listed = [entry.label for entry in stage.screen.index.listed[GraphKind.FINDING]]
-        assert listed == [
-            "✗ /camera/color/image_raw",
-            "✗ /sensor/sonar_frnt",
-            "✗ /set_head_postion",
-            "▲ /imu",
-        ]
+        assert listed == ["✗ /camera/color/image_raw", "✗ /sensor/sonar_frnt", "✗ /set_head_postion", "▲ /imu"]
         stage.screen.list_kind(GraphKind.NODE)
         await stage.press()
         assert not stage.graph.measured
@@ -168,9 +161,7 @@ def footer(managed: GraphStage) -> str:
 
 
 @pytest.mark.nightly
-async def test_a_state_is_followed_and_only_what_is_possible_is_offered(
-    managed: GraphStage,
-) -> None:
+async def test_a_state_is_followed_and_only_what_is_possible_is_offered(managed: GraphStage) -> None:
     await managed.choose("/safety_stop")
     assert "lifecycle" not in managed.seen()
     assert "Lifecycle" not in footer(managed)
@@ -179,9 +170,7 @@ async def test_a_state_is_followed_and_only_what_is_possible_is_offered(
     await managed.choose("/camera")
     await managed.wait_for("lifecycle: inactive · can cleanup, activate, shutdown")
     assert "Lifecycle" in footer(managed)
-    await managed.show(
-        replace(managed_update(), lifecycles=(LifecycleRow("/camera", "activating"),))
-    )
+    await managed.show(replace(managed_update(), lifecycles=(LifecycleRow("/camera", "activating"),)))
     await managed.wait_for("lifecycle: activating")
     await managed.wait(lambda: "Lifecycle" not in footer(managed))
     hanging = LifecycleRow("/camera", "activating", (), "/camera does not answer within 5 s")

@@ -64,9 +64,7 @@ def own_opener(
     """Lesson 2 with the learner's own sonar, which has a mistake of this kind."""
     fault = NodeFault(kind, file, 12, 0, "self.publiser = 1", "NameError: name 'x'", "")
     nodes = {
-        "sonar_front": NodeStatus(
-            "sonar_front", "./mock_sonar.py", NodeState.READY, pid=7, file=file, fault=fault
-        ),
+        "sonar_front": NodeStatus("sonar_front", "./mock_sonar.py", NodeState.READY, pid=7, file=file, fault=fault),
         "safety_stop": NodeStatus("safety_stop", "nodes.safety_stop", NodeState.READY, pid=8),
     }
     session = replace(SESSION, name=LESSON, lesson="2", title={}, panels=())
@@ -82,7 +80,6 @@ async def learning(opener: RecordedOpener) -> AsyncIterator[tuple[DeckApp, Pilot
 
 
 def text(app: DeckApp, name: str) -> str:
-    """What stands in a part of the screen."""
     return str(app.screen.query_one(f"#lesson-{name}", Static).content)
 
 
@@ -158,9 +155,7 @@ async def test_ticks_fade_when_a_file_changes_and_cheap_ones_are_judged_again(co
         assert "nobody publishes" in text(app, "checks")
 
 
-async def test_a_lesson_ends_with_its_grade_and_what_fails_there_loses_its_tick(
-    course: Path,
-) -> None:
+async def test_a_lesson_ends_with_its_grade_and_what_fails_there_loses_its_tick(course: Path) -> None:
     file = course / "mock_sonar.py"
     file.write_text("right = 1\n")
     opener = own_opener(str(file))
@@ -181,9 +176,7 @@ async def test_a_lesson_ends_with_its_grade_and_what_fails_there_loses_its_tick(
         assert "ends" not in load_progress().passed(LESSON)
 
 
-async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(
-    course: Path,
-) -> None:
+async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(course: Path) -> None:
     file = course / "mock_sonar.py"
     file.write_text("mine = 1\n")
     async with learning(own_opener(str(file))) as (app, pilot):
@@ -209,9 +202,7 @@ async def test_hints_come_one_by_one_and_then_the_solution_beside_ones_own_file(
         assert (step.hints, step.solution, step.passed) == (2, True, False)
 
 
-async def test_what_the_lesson_says_of_a_mistake_waits_for_a_hint_to_be_asked_for(
-    course: Path,
-) -> None:
+async def test_what_the_lesson_says_of_a_mistake_waits_for_a_hint_to_be_asked_for(course: Path) -> None:
     opener = own_opener(str(course / "mock_sonar.py"))
     (check,) = SEEN.checks
     async with learning(opener) as (app, pilot):
@@ -249,7 +240,6 @@ async def test_decks_own_nodes_are_not_judged_and_a_folder_is_offered(course: Pa
 
 
 def beside(app: DeckApp, part: str) -> str:
-    """What stands in a part of the column."""
     found = app.screen.query_one(LessonColumn).query_one(f".{part}", Static)
     return str(found.content)
 

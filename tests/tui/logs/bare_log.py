@@ -26,9 +26,7 @@ class LogApp(App[None]):
         self.pane.view.focus()
 
 
-def line(
-    seq: int, text: str = "", node: str = "sonar_front", severity: Severity = Severity.INFO
-) -> LogLine:
+def line(seq: int, text: str = "", node: str = "sonar_front", severity: Severity = Severity.INFO) -> LogLine:
     return LogLine(node, seq, 1_767_225_600.0 + seq, severity, text or f"line {seq}")
 
 
@@ -41,7 +39,6 @@ def rows(view: LogView) -> list[str]:
 
 
 def texts(view: LogView) -> list[str]:
-    """The text column of what is on screen."""
     return [row.split("sonar_front ", 1)[-1] for row in rows(view) if row]
 
 

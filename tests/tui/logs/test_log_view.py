@@ -54,12 +54,7 @@ async def test_a_flood_does_not_move_what_somebody_reads() -> None:
 async def test_the_filter_works_by_node_severity_and_text() -> None:
     async with LogApp().run_test(size=(80, 12)) as pilot:
         view = await shown(
-            pilot,
-            [
-                line(1, "one", "a"),
-                line(1, "two", "b", Severity.WARN),
-                line(2, "three", "a", Severity.ERROR),
-            ],
+            pilot, [line(1, "one", "a"), line(1, "two", "b", Severity.WARN), line(2, "three", "a", Severity.ERROR)]
         )
         view.log_filter = LogFilter(only="a")
         assert [entry.text for entry in view.index.shown] == ["one", "three"]
@@ -75,10 +70,7 @@ async def test_the_filter_works_by_node_severity_and_text() -> None:
 async def test_skipped_lines_are_told_with_the_file_that_has_them() -> None:
     async with LogApp().run_test(size=(100, 12)) as pilot:
         view = await shown(pilot, [line(1), line(1242)])
-        assert (
-            "1\u00a0240 lines skipped here; the file has them: /logs/sonar_front.log"
-            in (rows(view)[1])
-        )
+        assert "1\u00a0240 lines skipped here; the file has them: /logs/sonar_front.log" in (rows(view)[1])
 
 
 async def test_search_finds_while_typing_marks_and_goes_round() -> None:

@@ -91,10 +91,7 @@ def test_radians_become_degrees_left_and_up() -> None:
     pose = head_in(value)
     assert pose is not None
     assert (pose.pan_words, pose.tilt_words) == ("45° left", "10° up")
-    assert (HeadReading(-45, 0).pan_words, HeadReading(0, -10).tilt_words) == (
-        "45° right",
-        "10° down",
-    )
+    assert (HeadReading(-45, 0).pan_words, HeadReading(0, -10).tilt_words) == ("45° right", "10° down")
     assert HeadReading(0.2, -0.2).pan_words == "0°"
 
 
@@ -110,11 +107,7 @@ async def test_a_head_that_nobody_knows_of_does_not_move() -> None:
     """Servos tell nothing: before the first turn, and after their cable was pulled."""
     view = HeadView()
     async with alone(view, 24, 4).run_test(size=(60, 30)):
-        for pan, words in (
-            (math.nan, "unknown until it turns"),
-            (10, "at rest"),
-            (math.nan, "---"),
-        ):
+        for pan, words in ((math.nan, "unknown until it turns"), (10, "at rest"), (math.nan, "---")):
             view.show(HeadReading(pan, pan))
             assert words in "\n".join(rows(view))
 

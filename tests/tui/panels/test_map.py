@@ -48,18 +48,14 @@ async def test_without_odometry_it_says_why_and_what_to_do(
         assert all(word in text for word in words)
 
 
-async def test_odometry_that_falls_silent_is_greyed_with_its_age_and_not_taken_for_the_truth() -> (
-    None
-):
+async def test_odometry_that_falls_silent_is_greyed_with_its_age_and_not_taken_for_the_truth() -> None:
     app = Alone()
     async with app.run_test(size=(100, 20)):
         gone = map_update({"/odom": {**NOBODY, "age_s": 5.3}}, odom=())
         text = app.tell(map_update(), gone)
         assert "no data for 5 s" in text
         assert "path 2." in text
-        looks = {
-            ink.look for line in app.query_one(RoomMap)._lines for ink in line if ink.text.strip()
-        }
+        looks = {ink.look for line in app.query_one(RoomMap)._lines for ink in line if ink.text.strip()}
         assert looks == {"muted", "alert"}
         assert app.query_one(MapPanel).border_title == "Map"
 

@@ -106,9 +106,7 @@ COMPRESSED = "sensor_msgs/msg/CompressedImage"
 def with_row(*samples: Sample, **changes: Any) -> RecordedGraph:
     """The lesson with a camera whose row is changed, and of which this comes."""
     rows = (replace(row, **changes) if row.name == CAMERA else row for row in TOPICS)
-    return RecordedGraph(
-        lesson_update(topics=tuple(rows), samples={CAMERA: samples} if samples else {})
-    )
+    return RecordedGraph(lesson_update(topics=tuple(rows), samples={CAMERA: samples} if samples else {}))
 
 
 async def test_a_camera_on_another_page_is_not_asked_for() -> None:

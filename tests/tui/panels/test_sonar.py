@@ -126,9 +126,7 @@ def test_bounds_are_those_that_the_node_tells(values: dict[str, Any], bounds: Bo
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
-@pytest.mark.parametrize(
-    "trouble", [Trouble.NO_PUBLISHER, Trouble.QOS_MISMATCH, Trouble.UNKNOWN_TYPE, Trouble.QUIET]
-)
+@pytest.mark.parametrize("trouble", [Trouble.NO_PUBLISHER, Trouble.QOS_MISMATCH, Trouble.UNKNOWN_TYPE, Trouble.QUIET])
 async def test_what_is_cut_does_not_say_the_opposite(trouble: Trouble, language: str) -> None:
     set_language(language)
     gauge = Sonar("front")

@@ -29,9 +29,7 @@ OWN = Path("/home/eve/deck-course/02-sonar-safety/lesson.yaml")
 """The learner's files of lesson 2."""
 PICK = OpenRequest(hardware="mock", domain=42)
 ANN = Who(4000, "ann", "pts/2", "10.0.0.7")
-RUNNING = replace(
-    SESSION, foreground=False, name="02-sonar-safety", domain=17, started_by=ANN, since_s=NOW_S
-)
+RUNNING = replace(SESSION, foreground=False, name="02-sonar-safety", domain=17, started_by=ANN, since_s=NOW_S)
 
 
 def about(screen: Screen[Any]) -> str:

@@ -31,9 +31,7 @@ class Recorder:
     made: list[Recorder]
     refusal: Exception | None
 
-    def __init__(
-        self, domain: int, discovery: object, folder: Path, *, without: frozenset[str]
-    ) -> None:
+    def __init__(self, domain: int, discovery: object, folder: Path, *, without: frozenset[str]) -> None:
         self.asked = (domain, discovery, without)
         self.status = replace(GOING, folder=str(folder))
         self.stopped = False

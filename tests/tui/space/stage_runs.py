@@ -34,6 +34,5 @@ async def at_work(
 
 
 def shown(app: DeckApp) -> SpaceScreen:
-    """Return the Space screen, which is in front."""
     assert isinstance(app.screen, SpaceScreen)
     return app.screen

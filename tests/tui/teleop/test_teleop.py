@@ -84,9 +84,7 @@ async def driving(
 
 def held(opener: RecordedOpener) -> list[tuple[str, float, float]]:
     """(topic, m/s, rad) of what has been held so far."""
-    drives: list[tuple[str, Any]] = [
-        (each[0], each[2].value["drive"]) for each in opener.graph.held
-    ]
+    drives: list[tuple[str, Any]] = [(each[0], each[2].value["drive"]) for each in opener.graph.held]
     return [(name, drive["speed"], drive["steering_angle"]) for name, drive in drives]
 
 

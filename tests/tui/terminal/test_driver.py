@@ -55,7 +55,6 @@ class Stuck:
         os.write(self.own, data)
 
     def told(self) -> list[str]:
-        """Return what it has been told so far."""
         return self._file.read_text().split("\n")[:-1] if self._file.exists() else []
 
     def wait_for(self, line: str, times: int = 1) -> None:
@@ -140,12 +139,8 @@ def test_suspended_by_the_user_it_comes_back(stuck: Callable[[str], Stuck]) -> N
     app.wait_for_a_key()
 
 
-@pytest.mark.parametrize(
-    ("how", "key"), [("lock", b" "), ("busy", b"\x18"), ("write", b"\x1b[32u")]
-)
-def test_a_stop_is_told_while_the_main_thread_hangs(
-    stuck: Callable[[str], Stuck], how: str, key: bytes
-) -> None:
+@pytest.mark.parametrize(("how", "key"), [("lock", b" "), ("busy", b"\x18"), ("write", b"\x1b[32u")])
+def test_a_stop_is_told_while_the_main_thread_hangs(stuck: Callable[[str], Stuck], how: str, key: bytes) -> None:
     app = stuck(how)
     app.type(b"h")
     app.wait_for("key h")
@@ -154,18 +149,14 @@ def test_a_stop_is_told_while_the_main_thread_hangs(
 
 
 @pytest.mark.parametrize("begun", [PASTE + b"words", b"\x1b]0;words"])
-def test_nothing_unfinished_keeps_stops_or_keys_for_ever(
-    stuck: Callable[[str], Stuck], begun: bytes
-) -> None:
+def test_nothing_unfinished_keeps_stops_or_keys_for_ever(stuck: Callable[[str], Stuck], begun: bytes) -> None:
     app = stuck("rest")
     app.type(begun + b" ")
     app.wait_for("stop")
     app.wait_for_a_key()
 
 
-def test_a_whole_paste_is_no_stop_and_a_key_that_has_stopped_is_not_told_twice(
-    stuck: Callable[[str], Stuck],
-) -> None:
+def test_a_whole_paste_is_no_stop_and_a_key_that_has_stopped_is_not_told_twice(stuck: Callable[[str], Stuck]) -> None:
     app = stuck("rest")
     app.type(PASTE + b"a b\x18" + END + b"k")
     app.wait_for("key k")
@@ -176,9 +167,7 @@ def test_a_whole_paste_is_no_stop_and_a_key_that_has_stopped_is_not_told_twice(
     assert "key space" not in app.told()
 
 
-def test_the_stop_of_another_layout_stops_and_what_is_no_key_is_told_once(
-    stuck: Callable[[str], Stuck],
-) -> None:
+def test_the_stop_of_another_layout_stops_and_what_is_no_key_is_told_once(stuck: Callable[[str], Stuck]) -> None:
     app = stuck("rest")
     app.type(b"\x1b[1095::120;5u")
     app.wait_for("stop")

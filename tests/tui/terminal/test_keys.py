@@ -35,9 +35,7 @@ def test_what_follows_does_not_change_it(typed: str, expected: list[str]) -> Non
     assert names(list(AltKeyParser().feed(typed))) == expected
 
 
-def test_escape_alone_is_escape_and_a_bare_letter_is_none_of_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_escape_alone_is_escape_and_a_bare_letter_is_none_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     parser = AltKeyParser()
     assert names(list(parser.feed("\x1b"))) == []
     monkeypatch.setattr("textual._parser.get_time", lambda: float("inf"))

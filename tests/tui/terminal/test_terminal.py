@@ -79,9 +79,7 @@ def test_leaving_a_stalled_terminal_is_bounded(line: tuple[int, int]) -> None:
     assert not leaving.is_alive()
 
 
-def test_a_terminal_that_has_gone_is_noticed_and_writing_goes_on_without_a_word(
-    line: tuple[int, int],
-) -> None:
+def test_a_terminal_that_has_gone_is_noticed_and_writing_goes_on_without_a_word(line: tuple[int, int]) -> None:
     own, program = line
     terminal = Terminal(program, lambda: None)
     os.close(own)
@@ -130,14 +128,7 @@ def test_a_flood_past_the_screen_neither_fills_the_disk_nor_memory(tmp_path: Pat
 
 
 WIDTH, HEIGHT = 40, 8
-STYLES = (
-    "",
-    "38;2;10;20;30;48;2;1;2;3",
-    "1;38;2;10;20;30;48;2;1;2;3",
-    "7;38;5;3",
-    "31",
-    "4;48;5;7",
-)
+STYLES = ("", "38;2;10;20;30;48;2;1;2;3", "1;38;2;10;20;30;48;2;1;2;3", "7;38;5;3", "31", "4;48;5;7")
 WORDS = ("Distance 1.29 m", "Путь свободен", "●▶█▄⠶", "   ", "x")
 ODD_WORDS = ("日本", "🧠", "plain")
 

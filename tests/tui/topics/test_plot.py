@@ -55,9 +55,7 @@ def history(numbers: Iterable[tuple[float, float | None]]) -> History:
         (("gone",), {"data": 5}, None),
     ],
 )
-def test_any_number_of_a_message_can_be_had(
-    path: tuple[str | int, ...], value: Any, number: float | None
-) -> None:
+def test_any_number_of_a_message_can_be_had(path: tuple[str | int, ...], value: Any, number: float | None) -> None:
     assert PlotField("/a", path).number(value) == number
 
 

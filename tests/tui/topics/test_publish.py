@@ -116,9 +116,7 @@ async def test_a_message_is_published_at_a_rate_until_it_is_stopped(desk: Desk) 
     assert not listed.display
 
 
-async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter(
-    desk: Desk,
-) -> None:
+async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter(desk: Desk) -> None:
     await desk.open()
     await desk.pilot.press("ctrl+g")
     await desk.says("Publishing to /drive")

@@ -14,16 +14,7 @@ from graph.pictures.picture import Picture
 from graph.pictures.reading import read_picture
 from launcher.status import NodeState
 from tests.tui.recorded import NOW_S, RecordedSession, lesson_update, sample
-from tests.tui.topics_stage import (
-    CAMERA,
-    SONAR,
-    TopicsStage,
-    jpeg_message,
-    opened,
-    row,
-    with_camera,
-    with_row,
-)
+from tests.tui.topics_stage import CAMERA, SONAR, TopicsStage, jpeg_message, opened, row, with_camera, with_row
 from tests.waiting import until
 from tui.frame.key_bar import KeyBar
 from tui.session.past import SONARS
@@ -43,9 +34,7 @@ async def test_only_the_chosen_topic_is_decoded(stage: TopicsStage) -> None:
     await stage.show(lesson_update())
     assert "data:    1.84" in stage.echo()
     assert "std_msgs/msg/Float32" in stage.head()
-    assert (
-        "1.0 Hz · 8 B/s · age <1 s · jitter – · latency – · lost – · 8 B a message" in stage.head()
-    )
+    assert "1.0 Hz · 8 B/s · age <1 s · jitter – · latency – · lost – · 8 B a message" in stage.head()
 
 
 async def test_walking_past_topics_subscribes_none_of_them(
@@ -88,24 +77,18 @@ async def test_a_qos_mismatch_names_who_and_what_to_change(stage: TopicsStage) -
         "offered": "best_effort", "requested": "reliable",
     }  # fmt: skip
     await stage.choose(SONAR)
-    await stage.show(
-        with_row(row(SONAR, trouble=Trouble.QOS_MISMATCH, hz=None, age_s=None, facts=facts))
-    )
+    await stage.show(with_row(row(SONAR, trouble=Trouble.QOS_MISMATCH, hz=None, age_s=None, facts=facts)))
     words = " ".join(stage.echo().split())
     assert words.startswith("QoS is incompatible")
     assert "/brain does not hear /lidar: reliability reliable is asked for" in words
     assert "Let /lidar offer reliable, or let /brain ask for best_effort." in words
 
 
-async def test_a_quiet_topic_keeps_its_last_message_and_says_for_how_long(
-    stage: TopicsStage,
-) -> None:
+async def test_a_quiet_topic_keeps_its_last_message_and_says_for_how_long(stage: TopicsStage) -> None:
     await stage.choose(SONAR)
     await stage.show(lesson_update())
     publisher = EndpointInfo("/sonar_front", "std_msgs/msg/Float32", "reliable", "volatile")
-    await stage.show(
-        with_row(row(SONAR, trouble=Trouble.QUIET, hz=0.0, age_s=7.4, published_by=(publisher,)))
-    )
+    await stage.show(with_row(row(SONAR, trouble=Trouble.QUIET, hz=0.0, age_s=7.4, published_by=(publisher,))))
     assert "data:    1.84" in stage.echo()
     _name, state, ends = stage.head().splitlines()
     assert state.startswith("no data for 7 s")
@@ -182,9 +165,7 @@ async def test_only_messages_are_shown_for_which_the_expression_holds(stage: Top
     assert filter_line(stage) == "2 of 5 messages"
 
 
-async def test_an_expression_that_is_wrong_names_the_place_and_lets_nothing_through(
-    stage: TopicsStage,
-) -> None:
+async def test_an_expression_that_is_wrong_names_the_place_and_lets_nothing_through(stage: TopicsStage) -> None:
     await stage.choose(SONAR)
     await only_if(stage, "m.data > 0.5 and data")
     told = "✗ column 18: data: the message is called m: write m.data"
@@ -207,12 +188,9 @@ async def test_an_image_is_a_picture_and_can_be_a_tree(stage: TopicsStage) -> No
 
 
 @pytest.mark.parametrize(
-    ("encoding", "words"),
-    [("nv21", "pictures of the encoding nv21 cannot be shown"), ("32FC1", "no valid depth")],
+    ("encoding", "words"), [("nv21", "pictures of the encoding nv21 cannot be shown"), ("32FC1", "no valid depth")]
 )
-async def test_a_picture_that_cannot_be_shown_is_told(
-    stage: TopicsStage, encoding: str, words: str
-) -> None:
+async def test_a_picture_that_cannot_be_shown_is_told(stage: TopicsStage, encoding: str, words: str) -> None:
     await stage.choose(CAMERA)
     size = {"width": 2, "height": 2, "step": 8, "is_bigendian": 0}
     image = {**size, "encoding": encoding, "data": bytes(16)}

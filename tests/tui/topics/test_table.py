@@ -111,9 +111,7 @@ async def test_a_click_on_a_title_sorts_and_a_click_on_a_row_chooses() -> None:
 
 
 @pytest.mark.every_frame
-async def test_an_update_draws_only_the_cells_whose_text_changed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+async def test_an_update_draws_only_the_cells_whose_text_changed(monkeypatch: pytest.MonkeyPatch) -> None:
     table = TopicsTable()
     async with Bare(table).run_test(size=(80, 20)) as pilot:
         table.show(TOPICS)
@@ -130,15 +128,11 @@ async def test_an_update_draws_only_the_cells_whose_text_changed(
 
 
 DOUBLE = "std_msgs/msg/Float64"
-LIDAR = EndpointInfo(
-    "/lidar", FLOAT, "best_effort", "volatile", 5, "keep_last", 0.1, 0.5, 2.0, "manual_by_topic"
-)
+LIDAR = EndpointInfo("/lidar", FLOAT, "best_effort", "volatile", 5, "keep_last", 0.1, 0.5, 2.0, "manual_by_topic")
 BRAIN = EndpointInfo("/brain", FLOAT, "reliable", "volatile", liveliness="automatic")
 
 
-def a_row(
-    published_by: Sequence[EndpointInfo] = (), subscribed_by: Sequence[EndpointInfo] = ()
-) -> TopicRow:
+def a_row(published_by: Sequence[EndpointInfo] = (), subscribed_by: Sequence[EndpointInfo] = ()) -> TopicRow:
     ends = {"published_by": tuple(published_by), "subscribed_by": tuple(subscribed_by)}
     return TopicRow("/scan", (FLOAT,), len(published_by), len(subscribed_by), **ends)  # type: ignore[arg-type]
 

@@ -89,8 +89,6 @@ async def test_what_is_missing_is_said_and_the_next_key_tries_again(starter: Sta
     starter.refusal = "Rerun is not installed; to install it: make view"
     async with opened() as (app, pilot):
         await pilot.press("alt+w")
-        await until(
-            lambda: any(starter.refusal in one.message for one in app._notifications), "the words"
-        )
+        await until(lambda: any(starter.refusal in one.message for one in app._notifications), "the words")
         starter.refusal = ""
         await open_view(app, pilot)

@@ -68,9 +68,7 @@ def test_only_what_is_published_is_there_in_a_fixed_order() -> None:
         WallNumber("speed, m/s", "0.30", "ahead"),
         WallNumber("battery, %", "50", "11.1 V", "good"),
     ]
-    assert numbers({SONAR_REAR: {"data": 0.8}}) == [
-        WallNumber("behind, m", "0.80", "CLOSE", "warn")
-    ]
+    assert numbers({SONAR_REAR: {"data": 0.8}}) == [WallNumber("behind, m", "0.80", "CLOSE", "warn")]
     assert numbers({}) == []
 
 

@@ -46,8 +46,6 @@ LIFE = "it asks for a sign of life at least every 2 s (liveliness lease duration
         ),
     ],
 )  # fmt: skip
-def test_each_policy_has_its_own_words(
-    policy: str, offered: str, requested: str, why: str, way_out: str
-) -> None:
+def test_each_policy_has_its_own_words(policy: str, offered: str, requested: str, why: str, way_out: str) -> None:
     values = facts(policy=policy, offered=offered, requested=requested)
     assert misfit_words(values) == APART + why + way_out

@@ -108,9 +108,7 @@ def gate(verdict: str = "free", front: float = 3.0, rear: float = 3.0) -> Gate:
         (Gate("blocked_forward", {"front": "silent"}), 0.2, False, 0.0, "gives no distance"),
     ],
 )
-def test_what_it_would_do(
-    report: Gate, speed: float, lets: bool, reach_m: float, words: str
-) -> None:
+def test_what_it_would_do(report: Gate, speed: float, lets: bool, reach_m: float, words: str) -> None:
     found = preview_of(report, speed, 0.4)
     assert found.lets == lets
     assert found.reach_m == pytest.approx(reach_m)

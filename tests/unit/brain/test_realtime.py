@@ -31,9 +31,7 @@ class Client:
         self.told: list[tuple[str, Any]] = []
         self.ledger = Ledger()
         settings = ModelSettings(base_url=server.url, model="m", realtime_model="rt-1", **fields)
-        self.talk = RealtimeTalk(
-            settings, ServerKey(KEY), self.ledger, "test", "Be careful.", self._handlers()
-        )
+        self.talk = RealtimeTalk(settings, ServerKey(KEY), self.ledger, "test", "Be careful.", self._handlers())
 
     def of(self, kind: str) -> list[Any]:
         return [value for name, value in self.told if name == kind]
@@ -107,9 +105,7 @@ async def test_a_voice_becomes_commands_and_the_answer_is_heard() -> None:
         async with talking(client):
             await until(lambda: client.of("said"), "the words of the answer")
             await until(lambda: len(client.of("used")) == 4, "four answers")
-            await until(
-                lambda: len(server.talks[0].those("conversation.item.create")) == 2, "two outcomes"
-            )
+            await until(lambda: len(server.talks[0].those("conversation.item.create")) == 2, "two outcomes")
     assert client.of("heard") == ["go on"]
     assert [response.commands[0].model_dump() for response in client.of("act")] == [DRIVE]
     assert client.of("sound") == [b"\x01\x00", b"\x02\x00"]
@@ -133,15 +129,10 @@ async def test_bad_commands_are_refused_and_told_to_the_model() -> None:
     with RealtimeServer(script) as server:
         client = Client(server)
         async with talking(client):
-            await until(
-                lambda: server.talks and len(server.talks[0].those("response.create")) == 2,
-                "both outcomes",
-            )
+            await until(lambda: server.talks and len(server.talks[0].those("response.create")) == 2, "both outcomes")
     assert not client.of("act")
     assert "must be from -0.5 to 0.5 m/s, not 5" in client.of("refused")[0]
-    outputs = [
-        event["item"]["output"] for event in server.talks[0].those("conversation.item.create")
-    ]
+    outputs = [event["item"]["output"] for event in server.talks[0].those("conversation.item.create")]
     assert outputs[0].startswith("refused, nothing was done")
     assert outputs[1] == "there is no function fly"
 
@@ -164,9 +155,7 @@ async def test_nothing_is_done_before_somebody_speaks_or_after_a_stop() -> None:
         async with talking(client):
             await until(lambda: len(client.of("act")) == 1, "the first that is done")
             await client.talk.stop()
-            await until(
-                lambda: len(server.talks[0].those("conversation.item.create")) == 4, "all outcomes"
-            )
+            await until(lambda: len(server.talks[0].those("conversation.item.create")) == 4, "all outcomes")
     outcomes = {
         event["item"]["call_id"]: event["item"]["output"]
         for event in server.talks[0].those("conversation.item.create")

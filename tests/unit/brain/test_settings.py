@@ -30,19 +30,14 @@ def test_without_a_file_and_variables_there_are_no_settings(path: Path) -> None:
 
 
 def test_the_file_is_read_and_variables_go_before_it(path: Path) -> None:
-    path.write_text(
-        GOOD
-        + "budget: {calls_per_minute: 3}\nprices: {input_per_million: 1, output_per_million: 2.5}\n"
-    )
+    path.write_text(GOOD + "budget: {calls_per_minute: 3}\nprices: {input_per_million: 1, output_per_million: 2.5}\n")
     settings = load(path, {"DECK_LLM_MODEL": "other"})
     assert settings is not None
     assert (settings.base_url, settings.model) == ("http://127.0.0.1:8080/v1", "other")
     assert settings.budget.calls_per_minute == 3
     assert settings.prices is not None
     assert settings.prices.output_per_million == 2.5
-    alone = load(
-        path.with_name("none"), {"DECK_LLM_BASE_URL": "https://x/v1", "DECK_LLM_MODEL": "m"}
-    )
+    alone = load(path.with_name("none"), {"DECK_LLM_BASE_URL": "https://x/v1", "DECK_LLM_MODEL": "m"})
     assert alone is not None
     assert alone.base_url == "https://x/v1"
 

@@ -61,8 +61,7 @@ def test_who_does_not_cease_to_speak_is_cut() -> None:
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["robot forward", "robot turn left", "robot turn right", "robot go back", "robot stop", "stop"],
+    "text", ["robot forward", "robot turn left", "robot turn right", "robot go back", "robot stop", "stop"]
 )
 @pytest.mark.parametrize("name", ["en", "en-us", "en-us-nyc"])
 def test_a_command_is_recognised(ears: SphinxRecogniser, text: str, name: str) -> None:

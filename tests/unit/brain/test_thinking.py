@@ -36,9 +36,7 @@ class Answers:
         self.left = list(answers)
 
     def __call__(self, exchange: Exchange) -> None:
-        is_probe = "enum" in json.dumps(exchange.request) and "deck-" in json.dumps(
-            exchange.request
-        )
+        is_probe = "enum" in json.dumps(exchange.request) and "deck-" in json.dumps(exchange.request)
         (obeys("") if is_probe else obeys(self.left.pop(0)))(exchange)
 
 
@@ -76,13 +74,7 @@ async def test_a_second_bad_answer_is_the_end(tmp_path: Path) -> None:
 def test_the_model_is_told_what_the_senses_say() -> None:
     """Unknown, invalid and out of range are three different things."""
     situation = Situation(
-        "go on",
-        1.234,
-        math.nan,
-        Pose(1, -2, math.pi / 2),
-        "forward is blocked",
-        "refused: too fast",
-        "a wall",
+        "go on", 1.234, math.nan, Pose(1, -2, math.pi / 2), "forward is blocked", "refused: too fast", "a wall"
     )
     *_, message = conversation("Be careful.", Memory(), situation)
     assert message["content"].splitlines() == [
@@ -94,11 +86,7 @@ def test_the_model_is_told_what_the_senses_say() -> None:
         "Camera: a wall",
         'Somebody says: "go on"',
     ]
-    for distance, words in (
-        (None, "unknown"),
-        (math.inf, "nothing in range"),
-        (-math.inf, "too close"),
-    ):
+    for distance, words in ((None, "unknown"), (math.inf, "nothing in range"), (-math.inf, "too close")):
         assert words in Situation("", distance).message()["content"]
 
 

@@ -60,10 +60,7 @@ def test_the_command_word_is_found(words: list[str], command: str, rest: list[st
         (["list", "--lang", "fr"], "invalid choice: 'fr'"),
         (["logs", "x", "-n", "many"], "'many' is not a number of lines"),
         (["logs", "x", "-n", "-3"], "'-3' is not a number of lines"),
-        (
-            ["--bandwidth", "fast"],
-            "'fast' is not a bandwidth; expected kB/s from 1 up, such as 40, or off",
-        ),
+        (["--bandwidth", "fast"], "'fast' is not a bandwidth; expected kB/s from 1 up, such as 40, or off"),
         (["replay", "x", "--bandwidth", "0.5"], "'0.5' is not a bandwidth"),
         (["attach", "--bandwidth", "nan"], "'nan' is not a bandwidth"),
         (["watch", "--bandwidth=-40"], "'-40' is not a bandwidth"),
@@ -84,9 +81,7 @@ def test_a_wrong_word_is_told_with_the_way_to_the_help(
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_every_command_has_help_in_both_languages(
-    command: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_every_command_has_help_in_both_languages(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([command, "--help"]) == 0
     english = capsys.readouterr().out
     assert main([command, "--help", "--lang", "ru"]) == 0
@@ -97,16 +92,12 @@ def test_every_command_has_help_in_both_languages(
     assert not re.search(r"\b(PROFILE|NODE|NAME|TOPIC|FOLDER|BAG)\b", russian)
 
 
-@pytest.mark.parametrize(
-    ("typed", "meant"), [("lst", "list"), ("doktor", "doctor"), ("hlep", "help")]
-)
+@pytest.mark.parametrize(("typed", "meant"), [("lst", "list"), ("doktor", "doctor"), ("hlep", "help")])
 def test_a_mistyped_command_is_told_with_the_one_that_was_meant(
     typed: str, meant: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([typed]) == 2
-    assert capsys.readouterr().err == (
-        f"no profile and no command '{typed}'; did you mean `deck {meant}`?\n"
-    )
+    assert capsys.readouterr().err == (f"no profile and no command '{typed}'; did you mean `deck {meant}`?\n")
     assert main([typed, "--lang", "ru"]) == 2
     assert f"возможно, `deck {meant}`" in capsys.readouterr().err
 
@@ -122,16 +113,13 @@ def test_what_is_asked_for_goes_before_the_environment(monkeypatch: pytest.Monke
 
 def _imported_by(code: str, folder: Path) -> set[str]:
     script = f"import sys\n{code}\nsys.stderr.write(' '.join(sys.modules))"
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=folder
-    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=folder)
     return set(done.stderr.split())
 
 
 def test_nothing_heavy_is_imported_before_the_screen(tmp_path: Path) -> None:
     modules = _imported_by(
-        "import cli.screen;from launcher.profile.catalog import find_profile; find_profile('9')",
-        tmp_path,
+        "import cli.screen;from launcher.profile.catalog import find_profile; find_profile('9')", tmp_path
     )
     assert not modules & {"textual", "rclpy", "pydantic", "yaml", "numpy", "asyncio"}
 
@@ -146,9 +134,7 @@ def command(options):
 """
 
 
-def test_it_ends_with_130_once_the_import_is_over(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_it_ends_with_130_once_the_import_is_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "slow_command.py").write_text(COMMAND)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setitem(sys.modules["cli.main"].HANDLERS, "list", ("slow_command", "command"))

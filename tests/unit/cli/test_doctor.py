@@ -34,9 +34,7 @@ PYTHON = python.PythonFacts((3, 11, 0), "python3", "Linux", "x86_64", PACKAGES, 
 WHEELS = ros.RosFacts("/venv/rclpy", "rmw_fastrtps_cpp", "", dict.fromkeys(ros.MESSAGES, ""))
 TERMINAL = terminal.TerminalFacts(environ={"TERM": "xterm-256color", "COLORTERM": "truecolor"})
 PICO = serial_ports.Access(
-    SerialPort("/dev/ttyACM0", "/dev/serial/by-id/usb-Pico", description="Pico"),
-    "dialout",
-    allowed=False,
+    SerialPort("/dev/ttyACM0", "/dev/serial/by-id/usb-Pico", description="Pico"), "dialout", allowed=False
 )
 PI = "Raspberry Pi 5 Model B Rev 1.0"
 
@@ -102,9 +100,7 @@ def not_well(findings: list[Finding]) -> list[str]:
 
 
 @pytest.mark.parametrize(("room", "facts", "verdict", "words"), MACHINES)
-def test_each_fault_is_found_and_mended(
-    room: Any, facts: Any, verdict: list[str], words: str
-) -> None:
+def test_each_fault_is_found_and_mended(room: Any, facts: Any, verdict: list[str], words: str) -> None:
     findings = room.diagnose(facts)
     assert not_well(findings) == verdict
     assert words in "\n".join(f"{finding.text} {finding.fix}" for finding in findings)

@@ -35,9 +35,7 @@ def refused(capsys: pytest.CaptureFixture[str], *words: str) -> str:
         (["x.gguf", "--threads", "0"], "expected a number from 1 to 512, got 0"),
     ],
 )
-def test_a_wrong_request_is_told(
-    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_wrong_request_is_told(words: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert told in refused(capsys, *words)
 
 
@@ -63,9 +61,7 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_model(tmp_path_factory.mktemp("model") / "tiny.gguf")
 
 
-def test_a_port_that_somebody_listens_on_is_told(
-    model: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_port_that_somebody_listens_on_is_told(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = str(other.getsockname()[1])
         assert f"port {port} is in use" in refused(capsys, str(model), "--port", port)

@@ -82,12 +82,8 @@ def test_devices_that_are_what_they_should_be() -> None:
     assert asked("lsc16", servos) == (Level.OK, "battery 7.5 V", "")
     sonar = asked("tf_luna", Device(READING * 20))
     assert (sonar.level, sonar.text.split(",")[0]) == (Level.OK, "1.23 m")
-    assert asked("tf_luna", Device(encode_tof(TofFrame(0, 50, 25.0)) * 20)).text.startswith(
-        "nothing in range"
-    )
-    assert asked("tf_luna", Device(encode_tof(TofFrame(10, 900, 25.0)) * 20)).text.startswith(
-        "too close to measure"
-    )
+    assert asked("tf_luna", Device(encode_tof(TofFrame(0, 50, 25.0)) * 20)).text.startswith("nothing in range")
+    assert asked("tf_luna", Device(encode_tof(TofFrame(10, 900, 25.0)) * 20)).text.startswith("too close to measure")
 
 
 @pytest.mark.parametrize(
@@ -229,11 +225,7 @@ CARDS = '[["USB Microphone, Audio"], ["HDMI", "MAX98357A"]]'
     ],
 )
 def test_microphones_and_loudspeakers(
-    cards: str,
-    settings: dict[str, object],
-    level: Level,
-    words: str,
-    monkeypatch: pytest.MonkeyPatch,
+    cards: str, settings: dict[str, object], level: Level, words: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(media, "_run", lambda *_: cards)
     (found,) = examine(robot(sound={"kind": "sound", **settings}), list)

@@ -39,9 +39,7 @@ def test_check_of_the_course(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.usefixtures("elsewhere")
-def test_check_tells_every_problem_with_its_place(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_check_tells_every_problem_with_its_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     written(tmp_path, "domain: 300\nnodes: {a: {run: nodes.helo}}", "bad.yaml")
     assert main(["check", "bad.yaml"]) == 2
     assert capsys.readouterr().out.splitlines() == [
@@ -77,14 +75,11 @@ def test_a_bad_profile_starts_nothing(tmp_path: Path, capsys: pytest.CaptureFixt
 
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The folder in which the learner works."""
     monkeypatch.setenv("DECK_COURSE", str(tmp_path / "course"))
     return tmp_path / "course"
 
 
-def test_what_was_written_is_kept_as_a_copy(
-    course: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_was_written_is_kept_as_a_copy(course: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", "2"]) == 0
     file = course / "02-sonar-safety" / "mock_sonar.py"
     starter = file.read_text("utf-8")
@@ -115,9 +110,7 @@ def test_a_folder_has_its_comments_in_one_language(course: Path, code: str) -> N
         assert load_profile(file).nodes
 
 
-def test_an_empty_node_runs_by_its_own_profile(
-    course: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_empty_node_runs_by_its_own_profile(course: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", "--node", "my_sonar"]) == 0
     assert main(["check", str(course / "my_sonar")]) == 0
     assert main(["new", "--node", "my_sonar"]) == 2

@@ -13,17 +13,7 @@ import pytest
 from cli.health import over, settled, well
 from cli.line_writer import MOST_WAITING, LineWriter
 from cli.report import JsonReport, Summary, TextReport
-from launcher.status import (
-    IDLE,
-    STUCK,
-    THREAD,
-    LogLine,
-    NodeFault,
-    NodeState,
-    NodeStatus,
-    SessionInfo,
-    Severity,
-)
+from launcher.status import IDLE, STUCK, THREAD, LogLine, NodeFault, NodeState, NodeStatus, SessionInfo, Severity
 from text.output import Paint
 
 
@@ -94,9 +84,7 @@ def test_json_is_one_object_a_line_and_ends_with_the_summary() -> None:
     report.note("nothing for programs")
     report.summary(Summary([STATUS], {"sonar": False}, 4.25, ""))
     events = [json.loads(each) for each in lines]
-    assert [event["event"] for event in events] == [
-        *("session", "status", "log", "skipped", "summary")
-    ]
+    assert [event["event"] for event in events] == [*("session", "status", "log", "skipped", "summary")]
     assert events[0]["domain"] == 42
     assert events[2]["text"] == "Дистанция\u2028"
     assert events[2]["severity"] == "warn"
@@ -142,9 +130,7 @@ def statuses(*nodes: NodeStatus) -> dict[str, NodeStatus]:
         ([node("a", EXITED), node("b", NodeState.STOPPING)], True, False),
     ],
 )
-def test_when_all_is_up_and_when_all_is_over(
-    nodes: list[NodeStatus], is_settled: bool, is_over: bool
-) -> None:
+def test_when_all_is_up_and_when_all_is_over(nodes: list[NodeStatus], is_settled: bool, is_over: bool) -> None:
     assert settled(statuses(*nodes)) is is_settled
     assert over(statuses(*nodes)) is is_over
 

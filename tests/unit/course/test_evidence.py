@@ -17,14 +17,7 @@ from course.judge.evidence import TICK_S, Evidence
 from course.judge.judge import Judge
 from course.progress.files import state_of
 from course.progress.progress import load_progress, noted
-from graph.data import (
-    NAMELESS,
-    PROCESS_NUMBERS,
-    EndpointInfo,
-    GraphUpdate,
-    NodeRow,
-    TopicRow,
-)
+from graph.data import NAMELESS, PROCESS_NUMBERS, EndpointInfo, GraphUpdate, NodeRow, TopicRow
 from launcher.events import LogEvent, StatusEvent
 from launcher.status import LogLine, NodeState, NodeStatus, Severity
 
@@ -73,19 +66,14 @@ async def test_the_crash_before_a_quick_restart_is_not_that_of_the_new_process()
 
 def _graph(pid: int, *nodes: str) -> GraphUpdate:
     process = pid % PROCESS_NUMBERS
-    ends = tuple(
-        EndpointInfo(node, "std_msgs/msg/Empty", "reliable", "volatile", process=process)
-        for node in nodes
-    )
+    ends = tuple(EndpointInfo(node, "std_msgs/msg/Empty", "reliable", "volatile", process=process) for node in nodes)
     row = TopicRow("/heard", ("std_msgs/msg/Empty",), 0, len(ends), subscribed_by=ends)
     rows = tuple(NodeRow(end.node, processes=(process,)) for end in ends if end.is_named)
     return GraphUpdate(0.0, topics=(row,), nodes=rows)
 
 
 @pytest.mark.parametrize(
-    "early",
-    [(), (f"/{NAMELESS}",), ("/another", f"/{NAMELESS}")],
-    ids=["nothing", "no name", "one name of two"],
+    "early", [(), (f"/{NAMELESS}",), ("/another", f"/{NAMELESS}")], ids=["nothing", "no name", "one name of two"]
 )
 @pytest.mark.parametrize("name", ["/talker", "/of_another_name"])
 async def test_nodes_are_judged_once_the_middleware_knows_them(
@@ -121,9 +109,7 @@ LESSON = "02-sonar-safety"
         b" " * (1 << 21),
     ],
 )
-def test_a_broken_file_counts_as_nothing_done_and_is_kept_beside_the_next(
-    tmp_path: Path, broken: bytes
-) -> None:
+def test_a_broken_file_counts_as_nothing_done_and_is_kept_beside_the_next(tmp_path: Path, broken: bytes) -> None:
     path = tmp_path / "progress.json"
     path.write_bytes(broken)
     assert not load_progress(path).passed(LESSON)

@@ -18,8 +18,7 @@ TICKS_S = [each * 0.1 for each in range(200)]
 def seen(ticks_s: Iterable[float], there_s: float) -> SeenMessages:
     """What is told of a head that is at the fourth tilt from this moment on."""
     states: list[tuple[float, Mapping[str, Any]]] = [
-        (time_s, {"position": [0.0, math.radians(4 if time_s >= there_s else 3)]})
-        for time_s in ticks_s
+        (time_s, {"position": [0.0, math.radians(4 if time_s >= there_s else 3)]}) for time_s in ticks_s
     ]
     return SeenMessages(messages={"/head_state": states}, values={}, logs={}, logged={})
 
@@ -34,9 +33,7 @@ def seen(ticks_s: Iterable[float], there_s: float) -> SeenMessages:
         ((15.3, 16.0), True),
     ],
 )
-def test_only_silence_during_the_movement_counts(
-    silent_s: tuple[float, float], right: bool
-) -> None:
+def test_only_silence_during_the_movement_counts(silent_s: tuple[float, float], right: bool) -> None:
     began_s, ended_s = silent_s
     told = never_silent(seen((t for t in TICKS_S if not began_s < t < ended_s - 0.01), 16.0))
     assert (told is None) is right, told

@@ -57,9 +57,7 @@ def test_an_empty_folder_and_another_file_are_no_bags(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.9, 0.99])
-def test_a_bag_cut_anywhere_is_read_as_far_as_it_goes(
-    tmp_path: Path, long_bag: bytes, share: float
-) -> None:
+def test_a_bag_cut_anywhere_is_read_as_far_as_it_goes(tmp_path: Path, long_bag: bytes, share: float) -> None:
     file = write_bag(tmp_path / "walk") / "walk.mcap"
     file.write_bytes(long_bag[: int(len(long_bag) * share)])
     with open_bag(tmp_path / "walk") as bag:
@@ -108,9 +106,7 @@ def bag_of(folder: Path, ending: str, **facts: object) -> Path:
 
 
 @pytest.mark.parametrize("ending", ["mcap", "db3"])
-def test_fewer_messages_than_counted_are_told_with_what_is_there(
-    ending: str, tmp_path: Path
-) -> None:
+def test_fewer_messages_than_counted_are_told_with_what_is_there(ending: str, tmp_path: Path) -> None:
     bag_of(tmp_path / "walk", ending, count=40)
     bag = only(tmp_path)
     assert localized(bag.trouble, "en") == FEWER
@@ -118,7 +114,6 @@ def test_fewer_messages_than_counted_are_told_with_what_is_there(
 
 
 def read(bag: Bag) -> list[str]:
-    """The texts on all topics, in their order."""
     return [raw[8:-1].decode() for _topic, _stamp, raw in bag.messages()]
 
 
@@ -150,9 +145,7 @@ def part_of(path: Path, count: int) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize("ending", ["mcap", "db3"])
-def test_all_files_of_a_split_bag_are_read_and_counted_together(
-    tmp_path: Path, ending: str
-) -> None:
+def test_all_files_of_a_split_bag_are_read_and_counted_together(tmp_path: Path, ending: str) -> None:
     write = write_mcap if ending == "mcap" else write_sqlite
     for part, first in ((1, 0), (2, 10), (10, 20)):
         write(tmp_path / f"walk_{part}.{ending}", 10, first)
@@ -193,9 +186,7 @@ def test_another_number_in_the_metadata_is_told(tmp_path: Path, said: int) -> No
     write_mcap(tmp_path / "walk_0.mcap")
     write_metadata(tmp_path, ["walk_0.mcap"], said)
     notes = (part_of if said > 20 else all_of)(tmp_path, 20)
-    assert notes == (
-        f"metadata.yaml counts {said} messages, the files hold 20: /chatter {said} → 20",
-    )
+    assert notes == (f"metadata.yaml counts {said} messages, the files hold 20: /chatter {said} → 20",)
 
 
 @pytest.mark.parametrize("text", ["", "a: [", "[]", "rosbag2_bagfile_information: 3", "[" * 5000])
@@ -237,9 +228,7 @@ def test_a_channel_of_another_kind_is_named_and_the_others_are_read(
         ("a.db3", b"\x1f\x8brest", "is packed by gzip; unpack it first"),
     ],
 )
-def test_what_a_file_is_instead_is_told(
-    tmp_path: Path, name: str, begin: bytes, words: str
-) -> None:
+def test_what_a_file_is_instead_is_told(tmp_path: Path, name: str, begin: bytes, words: str) -> None:
     file = tmp_path / "walk" / name
     file.parent.mkdir()
     file.write_bytes(begin + b"\0" * 64)
@@ -297,12 +286,7 @@ def test_what_a_damaged_chunk_held_is_counted_by_whatever_the_file_counts(
     counted: bool,
 ) -> None:
     file = write_mcap(
-        tmp_path / "walk.mcap",
-        30,
-        statistics=statistics,
-        indexes=indexes,
-        compression=compression,
-        chunk_bytes=400,
+        tmp_path / "walk.mcap", 30, statistics=statistics, indexes=indexes, compression=compression, chunk_bytes=400
     )
     damage_chunk(file, which)
     with open_bag(file) as bag:
@@ -328,9 +312,7 @@ def test_a_file_that_is_broken_in_its_middle_and_has_an_end_was_not_cut_short(
         assert ("m29" in found) == (indexes is not IndexType.NONE)
 
 
-def test_a_name_without_its_slash_is_resolved_as_ros_does_and_kept_as_it_is_recorded(
-    tmp_path: Path,
-) -> None:
+def test_a_name_without_its_slash_is_resolved_as_ros_does_and_kept_as_it_is_recorded(tmp_path: Path) -> None:
     write_mcap(tmp_path / "walk_0.mcap", 10, topic=TOPIC.removeprefix("/"))
     write_mcap(tmp_path / "walk_1.mcap", 10, first=10)
     with open_bag(tmp_path) as bag:

@@ -8,16 +8,7 @@ from typing import Any
 
 import pytest
 
-from graph.data import (
-    ActionRow,
-    EndpointInfo,
-    GraphUpdate,
-    NodeRow,
-    Sample,
-    ServiceRow,
-    TopicRow,
-    Trouble,
-)
+from graph.data import ActionRow, EndpointInfo, GraphUpdate, NodeRow, Sample, ServiceRow, TopicRow, Trouble
 from graph.diagnostics.book import STALE_S, DiagnosticsBook
 from graph.diagnostics.reading import StatusLevel
 from graph.diagnostics.tree import tree
@@ -38,9 +29,7 @@ DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
 
 
 def end(node: str, kind: str = FLOAT, **policies: Any) -> EndpointInfo:
-    return EndpointInfo(
-        node, kind, **{"reliability": "reliable", "durability": "volatile", **policies}
-    )
+    return EndpointInfo(node, kind, **{"reliability": "reliable", "durability": "volatile", **policies})
 
 
 def topic(name: str, by: str = "", to: str = "", kind: str = FLOAT, **more: Any) -> TopicRow:
@@ -278,9 +267,7 @@ def test_a_node_that_has_ended_for_good_is_told_at_once() -> None:
     assert lasting.told(1.0) == ()
 
 
-def end_troubles(
-    node: str, reliability: str = "reliable", durability: str = "volatile"
-) -> EndpointInfo:
+def end_troubles(node: str, reliability: str = "reliable", durability: str = "volatile") -> EndpointInfo:
     return EndpointInfo(node, FLOAT, reliability, durability)
 
 
@@ -300,17 +287,13 @@ PLAIN = end_troubles("/plain")
         ([LATCHED_MAP, BEST_EFFORT], Qos("best_effort", "volatile")),
     ],
 )
-def test_the_request_is_the_strongest_that_all_publishers_meet(
-    publishers: list[EndpointInfo], wanted: Qos
-) -> None:
+def test_the_request_is_the_strongest_that_all_publishers_meet(publishers: list[EndpointInfo], wanted: Qos) -> None:
     assert to_hear(publishers) == wanted
     ours = EndpointInfo("/deck", FLOAT, wanted.reliability, wanted.durability)
     assert mismatches(publishers, [ours]) == []
 
 
-@pytest.mark.parametrize(
-    "subscribers", [[], [PLAIN], [BEST_EFFORT], [LATCHED_MAP], [LATCHED_MAP, PLAIN]]
-)
+@pytest.mark.parametrize("subscribers", [[], [PLAIN], [BEST_EFFORT], [LATCHED_MAP], [LATCHED_MAP, PLAIN]])
 def test_the_offer_meets_all_subscribers(subscribers: list[EndpointInfo]) -> None:
     offer = to_be_heard(subscribers)
     ours = EndpointInfo("/deck", FLOAT, offer.reliability, offer.durability)
@@ -319,9 +302,7 @@ def test_the_offer_meets_all_subscribers(subscribers: list[EndpointInfo]) -> Non
 
 def test_a_mismatch_names_both_sides_and_the_ways_out() -> None:
     (found,) = mismatches([BEST_EFFORT, PLAIN], [end_troubles("/vlm")])
-    assert found.what == (
-        "/vlm does not hear /camera: reliability reliable is asked for, best_effort is offered."
-    )
+    assert found.what == ("/vlm does not hear /camera: reliability reliable is asked for, best_effort is offered.")
     assert found.mend == "Let /camera offer reliable, or let /vlm ask for best_effort."
     (found,) = mismatches([PLAIN], [LATCHED_MAP])
     assert found.facts() == {
@@ -335,9 +316,7 @@ def test_a_mismatch_names_both_sides_and_the_ways_out() -> None:
 
 def told(offer: dict[str, Any], request: dict[str, Any]) -> list[tuple[str, str, str]]:
     """Policy, offer and request of each mismatch of one publisher and one subscriber."""
-    found = mismatches(
-        [replace(end_troubles("/p"), **offer)], [replace(end_troubles("/s"), **request)]
-    )
+    found = mismatches([replace(end_troubles("/p"), **offer)], [replace(end_troubles("/s"), **request)])
     return [(one.policy, one.offered, one.requested) for one in found]
 
 
@@ -361,9 +340,7 @@ def test_signs_of_life_are_as_many_and_of_the_kind_that_is_asked_for() -> None:
 
 def test_each_trouble_has_its_own_words() -> None:
     nobody = TopicEnds("/t", (FLOAT,), subscribers=(PLAIN,))
-    misfit = TopicEnds(
-        "/t", (FLOAT,), publishers=(BEST_EFFORT,), subscribers=(PLAIN, end_troubles("/b"))
-    )
+    misfit = TopicEnds("/t", (FLOAT,), publishers=(BEST_EFFORT,), subscribers=(PLAIN, end_troubles("/b")))
     fine = TopicEnds("/t", (FLOAT,), publishers=(PLAIN,), subscribers=(PLAIN,))
     unknown = UnknownTypeError("foo_msgs/msg/Bar", "foo_msgs", "foo_msgs is not installed")
     assert structural(nobody, FLOAT, None).trouble is Trouble.NO_PUBLISHER

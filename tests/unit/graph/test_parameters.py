@@ -63,15 +63,9 @@ def test_pyyaml_reads_the_same_nested_by_dots(values: dict[str, tuple[str, Any]]
 
 @pytest.mark.parametrize(
     ("node", "expected"),
-    [
-        ("/robot", {"a": 1, "b": 2}),
-        ("/arm/robot", {"a": 3, "c": 4}),
-        ("/arm/left/hand", {"a": 1, "d": 5}),
-    ],
+    [("/robot", {"a": 1, "b": 2}), ("/arm/robot", {"a": 3, "c": 4}), ("/arm/left/hand", {"a": 1, "d": 5})],
 )
-def test_wildcards_and_nested_namespaces_are_those_of_ros(
-    node: str, expected: dict[str, int]
-) -> None:
+def test_wildcards_and_nested_namespaces_are_those_of_ros(node: str, expected: dict[str, int]) -> None:
     text = """\
 /**:
   ros__parameters: {a: 1}

@@ -11,10 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from graph.data import (
-    Sample,
-    Value,
-)
+from graph.data import Sample, Value
 from graph.messages.making import NoSuchFieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.process.plain import PlainError, packed, plain_error, unpacked
@@ -28,14 +25,7 @@ def there_and_back(value: object) -> Any:
 
 
 def test_a_message_of_every_kind_of_value_comes_back_as_it_was() -> None:
-    value: dict[str, Value] = {
-        "a": 1,
-        "b": 2.5,
-        "c": "ä",
-        "d": b"\0" * 100_000,
-        "e": [{"x": True}],
-        "f": [],
-    }
+    value: dict[str, Value] = {"a": 1, "b": 2.5, "c": "ä", "d": b"\0" * 100_000, "e": [{"x": True}], "f": []}
     sample = Sample("/t", "a/msg/B", 1.0, 0.0, 10, value)
     assert there_and_back(sample) == sample
 
@@ -44,18 +34,9 @@ def test_errors_come_back_with_all_that_they_say() -> None:
     wrong = NoSuchFieldError("a.b", say("no such field; did you mean {name}?", name="c"))
     wrong.line = 3
     back = there_and_back(wrong)
-    assert (type(back), back.field, back.message, back.line) == (
-        NoSuchFieldError,
-        "a.b",
-        wrong.message,
-        3,
-    )
+    assert (type(back), back.field, back.message, back.line) == (NoSuchFieldError, "a.b", wrong.message, 3)
     unknown = there_and_back(UnknownTypeError("a/msg/B", "a", say("gone"), {"pip": "ros-a"}))
-    assert (unknown.type_name, unknown.package, unknown.install) == (
-        "a/msg/B",
-        "a",
-        {"pip": "ros-a"},
-    )
+    assert (unknown.type_name, unknown.package, unknown.install) == ("a/msg/B", "a", {"pip": "ros-a"})
     assert str(there_and_back(plain_error(RuntimeError("rcl says no")))) == "rcl says no"
 
 
@@ -70,8 +51,7 @@ class Harm:
 
 
 @pytest.mark.parametrize(
-    "call",
-    [(os.system, ("true",)), (eval, ("1",)), (getattr, (ObserverError, "mro")), (Wire, (None,))],
+    "call", [(os.system, ("true",)), (eval, ("1",)), (getattr, (ObserverError, "mro")), (Wire, (None,))]
 )
 def test_what_names_anything_else_is_refused(call: Any) -> None:
     with pytest.raises(PlainError):

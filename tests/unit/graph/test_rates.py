@@ -16,9 +16,7 @@ from graph.observer.timing import Arrival
 T0 = 1_700_000_000.0
 
 
-def looked_at(
-    stamps: list[float], looks: list[float], *, depth: int = 1000, numbered: bool = True
-) -> RateMeter:
+def looked_at(stamps: list[float], looks: list[float], *, depth: int = 1000, numbered: bool = True) -> RateMeter:
     meter, waiting = RateMeter(), list(enumerate(stamps))
     for look in looks:
         come = [(n, stamp) for n, stamp in waiting if stamp <= look]
@@ -33,17 +31,13 @@ def every(period_s: float, until_s: float, phase_s: float = 0.0) -> list[float]:
 
 
 @given(hz=st.floats(0.5, 500), look_s=st.floats(0.05, 0.5), phase_s=st.floats(0, 0.05))
-def test_a_steady_rate_is_exact_however_it_is_looked_at(
-    hz: float, look_s: float, phase_s: float
-) -> None:
+def test_a_steady_rate_is_exact_however_it_is_looked_at(hz: float, look_s: float, phase_s: float) -> None:
     meter = looked_at(every(1 / hz, 10, phase_s), every(look_s, 10))
     assert meter.hz(T0 + 10) == pytest.approx(hz, rel=0.001)
 
 
 @given(hz=st.floats(20, 200), look_s=st.floats(0.2, 0.5), depth=st.integers(3, 5))
-def test_a_rate_is_right_though_the_queue_keeps_only_the_newest(
-    hz: float, look_s: float, depth: int
-) -> None:
+def test_a_rate_is_right_though_the_queue_keeps_only_the_newest(hz: float, look_s: float, depth: int) -> None:
     meter = looked_at(every(1 / hz, 10), every(look_s, 10), depth=depth)
     assert meter.hz(T0 + 10) == pytest.approx(hz, rel=0.001)
     assert meter.bytes_per_s(T0 + 10) == pytest.approx(8 * hz, rel=0.001)
@@ -114,9 +108,7 @@ def swaying(count: int, sway_s: float) -> list[Arrival]:
 
 
 @given(sway_s=st.floats(0.0, 0.04), per_batch=st.integers(1, 30))
-def test_jitter_is_the_deviation_of_the_time_between_messages(
-    sway_s: float, per_batch: int
-) -> None:
+def test_jitter_is_the_deviation_of_the_time_between_messages(sway_s: float, per_batch: int) -> None:
     meter = fed(swaying(61, sway_s), per_batch)
     assert meter.jitter_s(T0 + 3) == pytest.approx(sway_s, abs=1e-6)
 
@@ -131,8 +123,7 @@ def test_messages_that_are_missing_make_no_jitter() -> None:
 def test_latency_is_the_mean_of_the_last_seconds() -> None:
     chance = random.Random(1)
     arrivals = [
-        Arrival(T0 + n / 50, 8, n, (0.2 if n < 100 else 0.01) + chance.uniform(-0.005, 0.005))
-        for n in range(400)
+        Arrival(T0 + n / 50, 8, n, (0.2 if n < 100 else 0.01) + chance.uniform(-0.005, 0.005)) for n in range(400)
     ]
     meter = fed(arrivals, 10)
     assert meter.latency_s(T0 + 8) == pytest.approx(0.01, abs=0.001)

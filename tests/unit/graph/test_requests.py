@@ -56,14 +56,7 @@ class Desk:
         self.known.add(topic)
 
     def publish(
-        self,
-        topic: str,
-        _type: str,
-        _value: Any,
-        _ends: None,
-        future: Future[int],
-        *,
-        latched: bool,
+        self, topic: str, _type: str, _value: Any, _ends: None, future: Future[int], *, latched: bool
     ) -> None:
         self.done.append(f"publish {topic} {latched}")
         future.set_result(1)
@@ -124,12 +117,7 @@ def test_what_needs_a_look_itself_waits_for_the_end_of_this_one() -> None:
     loop.serve_urgent(node)
     assert desk.done == ["step"]
     loop._requests.carry_out(node)
-    assert desk.done[1:] == [
-        "look for /drive",
-        "hold /drive",
-        "look for /stop",
-        "publish /stop True",
-    ]
+    assert desk.done[1:] == ["look for /drive", "hold /drive", "look for /stop", "publish /stop True"]
 
 
 def test_what_cannot_be_done_any_more_says_so() -> None:
@@ -156,9 +144,7 @@ def state(label: str) -> dict[str, Any]:
 
 def possible(*transitions: tuple[int, str]) -> dict[str, Any]:
     return {
-        "available_transitions": [
-            {"transition": {"id": number, "label": label}} for number, label in transitions
-        ]
+        "available_transitions": [{"transition": {"id": number, "label": label}} for number, label in transitions]
     }
 
 
@@ -221,15 +207,11 @@ class Publisher:
 
 
 def repeated(hz: float, publisher: Publisher) -> _Repeated:
-    return _Repeated(
-        1, "/t", "a/msg/B", hz, b"raw", object, Qos(RELIABLE, VOLATILE), cast("Any", publisher), 0.0
-    )
+    return _Repeated(1, "/t", "a/msg/B", hz, b"raw", object, Qos(RELIABLE, VOLATILE), cast("Any", publisher), 0.0)
 
 
 @given(st.floats(0.1, 100), st.lists(st.floats(0, LATE_S / 2), max_size=200))
-def test_the_mean_rate_is_exact_however_late_each_step_comes(
-    hz: float, pauses: list[float]
-) -> None:
+def test_the_mean_rate_is_exact_however_late_each_step_comes(hz: float, pauses: list[float]) -> None:
     publisher = Publisher()
     one, now_s = repeated(hz, publisher), 0.0
     one.step(now_s)
@@ -313,9 +295,7 @@ def test_what_cannot_be_published_is_held_no_more() -> None:
 
 
 acts = st.lists(
-    st.tuples(
-        st.floats(0.0, 0.7), st.sampled_from(["hold", "other", "let go", "step"]), st.floats(-1, 3)
-    ),
+    st.tuples(st.floats(0.0, 0.7), st.sampled_from(["hold", "other", "let go", "step"]), st.floats(-1, 3)),
     max_size=40,
 )
 
@@ -328,9 +308,7 @@ def test_whatever_is_said_it_ends_at_rest(history: list[tuple[float, str, float]
         now_s += pause_s
         before = len(wire.sent)
         if what in {"hold", "other"}:
-            repeater.hold(
-                command_dead_man_switch(now_s + good_for_s, GO if what == "hold" else OTHER), now_s
-            )
+            repeater.hold(command_dead_man_switch(now_s + good_for_s, GO if what == "hold" else OTHER), now_s)
             if now_s + good_for_s > now_s:
                 good_until_s = now_s + good_for_s
         elif what == "let go":
@@ -413,9 +391,7 @@ def result(status: int, message: str = "") -> Any:
     return SimpleNamespace(status=status, result=DriveToPoint.Result(message=message))
 
 
-def test_a_goal_whose_acceptance_was_lost_is_known_by_its_status(
-    life: GoalLife, client: GoalClient
-) -> None:
+def test_a_goal_whose_acceptance_was_lost_is_known_by_its_status(life: GoalLife, client: GoalClient) -> None:
     go(life)
     assert go(life, status={ID: EXECUTING}) == GoalStatus.EXECUTING
     assert client.sent == ["goal", "result"]

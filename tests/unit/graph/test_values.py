@@ -66,11 +66,7 @@ def test_ros2_topic_pub_reads_the_same_of_it() -> None:
 
 
 def test_long_arrays_are_cut_and_tell_their_length() -> None:
-    tree: dict[str, Any] = {
-        "data": bytes(921_600),
-        "points": [{"x": 0.0}] * 3,
-        "text": "a" * 100_000,
-    }
+    tree: dict[str, Any] = {"data": bytes(921_600), "points": [{"x": 0.0}] * 3, "text": "a" * 100_000}
     text = to_yaml(tree, most=2)
     assert "data: [0, 0]  # the first 2 of 921600 elements" in text
     assert "points:  # the first 2 of 3 elements\n- x: 0.0\n- x: 0.0\n" in text
@@ -231,10 +227,7 @@ def test_nothing_else_of_python_is_understood(text: str) -> None:
         ("m.ranges[3] > 0", "column 1: m.ranges[3]: there are 3 elements, counted from 0"),
         ("m.ranges['a']", "the index of an element must be a whole number"),
         ("m.header[0]", "a message has no elements"),
-        (
-            "m.ranges > 1",
-            "column 1: m.ranges > 1: a list and a number cannot be compared like this",
-        ),
+        ("m.ranges > 1", "column 1: m.ranges > 1: a list and a number cannot be compared like this"),
         ("m.text < 5", "a string and a number cannot be compared like this"),
         ("m.ranges", "column 1: m.ranges: it is a list, which is neither true nor false"),
         ("m.header == 1", "compare one of the fields of a message"),
@@ -284,9 +277,7 @@ class HalfLoaded(type):
         HalfLoaded.inner = object()
 
 
-def test_a_type_that_another_thread_is_loading_is_waited_for(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_type_that_another_thread_is_loading_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("half_msgs", "half_msgs.msg", "half_msgs.srv"):
         module: Any = ModuleType(name)
         module.Thing = HalfLoaded("Thing", (), {})

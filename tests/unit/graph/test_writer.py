@@ -103,9 +103,7 @@ def test_a_disk_that_fills_up_leaves_a_whole_bag(tmp_path: Path, room: int) -> N
         ([50, 90, 1, 91, 2], 3, 0),
     ],
 )
-def test_what_is_missing_is_found_in_the_numbers(
-    numbers: list[int], publishers: int, missing: int
-) -> None:
+def test_what_is_missing_is_found_in_the_numbers(numbers: list[int], publishers: int, missing: int) -> None:
     sequences = Sequences()
     assert sum(sequences.missing(number, lambda: publishers) for number in numbers) == missing
 

@@ -32,9 +32,7 @@ from tests.dying_supervisor import HELLO, DyingSupervisor
 MOST = 1000
 
 
-async def test_news_that_nobody_takes_are_merged_and_counted(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+async def test_news_that_nobody_takes_are_merged_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(client_inbox, "MAX_LINES", MOST)
     inbox = Inbox()
     for state in (NodeState.STARTING, NodeState.READY):
@@ -93,28 +91,20 @@ async def test_one_that_dies_before_it_has_greeted(dying: DyingSupervisor, said:
 
 
 @pytest.mark.parametrize("past", [0, 10])
-@pytest.mark.parametrize(
-    "rest", [b"", NEWS, NEWS[:20], b"\xff\n"], ids=["", "news", "half of it", "rubbish"]
-)
-async def test_one_that_dies_once_it_has_greeted(
-    dying: DyingSupervisor, rest: bytes, past: int
-) -> None:
+@pytest.mark.parametrize("rest", [b"", NEWS, NEWS[:20], b"\xff\n"], ids=["", "news", "half of it", "rubbish"])
+async def test_one_that_dies_once_it_has_greeted(dying: DyingSupervisor, rest: bytes, past: int) -> None:
     dying.says = HELLO + rest
     await dying.serve()
     client = await attach()
     events = [event async for event in client.events(past=past)]
     assert events[-1] == GONE
-    assert [event for event in events if isinstance(event, LogEvent)] == (
-        [LogEvent((LINE,))] if rest == NEWS else []
-    )
+    assert [event for event in events if isinstance(event, LogEvent)] == ([LogEvent((LINE,))] if rest == NEWS else [])
     await client.aclose()
 
 
 @pytest.mark.parametrize("words", [b"", b'{"reply": 1'], ids=["nothing", "half a reply"])
 @pytest.mark.parametrize("op", REQUESTS)
-async def test_one_that_dies_when_it_is_asked(
-    dying: DyingSupervisor, op: str, words: bytes
-) -> None:
+async def test_one_that_dies_when_it_is_asked(dying: DyingSupervisor, op: str, words: bytes) -> None:
     dying.dies_on, dying.last_words = op, words
     await dying.serve()
     client = await attach()
@@ -145,9 +135,7 @@ def lines(first: int, last: int, node: str = "sonar") -> tuple[LogLine, ...]:
     ],
     ids=["nothing known", "overlap", "joint", "all known", "another node"],
 )
-def test_what_is_known_does_not_come_again(
-    known: dict[str, int], event: LogEvent, expected: LogEvent
-) -> None:
+def test_what_is_known_does_not_come_again(known: dict[str, int], event: LogEvent, expected: LogEvent) -> None:
     assert newer(event, known) == expected
 
 
@@ -191,9 +179,7 @@ OF_ROS = ("--ros-args", "-r", "__node:=arg")
 
 def printed_by(file: Path, text: str) -> list[str]:
     file.write_text(text)
-    ended = subprocess.run(
-        [sys.executable, "-I", file, *OF_ROS], capture_output=True, text=True, check=False
-    )
+    ended = subprocess.run([sys.executable, "-I", file, *OF_ROS], capture_output=True, text=True, check=False)
     assert ended.returncode != 0
     return (ended.stdout + ended.stderr).splitlines()
 
@@ -216,12 +202,8 @@ def test_a_parser_that_refuses_them(tmp_path: Path, argument: str) -> None:
     assert "rclpy.utilities.remove_ros_args(sys.argv)[1:]" in fault.meaning
 
 
-@pytest.mark.parametrize(
-    "text", ["import sys\nx = int(sys.argv[1])\n", "import sys\nopen(sys.argv[3])\n"]
-)
-def test_a_program_that_reads_them_itself(
-    tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize("text", ["import sys\nx = int(sys.argv[1])\n", "import sys\nopen(sys.argv[3])\n"])
+def test_a_program_that_reads_them_itself(tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "arg.py"
     file.write_text(text)
     monkeypatch.setattr(sys, "argv", [str(file), *OF_ROS])

@@ -67,9 +67,7 @@ def test_a_folder_that_others_can_write_to_is_refused_and_left_as_it_is(
     assert mode(tmp_path / "r") == permissions
 
 
-def test_a_run_directory_planted_as_a_link_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_directory_planted_as_a_link_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "r").symlink_to(tmp_path / "elsewhere")
     monkeypatch.setenv("DECK_RUN_DIR", str(tmp_path / "r"))
@@ -77,9 +75,7 @@ def test_a_run_directory_planted_as_a_link_is_refused(
         run_dir()
 
 
-def test_somebody_elses_run_directory_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_somebody_elses_run_directory_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "r").mkdir()
     monkeypatch.setenv("DECK_RUN_DIR", str(tmp_path / "r"))
     monkeypatch.setattr(os, "getuid", lambda: 4_000_000)

@@ -22,9 +22,7 @@ BEGIN = "import rclpy\n"
         ("from rclpy import spin\nspin(a)\nspin(b)\n", 4),
     ],
 )
-def test_the_line_whose_turn_does_not_come_is_named(
-    program: str, line: int, tmp_path: Path
-) -> None:
+def test_the_line_whose_turn_does_not_come_is_named(program: str, line: int, tmp_path: Path) -> None:
     (tmp_path / "own.py").write_text(BEGIN + program)
     fault = spun_in_turn(str(tmp_path / "own.py"))
     assert fault is not None

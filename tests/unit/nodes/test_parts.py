@@ -80,9 +80,7 @@ def arrived(device: int) -> bytes:
     return found
 
 
-def test_a_line_that_a_full_port_has_cut_is_finished_before_the_next(
-    ends: tuple[int, serial.Serial],
-) -> None:
+def test_a_line_that_a_full_port_has_cut_is_finished_before_the_next(ends: tuple[int, serial.Serial]) -> None:
     device, port = ends
     writes = SerialWrites(port)
     long = b"x" * 200_000 + b"\n"
@@ -141,9 +139,7 @@ def test_who_was_not_away_takes_everything_in() -> None:
     assert not stalls.kept_waiting(stamp(0.4))
 
 
-def test_just_awake_it_takes_nothing_in(
-    woken: StallDetector, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_just_awake_it_takes_nothing_in(woken: StallDetector, monkeypatch: pytest.MonkeyPatch) -> None:
     later(monkeypatch, 0.4)
     assert woken.lasted(0.5)
     later(monkeypatch, 0.2)

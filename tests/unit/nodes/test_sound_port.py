@@ -30,9 +30,7 @@ MICROPHONES = ("HDMI", "USB PnP Sound Device, USB Audio", "usb")
     [("USB PnP", 1), ("usb", 2), ("audio", 1), ("1", 1), ("9", None), ("MAX98357A", None),
      ("²", None)],
 )  # fmt: skip
-def test_a_device_is_named_by_a_part_of_its_name_or_by_its_number(
-    wanted: str, at: int | None
-) -> None:
+def test_a_device_is_named_by_a_part_of_its_name_or_by_its_number(wanted: str, at: int | None) -> None:
     assert choose(MICROPHONES, wanted) == at
 
 
@@ -45,9 +43,7 @@ class Log:
 
 
 @pytest.fixture
-def begin(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[Callable[..., tuple[SoundPort, Log]]]:
+def begin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., tuple[SoundPort, Log]]]:
     """Open a port on a program of a few lines; the port and its log come back."""
     ports = []
 
@@ -71,9 +67,7 @@ def has(log: Log, words: str) -> None:
     wait_until(lambda: any(words in line for line in log.lines), words)
 
 
-def test_sound_comes_in_blocks_however_it_is_cut(
-    begin: Callable[..., tuple[SoundPort, Log]],
-) -> None:
+def test_sound_comes_in_blocks_however_it_is_cut(begin: Callable[..., tuple[SoundPort, Log]]) -> None:
     heard: list[bytes] = []
     program = OPENED + "for at in range(40): os.write(1, bytes([at]) * 333)\ntime.sleep(60)\n"
     port, log = begin(program, heard=heard.append)
@@ -100,10 +94,7 @@ def test_sound_goes_out_whole(begin: Callable[..., tuple[SoundPort, Log]], tmp_p
         ("sys.exit(3)", "No microphone: the library of sound has died: exit code 3"),
         ("os.write(2, b'Assertion failed\\n'); os.abort()", "has died: Assertion failed"),
         (OPENED + "os._exit(1)", "Lost the microphone stub: the library of sound has died"),
-        (
-            OPENED + "time.sleep(60)",
-            "Lost the microphone stub: the library of sound does not answer",
-        ),
+        (OPENED + "time.sleep(60)", "Lost the microphone stub: the library of sound does not answer"),
         ("time.sleep(60)", "No microphone: the library of sound does not answer"),
         ("tell(problem='busy')", "close the program that uses it (fuser -v /dev/snd/*)"),
         ("tell(problem='missing', detail='')", "plug it in (arecord -l and aplay -l list them)"),
@@ -113,10 +104,7 @@ def test_sound_goes_out_whole(begin: Callable[..., tuple[SoundPort, Log]], tmp_p
     ],
 )
 def test_whatever_goes_wrong_is_told_and_tried_again(
-    begin: Callable[..., tuple[SoundPort, Log]],
-    monkeypatch: pytest.MonkeyPatch,
-    program: str,
-    words: str,
+    begin: Callable[..., tuple[SoundPort, Log]], monkeypatch: pytest.MonkeyPatch, program: str, words: str
 ) -> None:
     monkeypatch.setattr(_sound_port, "_FIRST_WAIT_S", 0.02)
     monkeypatch.setattr(_sound_port, "_OPEN_S", 1.0)

@@ -23,16 +23,8 @@ CONSTANT = "the name of a constant has capitals, digits and single _, a letter f
         ("action/Go.action", "---\n---\nint8 x_", f":3: 'x_': {FIELD}: x"),
         ("msg/Lamp.msg", "std_msgs/Header 2nd", f":1: '2nd': {FIELD}"),
         ("msg/Lamp.msg", "uint8 On=1", f":1: 'On': {CONSTANT}: ON"),
-        (
-            "msg/Lamp.msg",
-            "int8 class",
-            ":1: 'class' is a word of Python or C++, and cannot name a field",
-        ),
-        (
-            "msg/Lamp.msg",
-            "int8 def",
-            ":1: 'def' is a word of Python or C++, and cannot name a field",
-        ),
+        ("msg/Lamp.msg", "int8 class", ":1: 'class' is a word of Python or C++, and cannot name a field"),
+        ("msg/Lamp.msg", "int8 def", ":1: 'def' is a word of Python or C++, and cannot name a field"),
         ("msg/Lamp.msg", "int8 x\nint8 x", ":2: 'x' stands here a second time, first in line 1"),
         ("msg/Lamp.msg", "double power", ":1: ROS has no type 'double': float64"),
         ("msg/Lamp.msg", "String[] names", ":1: ROS has no type 'String': string"),

@@ -77,8 +77,6 @@ def test_systemd_knows_every_setting_of_the_service(tmp_path: Path) -> None:
     unit = tmp_path / SERVICE.name
     unit.write_text(SERVICE.read_text())
     for words in (["verify"], ["security", "--offline=true", "--threshold=40"]):
-        done = subprocess.run(
-            ["systemd-analyze", *words, str(unit)], capture_output=True, text=True, check=False
-        )
+        done = subprocess.run(["systemd-analyze", *words, str(unit)], capture_output=True, text=True, check=False)
         said = [line for line in done.stderr.splitlines() if "deck-robot@" in line]
         assert (done.returncode, said) == (0, []), done.stdout

@@ -70,9 +70,7 @@ def catalogue() -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize("pattern", INSTEAD)
 def test_a_thing_has_one_russian_name(pattern: str) -> None:
-    said = [
-        russian for _english, russian in catalogue() if re.search(pattern, russian, re.IGNORECASE)
-    ]
+    said = [russian for _english, russian in catalogue() if re.search(pattern, russian, re.IGNORECASE)]
     assert said == [], f"say: {INSTEAD[pattern]}"
 
 
@@ -138,10 +136,7 @@ def machine(python: str) -> dict[str, str]:
 def entries(name: str) -> list[tuple[Requirement, list[str]]]:
     text = (ROOT / "locked" / f"{name}.txt").read_text().replace("\\\n", " ")
     lines = [line for line in text.splitlines() if not line.startswith("#")]
-    return [
-        (Requirement(line.partition(" --hash")[0].strip()), re.findall(r"--hash=(\S+)", line))
-        for line in lines
-    ]
+    return [(Requirement(line.partition(" --hash")[0].strip()), re.findall(r"--hash=(\S+)", line)) for line in lines]
 
 
 @pytest.mark.parametrize("python", PYTHONS)

@@ -47,10 +47,7 @@ def program(path: Path, text: str = "exit 0") -> Path:
     ],
 )
 def test_what_a_machine_lacks_is_said_in_one_line_with_its_cure(
-    lack: dict[str, Any],
-    told: list[tuple[str, ...]],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    lack: dict[str, Any], told: list[tuple[str, ...]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.delenv("CXX", raising=False)
@@ -286,8 +283,6 @@ def make(tree: Path) -> Make:
         ([], {"PYTHONPATH": "/mine"}, 0, "deck run 09-brain\nPYTHONPATH=/mine\n"),
     ],
 )  # fmt: skip
-def test_what_make_run_runs(
-    make: Make, words: list[str], environ: dict[str, str], code: int, told: str
-) -> None:
+def test_what_make_run_runs(make: Make, words: list[str], environ: dict[str, str], code: int, told: str) -> None:
     ran = make("run", *words, **environ)
     assert (ran.returncode, ran.stdout) == (code, told)

@@ -11,9 +11,7 @@ from tests.slowness import FILE, patient
 from tests.waiting import wait_until
 
 
-@pytest.mark.parametrize(
-    ("told", "expected_s"), [("3.00", 6.0), ("0.40", 2.0), ("", 2.0), (None, 2.0)]
-)
+@pytest.mark.parametrize(("told", "expected_s"), [("3.00", 6.0), ("0.40", 2.0), ("", 2.0), (None, 2.0)])
 def test_a_deadline_is_multiplied_and_never_cut(
     told: str | None, expected_s: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -48,13 +48,8 @@ def run_of(folder: Path, files: dict[str, list[str]]) -> subprocess.CompletedPro
 
 
 @pytest.mark.parametrize(("file", "at"), [("first", 0), ("three", 3)])
-def test_a_test_that_ends_its_process_fails_once_and_the_others_run_once(
-    tmp_path: Path, file: str, at: int
-) -> None:
-    files = {
-        name: [DIES if (name, number) == (file, at) else PASSES for number in range(4)]
-        for name in NAMES
-    }
+def test_a_test_that_ends_its_process_fails_once_and_the_others_run_once(tmp_path: Path, file: str, at: int) -> None:
+    files = {name: [DIES if (name, number) == (file, at) else PASSES for number in range(4)] for name in NAMES}
     ran = run_of(tmp_path, files)
     assert ran.returncode == 1, ran.stdout + ran.stderr
     assert "1 failed, 19 passed" in ran.stdout
@@ -158,11 +153,7 @@ MORE = re.compile(
 
 def test_whoever_asks_more_of_a_machine_says_so() -> None:
     asking = {path: path.read_text(encoding="utf-8") for path in TESTS.rglob("test_*.py")}
-    silent = [
-        path.name
-        for path, text in asking.items()
-        if MORE.search(text) and f"mark.{MARK}(" not in text
-    ]
+    silent = [path.name for path, text in asking.items() if MORE.search(text) and f"mark.{MARK}(" not in text]
     assert silent == []
 
 

@@ -46,9 +46,7 @@ def test_the_wheel_takes_one_name_in_site_packages(wheel: zipfile.ZipFile) -> No
 
 
 def test_the_version_is_the_newest_of_the_changelog(wheel: zipfile.ZipFile) -> None:
-    numbers = re.findall(
-        r"^## \[([\d.]+)\] - \d{4}-\d\d-\d\d$", CHANGELOG.read_text(), re.MULTILINE
-    )
+    numbers = re.findall(r"^## \[([\d.]+)\] - \d{4}-\d\d-\d\d$", CHANGELOG.read_text(), re.MULTILINE)
     assert Path(str(wheel.filename)).name.startswith(f"deck_robot-{numbers[0]}-")
 
 

@@ -18,9 +18,7 @@ STEP_S = 0.05
 angles = st.floats(-math.pi, math.pi)
 places = st.floats(-20.0, 20.0)
 poses = st.builds(Pose, places, places, angles)
-chassis = st.builds(
-    ApproachLimits, st.floats(0.05, SPEED.high), st.floats(0.15, STEERING.high), st.floats(0.1, 0.5)
-)
+chassis = st.builds(ApproachLimits, st.floats(0.05, SPEED.high), st.floats(0.15, STEERING.high), st.floats(0.1, 0.5))
 
 
 def drive(start: Pose, approach: Approach, model: ApproachLimits) -> tuple[Pose, float]:
@@ -54,9 +52,7 @@ def test_it_arrives_from_anywhere_within_five_metres(
 
 
 @given(poses, places, places, st.floats(0.02, 1.0), chassis)
-def test_no_command_is_out_of_range(
-    pose: Pose, x: float, y: float, tolerance: float, model: ApproachLimits
-) -> None:
+def test_no_command_is_out_of_range(pose: Pose, x: float, y: float, tolerance: float, model: ApproachLimits) -> None:
     command = Approach(Point(x, y), tolerance, model).command(pose)
     assert command.speed_m_s in SPEED
     assert command.steering_rad in STEERING
@@ -85,9 +81,7 @@ def test_a_point_inside_the_turning_circle_is_backed_away_from() -> None:
     assert command.steering_rad == STEERING.low
 
 
-@pytest.mark.parametrize(
-    "bad", [(0.0, 0.5), (0.6, 0.5), (0.3, 0.0), (0.3, 0.6), (math.nan, 0.5), (0.3, math.nan)]
-)
+@pytest.mark.parametrize("bad", [(0.0, 0.5), (0.6, 0.5), (0.3, 0.0), (0.3, 0.6), (math.nan, 0.5), (0.3, math.nan)])
 def test_a_chassis_of_other_limits_than_the_commands_is_refused(bad: tuple[float, float]) -> None:
     with pytest.raises(ValueError, match="must be up to"):
         ApproachLimits(*bad)
@@ -127,9 +121,7 @@ def test_a_robot_that_drives_and_drives_has_driven_too_far() -> None:
 
 
 @given(poses, st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(0.0, 2.0))
-def test_a_way_in_two_steps_is_the_way_in_one(
-    pose: Pose, speed: float, steering: float, seconds: float
-) -> None:
+def test_a_way_in_two_steps_is_the_way_in_one(pose: Pose, speed: float, steering: float, seconds: float) -> None:
     command = DriveSetpoint(speed, steering)
     halfway = advance(pose, command, seconds / 2)
     one, two = advance(pose, command, seconds), advance(halfway, command, seconds / 2)

@@ -11,14 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.commands.problems import TEMPLATES, CommandError, Problem
-from robot.commands.schema import (
-    MAX_BYTES,
-    MAX_COMMANDS,
-    DriveCommand,
-    HeadCommand,
-    LlmResponse,
-    parse_llm,
-)
+from robot.commands.schema import MAX_BYTES, MAX_COMMANDS, DriveCommand, HeadCommand, LlmResponse, parse_llm
 
 DRIVE = {"action": "drive", "speed": 0.2, "steering": -0.3}
 HEAD = {"action": "turn_head", "pan": -45, "tilt": 10}
@@ -74,9 +67,7 @@ def test_the_ends_of_every_range_are_inside() -> None:
         ({"speed": 0.1}, "action", "missing", "action is missing"),
     ],
 )
-def test_a_refusal_names_field_and_mend(
-    command: dict[str, object], field: str, code: str, words: str
-) -> None:
+def test_a_refusal_names_field_and_mend(command: dict[str, object], field: str, code: str, words: str) -> None:
     problem = only_problem_of(response(HEAD, command))
     assert (problem.field, problem.code) == (f"commands[1].{field}", code)
     assert words in problem.message
@@ -183,9 +174,7 @@ def test_no_text_whatever_leads_out_of_range(text: str | bytes) -> None:
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.integers(-90, 90), st.integers(-90, 90))
-def test_everything_in_range_is_accepted_as_it_is(
-    speed: float, steering: float, pan: int, tilt: int
-) -> None:
+def test_everything_in_range_is_accepted_as_it_is(speed: float, steering: float, pan: int, tilt: int) -> None:
     drive = {"action": "drive", "speed": speed, "steering": steering}
     head = {"action": "turn_head", "pan": pan, "tilt": tilt}
     parsed = parse_llm(response(drive, head))

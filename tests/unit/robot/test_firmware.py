@@ -11,17 +11,7 @@ from typing import Any
 
 import pytest
 
-from robot.wire.pico import (
-    Drive,
-    Halt,
-    Hello,
-    Message,
-    PicoDecoder,
-    Release,
-    Telemetry,
-    Welcome,
-    encode,
-)
+from robot.wire.pico import Drive, Halt, Hello, Message, PicoDecoder, Release, Telemetry, Welcome, encode
 
 ROOT = Path(__file__).parents[3]
 FIRMWARE = ROOT / "firmware"
@@ -73,7 +63,6 @@ def flags(answer: dict[str, Any]) -> frozenset[str]:
 
 
 def stood(answer: dict[str, Any]) -> bool:
-    """Whether both motors were off all the time."""
     return all(motors == [0, 0] for motors in answer["seen"])
 
 
@@ -163,9 +152,7 @@ def test_another_protocol_moves_nothing(pico: Pico) -> None:
 
 
 @pytest.mark.parametrize("only_timer", [False, True], ids=["", "while the rest is blocked"])
-def test_silence_stops_within_the_watchdog_and_what_comes_late_does_not_drive(
-    pico: Pico, only_timer: bool
-) -> None:
+def test_silence_stops_within_the_watchdog_and_what_comes_late_does_not_drive(pico: Pico, only_timer: bool) -> None:
     pico.start()
     pico.hear(Drive(2, 5, 5, 0), ms=1)
     seen = pico.hear(ms=400, only_timer=only_timer)["seen"]
@@ -232,12 +219,7 @@ def test_a_weak_battery_stops_after_half_a_second(pico: Pico) -> None:
 
 @pytest.mark.parametrize(
     "beyond",
-    [
-        Drive(3, 17.908, 5, 0),
-        Drive(3, 5, -200, 0),
-        Drive(3, 5, 5, 0.502),
-        Drive(3, 0, 0, -1.571),
-    ],
+    [Drive(3, 17.908, 5, 0), Drive(3, 5, -200, 0), Drive(3, 5, 5, 0.502), Drive(3, 0, 0, -1.571)],
     ids=["left", "right", "steering", "steering of a stop"],
 )
 def test_what_is_beyond_the_limits_stops_and_is_counted(pico: Pico, beyond: Drive) -> None:

@@ -114,9 +114,7 @@ def test_frames_of_the_servos(octets: bytes, found: tuple[str, str]) -> None:
 
 @pytest.mark.parametrize("language", ["en", "ru"])
 @given(parts=st.lists(PARTS, max_size=12), places=st.lists(st.integers(0, 500), max_size=6))
-def test_no_byte_of_noise_is_lost_or_said_twice(
-    language: str, parts: list[bytes], places: list[int]
-) -> None:
+def test_no_byte_of_noise_is_lost_or_said_twice(language: str, parts: list[bytes], places: list[int]) -> None:
     stream = b"".join(parts)
     chunks = cut(stream, places)
     for make in (TofReader, ServoReader):

@@ -52,9 +52,7 @@ def test_a_trim_takes_from_the_end_that_it_turns_to() -> None:
 
 
 @given(JOINTS, st.floats(-120, 120))
-def test_whatever_is_within_reach_is_a_pulse_that_the_controller_takes(
-    joint: HeadJoint, angle: float
-) -> None:
+def test_whatever_is_within_reach_is_a_pulse_that_the_controller_takes(joint: HeadJoint, angle: float) -> None:
     if angle not in joint.reach:
         with pytest.raises(ValueError, match="within"):
             joint.pulse_us(angle)
@@ -99,9 +97,7 @@ def place(model: RobotModel, link: str, **positions: float) -> Transform:
     return where
 
 
-def test_every_joint_that_drivers_report_is_there_and_every_other_follows(
-    model: RobotModel,
-) -> None:
+def test_every_joint_that_drivers_report_is_there_and_every_other_follows(model: RobotModel) -> None:
     movable = {name: joint for name, joint in model.joints.items() if joint.movable}
     reported = {name for name, joint in movable.items() if joint.mimic is None}
     assert reported == {*DRIVE_JOINTS, *HEAD_JOINTS}

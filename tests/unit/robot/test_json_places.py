@@ -24,9 +24,7 @@ documents = st.recursive(
 
 
 @given(documents, st.sampled_from([None, 1]), st.booleans())
-def test_reads_what_the_standard_parser_reads(
-    document: object, indent: int | None, ascii_only: bool
-) -> None:
+def test_reads_what_the_standard_parser_reads(document: object, indent: int | None, ascii_only: bool) -> None:
     text = json.dumps(document, indent=indent, ensure_ascii=ascii_only)
     assert read(text).value == json.loads(text)
 

@@ -104,9 +104,7 @@ angles_limits = st.floats(STEERING.low, STEERING.high)
 
 
 @given(speeds_limits, angles_limits)
-def test_no_curve_within_the_limits_asks_a_wheel_of_more_than_its_own(
-    speed: float, steering: float
-) -> None:
+def test_no_curve_within_the_limits_asks_a_wheel_of_more_than_its_own(speed: float, steering: float) -> None:
     wheels = wheel_speeds(speed, steering)
     assert wheels.fastest_m_s <= RIM_M_S
     most = wheel_limits()
@@ -115,9 +113,7 @@ def test_no_curve_within_the_limits_asks_a_wheel_of_more_than_its_own(
 
 
 @given(st.floats(-1e30, 1e30), st.floats(-1.5, 1.5), st.floats(0.01, 5.0))
-def test_wheels_that_are_slowed_stay_on_their_circle(
-    speed: float, steering: float, most: float
-) -> None:
+def test_wheels_that_are_slowed_stay_on_their_circle(speed: float, steering: float, most: float) -> None:
     asked = wheel_speeds(speed, steering)
     slowed = asked.slowed_to(most)
     assert slowed.fastest_m_s <= most * (1 + 1e-9)

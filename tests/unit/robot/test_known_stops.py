@@ -18,9 +18,7 @@ nodes = st.integers(0, NODES - 1)
 clocks = st.sampled_from([0, 0, 0, -HOUR_NS, HOUR_NS])
 arrivals = st.sampled_from([(0,), (0,), (1,), (2,), (3,), (0, 2), ()])
 """After how many further events a node hears it: late, twice, or never."""
-words = st.tuples(
-    st.sampled_from(["stop", "release"]), clocks, st.tuples(arrivals, arrivals, arrivals)
-)
+words = st.tuples(st.sampled_from(["stop", "release"]), clocks, st.tuples(arrivals, arrivals, arrivals))
 others = st.one_of(
     st.tuples(st.sampled_from(["freeze", "thaw", "restart", "disk"]), nodes, st.booleans()),
     st.tuples(st.just("state"), nodes, nodes),
@@ -66,9 +64,7 @@ class Computer:
             word = Word(what, self.time_ns, first)
             self.said.append(word)
             self.underway += [
-                (self.events + after, node, word)
-                for node, arrivals in enumerate(second)
-                for after in arrivals
+                (self.events + after, node, word) for node, arrivals in enumerate(second) for after in arrivals
             ]
         elif what == "state" and self.inboxes[first] is self.inboxes[second] is None:
             self.nodes[second].learn(self.nodes[first].record, self.time_ns)
@@ -92,9 +88,7 @@ class Computer:
             inbox.append(word)
             return
         if late:  # No network delays two releases equally.
-            while any(
-                abs(self.time_ns - word.stop.said_ns - age_ns) <= S for age_ns in self.ages_ns[node]
-            ):
+            while any(abs(self.time_ns - word.stop.said_ns - age_ns) <= S for age_ns in self.ages_ns[node]):
                 self.time_ns += S
         self.hear(node, word, was_frozen=False)
 

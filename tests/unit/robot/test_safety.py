@@ -29,9 +29,7 @@ parts = st.floats(0, 1)
 distances = any_float | st.floats(0, 3)
 ages = any_float | st.floats(0, 3)
 readings = st.builds(Reading, st.none() | distances, ages)
-zones = st.builds(
-    SafetyZone, st.floats(0.01, 100) | st.just(0.5), st.floats(0, 100), st.floats(0.05, 60)
-)
+zones = st.builds(SafetyZone, st.floats(0.01, 100) | st.just(0.5), st.floats(0, 100), st.floats(0.05, 60))
 setpoints = st.builds(DriveSetpoint, any_float, any_float)
 
 
@@ -53,9 +51,7 @@ def test_a_long_silence_is_danger_however_far_the_last_obstacle_was(age: float) 
 
 
 @given(st.sampled_from(RangeState), st.none() | st.sampled_from(RangeState))
-def test_only_a_free_view_leaves_a_direction_open(
-    front: RangeState, rear: RangeState | None
-) -> None:
+def test_only_a_free_view_leaves_a_direction_open(front: RangeState, rear: RangeState | None) -> None:
     forward = gate(DriveSetpoint(0.3, 0.1), where(front, rear, emergency=False))
     backward = gate(DriveSetpoint(-0.3, 0.1), where(front, rear, emergency=False))
     assert (forward.speed_m_s > 0) == (front == RangeState.FREE)
@@ -109,9 +105,7 @@ def test_speed_is_slowed_in_proportion(distance: float | None, part: float) -> N
 
 
 @given(readings, zones)
-def test_a_share_is_a_share_and_nothing_where_the_way_is_not_free(
-    reading: Reading, zone: SafetyZone
-) -> None:
+def test_a_share_is_a_share_and_nothing_where_the_way_is_not_free(reading: Reading, zone: SafetyZone) -> None:
     part = share(reading, zone)
     assert 0.0 <= part <= 1.0
     if range_state(reading, zone.critical_m, zone.stale_after_s) != RangeState.FREE:
@@ -127,26 +121,20 @@ def test_nearer_is_never_faster(one: float, other: float, zone: SafetyZone) -> N
 
 
 @given(zones)
-def test_it_stands_at_the_critical_distance_and_is_free_from_the_slow_one_on(
-    zone: SafetyZone,
-) -> None:
+def test_it_stands_at_the_critical_distance_and_is_free_from_the_slow_one_on(zone: SafetyZone) -> None:
     slows = zone.slow_m > zone.critical_m
     assert share(Reading(zone.critical_m), zone) == (0.0 if slows else 1.0)
     assert share(Reading(max(zone.critical_m, zone.slow_m)), zone) == 1.0
 
 
 @given(distances, st.floats(0, 0.5))
-def test_a_slow_distance_within_the_critical_one_slows_nothing(
-    distance: float, slow_m: float
-) -> None:
+def test_a_slow_distance_within_the_critical_one_slows_nothing(distance: float, slow_m: float) -> None:
     zone = SafetyZone(critical_m=0.5, slow_m=slow_m)
     assert share(Reading(distance), zone) in (0.0, 1.0)
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), parts, parts)
-def test_each_way_is_slowed_by_its_own_sensor(
-    speed: float, steering: float, forward: float, backward: float
-) -> None:
+def test_each_way_is_slowed_by_its_own_sensor(speed: float, steering: float, forward: float, backward: float) -> None:
     passed = gate(DriveSetpoint(speed, steering), Verdict.FREE, Shares(forward, backward))
     assert passed.speed_m_s == pytest.approx(speed * (backward if speed < 0 else forward))
     assert passed.steering_rad == steering
@@ -272,9 +260,7 @@ def test_whoever_drives_is_the_first_whose_newest_command_is_young_enough(
 
 @given(heard)
 @example([(KEYS, SLOW, 0.0), (ACTION, FAST, 0.0), (KEYS, STOP, 0.0), (WORDS, SLOW, 0.0)])
-def test_without_an_age_an_ignored_command_never_drives(
-    said: list[tuple[str, DriveSetpoint, float]],
-) -> None:
+def test_without_an_age_an_ignored_command_never_drives(said: list[tuple[str, DriveSetpoint, float]]) -> None:
     sources, now_s, ignored = Sources(RANKED, 0.0), 0.0, set()
     for number, (source, setpoint, _) in enumerate(said):
         now_s = float(number)
@@ -389,9 +375,7 @@ def chosen(*said: tuple[float, float, bool], publishers: int = 2) -> float | Non
     numbers, last = [0, 1000], None
     for now_s, speed, is_other in said:
         numbers[is_other] += 1
-        last = slowest.choose(
-            speed, speed, now_s, within_s=0.5, number=numbers[is_other], publishers=publishers
-        )
+        last = slowest.choose(speed, speed, now_s, within_s=0.5, number=numbers[is_other], publishers=publishers)
     return last
 
 
@@ -426,9 +410,7 @@ def two(*, at_once: bool, until_s: float) -> LowestReading:
     beside_s = 0.0 if at_once else 2.0
     for tick in range(round(until_s * 10) + 1):
         now_s = tick * 0.1
-        here = (
-            {REAL: "/sonar_front", MOCK: "/mock"} if now_s >= beside_s else {REAL: "/sonar_front"}
-        )
+        here = {REAL: "/sonar_front", MOCK: "/mock"} if now_s >= beside_s else {REAL: "/sonar_front"}
         if tick % 10 == 0:
             seen.are(here, now_s)
         seen.see(0.8, now_s, number=1000 + tick, publishers=len(here))

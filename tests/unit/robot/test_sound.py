@@ -10,14 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.sound import (
-    SILENCE_DBFS,
-    TEXT_READ,
-    Resampler,
-    level_dbfs,
-    samples_of,
-    text_in,
-)
+from robot.sound import SILENCE_DBFS, TEXT_READ, Resampler, level_dbfs, samples_of, text_in
 
 
 def tone(hz: float, seconds: float, rate_hz: int, amplitude: float = 0.5) -> bytes:
@@ -48,9 +41,7 @@ def test_a_tone_keeps_its_pitch_length_and_loudness(from_hz: int, to_hz: int) ->
     st.lists(st.integers(0, 300), max_size=6),
     st.sampled_from([(48_000, 16_000), (44_100, 16_000), (16_000, 44_100), (8_000, 8_000)]),
 )
-def test_other_blocks_make_no_other_sound(
-    data: bytes, cuts: list[int], rates: tuple[int, int]
-) -> None:
+def test_other_blocks_make_no_other_sound(data: bytes, cuts: list[int], rates: tuple[int, int]) -> None:
     places = [0, *sorted(2 * cut for cut in cuts), len(data)]
     pieces = Resampler(*rates)
     in_pieces = b"".join(pieces.feed(data[begin:end]) for begin, end in pairwise(places))

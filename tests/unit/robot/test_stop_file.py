@@ -18,14 +18,7 @@ from hypothesis import strategies as st
 
 from robot.safety.stop_file import BY_SCREEN, KeptStop, SavedStop, StopFile
 from robot.safety.stop_place import stop_place
-from robot.safety.stop_record import (
-    MOST_HELD,
-    MOST_RELEASED,
-    Insistence,
-    Stop,
-    StopRecord,
-    read_record,
-)
+from robot.safety.stop_record import MOST_HELD, MOST_RELEASED, Insistence, Stop, StopRecord, read_record
 from tests.waiting import wait_until
 
 FIRST, SECOND = Stop(5, 1), Stop(6, 1)
@@ -172,9 +165,7 @@ def test_a_release_that_is_carried_out_late_leaves_what_came_since(place: Path) 
     assert not place.exists()
 
 
-def test_a_stop_given_while_a_released_one_is_removed_stays(
-    place: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_stop_given_while_a_released_one_is_removed_stays(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever removes it may be held up for longer than a stop waits."""
     file, read, newer = StopFile(7, "/a"), StopFile.read, Stop(time.time_ns() + 1)
     file.give(FIRST, BY_SCREEN)
@@ -276,9 +267,7 @@ class Fleet:
 
 
 @given(histories, st.randoms(use_true_random=False))
-def test_all_who_hear_of_each_other_end_alike(
-    history: list[tuple[Any, ...]], dice: random.Random
-) -> None:
+def test_all_who_hear_of_each_other_end_alike(history: list[tuple[Any, ...]], dice: random.Random) -> None:
     fleet = Fleet()
     fleet.play(history)
     fleet.settle(dice)
@@ -362,9 +351,7 @@ def insisting(interval_s: float, count: int) -> Insistence:
 
 
 @pytest.mark.parametrize("interval_s", [0.01, 0.1, 1.0, 5.0])
-def test_against_who_keeps_saying_stop_a_release_by_another_counts_for_nothing(
-    interval_s: float,
-) -> None:
+def test_against_who_keeps_saying_stop_a_release_by_another_counts_for_nothing(interval_s: float) -> None:
     insistence, now_s = insisting(interval_s, 3), 3 * interval_s
     assert insistence.lasts(now_s + interval_s, 1)
     assert not insistence.lasts(now_s + 2 * interval_s + 0.6, 1)
@@ -387,9 +374,7 @@ def test_who_has_insisted_may_release_by_the_next_message() -> None:
 
 @pytest.mark.parametrize("order", list(permutations(["stop", "release"])))
 @pytest.mark.parametrize("ahead", [0, 1, 2])
-def test_two_who_contradict_each_other_at_one_rate_end_in_a_stop(
-    order: tuple[str, str], ahead: int
-) -> None:
+def test_two_who_contradict_each_other_at_one_rate_end_in_a_stop(order: tuple[str, str], ahead: int) -> None:
     insistence, obeyed = Insistence(), []
     for number in range(1, 30):
         now_s = number * 0.1

@@ -13,10 +13,7 @@ from robot.wire.tfluna import SIZE, Model, TofDecoder, TofFrame, decode, encode
 from tests.unit.streams import cut, flipped, noise
 
 frames = st.builds(
-    TofFrame,
-    st.integers(0, 65535),
-    st.integers(0, 65535),
-    st.integers(0, 65535).map(lambda raw: raw / 8 - 256),
+    TofFrame, st.integers(0, 65535), st.integers(0, 65535), st.integers(0, 65535).map(lambda raw: raw / 8 - 256)
 )
 GOOD = TofFrame(123, 1000, 25.0)
 

@@ -129,7 +129,5 @@ TEXT = "std_msgs/msg/String"
         ("/llm_result", TEXT, False),
     ],
 )
-def test_commands_move_a_robot_and_what_it_tells_does_not(
-    name: str, type_name: str, moving: bool
-) -> None:
+def test_commands_move_a_robot_and_what_it_tells_does_not(name: str, type_name: str, moving: bool) -> None:
     assert moves(name, type_name) is moving

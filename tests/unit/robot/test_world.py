@@ -71,11 +71,7 @@ def test_it_turns_on_the_circle_of_the_differential() -> None:
         far.append(world.pose)
     # Three points of a circle of R = 0.4576 m.
     (ax, ay), (bx, by), (cx, cy) = ((pose.x_m, pose.y_m) for pose in far)
-    a, b, c = (
-        math.dist((bx, by), (cx, cy)),
-        math.dist((ax, ay), (cx, cy)),
-        math.dist((ax, ay), (bx, by)),
-    )
+    a, b, c = (math.dist((bx, by), (cx, cy)), math.dist((ax, ay), (cx, cy)), math.dist((ax, ay), (bx, by)))
     area = abs((bx - ax) * (cy - ay) - (cx - ax) * (by - ay)) / 2
     assert a * b * c / (4 * area) == pytest.approx(0.4576, abs=0.001)
 
@@ -155,7 +151,6 @@ PICO2 = Path(__file__).parents[3] / "firmware" / "pico2"
 
 
 def load(name: str) -> Any:
-    """A file of the firmware, in this Python."""
     spec = importlib.util.spec_from_file_location(name, PICO2 / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
@@ -249,9 +244,7 @@ def test_the_simulated_pico_does_what_the_firmware_does(seed: int) -> None:
         for _ in range(dice.choice([1, 1, 1, 1, 30])):
             board.ms += 10
             firmware.step()
-            told = [
-                message for message in decoder.feed(pico.step()) if isinstance(message, Telemetry)
-            ]
+            told = [message for message in decoder.feed(pico.step()) if isinstance(message, Telemetry)]
             real = [message for message in other.feed(board.out) if isinstance(message, Telemetry)]
             board.out = b""
             assert pico.flags | {"N"} == firmware.flags

@@ -61,10 +61,7 @@ def test_a_place_is_that_of_the_text_as_it_came() -> None:
     ("text", "line", "column", "words"),
     [
         (ANSWER.replace('"go"', "“go“"), 1, 12, 'write straight double quotes (") in place of “'),
-        (
-            ANSWER.replace('"', "'").replace("go", "it's"),
-            *(1, 12, "write straight double quotes (\") in place of '"),
-        ),
+        (ANSWER.replace('"', "'").replace("go", "it's"), *(1, 12, "write straight double quotes (\") in place of '")),
         (f"```json\n{ANSWER}", 1, 1, "leave the code fence (```) out: the JSON alone is expected"),
         (f"{ANSWER}\n```", 2, 1, "leave the code fence (```) out: the JSON alone is expected"),
         (
@@ -83,21 +80,11 @@ def test_a_place_is_that_of_the_text_as_it_came() -> None:
         ("\n*Sorry*", 2, 1, "only words stand here: a JSON object is expected"),
         (f"<think>\n```json\n{ANSWER}\n```\n", 1, 1, ONLY_THOUGHTS),
         ("\nNow we are done.</think>\n", 2, 1, ONLY_THOUGHTS),
-        (
-            f"<think>a <think>b</think> {ANSWER}",
-            *(1, 1, "leave <think> out: the JSON alone is expected"),
-        ),
-        (
-            ANSWER.replace("0.2", "1e999"),
-            1,
-            ANSWER.index("0.2") + 1,
-            "1e999 is too large for a number",
-        ),
+        (f"<think>a <think>b</think> {ANSWER}", *(1, 1, "leave <think> out: the JSON alone is expected")),
+        (ANSWER.replace("0.2", "1e999"), 1, ANSWER.index("0.2") + 1, "1e999 is too large for a number"),
     ],
 )
-def test_what_is_not_sure_is_named_with_its_place(
-    text: str, line: int, column: int, words: str
-) -> None:
+def test_what_is_not_sure_is_named_with_its_place(text: str, line: int, column: int, words: str) -> None:
     with pytest.raises(CommandError) as refused:
         parse_llm(text)
     problem = refused.value.problems[0]
@@ -135,9 +122,7 @@ def test_of_two_answers_only_the_one_behind_the_thoughts_is_taken(
 
 @given(
     st.lists(st.sampled_from((ANSWER, *AROUND)) | st.text(), max_size=4).map("".join),
-    st.sampled_from(
-        ("{}", "\ufeff{}", "```json\n{}\n```", "Words.\n```{}```\nWords.", "x</think>{}")
-    ),
+    st.sampled_from(("{}", "\ufeff{}", "```json\n{}\n```", "Words.\n```{}```\nWords.", "x</think>{}")),
 )
 def test_a_thought_of_any_text_stays_what_it_is(thought: str, around: str) -> None:
     meant = LlmResponse(thought=thought, commands=parse_llm(ANSWER).commands)

@@ -22,9 +22,7 @@ def prefix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize(
-    ("folder", "text"), [("bin", SCRIPT), ("bin", OLD), ("lib/copied_from", SCRIPT)]
-)
+@pytest.mark.parametrize(("folder", "text"), [("bin", SCRIPT), ("bin", OLD), ("lib/copied_from", SCRIPT)])
 def test_where_it_is_and_what_is_missing_are_told(
     folder: str, text: str, prefix: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -33,9 +31,7 @@ def test_where_it_is_and_what_is_missing_are_told(
     assert main(["run", "my_pkg", "talk"]) == 1
     told = capsys.readouterr().err
     assert f"talk was installed into {prefix}/{folder}/, and is looked for in lib/my_pkg/" in told
-    assert told.endswith(
-        "\n[develop]\nscript_dir=$base/lib/my_pkg\n[install]\ninstall_scripts=$base/lib/my_pkg\n"
-    )
+    assert told.endswith("\n[develop]\nscript_dir=$base/lib/my_pkg\n[install]\ninstall_scripts=$base/lib/my_pkg\n")
 
 
 @pytest.mark.parametrize("package", ["not_my_pkg", "my_pkg_too"])

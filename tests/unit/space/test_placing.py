@@ -31,7 +31,6 @@ def buffer(*edges: tuple[str, str, float], stamp_s: float = NOW_S) -> TransformB
 
 
 def dot(frame: str, stamp_s: float | None = None) -> Drawable:
-    """One point in the origin of a frame."""
     return Drawable(frame, (Speckles(places((0.0, 0.0, 0.0))),), stamp_s)
 
 
@@ -45,9 +44,7 @@ def dot(frame: str, stamp_s: float | None = None) -> Drawable:
         ((("world", "a", 0.0), ("world", "b", 0.0), ("x", "y", 0.0)), "world"),
     ],
 )
-def test_the_fixed_frame_is_the_root_of_the_robots_tree(
-    edges: tuple[tuple[str, str, float], ...], root: str
-) -> None:
+def test_the_fixed_frame_is_the_root_of_the_robots_tree(edges: tuple[tuple[str, str, float], ...], root: str) -> None:
     assert robot_root(buffer(*edges)) == root
 
 

@@ -89,9 +89,7 @@ def test_a_floor_is_seen_where_it_is() -> None:
     assert picture.back[2].tolist() == [Tint.FREE] * 5 + [Tint.WALL] + [Tint.FREE] * 4
 
 
-def rows_of(
-    *signs: tuple[str, int, int], before: dict[str, int | None] | None = None
-) -> dict[str, int | None]:
+def rows_of(*signs: tuple[str, int, int], before: dict[str, int | None] | None = None) -> dict[str, int | None]:
     """By how many rows texts move, each given with its row and column; none is over another."""
     rows = SignRows(10, before or {})
     for text, row, column in signs:

@@ -26,12 +26,7 @@ THREE = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]])
 
 def grid(columns: int = 3, rows: int = 2, **more: Any) -> Tree:
     """A map with a free, an unknown, an occupied and three doubtful cells."""
-    info = {
-        "resolution": 0.5,
-        "width": columns,
-        "height": rows,
-        "origin": pose_tree(Transform((1.0, 2.0, 0.0))),
-    }
+    info = {"resolution": 0.5, "width": columns, "height": rows, "origin": pose_tree(Transform((1.0, 2.0, 0.0)))}
     data = np.array([0, -1, 100, 50, 50, 50], dtype=np.int8)
     return {"header": header("map"), "info": {**info, **more}, "data": data}
 
@@ -59,10 +54,7 @@ def test_a_map_is_a_floor_of_free_occupied_and_doubtful_cells() -> None:
     drawable = read_grid(grid())
     (floor,) = drawable.shapes
     assert isinstance(floor, Floor)
-    assert floor.cells.tolist() == [
-        [Tint.FREE, Tint.NOTHING, Tint.WALL],
-        [Tint.MAYBE, Tint.MAYBE, Tint.MAYBE],
-    ]
+    assert floor.cells.tolist() == [[Tint.FREE, Tint.NOTHING, Tint.WALL], [Tint.MAYBE, Tint.MAYBE, Tint.MAYBE]]
     assert (floor.cell_m, floor.origin.translation) == (0.5, (1.0, 2.0, 0.0))
     assert drawable.frame == "map"
 
@@ -80,9 +72,7 @@ def test_ranges_that_are_not_valid_are_left_out() -> None:
     assert nothing.remark == "no range is valid, of 2"
 
 
-@pytest.mark.parametrize(
-    ("metres", "paint"), [(1.0, Tint.WARN), (math.inf, Tint.MUTED), (math.nan, Tint.MUTED)]
-)
+@pytest.mark.parametrize(("metres", "paint"), [(1.0, Tint.WARN), (math.inf, Tint.MUTED), (math.nan, Tint.MUTED)])
 def test_a_bare_sonar_shows_what_rep_117_says(metres: float, paint: Tint) -> None:
     drawable = SteadyRay().read_sonar({"data": metres}, "sonar_front_link")
     first = drawable.shapes[0]
@@ -101,7 +91,6 @@ def test_a_cloud_is_its_points_coloured_by_height() -> None:
 
 
 def odometry(x: float, frame: str = "odom") -> Tree:
-    """An odometry on the x axis."""
     return {"header": header(frame), "pose": {"pose": pose_tree(Transform((x, 0.0, 0.0)))}}
 
 

@@ -15,9 +15,7 @@ from space.transform import Transform, Vector
 QUARTER = math.pi / 2
 angles = st.floats(-math.pi, math.pi)
 lengths = st.floats(-100.0, 100.0)
-transforms = st.builds(
-    Transform.from_rpy, st.tuples(lengths, lengths, lengths), st.tuples(angles, angles, angles)
-)
+transforms = st.builds(Transform.from_rpy, st.tuples(lengths, lengths, lengths), st.tuples(angles, angles, angles))
 
 
 @pytest.mark.parametrize(
@@ -30,9 +28,7 @@ transforms = st.builds(
         ((QUARTER, QUARTER, 0.0), (0, 0, -1), (1, 0, 0), (0, -1, 0)),
     ],
 )
-def test_angles_turn_the_axes_as_rep_103_says(
-    rpy: Vector, ahead: Vector, left: Vector, up: Vector
-) -> None:
+def test_angles_turn_the_axes_as_rep_103_says(rpy: Vector, ahead: Vector, left: Vector, up: Vector) -> None:
     turned = Transform.from_rpy((0.0, 0.0, 0.0), rpy)
     assert turned.point((1.0, 0.0, 0.0)) == pytest.approx(ahead, abs=1e-12)
     assert turned.point((0.0, 1.0, 0.0)) == pytest.approx(left, abs=1e-12)
@@ -76,15 +72,7 @@ def test_a_quaternion_is_scaled_and_nonsense_is_refused() -> None:
         Transform.of((math.inf, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
-def at(
-    parent: str,
-    child: str,
-    stamp_s: float,
-    place: Vector,
-    yaw: float = 0.0,
-    *,
-    static: bool = False,
-) -> Stamped:
+def at(parent: str, child: str, stamp_s: float, place: Vector, yaw: float = 0.0, *, static: bool = False) -> Stamped:
     transform = Transform.from_rpy(place, (0.0, 0.0, yaw))
     return Stamped(parent, child, stamp_s, transform, static=static)
 
@@ -104,15 +92,9 @@ def robot() -> TransformBuffer:
 
 def test_a_ball_ahead_of_the_camera_is_where_the_course_says(robot: TransformBuffer) -> None:
     # The guide's example: 1 m ahead of the camera is 1.15 m ahead of the wheels.
-    assert robot.find("base_link", "camera_link").point((1.0, 0.0, 0.0)) == pytest.approx(
-        (1.15, 0.0, 0.25)
-    )
-    assert robot.find("odom", "camera_link").point((1.0, 0.0, 0.0)) == pytest.approx(
-        (2.0, 2.15, 0.25)
-    )
-    assert robot.find("camera_link", "odom").point((2.0, 2.15, 0.25)) == pytest.approx(
-        (1.0, 0.0, 0.0)
-    )
+    assert robot.find("base_link", "camera_link").point((1.0, 0.0, 0.0)) == pytest.approx((1.15, 0.0, 0.25))
+    assert robot.find("odom", "camera_link").point((1.0, 0.0, 0.0)) == pytest.approx((2.0, 2.15, 0.25))
+    assert robot.find("camera_link", "odom").point((2.0, 2.15, 0.25)) == pytest.approx((1.0, 0.0, 0.0))
 
 
 def test_between_two_times_it_interpolates(robot: TransformBuffer) -> None:

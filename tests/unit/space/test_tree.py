@@ -31,14 +31,7 @@ def drawn(of: FrameTree) -> list[str]:
 
 def test_a_robot_is_drawn_from_its_root_down() -> None:
     robot = tree("odom/base_link", "base_link:head", "head:eye", "base_link:sonar", "map/odom")
-    assert drawn(robot) == [
-        "map",
-        "└ odom",
-        "  └ base_link",
-        "    ├ head",
-        "    │ └ eye",
-        "    └ sonar",
-    ]
+    assert drawn(robot) == ["map", "└ odom", "  └ base_link", "    ├ head", "    │ └ eye", "    └ sonar"]
     assert robot.roots == ("map",)
     assert robot.root_of("eye") == robot.root_of("map") == "map"
     assert not robot.loops
@@ -49,11 +42,7 @@ def test_a_frame_with_two_parents_is_drawn_below_both_and_its_children_once() ->
     assert drawn(both) == ["odom", "└ base", "  └ head", "world", "└ base *"]
     assert both.parents["base"] == ("odom", "world")
     assert both.parts == ("odom",)
-    assert tree("odom/base", "world/base", "arm/gripper", "x/y", "y/x").parts == (
-        "arm",
-        "odom",
-        "x",
-    )
+    assert tree("odom/base", "world/base", "arm/gripper", "x/y", "y/x").parts == ("arm", "odom", "x")
 
 
 def test_loops_are_found_and_drawn_to_where_they_close() -> None:

@@ -59,16 +59,11 @@ def robot(*parts: str) -> str:
 
 def joint(inside: str = "", kind: str = "fixed", ends: tuple[str, str] = ("a", "b")) -> str:
     parent, child = ends
-    return (
-        f"<joint name='j' type='{kind}'><parent link='{parent}'/><child link='{child}'/>"
-        f"{inside}</joint>"
-    )
+    return f"<joint name='j' type='{kind}'><parent link='{parent}'/><child link='{child}'/>{inside}</joint>"
 
 
 def visual(shape: str, material: str = "") -> str:
-    return robot(
-        f"<link name='c'><visual><geometry>{shape}</geometry>{material}</visual></link>", joint()
-    )
+    return robot(f"<link name='c'><visual><geometry>{shape}</geometry>{material}</visual></link>", joint())
 
 
 def refusal(text: str) -> str:
@@ -85,11 +80,7 @@ def test_links_are_shapes_at_places_in_colours() -> None:
     assert (arm.name, arm.root) == ("arm", "base")
     assert list(arm.links) == ["base", "upper", "hand", "finger"]
     box, mesh = arm.links["base"].visuals
-    assert (box.shape, box.colour, box.material) == (
-        Cuboid((0.3, 0.2, 0.1)),
-        (0.0, 0.0, 0.8, 1.0),
-        "blue",
-    )
+    assert (box.shape, box.colour, box.material) == (Cuboid((0.3, 0.2, 0.1)), (0.0, 0.0, 0.8, 1.0), "blue")
     assert box.origin.point((1.0, 0.0, 0.0)) == pytest.approx((0.0, 1.0, 0.1))
     assert mesh.shape == Mesh("package://arm/base.stl", (1.0, 1.0, -1.0))
     (cylinder,) = arm.links["upper"].visuals
@@ -103,17 +94,8 @@ def test_links_are_shapes_at_places_in_colours() -> None:
 def test_joints_have_ends_axes_and_limits() -> None:
     joints = read_urdf(ARM).joints
     shoulder = joints["shoulder"]
-    assert (shoulder.type, shoulder.parent, shoulder.child) == (
-        JointType.REVOLUTE,
-        "base",
-        "upper",
-    )
-    assert (shoulder.axis, shoulder.lower, shoulder.upper, shoulder.velocity) == (
-        (0.0, 0.0, 1.0),
-        -1.0,
-        2.0,
-        4.0,
-    )
+    assert (shoulder.type, shoulder.parent, shoulder.child) == (JointType.REVOLUTE, "base", "upper")
+    assert (shoulder.axis, shoulder.lower, shoulder.upper, shoulder.velocity) == ((0.0, 0.0, 1.0), -1.0, 2.0, 4.0)
     assert (joints["wrist"].axis, joints["wrist"].upper) == ((1.0, 0.0, 0.0), math.inf)
     assert joints["grip"].mimic == Mimic("wrist", 0.5, 0.01)
 
@@ -237,14 +219,10 @@ LEFT_OUT = [
 
 
 @pytest.mark.parametrize(("text", "said"), LEFT_OUT)
-def test_a_visual_that_is_wrong_is_left_out_with_a_word_and_its_link_is_there(
-    text: str, said: str
-) -> None:
+def test_a_visual_that_is_wrong_is_left_out_with_a_word_and_its_link_is_there(text: str, said: str) -> None:
     ball = "<visual><geometry><sphere radius='1'/></geometry></visual>"
     second = "<joint name='k' type='fixed'><parent link='b'/><child link='c'/></joint>"
-    model = read_urdf(
-        text.replace("</link>", f"{ball}</link>").replace("</robot>", f"{second}</robot>")
-    )
+    model = read_urdf(text.replace("</link>", f"{ball}</link>").replace("</robot>", f"{second}</robot>"))
     assert [visual.shape for visual in model.links["c"].visuals] == [Sphere(1.0)]
     (warning,) = model.warnings
     assert re.search(rf"line 2: .*{said}.* \(this <visual> is left out\)$", warning), warning

@@ -23,9 +23,7 @@ def pose_tree(transform: Transform) -> dict[str, Any]:
 
 def cloud_tree(places: np.ndarray[Any, Any], frame: str, **more: Any) -> dict[str, Any]:
     """A cloud of float32 x, y, z."""
-    fields = [
-        {"name": name, "offset": 4 * at, "datatype": 7, "count": 1} for at, name in enumerate("xyz")
-    ]
+    fields = [{"name": name, "offset": 4 * at, "datatype": 7, "count": 1} for at, name in enumerate("xyz")]
     tree = {
         "header": header(frame),
         "height": 1,
@@ -40,9 +38,7 @@ def cloud_tree(places: np.ndarray[Any, Any], frame: str, **more: Any) -> dict[st
     return {**tree, **more}
 
 
-def marker(
-    number: int, kind: int, at: Transform, size: Sequence[float], **more: Any
-) -> dict[str, Any]:
+def marker(number: int, kind: int, at: Transform, size: Sequence[float], **more: Any) -> dict[str, Any]:
     colour = {"r": 1.0, "g": 0.5, "b": 0.0, "a": 1.0}
     tree = {
         "header": header("map"),

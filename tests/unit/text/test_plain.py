@@ -123,9 +123,7 @@ def test_the_sentence_of_an_error_can_still_be_translated() -> None:
         (RuntimeError(SENTENCE, 7), str(RuntimeError(str(SENTENCE), 7))),
     ],
 )
-def test_an_error_without_a_sentence_says_its_text_or_its_kind(
-    error: Exception, words: str
-) -> None:
+def test_an_error_without_a_sentence_says_its_text_or_its_kind(error: Exception, words: str) -> None:
     assert reason_of(error) == words
 
 

@@ -34,8 +34,6 @@ def test_a_program_that_is_not_on_the_path_is_called_by_its_own(
 
 
 @pytest.mark.parametrize("program", ["deck", "/usr/lib/pytest/__main__.py", ""])
-def test_without_a_path_of_its_own_it_is_called_by_its_name(
-    program: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_a_path_of_its_own_it_is_called_by_its_name(program: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", [program])
     assert deck_command() == "deck"

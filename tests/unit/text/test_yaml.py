@@ -111,12 +111,7 @@ REFUSED_EVERYWHERE = [
     ("[1]", 1, 1, "expected `name: value`, found a list"),
     ("5", 1, 1, "expected `name: value`, found a single value"),
     ("~", 1, 1, "expected `name: value`, found nothing"),
-    (
-        "a: 1\nb: 2\na: 3",
-        3,
-        1,
-        "'a' appears a second time, first on line 1: join them or rename one",
-    ),
+    ("a: 1\nb: 2\na: 3", 3, 1, "'a' appears a second time, first on line 1: join them or rename one"),
     ("x:\n  {a: 1, a: 2}", 2, 10, "second time, first on line 2"),
     ("a: 1\n---\nb: 2", 2, 1, "a second document begins here, and only one is read"),
     ("a:\n\tb: 1", 2, 1, "this line is indented with a tab"),
@@ -173,9 +168,7 @@ REFUSED_OF_WHAT_IS_SHARED = [
     ],
     ids=lambda value: value[:20] if isinstance(value, str) else None,
 )
-def test_what_is_refused_tells_its_place(
-    text: str, line: int, column: int, words: str, rules: Rules
-) -> None:
+def test_what_is_refused_tells_its_place(text: str, line: int, column: int, words: str, rules: Rules) -> None:
     with pytest.raises(YamlError) as raised:
         fields(text, rules)
     assert words in raised.value.message
@@ -193,8 +186,7 @@ def test_a_bomb_of_aliases_does_not_go_off(rules: Rules, words: str) -> None:
 
 @settings(max_examples=200, deadline=None, derandomize=True)
 @given(
-    st.text(max_size=60) | st.text("ab:-[]{}'\"#&*!|>%@`\t\n ,?0.<", max_size=40),
-    st.sampled_from([STRICT, SHARING]),
+    st.text(max_size=60) | st.text("ab:-[]{}'\"#&*!|>%@`\t\n ,?0.<", max_size=40), st.sampled_from([STRICT, SHARING])
 )
 def test_any_text_is_a_tree_or_an_error_with_a_place(text: str, rules: Rules) -> None:
     place = (1, 1)
@@ -263,9 +255,7 @@ def test_what_is_nested_without_end_is_refused(opening: str, times: int) -> None
     for form in (text, text.encode()):
         with pytest.raises(ValueError, match="nested deeper than 64 levels"):
             read_json(form)
-    with pytest.raises(
-        (NestedTooDeeplyError, yaml.YAMLError), match=r"nested deeper|nesting depth"
-    ):
+    with pytest.raises((NestedTooDeeplyError, yaml.YAMLError), match=r"nested deeper|nesting depth"):
         read_yaml(opening.replace(":", ": ") * times + "1" + closing * times)
 
 
@@ -295,18 +285,13 @@ def test_what_is_nested_without_end_is_refused(opening: str, times: int) -> None
         ("{linear\uff1a{x: 1.0}}", (1, 8), WIDE),
     ],
 )
-def test_a_space_that_is_none_is_told_in_a_message(
-    text: str, place: tuple[int, int], words: str
-) -> None:
+def test_a_space_that_is_none_is_told_in_a_message(text: str, place: tuple[int, int], words: str) -> None:
     with pytest.raises(YamlError) as caught:
         read_message(text)
     assert ((caught.value.line, caught.value.column), caught.value.message) == (place, words)
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["שלום\u200f", "👩\u200d🔧", "你好：世界", "'a\u200b'", "−5", "'x\u2028y'"],
-)
+@pytest.mark.parametrize("text", ["שלום\u200f", "👩\u200d🔧", "你好：世界", "'a\u200b'", "−5", "'x\u2028y'"])
 def test_what_a_text_may_hold_is_left_as_it_is(text: str) -> None:
     assert plain(read_message(f"data: {text}"))["data"] == text.strip("'")
 

@@ -7,21 +7,13 @@ from typing import Any
 
 import pytest
 
-from tests.tui.recorded_flow import (
-    BEFORE,
-    topics,
-    update,
-    voice,
-    voice_lines,
-)
+from tests.tui.recorded_flow import BEFORE, topics, update, voice, voice_lines
 from tui.flow.book import FlowBook
 from tui.flow.chains import LONGEST_S, Chain, FlowStep, Lane
 from tui.flow.reading import FlowReader, log_steps
 
 
-def step(
-    at_s: float, lane: Lane = Lane.DRIVE, source: str = "/drive", text: str = "", **more: Any
-) -> FlowStep:
+def step(at_s: float, lane: Lane = Lane.DRIVE, source: str = "/drive", text: str = "", **more: Any) -> FlowStep:
     return FlowStep(at_s, lane, source, text=text, **more)
 
 

@@ -33,9 +33,7 @@ def drawn(scene: Scene, view: Viewport) -> list[Line]:
 # ---------------------------------------------------------------- the field
 
 
-@given(
-    finite, finite, st.floats(0.1, 80), st.floats(0.1, 80), st.integers(2, 200), st.integers(1, 60)
-)
+@given(finite, finite, st.floats(0.1, 80), st.floats(0.1, 80), st.integers(2, 200), st.integers(1, 60))
 def test_all_of_an_extent_is_on_the_canvas_and_as_large_as_it_can_be(
     left: float, bottom: float, wide: float, high: float, columns: int, rows: int
 ) -> None:
@@ -51,9 +49,7 @@ def test_a_metre_is_as_long_across_as_upwards_with_x_right_and_y_up() -> None:
     view = fitted(ROOM, 60, 12)
     origin = view.place(0.0, 0.0)
     right, up = view.place(1.0, 0.0), view.place(0.0, 1.0)
-    assert (
-        right[0] - origin[0] == pytest.approx(origin[1] - up[1]) == pytest.approx(view.dots_per_m)
-    )
+    assert right[0] - origin[0] == pytest.approx(origin[1] - up[1]) == pytest.approx(view.dots_per_m)
     assert right[1] == origin[1]
     assert up[0] == origin[0]
 
@@ -63,9 +59,7 @@ def test_a_metre_is_as_long_across_as_upwards_with_x_right_and_y_up() -> None:
 
 @pytest.mark.parametrize("heading", [0.0, 0.7, math.pi / 2, -2.4, math.pi])
 @pytest.mark.parametrize(("place", "offset", "turn"), [(FRONT, 0.3, 0.0), (REAR, 0.05, math.pi)])
-def test_a_ray_ends_where_the_sonar_found_something(
-    heading: float, place: str, offset: float, turn: float
-) -> None:
+def test_a_ray_ends_where_the_sonar_found_something(heading: float, place: str, offset: float, turn: float) -> None:
     view = fitted(Extent(-3, 3, -3, 3), 80, 40)
     lines = drawn(Scene(Pose(0.2, -0.1, heading), rays={place: 1.5}), view)
     x = 0.2 + (1.5 + offset) * math.cos(heading + turn)

@@ -32,8 +32,7 @@ class Clock:
 
 
 @pytest.mark.parametrize(
-    ("env", "limit"),
-    [({}, 0), ({"SSH_CONNECTION": ""}, 0), ({"SSH_CONNECTION": "::1 1 ::1 22"}, 40_000)],
+    ("env", "limit"), [({}, 0), ({"SSH_CONNECTION": ""}, 0), ({"SSH_CONNECTION": "::1 1 ::1 22"}, 40_000)]
 )
 def test_there_is_a_limit_over_ssh_alone(env: dict[str, str], limit: int) -> None:
     assert default_limit(env) == limit
@@ -168,9 +167,7 @@ moments = st.lists(st.tuples(st.floats(0.0, 1.0), st.sampled_from(Move)), min_si
 
 
 @given(moments, st.floats(0.0, 5.0))
-def test_no_keys_and_no_silence_leave_a_command_behind(
-    history: list[tuple[float, Move]], later_s: float
-) -> None:
+def test_no_keys_and_no_silence_leave_a_command_behind(history: list[tuple[float, Move]], later_s: float) -> None:
     keys, now_s = Teleop(), 100.0
     for pause_s, move in history:
         now_s += pause_s

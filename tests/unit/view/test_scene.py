@@ -20,9 +20,7 @@ STILL = {"twist": {"linear": {"x": 0.0}, "angular": {"z": 0.0}}}
 HEADER = {"stamp": {"sec": 1, "nanosec": 0}, "frame_id": "map"}
 
 
-def draw(
-    scene: ViewScene, topic: str, type_name: str, *messages: Mapping[str, Any]
-) -> dict[str, Drawn]:
+def draw(scene: ViewScene, topic: str, type_name: str, *messages: Mapping[str, Any]) -> dict[str, Drawn]:
     samples = [Sample(topic, type_name, 10.0 + i, 0.0, 1, one) for i, one in enumerate(messages)]
     return {"/".join(drawn.path): drawn for _time, drawn in scene.draw(samples)}
 

@@ -76,7 +76,6 @@ class EmergencyRelease(SessionAction):
 
     @classmethod
     def shown(cls, target: Host) -> bool:
-        """As long as it is possible."""
         return bool(cls.possible(target))
 
     @classmethod
@@ -274,7 +273,6 @@ class SwitchLanguage(AppAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Switch to the other language."""
         target.switch_language()
 
 
@@ -321,7 +319,6 @@ class EndSession(SessionAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Ask, and then end it."""
         target.sessions.end_of_others()
 
 

@@ -52,5 +52,4 @@ class Enlarge(Action[HasParts]):
 
     @classmethod
     async def run(cls, target: HasParts) -> None:
-        """Enlarge the part, or show all of them."""
         target.toggle_enlarged()

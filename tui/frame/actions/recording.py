@@ -34,7 +34,6 @@ class RecordToggle(Action["Host"]):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Ask what to record, or stop."""
         target.record()
 
 

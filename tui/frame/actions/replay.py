@@ -30,7 +30,6 @@ class ReplayAction(Action["Host"]):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Run it on the replay."""
         raise NotImplementedError
 
 
@@ -132,7 +131,6 @@ class Loop(ReplayAction):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Turn repeating on or off."""
         replay.set_loop(not replay.state.loop)
 
 

@@ -23,9 +23,7 @@ def copy_command(host: Host, command: str) -> None:
         host.notify(words, severity="warning", markup=False)
         return
     host.copy_to_clipboard(command)
-    host.notify(
-        plain(command, LONGEST), title=_("Copied for a shell"), timeout=SHOWN_S, markup=False
-    )
+    host.notify(plain(command, LONGEST), title=_("Copied for a shell"), timeout=SHOWN_S, markup=False)
 
 
 class CopyAsRos2(Action["Host"]):

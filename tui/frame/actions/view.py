@@ -50,7 +50,6 @@ class OpenViewHere(Action[OnDeck]):
 
     @classmethod
     def possible(cls, target: OnDeck) -> bool | None:
-        """As on every screen."""
         return OpenView.possible(target.deck)
 
     @classmethod

@@ -47,11 +47,9 @@ class HeadView(Drawing):
 
     @property
     def has_value(self) -> bool:
-        """Whether there has been a reading."""
         return self._pose is not None
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw as much as fits."""
         pose = self._pose
         if pose is None:
             return []

@@ -34,7 +34,6 @@ class Canvas:
         self._signs: dict[tuple[int, int], str] = {}
 
     def copy(self) -> Canvas:
-        """Return a copy to be drawn on."""
         other = Canvas(self.columns, self.rows)
         other._on, other._looks = self._on.copy(), self._looks.copy()
         other._signs = dict(self._signs)
@@ -47,9 +46,7 @@ class Canvas:
         self._on[row, column] = True
         self._looks[row // 4, column // 2] = _NUMBER[look]
 
-    def line(
-        self, start: Point, end: Point, look: str = "", dash: tuple[int, int] = (1, 0)
-    ) -> None:
+    def line(self, start: Point, end: Point, look: str = "", dash: tuple[int, int] = (1, 0)) -> None:
         """Draw a straight line; `dash` is how many dots are set and how many left out in turn."""
         inside = clipped(start, end, self.width, self.height)
         if inside is None:
@@ -73,8 +70,7 @@ class Canvas:
         x, y = np.meshgrid(np.arange(least[0], most[0]) + 0.5, np.arange(least[1], most[1]) + 0.5)
         along = np.roll(shape, -1, axis=0) - shape
         sides = [
-            dx * (y - y0) - dy * (x - x0)
-            for (x0, y0), (dx, dy) in zip(shape.tolist(), along.tolist(), strict=True)
+            dx * (y - y0) - dy * (x - x0) for (x0, y0), (dx, dy) in zip(shape.tolist(), along.tolist(), strict=True)
         ]
         inside = np.all([side >= 0 for side in sides], axis=0)
         inside |= np.all([side <= 0 for side in sides], axis=0)

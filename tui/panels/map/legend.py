@@ -43,9 +43,7 @@ class LegendEntry(NamedTuple):
     line: Line
 
 
-def entries(
-    scene: Scene, view: Viewport, driven_m: float, remarks: Sequence[str]
-) -> list[LegendEntry]:
+def entries(scene: Scene, view: Viewport, driven_m: float, remarks: Sequence[str]) -> list[LegendEntry]:
     """All entries in reading order; `remarks` are warnings."""
     said = [LegendEntry(0, [Ink(plain(words, 200), "alert")]) for words in remarks if words]
     said += _robot(scene.pose)
@@ -56,9 +54,7 @@ def entries(
         metres = scene.pose.distance_to(scene.goal)
         words = _("goal {metres} m away").format(metres=figure(metres, 1))
         said.append(LegendEntry(3, [Ink(f"{GOAL_SIGN} ", GOAL), Ink(words)]))
-    said += [
-        LegendEntry(4, _ray(place, metres, scene.bounds)) for place, metres in scene.rays.items()
-    ]
+    said += [LegendEntry(4, _ray(place, metres, scene.bounds)) for place, metres in scene.rays.items()]
     if scene.truth is not None:
         metres = scene.pose.distance_to(scene.truth)
         words = _("true pose, {metres} m off").format(metres=decimal(f"{metres:.2f}"))
@@ -74,10 +70,7 @@ def _robot(pose: Pose) -> list[LegendEntry]:
     place = _("x {x}  y {y} m").format(x=decimal(f"{pose.x_m:.2f}"), y=decimal(f"{pose.y_m:.2f}"))
     degrees = round(math.degrees(pose.heading_rad))
     heading = _("heading {degrees}°").format(degrees=degrees)
-    return [
-        LegendEntry(1, [Ink("▲ ", ROBOT), Ink(place, "strong")]),
-        LegendEntry(6, [Ink("  "), Ink(heading)]),
-    ]
+    return [LegendEntry(1, [Ink("▲ ", ROBOT), Ink(place, "strong")]), LegendEntry(6, [Ink("  "), Ink(heading)])]
 
 
 def _ray(place: str, metres: float, bounds: Bounds) -> Line:

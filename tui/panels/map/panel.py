@@ -60,7 +60,6 @@ class MapPanel(Panel):
         self._show_pose(update, drawing)
 
     def show(self, update: GraphUpdate) -> None:
-        """Show the new values."""
         drawing = self.query_one(RoomMap)
         self._choose_pose(update, drawing)
         room = newest(update, MAP)

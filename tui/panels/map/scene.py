@@ -99,14 +99,10 @@ def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> 
     if occupancy.cell_m * view.dots_per_m <= 1.0:
         rows, columns = np.nonzero(occupancy.cells >= OCCUPIED_FROM)
         x_m, y_m = occupancy.centres(rows.astype(np.float64), columns.astype(np.float64))
-        canvas.dots(
-            (x_m - view.left_m) * view.dots_per_m, (view.top_m - y_m) * view.dots_per_m, WALL
-        )
+        canvas.dots((x_m - view.left_m) * view.dots_per_m, (view.top_m - y_m) * view.dots_per_m, WALL)
         return
     x, y = np.meshgrid(np.arange(canvas.width) + 0.5, np.arange(canvas.height) + 0.5)
-    stands = occupancy.occupied_at(
-        view.left_m + x / view.dots_per_m, view.top_m - y / view.dots_per_m
-    )
+    stands = occupancy.occupied_at(view.left_m + x / view.dots_per_m, view.top_m - y / view.dots_per_m)
     canvas.dots(x[stands], y[stands], WALL)
 
 
@@ -129,9 +125,7 @@ def draw_scene(canvas: Canvas, view: Viewport, scene: Scene) -> None:
     _draw_robot(canvas, view, scene.pose)
 
 
-def _draw_ray(
-    canvas: Canvas, view: Viewport, pose: Pose, place: str, metres: float, look: str
-) -> None:
+def _draw_ray(canvas: Canvas, view: Viewport, pose: Pose, place: str, metres: float, look: str) -> None:
     start, heading = ray_origin(pose, place)
     begin = view.place(*start)
     if math.isnan(metres):
@@ -140,8 +134,7 @@ def _draw_ray(
         canvas.sign(end, BLIND_SIGN, look)
     elif metres == math.inf:
         ends = [
-            view.place(*along(start, heading + side * CONE_RAD, MAX_RANGE_M))
-            for side in (-1.0, -0.5, 0.0, 0.5, 1.0)
+            view.place(*along(start, heading + side * CONE_RAD, MAX_RANGE_M)) for side in (-1.0, -0.5, 0.0, 0.5, 1.0)
         ]
         for edge in (ends[0], ends[-1]):
             canvas.line(begin, edge, look, (1, 1))

@@ -38,12 +38,8 @@ class Extent:
         return self.holding((other.left_m, other.bottom_m), (other.right_m, other.top_m))
 
     def widened(self, margin_m: float) -> Extent:
-        """Extend it by a margin on each side."""
         return Extent(
-            self.left_m - margin_m,
-            self.right_m + margin_m,
-            self.bottom_m - margin_m,
-            self.top_m + margin_m,
+            self.left_m - margin_m, self.right_m + margin_m, self.bottom_m - margin_m, self.top_m + margin_m
         )
 
     def rounded(self) -> Extent:

@@ -45,7 +45,6 @@ class RoomMap(Drawing):
     """Takes values through `show_...`; `settle` draws them if the change is visible."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Start with an empty floor."""
         super().__init__(id=id, classes=classes)
         self._scene: Scene | None = None
         self._truth: Pose | None = None
@@ -67,7 +66,6 @@ class RoomMap(Drawing):
         return self._scene is not None
 
     def show_pose(self, pose: Pose, frame: str = "") -> None:
-        """Show the robot at this pose."""
         self._frame = frame
         self._trail.add(pose.x_m, pose.y_m)
         self._scene = Scene(pose)
@@ -98,7 +96,6 @@ class RoomMap(Drawing):
         self._occupancy = occupancy
 
     def forget_path(self) -> None:
-        """Discard the path so far."""
         self._trail.clear()
         self._seen = None
 
@@ -107,11 +104,7 @@ class RoomMap(Drawing):
         if self._scene is None:
             return
         self._scene = Scene(
-            self._scene.pose,
-            self._truth_apart(self._scene.pose),
-            self._goal,
-            dict(self._rays),
-            self._bounds,
+            self._scene.pose, self._truth_apart(self._scene.pose), self._goal, dict(self._rays), self._bounds
         )
         look = self._look(self._scene)
         if look != self._last or not self._lines:
@@ -135,9 +128,7 @@ class RoomMap(Drawing):
                 self._view = at_side
                 legend = column(self._entries(scene, at_side), LEGEND, height)
                 field = self._field(scene, at_side)
-                return [
-                    [*left, Ink(" "), *right] for left, right in zip(field, legend, strict=True)
-                ]
+                return [[*left, Ink(" "), *right] for left, right in zip(field, legend, strict=True)]
         return [*self._field(scene, under), *rows(self._entries(scene, under), width, below)]
 
     def _field(self, scene: Scene, view: Viewport) -> list[Line]:
@@ -193,15 +184,7 @@ class RoomMap(Drawing):
             shapes.append(robot_corners(view, scene.truth))
         said: Mapping[int, object] = dict(enumerate(self._entries(scene, view)))
         dots = [[(round(x), round(y)) for x, y in shape] for shape in shapes]
-        return (
-            dots,
-            dict(scene.rays),
-            scene.bounds,
-            scene.goal,
-            self._occupancy,
-            said,
-            self._trail.revision,
-        )
+        return (dots, dict(scene.rays), scene.bounds, scene.goal, self._occupancy, said, self._trail.revision)
 
 
 def _legend_rows(extent: Extent, width: int, height: int) -> int:
@@ -211,7 +194,6 @@ def _legend_rows(extent: Extent, width: int, height: int) -> int:
     free = [
         count
         for count in range(few, MOST_ROWS + 1)
-        if height - count >= FIELD_FROM[1]
-        and fitted(extent, width, height - count).dots_per_m >= largest
+        if height - count >= FIELD_FROM[1] and fitted(extent, width, height - count).dots_per_m >= largest
     ]
     return max(free, default=few)

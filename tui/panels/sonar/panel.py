@@ -37,7 +37,6 @@ class SonarPanel(Panel):
         yield SonarView()
 
     def watched(self) -> set[str]:
-        """Both sonars, and the bounds."""
         return {*TOPICS.values(), SAFETY_STATE}
 
     def kept(self) -> set[str]:

@@ -33,13 +33,7 @@ ENLARGED_FROM = 18
 class Sonar(Drawing):
     """One sonar: from one line on name, metres and word; then bar, trend, big number and scale."""
 
-    def __init__(
-        self,
-        name: str = "",
-        *,
-        id: str | None = None,
-        classes: str | None = None,
-    ) -> None:
+    def __init__(self, name: str = "", *, id: str | None = None, classes: str | None = None) -> None:
         """`name` is marked by `N_`: "front", "rear"."""
         super().__init__(id=id, classes=classes)
         self._label = name
@@ -61,11 +55,9 @@ class Sonar(Drawing):
 
     @property
     def has_value(self) -> bool:
-        """Whether there has been a reading."""
         return bool(self._values)
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw as much as fits."""
         metres = self._values[-1]
         if height == 1:
             return [self._one_line(width)]
@@ -121,7 +113,6 @@ class Sonar(Drawing):
         return [*drawn, self._span(width)]
 
     def _span(self, width: int) -> Line:
-        """The time span of the trend."""
         first = max(0, len(self._times) - width)
         seconds = self._times[-1] - self._times[first]
         words = _("last {seconds} s").format(seconds=whole(seconds))
@@ -154,9 +145,7 @@ class SonarView(Container):
         """Show these words in place of the sonar at `front` or `rear`; if empty, show it again."""
         self._sonar(place).show_placeholder(words)
 
-    def show_trouble(
-        self, place: str, trouble: Trouble | None, detail: str = "", age_s: float | None = None
-    ) -> None:
+    def show_trouble(self, place: str, trouble: Trouble | None, detail: str = "", age_s: float | None = None) -> None:
         """Say why there are no readings of the sonar at `front` or `rear`."""
         self._sonar(place).show_trouble(trouble, detail, age_s)
 

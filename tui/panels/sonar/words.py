@@ -37,12 +37,10 @@ class Zone(Enum):
 
     @property
     def word(self) -> str:
-        """The word in the current language."""
         return _(self.value[0])
 
     @property
     def look(self) -> str:
-        """The look of the word."""
         return self.value[1]
 
 

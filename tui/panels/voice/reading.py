@@ -33,17 +33,13 @@ class Heard:
 
     @property
     def is_sound(self) -> bool:
-        """Whether it consists of samples."""
         return bool(self.levels)
 
     @property
     def words(self) -> str:
-        """The text to be shown."""
         if not self.is_sound:
             return self.text
-        return _("PCM {seconds} s {levels}").format(
-            seconds=decimal(f"{self.seconds:.1f}"), levels=self.levels
-        )
+        return _("PCM {seconds} s {levels}").format(seconds=decimal(f"{self.seconds:.1f}"), levels=self.levels)
 
     def and_then(self, later: Heard) -> Heard:
         """Join two pieces of one sound."""

@@ -115,12 +115,10 @@ class VoiceView(Drawing):
 
     @property
     def has_value(self) -> bool:
-        """Whether there is anything to show."""
         return bool(self._sayings) or self._dbfs is not None or self._missing
 
     @property
     def has_talk(self) -> bool:
-        """Whether anything was said."""
         return bool(self._sayings)
 
     @property

@@ -48,7 +48,6 @@ class WheelsPanel(Panel):
         return {WHEEL_COMMANDS, DRIVE}
 
     def show(self, update: GraphUpdate) -> None:
-        """Show the newest speeds."""
         topic = first_published(update, (WHEEL_COMMANDS, DRIVE))
         self.name_source("" if topic == WHEEL_COMMANDS else topic)
         drawing = self.query_one(WheelsView)
@@ -61,9 +60,7 @@ class WheelsPanel(Panel):
                 self._joints.hear(sample, read=wheels is not None)
             else:
                 self._placeholder = other_type(sample, DRIVE_TYPE)
-        drawing.show_placeholder(
-            self._joints.placeholder if topic == WHEEL_COMMANDS else self._placeholder
-        )
+        drawing.show_placeholder(self._joints.placeholder if topic == WHEEL_COMMANDS else self._placeholder)
         drawing.show_trouble(*trouble_of(update, topic))
 
     def words_changed(self) -> None:

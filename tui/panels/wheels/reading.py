@@ -54,9 +54,7 @@ def can_be_turned_to(steering_rad: float) -> bool:
     return abs(steering_rad) <= FARTHEST_RAD
 
 
-def wheels_in(
-    value: Mapping[str, Any], wheel_radius_m: float = WHEEL_RADIUS_M
-) -> WheelsReading | None:
+def wheels_in(value: Mapping[str, Any], wheel_radius_m: float = WHEEL_RADIUS_M) -> WheelsReading | None:
     """Read a sensor_msgs/JointState; None if it is not about these wheels.
 
     A missing joint is read as nan.

@@ -36,11 +36,9 @@ class WheelsView(Drawing):
 
     @property
     def has_value(self) -> bool:
-        """Whether there has been a reading."""
         return self._wheels is not None
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw as much as fits."""
         wheels = self._wheels
         if wheels is None:
             return []
@@ -82,9 +80,7 @@ class WheelsView(Drawing):
         names = [_("left"), _("right")]
         room = max(map(cell_len, names))
         lines = [self._word_line(wheels, width)]
-        for name, speed, look in zip(
-            names, (wheels.left_m_s, wheels.right_m_s), ("accent", "second"), strict=True
-        ):
+        for name, speed, look in zip(names, (wheels.left_m_s, wheels.right_m_s), ("accent", "second"), strict=True):
             head = f"{fit(name, room)} {speed_words(speed)} "
             lines.append([Ink(head, look), *_level(speed, width - cell_len(head), look)])
         return [*lines, self._steering(wheels, width)]
@@ -115,10 +111,7 @@ def _side(name: str, speed: float, rows: int, look: str, *, right: bool) -> list
     words = speed_words(speed)
     texts[rows - 2] = name
     texts[rows - 1] = words if cell_len(words) <= SIDE else number_words(speed)
-    return [
-        [Ink(fit(" " * max(0, SIDE - cell_len(text)) + text if right else text, SIDE), look)]
-        for text in texts
-    ]
+    return [[Ink(fit(" " * max(0, SIDE - cell_len(text)) + text if right else text, SIDE), look)] for text in texts]
 
 
 def _level(speed: float, width: int, look: str) -> Line:

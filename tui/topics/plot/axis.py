@@ -28,7 +28,6 @@ class ValueAxis:
 
     @property
     def ticks(self) -> list[float]:
-        """All ticks from the lowest to the highest."""
         first = math.ceil(self.low / self.step - NEAR)
         last = math.floor(self.high / self.step + NEAR)
         return [self.step * number for number in range(first, last + 1)]

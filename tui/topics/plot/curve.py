@@ -56,9 +56,7 @@ def _reach(columns: HistoryDots, axis: ValueAxis, dots: int) -> tuple[Numbers, N
     return np.array(top), np.array(bottom)
 
 
-def _join(
-    top: list[float], bottom: list[float], start: tuple[int, float], end: tuple[int, float]
-) -> None:
+def _join(top: list[float], bottom: list[float], start: tuple[int, float], end: tuple[int, float]) -> None:
     """Draw a line, making each column high enough to connect all dots."""
     (left, begin), (right, finish) = start, end
     slope = (finish - begin) / (right - left)

@@ -45,7 +45,4 @@ class PlotGrid:
         owners = self._owners[row]
         starts = [0, *(np.flatnonzero(np.diff(owners)) + 1).tolist()]
         ends = [*starts[1:], len(text)]
-        return [
-            Ink(text[start:end], looks[int(owners[start])])
-            for start, end in zip(starts, ends, strict=True)
-        ]
+        return [Ink(text[start:end], looks[int(owners[start])]) for start, end in zip(starts, ends, strict=True)]

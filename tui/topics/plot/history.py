@@ -129,9 +129,7 @@ class History:
     def _note_pause(self, time_s: float) -> None:
         if self._time_s:
             passed_s = time_s - self._time_s
-            if passed_s > max(QUIET_S, QUIET_PERIODS * self._period_s) and math.isfinite(
-                self._period_s
-            ):
+            if passed_s > max(QUIET_S, QUIET_PERIODS * self._period_s) and math.isfinite(self._period_s):
                 self._gap = True
             else:
                 self._period_s = passed_s

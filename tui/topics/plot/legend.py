@@ -24,9 +24,7 @@ FIGURES = 5
 HUGE, TINY = 1e6, 1e-4
 
 
-def legend_lines(
-    series: Sequence[Series], end_s: float, window_s: float, width: int, title: str
-) -> list[Line]:
+def legend_lines(series: Sequence[Series], end_s: float, window_s: float, width: int, title: str) -> list[Line]:
     """A title and a line for each field, in columns; without the range if there is little room."""
     titles = (_("last"), _("min"), _("max"))
     shown = 3 if width >= 2 + LEAST_NAME + 3 * (FIGURE + 1) else 1

@@ -76,16 +76,11 @@ class TopicPlot(Drawing):
 
     @property
     def has_value(self) -> bool:
-        """Whether anything is plotted."""
         return bool(self._series)
 
     def marks(self, topic: str) -> Mapping[tuple[str | int, ...], str]:
         """The letters of a topic's fields, by path."""
-        return {
-            series.field.path: series.letter
-            for series in self._series
-            if series.field.topic == topic
-        }
+        return {series.field.path: series.letter for series in self._series if series.field.topic == topic}
 
     def toggle(self, wanted: PlotField, newest: Sample | None = None) -> bool:
         """Add a field to the plot, or remove it; return whether it is plotted now.
@@ -134,7 +129,6 @@ class TopicPlot(Drawing):
         self.post_message(self.PlotChanged())
 
     def pause(self, paused: bool) -> None:
-        """Pause the plot, or resume."""
         if paused != self.paused:
             self._paused_s = self._now_s if paused else None
             self.redraw()
@@ -191,9 +185,7 @@ class TopicPlot(Drawing):
         share = (axis.high - value) / (axis.high - axis.low)
         return min(rows - 1, max(0, round(share * (rows * 4 - 1)) // 4))
 
-    def _letter(
-        self, series: Series, columns: HistoryDots, axis: ValueAxis, rows: int, ends: dict[int, Ink]
-    ) -> None:
+    def _letter(self, series: Series, columns: HistoryDots, axis: ValueAxis, rows: int, ends: dict[int, Ink]) -> None:
         """Write the letter beside the curve's end, or above or below it if another is there."""
         numbers = [number for number in columns.last.tolist() if math.isfinite(number)]
         if not numbers:

@@ -97,12 +97,10 @@ class PublishDialog(Dialog[None]):
 
     @property
     def target(self) -> PublishTarget:
-        """The topic and its type."""
         return self.query_one(PublishTarget)
 
     @property
     def rate(self) -> PublishRate:
-        """The rate, and the remark beside it."""
         return self.query_one(PublishRate)
 
     @property
@@ -111,7 +109,6 @@ class PublishDialog(Dialog[None]):
 
     @property
     def is_publishing(self) -> bool:
-        """Whether anything is being published."""
         return bool(self._listed)
 
     @property
@@ -123,7 +120,6 @@ class PublishDialog(Dialog[None]):
         return sample if sample.topic == self.target.topic else None
 
     def redraw(self) -> None:
-        """Redraw in the current language."""
         dialog = self.query_one("#dialog")
         dialog.border_title = Content(self.title_words())
         stop = f"{self.deck.keys_of(EmergencyStop)[-1]} {_(EmergencyStop.title)}"
@@ -163,7 +159,6 @@ class PublishDialog(Dialog[None]):
             self.run_worker(self._confirm_rate(topic, hz, before, future), group="publish")
 
     def stop_chosen(self) -> None:
-        """Stop the chosen publication."""
         number = self.query_one(PublicationList).chosen_number
         graph = self.deck.feed.graph
         if number is None or graph is None:
@@ -194,7 +189,6 @@ class PublishDialog(Dialog[None]):
 
     @on(PublishTarget.TopicChanged)
     def _follow_topic(self) -> None:
-        """Use the type of an existing topic."""
         row = self._known(self.target.topic)
         if row is not None and row.type_names and row.type_names[0] != self.form.type_name:
             self.target.type.set(row.type_names[0])
@@ -231,17 +225,15 @@ class PublishDialog(Dialog[None]):
             return
         if heard:
             self.rate.tell(
-                lambda: ngettext(
-                    "Sent: {n} subscriber got it.", "Sent: {n} subscribers got it.", heard
-                ).format(n=heard),
+                lambda: ngettext("Sent: {n} subscriber got it.", "Sent: {n} subscribers got it.", heard).format(
+                    n=heard
+                ),
                 "good",
             )
         else:
             self.rate.tell(lambda: _("Sent, but nobody listens to {topic}.").format(topic=topic))
 
-    async def _confirm_rate(
-        self, topic: str, hz: float, before: list[int], future: Future[int]
-    ) -> None:
+    async def _confirm_rate(self, topic: str, hz: float, before: list[int], future: Future[int]) -> None:
         if await self._outcome(future) is None:
             return
         graph = self.deck.feed.graph

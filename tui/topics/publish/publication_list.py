@@ -43,7 +43,6 @@ class PublicationList(Rows):
 
     @property
     def chosen_number(self) -> int | None:
-        """Number of the chosen publication."""
         return int(self.chosen) if self._shown and self.chosen else None
 
 

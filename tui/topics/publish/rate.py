@@ -46,7 +46,6 @@ class PublishRate(Horizontal):
         self._look = ""
 
     def compose(self) -> ComposeResult:
-        """Everything in one line."""
         yield Static(id="rate-label", markup=False)
         yield Field("10", id="rate-hz", compact=True, select_on_focus=False)
         yield Static(id="rate-unit", markup=False)
@@ -54,7 +53,6 @@ class PublishRate(Horizontal):
 
     @property
     def field(self) -> Input:
-        """The input of the rate."""
         return self.query_one(Input)
 
     @property

@@ -54,12 +54,10 @@ class PublishTarget(Vertical, Working):
 
     @property
     def field(self) -> Input:
-        """The input of the topic."""
         return self.query_one("#target-topic", Input)
 
     @property
     def type(self) -> TypeField:
-        """The input of the type."""
         return self.query_one(TypeField)
 
     @property
@@ -70,7 +68,6 @@ class PublishTarget(Vertical, Working):
 
     @property
     def is_name(self) -> bool:
-        """Whether it is a valid topic name."""
         return TOPIC_NAME.fullmatch(self.topic) is not None
 
     def relabel(self) -> None:

@@ -116,12 +116,8 @@ def _state_key(row: TopicRow) -> SortKey:
 
 
 COLUMNS = (
-    TopicColumn(
-        "name", N_("Topic"), 0, lambda row: plain(row.name), lambda row: (0, row.name), least=18
-    ),
-    TopicColumn(
-        "type", N_("Type"), 0, type_text, lambda row: (0, " ".join(row.type_names)), least=18
-    ),
+    TopicColumn("name", N_("Topic"), 0, lambda row: plain(row.name), lambda row: (0, row.name), least=18),
+    TopicColumn("type", N_("Type"), 0, type_text, lambda row: (0, " ".join(row.type_names)), least=18),
     TopicColumn(
         "publishers",
         N_("Pub"),
@@ -141,13 +137,7 @@ COLUMNS = (
         falling=True,
     ),
     TopicColumn(
-        "hz",
-        N_("Hz"),
-        6,
-        lambda row: hz_text(row.hz),
-        lambda row: (_figure(row.hz), ""),
-        right=True,
-        falling=True,
+        "hz", N_("Hz"), 6, lambda row: hz_text(row.hz), lambda row: (_figure(row.hz), ""), right=True, falling=True
     ),
     TopicColumn(
         "bandwidth",
@@ -193,13 +183,7 @@ COLUMNS = (
         right=True,
         falling=True,
     ),
-    TopicColumn(
-        "state",
-        N_("State"),
-        15,
-        state_text,
-        _state_key,
-    ),
+    TopicColumn("state", N_("State"), 15, state_text, _state_key),
 )
 """In the order on the screen."""
 

@@ -29,7 +29,6 @@ class TopicsOrder:
 
     @property
     def column(self) -> TopicColumn:
-        """The column to sort by."""
         return _BY_ID[self.column_id]
 
     @property

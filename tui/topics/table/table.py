@@ -111,7 +111,6 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         return self._order
 
     def reorder(self, order: TopicsOrder) -> None:
-        """Change the order and the filter."""
         if order != self._order:
             self._order = order
             self._arrange()
@@ -128,17 +127,14 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
 
     @property
     def chosen(self) -> str | None:
-        """Name of the chosen topic."""
         return self._chosen
 
     @property
     def chosen_row(self) -> TopicRow | None:
-        """The current row of the chosen topic."""
         return next((row for row in self._shown if row.name == self._chosen), None)
 
     @property
     def shown(self) -> Sequence[TopicRow]:
-        """The topics that are shown, in order."""
         return self._shown
 
     def choose(self, topic: str) -> None:
@@ -158,7 +154,6 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         self.action_move(pages * max(1, self.size.height - HEADER - 1))
 
     def action_open(self) -> None:
-        """Report that the chosen topic was opened."""
         if self._chosen is not None:
             self.post_message(self.TopicOpened())
 
@@ -312,14 +307,11 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         by, arrow = self._order.column, "▼" if self._order.falling else "▲"
         styles = [by_style if place.column is by else style for place in self._places]
         titles = tuple(
-            place.fitted(_(place.column.title) + (arrow if place.column is by else ""))
-            for place in self._places
+            place.fitted(_(place.column.title) + (arrow if place.column is by else "")) for place in self._places
         )
         return self._strip("", titles, styles, width, style)
 
-    def _strip(
-        self, mark: str, cells: tuple[str, ...], styles: list[Style], width: int, base: Style
-    ) -> Strip:
+    def _strip(self, mark: str, cells: tuple[str, ...], styles: list[Style], width: int, base: Style) -> Strip:
         runs: list[tuple[str, Style]] = [(mark.ljust(MARK), base)]
         end = 0
         for place, text, style in zip(self._places, cells, styles, strict=True):

@@ -19,9 +19,7 @@ from tests.waiting import wait_until
 READY = "import time\nprint('ready')\ntime.sleep(1000)\n"
 
 
-async def test_two_at_once_do_not_meet_and_are_recorded(
-    tmp_path: Path, ros_domain: int, other_domain: int
-) -> None:
+async def test_two_at_once_do_not_meet_and_are_recorded(tmp_path: Path, ros_domain: int, other_domain: int) -> None:
     lesson = topic_lesson(tmp_path / "lesson")
     right, wrong = (TALKER.replace("{topic}", name) for name in ("/chatter", "/chater"))
     chosen = handed_in(lesson, tmp_path / "class", anna=right, boris=wrong)
@@ -70,9 +68,7 @@ def test_interrupted_it_leaves_nothing(tmp_path: Path, ros_domain: int) -> None:
     mark = f"1000.{uuid.uuid4().int % 10**9}"
     sleeps = f"import os; os.execvp('sleep', ['sleep', '{mark}'])"
     handed_in(lesson, tmp_path / "class", anna=sleeps)
-    deck = DeckProcess(
-        "grade", str(lesson.path), str(tmp_path / "class" / "anna"), "--domain", str(ros_domain)
-    )
+    deck = DeckProcess("grade", str(lesson.path), str(tmp_path / "class" / "anna"), "--domain", str(ros_domain))
     wait_until(lambda: _running(mark), "the node runs", 60.0)
     deck.signal(signal.SIGINT)
     assert deck.finish() == 130

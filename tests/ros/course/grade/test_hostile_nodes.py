@@ -67,7 +67,6 @@ TEXTS = {"good": GOOD, "hangs": HANGS, "forks": FORKS, "multiplies": MULTIPLIES}
 
 @pytest.fixture(scope="module")
 def graded(domain_pool: DomainPool, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Grade]:
-    """Grade all of them, side by side."""
     place = tmp_path_factory.mktemp("grading")
     lesson = log_lesson(place / "lesson")
     texts = {name: text.replace("MARK", MARK) for name, text in TEXTS.items()}

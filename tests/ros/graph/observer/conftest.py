@@ -33,8 +33,7 @@ def watcher(module_watcher: Watcher) -> Iterator[Watcher]:
     for each in module_watcher.update.goals:
         observer.forget_goal(each.number)
     wait_until(
-        lambda: not (module_watcher.update.goals or module_watcher.update.publications),
-        "nothing is under way",
+        lambda: not (module_watcher.update.goals or module_watcher.update.publications), "nothing is under way"
     )
 
 

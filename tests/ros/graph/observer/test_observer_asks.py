@@ -9,12 +9,7 @@ from typing import Any
 
 import pytest
 import rclpy
-from rcl_interfaces.msg import (
-    FloatingPointRange,
-    IntegerRange,
-    ParameterDescriptor,
-    SetParametersResult,
-)
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.parameter import Parameter
 from rclpy.service import Service
 
@@ -135,9 +130,7 @@ def declare(node: Any) -> None:
         "speed",
         1.0,
         ParameterDescriptor(
-            description="how fast",
-            additional_constraints="slow indoors",
-            floating_point_range=[speed],
+            description="how fast", additional_constraints="slow indoors", floating_point_range=[speed]
         ),
     )
     node.declare_parameter("gear", 1, ParameterDescriptor(integer_range=[gears]))
@@ -178,9 +171,7 @@ def set_them(watcher: Watcher, node: str = "/robot", **values: Any) -> SetResult
 @pytest.mark.usefixtures("node")
 def test_all_parameters_come_with_types_values_and_descriptors(watcher: Watcher) -> None:
     found = rows(watcher)
-    assert found["speed"] == ParameterRow(
-        "speed", "double", 1.0, "how fast", "slow indoors", False, 0.0, 2.0, 0.5
-    )
+    assert found["speed"] == ParameterRow("speed", "double", 1.0, "how fast", "slow indoors", False, 0.0, 2.0, 0.5)
     assert found["gear"] == ParameterRow("gear", "integer", 1, least=1.0, greatest=6.0, step=None)
     assert found["frame"] == ParameterRow("frame", "string", "base_link", read_only=True)
     assert found["arm.joints"] == ParameterRow("arm.joints", "string_array", ["a", "b"])
@@ -216,9 +207,7 @@ def test_each_refusal_is_told_and_the_others_are_set(watcher: Watcher, node: Any
 
 
 @pytest.mark.usefixtures("node")
-def test_a_stopped_node_ends_in_a_time_out_and_holds_up_nothing(
-    watcher: Watcher, module_domain: int
-) -> None:
+def test_a_stopped_node_ends_in_a_time_out_and_holds_up_nothing(watcher: Watcher, module_domain: int) -> None:
     asleep = Peer("asleep", module_domain, "--parameters")
     assert "use_sim_time" in rows(watcher, "/asleep")
     os.kill(asleep.process.pid, signal.SIGSTOP)
@@ -263,7 +252,6 @@ def wait_for(watcher: Watcher, number: int, *statuses: GoalStatus) -> Goal:
 
 
 def at_work(watcher: Watcher, server: Peer, x: float = 1.0, action: str = "") -> int:
-    """A goal that the server executes."""
     action = action or server.action
     number = send(watcher, action, x)
     wait_until(lambda: [x, 0.0] in server.goals(action), "the goal at its server")
@@ -302,17 +290,13 @@ def test_a_goal_is_cancelled(watcher: Watcher, server: Peer) -> None:
     assert (told.error, told.result) == ("", {"reached": False, "distance": 2.0, "message": ""})
 
 
-def test_goals_that_run_are_cancelled_with_all_that_commands(
-    watcher: Watcher, server: Peer
-) -> None:
+def test_goals_that_run_are_cancelled_with_all_that_commands(watcher: Watcher, server: Peer) -> None:
     at_work(watcher, server)
     watcher.observer.stop_commanding()
     wait_until(lambda: server.cancels(server.action) == 1, "its server is asked to cancel")
 
 
-def test_goals_that_run_are_cancelled_when_the_observer_stops(
-    server: Peer, module_domain: int
-) -> None:
+def test_goals_that_run_are_cancelled_when_the_observer_stops(server: Peer, module_domain: int) -> None:
     watcher = Watcher(module_domain)
     at_work(watcher, server)
     watcher.close()
@@ -354,8 +338,7 @@ def seen(watcher: Watcher, *statuses: GoalStatus) -> list[SeenGoal]:
     """Wait until the goals of others are seen to stand so."""
     return wait_until(
         lambda: (
-            [goal.status for goal in watcher.update.seen_goals] == list(statuses)
-            and list(watcher.update.seen_goals)
+            [goal.status for goal in watcher.update.seen_goals] == list(statuses) and list(watcher.update.seen_goals)
         ),
         lambda: f"{statuses}, not {watcher.update.seen_goals}",
     )

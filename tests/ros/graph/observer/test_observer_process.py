@@ -88,9 +88,7 @@ def check_that_nobody_waits(watcher: Watcher) -> None:
     assert time.monotonic() - began_s < NO_WAITING_S
 
 
-def test_one_that_is_stopped_holds_up_nobody_and_is_replaced(
-    watcher: Watcher, teller: Peer
-) -> None:
+def test_one_that_is_stopped_holds_up_nobody_and_is_replaced(watcher: Watcher, teller: Peer) -> None:
     watched(watcher)
     number = watcher.observer.start_publishing("/mine", FLOAT, {"data": 1.0}, 5.0).result(20)
     wait_until(lambda: watcher.update.publications, "the publication")
@@ -147,9 +145,7 @@ def test_it_leaves_with_whoever_it_works_for(ros_domain: int) -> None:
         "print(observer._client._line.process.pid, flush=True)\n"
         "time.sleep(60)"
     )
-    screen = subprocess.Popen(
-        [sys.executable, "-c", program], cwd=ROOT, stdout=subprocess.PIPE, text=True
-    )
+    screen = subprocess.Popen([sys.executable, "-c", program], cwd=ROOT, stdout=subprocess.PIPE, text=True)
     with screen:
         assert screen.stdout is not None
         # Fast DDS may have a word to say as well.
@@ -158,9 +154,7 @@ def test_it_leaves_with_whoever_it_works_for(ros_domain: int) -> None:
         wait_until(lambda: is_gone(pid), "the observer has left", within_s=20)
 
 
-def test_orders_from_before_a_hang_do_not_drive_the_robot_after_it(
-    watcher: Watcher, teller: Peer
-) -> None:
+def test_orders_from_before_a_hang_do_not_drive_the_robot_after_it(watcher: Watcher, teller: Peer) -> None:
     teller.listen("/drive", type_name=FLOAT)
     watched(watcher)
     watcher.wait_for("/drive", lambda row: row.subscribers, "a listener")
@@ -176,9 +170,7 @@ def test_orders_from_before_a_hang_do_not_drive_the_robot_after_it(
     assert "2.0" not in str(teller.heard.get("/drive"))
 
 
-def test_a_release_from_before_a_hang_is_given_up_and_a_stop_is_not(
-    watcher: Watcher, teller: Peer
-) -> None:
+def test_a_release_from_before_a_hang_is_given_up_and_a_stop_is_not(watcher: Watcher, teller: Peer) -> None:
     """It would be younger than a stop that somebody else has given meanwhile."""
     teller.listen("/held", type_name=BOOL)
     watched(watcher)
@@ -268,9 +260,7 @@ def test_it_writes_nothing_and_ends_cleanly(ros_domain: int, end: str, tmp_path:
         (5, "everywhere", "discovery 'everywhere' is neither of localhost, subnet"),
     ],
 )
-def test_a_domain_that_is_refused_is_told_and_so_is_every_order(
-    domain: int, discovery: str, word: str
-) -> None:
+def test_a_domain_that_is_refused_is_told_and_so_is_every_order(domain: int, discovery: str, word: str) -> None:
     updates: list[GraphUpdate] = []
     observer = Observer(domain, discovery)
     before = observer.publish("/x", "std_msgs/msg/String", {"data": "x"})

@@ -66,9 +66,7 @@ def test_who_hears_it_is_counted_without_the_echo(talker: Peer, watcher: Watcher
 
 @pytest.mark.parametrize("reliability", ["reliable", "best_effort"])
 @pytest.mark.parametrize("durability", ["volatile", "transient_local"])
-def test_every_kind_of_subscriber_hears_it(
-    talker: Peer, watcher: Watcher, reliability: str, durability: str
-) -> None:
+def test_every_kind_of_subscriber_hears_it(talker: Peer, watcher: Watcher, reliability: str, durability: str) -> None:
     topic = f"/to/{reliability}/{durability}"
     talker.listen(topic, type_name=STRING, reliability=reliability, durability=durability)
     known(watcher, topic)
@@ -98,9 +96,7 @@ def test_what_cannot_be_published_is_refused_in_words(talker: Peer, watcher: Wat
             watcher.observer.publish(topic, type_name, value).result(10)
 
 
-def test_last_words_reach_a_node_that_is_held_up(
-    ros_domain: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_last_words_reach_a_node_that_is_held_up(ros_domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """They may be a stop; who leaves at once takes them along."""
     monkeypatch.setattr(graph.ros, "ACKED_WITHIN_S", 30.0)
     listeners = [Peer(f"n{number}", ros_domain) for number in range(5)]
@@ -190,9 +186,7 @@ def ready(watcher: Watcher, peer: InProcess) -> list[tuple[float, float]]:
     return heard
 
 
-def test_it_is_repeated_while_it_is_held_and_rests_when_nobody_says_more(
-    watcher: Watcher, peer: InProcess
-) -> None:
+def test_it_is_repeated_while_it_is_held_and_rests_when_nobody_says_more(watcher: Watcher, peer: InProcess) -> None:
     heard = ready(watcher, peer)
     began_s = time.monotonic()
     asked_s = began_s
@@ -210,9 +204,7 @@ def test_it_is_repeated_while_it_is_held_and_rests_when_nobody_says_more(
     assert moving[-1] < resting[0]
 
 
-def test_an_observer_that_ends_rests_with_its_last_word(
-    module_domain: int, peer: InProcess
-) -> None:
+def test_an_observer_that_ends_rests_with_its_last_word(module_domain: int, peer: InProcess) -> None:
     watcher = Watcher(module_domain)
     heard = ready(watcher, peer)
     watcher.observer.hold("/drive", DRIVE, command(0.2, 2.0)).result(30)
@@ -221,13 +213,9 @@ def test_an_observer_that_ends_rests_with_its_last_word(
     wait_until(lambda: heard[-1][1] == 0, "rest")
 
 
-def test_all_that_commands_stops_at_once_and_the_observer_goes_on(
-    watcher: Watcher, peer: InProcess
-) -> None:
+def test_all_that_commands_stops_at_once_and_the_observer_goes_on(watcher: Watcher, peer: InProcess) -> None:
     heard, numbers = ready(watcher, peer), peer.hear("/out", Float32)
-    watcher.observer.start_publishing("/out", "std_msgs/msg/Float32", {"data": 1.0}, 50.0).result(
-        30
-    )
+    watcher.observer.start_publishing("/out", "std_msgs/msg/Float32", {"data": 1.0}, 50.0).result(30)
     watcher.observer.hold("/drive", DRIVE, command(0.2, 30.0)).result(30)
     wait_until(lambda: heard and numbers, "both are heard")
     watcher.observer.stop_commanding()

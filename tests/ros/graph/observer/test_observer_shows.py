@@ -30,21 +30,12 @@ EXPECTED_HZ = {**dict.fromkeys(FLOATS, 50.0), LOAD: 30.0}
 RAW = "/eye/image_raw"
 
 
-BLACK = {
-    "header": {"frame_id": "eye_link"},
-    "height": 2,
-    "width": 2,
-    "step": 6,
-    "encoding": "rgb8",
-    "data": [0] * 12,
-}
+BLACK = {"header": {"frame_id": "eye_link"}, "height": 2, "width": 2, "step": 6, "encoding": "rgb8", "data": [0] * 12}
 
 
 @pytest.mark.parametrize("reliability", ["reliable", "best_effort"])
 @pytest.mark.parametrize("durability", ["volatile", "transient_local"])
-def test_every_kind_of_publisher_is_heard(
-    talker: Peer, watcher: Watcher, reliability: str, durability: str
-) -> None:
+def test_every_kind_of_publisher_is_heard(talker: Peer, watcher: Watcher, reliability: str, durability: str) -> None:
     topic = f"/kind/{reliability}/{durability}"
     talker.advertise(topic, type_name=FLOAT, reliability=reliability, durability=durability)
     talker.repeat(topic, value={"data": 2.5}, hz=20)
@@ -77,9 +68,7 @@ def test_only_the_newest_is_decoded_of_a_watched_topic_and_all_of_a_followed_one
     watcher.wait_for("/burst/watched", lambda row: row.count == 100, "all counted")
 
 
-def test_a_publisher_and_a_subscriber_that_do_not_fit_are_named(
-    talker: Peer, watcher: Watcher
-) -> None:
+def test_a_publisher_and_a_subscriber_that_do_not_fit_are_named(talker: Peer, watcher: Watcher) -> None:
     talker.advertise("/misfit", type_name=FLOAT, reliability="best_effort")
     talker.listen("/misfit", type_name=FLOAT, reliability="reliable")
     talker.repeat("/misfit", value={"data": 1.0}, hz=20)
@@ -96,9 +85,7 @@ def test_a_publisher_and_a_subscriber_that_do_not_fit_are_named(
     wait_until(lambda: watcher.of("/misfit"), "Deck itself hears it")
 
 
-def test_a_publisher_that_comes_back_with_another_qos_or_type_is_heard_again(
-    talker: Peer, watcher: Watcher
-) -> None:
+def test_a_publisher_that_comes_back_with_another_qos_or_type_is_heard_again(talker: Peer, watcher: Watcher) -> None:
     watcher.observer.watch(["/changing"])
     talker.advertise("/changing", type_name=FLOAT)
     talker.repeat("/changing", value={"data": 1.0}, hz=20)
@@ -158,9 +145,7 @@ def test_every_policy_of_an_endpoint_is_told(watcher: Watcher, peers: list[Peer]
     assert (told.lifespan_s, told.lease_s, told.liveliness) == (None, None, "automatic")
 
 
-def test_services_name_those_who_serve_and_those_who_call(
-    watcher: Watcher, peers: list[Peer]
-) -> None:
+def test_services_name_those_who_serve_and_those_who_call(watcher: Watcher, peers: list[Peer]) -> None:
     peers[0].serve("/add")
     peers[1].use("/add")
     peers[1].use("/nobody_serves_it")
@@ -173,10 +158,7 @@ def test_services_name_those_who_serve_and_those_who_call(
     added = [row for row in watcher.update.services if not is_housekeeping(row.name)]
     assert added == [ServiceRow("/add", (ADD,), ("/driver",))]
     peers[1].stop_using("/add")
-    wait_until(
-        lambda: (row := watcher.node("/person")) and row.clients == ("/nobody_serves_it",),
-        "one client left",
-    )
+    wait_until(lambda: (row := watcher.node("/person")) and row.clients == ("/nobody_serves_it",), "one client left")
 
 
 # ---------------------------------------------------------------- rates
@@ -257,9 +239,7 @@ def kinds(watcher: Watcher) -> set[str]:
 
 
 @NIGHTLY
-def test_the_relay_listens_while_somebody_looks(
-    camera: Peer, watcher: Watcher, module_domain: int
-) -> None:
+def test_the_relay_listens_while_somebody_looks(camera: Peer, watcher: Watcher, module_domain: int) -> None:
     del camera
     relayed = f"{RAW}/_deck/compressed"
     with subprocess.Popen(

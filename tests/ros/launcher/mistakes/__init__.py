@@ -45,5 +45,4 @@ def sentences() -> dict[str, tuple[str, str]]:
 
 
 def write(found: dict[str, tuple[str, str]]) -> None:
-    """Write down the sentences of each mistake."""
     SENTENCES.write_text("".join(f"{name}\n  {en}\n  {ru}\n" for name, (en, ru) in found.items()))

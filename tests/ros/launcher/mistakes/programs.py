@@ -29,7 +29,6 @@ self.future = self.client.call_async(AddTwoInts.Request())"""
 
 
 def indented(text: str, depth: int) -> str:
-    """Indent lines."""
     return "".join(f"{' ' * depth}{line}\n" for line in text.splitlines())
 
 
@@ -53,9 +52,7 @@ def heard(body: str, kind: str = "Float32", message: str = "Float32(data=2.0)") 
     """Return a program whose callback of a subscription runs these lines, with a message."""
     return (
         ticking(f"self.cb({message})", init="")
-        .replace(
-            "    def tick(self)", f"    def cb(self, msg):\n{indented(body, 8)}\n    def tick(self)"
-        )
+        .replace("    def tick(self)", f"    def cb(self, msg):\n{indented(body, 8)}\n    def tick(self)")
         .replace(
             "self.last = None",
             f'self.last = None\n        self.create_subscription({kind}, "/heard", self.cb, 10)',
@@ -74,10 +71,7 @@ def bare(body: str) -> str:
 
 def bare_heard(body: str, message: str = "Float32(data=2.0)") -> str:
     """Return the same, whose method is handed a message."""
-    return (
-        f"{HEAD}\nclass Mistaken:\n    def cb(self, msg):\n{indented(body, 8)}\n"
-        f"Mistaken().cb({message})\n"
-    )
+    return f"{HEAD}\nclass Mistaken:\n    def cb(self, msg):\n{indented(body, 8)}\nMistaken().cb({message})\n"
 
 
 def script(body: str) -> str:
@@ -87,10 +81,7 @@ def script(body: str) -> str:
 
 def given(value: str, default: str) -> str:
     """Return a program that declares a parameter, and is given it on its command line."""
-    return script(
-        f'rclpy.init(args=["--ros-args", "-p", "p:={value}"])\n'
-        f'Node("n").declare_parameter("p", {default})'
-    )
+    return script(f'rclpy.init(args=["--ros-args", "-p", "p:={value}"])\nNode("n").declare_parameter("p", {default})')
 
 
 def given_in_file(lines: str) -> str:

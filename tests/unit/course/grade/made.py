@@ -41,6 +41,4 @@ def grade(*states: State, student: str = "alice", reason: str = "", said: str = 
         for step, state in zip(LESSON.steps, states or STATES, strict=True)
     )
     began = datetime(2026, 6, 1, 14, 32, 5, tzinfo=timezone.utc)
-    return Grade(
-        LESSON, student, Path("/class/alice"), steps, began, 9.876, 7, {"near_m": 0.3}, reason
-    )
+    return Grade(LESSON, student, Path("/class/alice"), steps, began, 9.876, 7, {"near_m": 0.3}, reason)

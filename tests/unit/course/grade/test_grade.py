@@ -251,9 +251,7 @@ with mmap.mmap(-1, 64 << 20) as memory:
 def at_work(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Taken]:
     """What is seen of a process, which descends from this one."""
     command = [sys.executable, "-c", request.param]
-    with subprocess.Popen(
-        command, cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    ) as process:
+    with subprocess.Popen(command, cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         process.stdout.readline()
         yield taken(os.getpid(), [tmp_path])

@@ -27,15 +27,11 @@ def _never(raw: bytes) -> Mapping[str, Any]:
 
 
 def row(book: FrameBook, child: str, now_s: float = BEGIN_S, *, static: bool = False) -> FrameRow:
-    (found,) = (
-        row for row in book.rows(now_s) if row.newest.child == child and row.is_static == static
-    )
+    (found,) = (row for row in book.rows(now_s) if row.newest.child == child and row.is_static == static)
     return found
 
 
-def send(
-    book: FrameBook, *sent: Sent, at_s: float = BEGIN_S, topic: str = TF, number: int | None = None
-) -> None:
+def send(book: FrameBook, *sent: Sent, at_s: float = BEGIN_S, topic: str = TF, number: int | None = None) -> None:
     book.take(topic, cdr(*sent), at_s, number)
 
 
@@ -135,9 +131,7 @@ A, B, C = gid(1), gid(2), gid(3)
 ALL = {A: "/a", B: "/b", C: "/c"}
 
 
-def send_frame_senders(
-    book: FrameBook, sender: bytes, at_s: float, x: float = 0.0, *, static: bool = False
-) -> None:
+def send_frame_senders(book: FrameBook, sender: bytes, at_s: float, x: float = 0.0, *, static: bool = False) -> None:
     raw = cdr(Sent("odom", "base", translation=(x, 0.0, 0.0)))
     book.take(TF_STATIC if static else TF, raw, at_s, 1, sender)
 
@@ -180,9 +174,7 @@ def test_a_node_that_is_started_anew_is_one_node(book: FrameBook) -> None:
         book.clear()
 
 
-def test_two_latched_publishers_of_other_numbers_are_noticed_however_far_apart(
-    book: FrameBook,
-) -> None:
+def test_two_latched_publishers_of_other_numbers_are_noticed_however_far_apart(book: FrameBook) -> None:
     send_frame_senders(book, A, BEGIN_S, 1.0, static=True)
     assert not seen(book, BEGIN_S + 1, ALL).moved
     send_frame_senders(book, B, BEGIN_S + 60, 2.0, static=True)

@@ -216,9 +216,7 @@ def all_of(rgb: Any) -> set[tuple[int, ...]]:
     ],
 )
 @pytest.mark.parametrize("width", [4, 5, 3])
-def test_red_is_red_in_every_order_of_yuv_and_at_odd_widths(
-    encoding: str, pair: tuple[int, ...], width: int
-) -> None:
+def test_red_is_red_in_every_order_of_yuv_and_at_odd_widths(encoding: str, pair: tuple[int, ...], width: int) -> None:
     row = (bytes(pair) * 3)[: 2 * width]
     rgb = to_rgb(image_raw_colours(encoding, width, 2, (row + b"PAD") * 2))
     assert rgb.shape == (2, width, 3)
@@ -227,9 +225,7 @@ def test_red_is_red_in_every_order_of_yuv_and_at_odd_widths(
 
 @pytest.mark.parametrize("pattern", PATTERNS)
 @pytest.mark.parametrize(("width", "height"), [(4, 4), (5, 3), (2, 2), (7, 2)])
-def test_every_bayer_pattern_gives_the_colour_of_the_wall(
-    pattern: str, width: int, height: int
-) -> None:
+def test_every_bayer_pattern_gives_the_colour_of_the_wall(pattern: str, width: int, height: int) -> None:
     wall = mosaic(pattern, {"r": 250, "g": 120, "b": 10}, width, height)
     rgb = to_rgb(image_raw_colours(f"bayer_{pattern}8", width, height, wall.tobytes()))
     assert rgb.shape == (height, width, 3)

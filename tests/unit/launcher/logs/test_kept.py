@@ -67,9 +67,7 @@ def complain(reason: str) -> None:
     pytest.fail(reason)
 
 
-def test_a_full_file_is_rotated_and_the_oldest_goes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_full_file_is_rotated_and_the_oldest_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(logs_files, "MAX_FILE_BYTES", 10)
     files = LogFiles(tmp_path, complain)
     for number in range(6):
@@ -112,7 +110,6 @@ LOGS = ("deck", "sonar")
 
 
 def run(folder: Path, name: str) -> Path:
-    """A run that is over, with its logs."""
     path = folder / name
     make_log_folder(path, LOGS)
     for log in ("deck.log", "sonar.log", "sonar.log.1", "sonar.log.3"):
@@ -129,9 +126,7 @@ def test_logs_of_old_runs_go_and_those_of_running_ones_stay(tmp_path: Path) -> N
     for name in (*(f"202601{day}-1-1-1" for day in range(10, 20)), running):
         run(tmp_path, name)
     prune_runs(tmp_path, keep=3)
-    assert names(tmp_path) == sorted(
-        ["20260117-1-1-1", "20260118-1-1-1", "20260119-1-1-1", running]
-    )
+    assert names(tmp_path) == sorted(["20260117-1-1-1", "20260118-1-1-1", "20260119-1-1-1", running])
     prune_runs(tmp_path / "nothing")
 
 
@@ -147,7 +142,5 @@ def test_what_carries_no_mark_or_that_of_another_stays(tmp_path: Path) -> None:
     (tmp_path / "20260102-plain").mkdir()
     (tmp_path / "20260101-link").symlink_to(ours)
     prune_runs(tmp_path, keep=0)
-    assert names(tmp_path) == [
-        *("20260101-link", "20260102-plain", "20260103-broken", "20260104-copy")
-    ]
+    assert names(tmp_path) == [*("20260101-link", "20260102-plain", "20260103-broken", "20260104-copy")]
     assert names(copy) == [MARK, "sonar.log"]

@@ -15,12 +15,7 @@ import pytest
 
 from launcher.processes.shared_memory import sweep
 from launcher.processes.shared_memory_held import release_held, release_locks
-from launcher.processes.shared_memory_unfinished import (
-    UNFINISHED_S,
-    Discarded,
-    discard_unfinished,
-    unfinished,
-)
+from launcher.processes.shared_memory_unfinished import UNFINISHED_S, Discarded, discard_unfinished, unfinished
 from tests.shared_memory_port import DOMAIN_AND_NAME, MUTEX_BYTES
 from tests.unfinished_shared_memory import make_old
 
@@ -39,9 +34,7 @@ def test_only_what_nobody_holds_is_removed(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == [ALIVE, f"{ALIVE}_el"]
 
 
-def test_what_is_not_of_fast_dds_or_not_the_users_own_stays(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_not_of_fast_dds_or_not_the_users_own_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """By name, content and owner: somebody may have given a file of his such a name."""
     text, lock, linked = (f"fastrtps_{number:016x}" for number in (1, 2, 3))
     for name in (text, lock, linked):
@@ -151,9 +144,7 @@ def test_a_lock_of_the_living_port_is_opened_and_its_messages_stay(tmp_path: Pat
 
 
 @pytest.mark.parametrize("begun", [b"", bytes(4096), b"\1" + bytes(4095)])
-def test_what_nobody_will_finish_is_removed_and_who_waits_is_let_go(
-    tmp_path: Path, begun: bytes
-) -> None:
+def test_what_nobody_will_finish_is_removed_and_who_waits_is_let_go(tmp_path: Path, begun: bytes) -> None:
     path = made(tmp_path / "fastrtps_port7001", begun)
     with path.open("rb") as waiting:
         assert discard_unfinished(tmp_path) == Discarded(("fastrtps_port7001",), ())

@@ -187,9 +187,7 @@ def test_a_chain_of_profiles_without_end_is_refused(tmp_path: Path) -> None:
     for number in range(1500):
         written(tmp_path, f"extends: p{number + 1}", f"p{number}.yaml")
     written(tmp_path, "nodes: {x: {exec: [x]}}", "p1500.yaml")
-    assert "p31.yaml:1:10: extends: more than 32 profiles extend each other" in refused(
-        tmp_path / "p0.yaml"
-    )
+    assert "p31.yaml:1:10: extends: more than 32 profiles extend each other" in refused(tmp_path / "p0.yaml")
     assert list(load_profile(tmp_path / "p1469.yaml").nodes) == ["x"]
 
 
@@ -244,14 +242,10 @@ KEYS = sorted(
 WORDS = st.sampled_from(
     [*KEYS, "nodes.hello", "localhost", "sonar", "${devices.pico.port}", 'hardware == "mock"', "/x"]
 )
-SCALARS = st.one_of(
-    WORDS, st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8)
-)
+SCALARS = st.one_of(WORDS, st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8))
 ANYTHING = st.recursive(
     SCALARS,
-    lambda inner: st.one_of(
-        st.lists(inner, max_size=3), st.dictionaries(st.sampled_from(KEYS), inner, max_size=4)
-    ),
+    lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(st.sampled_from(KEYS), inner, max_size=4)),
     max_leaves=12,
 )
 NODE = st.dictionaries(st.sampled_from(sorted(NodeDocument.model_fields)), ANYTHING, max_size=6)

@@ -21,14 +21,7 @@ LESSONS = sorted(PROFILES.glob("*.yaml"))
 def test_every_lesson_is_there() -> None:
     assert [path.stem for path in LESSONS] == [
         *("01-hello", "02-sonar-safety", "03-head-service", "03b-drive-to-point"),
-        *(
-            "04-ackermann",
-            "04b-electronic-differential",
-            "05-tf2",
-            "06-rviz",
-            "07-vision",
-            "08-audio",
-        ),
+        *("04-ackermann", "04b-electronic-differential", "05-tf2", "06-rviz", "07-vision", "08-audio"),
         *("09-brain", "10-llm-json", "robot"),
     ]
 
@@ -57,9 +50,7 @@ def test_the_schema_is_true() -> None:
         ("robot", "camera_tf", "/tf_static", "tf2_msgs/msg/TFMessage"),
     ],
 )
-def test_who_is_to_publish_a_topic_is_ready_by_it_and_its_type(
-    lesson: str, node: str, topic: str, kind: str
-) -> None:
+def test_who_is_to_publish_a_topic_is_ready_by_it_and_its_type(lesson: str, node: str, topic: str, kind: str) -> None:
     ready = load_profile(PROFILES / f"{lesson}.yaml").nodes[node].ready
     assert ready is not None
     assert (ready.kind, ready.name, ready.type) == ("topic", topic, kind)
@@ -103,8 +94,7 @@ def test_a_lesson_is_found_by_what_people_type(asked: str, found: str) -> None:
 
 @pytest.mark.usefixtures("elsewhere")
 @pytest.mark.parametrize(
-    ("asked", "near"),
-    [("brain", "09-brain"), ("09-brian", "09-brain"), ("sonar", "02-sonar-safety")],
+    ("asked", "near"), [("brain", "09-brain"), ("09-brian", "09-brain"), ("sonar", "02-sonar-safety")]
 )
 def test_a_wrong_name_gets_a_suggestion(asked: str, near: str) -> None:
     with pytest.raises(ProfileNotFoundError) as caught:
@@ -116,9 +106,7 @@ def test_a_wrong_name_gets_a_suggestion(asked: str, near: str) -> None:
 NEVER = "raise SystemExit('never imported')"
 
 
-def test_a_file_stands_relative_to_the_profile_that_names_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_stands_relative_to_the_profile_that_names_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """And not to one that extends it from another folder, or to the current folder."""
     robot, other = tmp_path / "robot", tmp_path / "other"
     for folder in (robot, other):
@@ -130,9 +118,7 @@ def test_a_file_stands_relative_to_the_profile_that_names_it(
     nodes = load_profile("lesson.yaml").nodes
     assert nodes["a"].document.run == nodes["b"].document.run == str(robot / "my_sonar.py")
     assert nodes["a"].command == "./my_sonar.py"
-    assert nodes["a"].argv()[-4:] == [
-        *(str(robot / "my_sonar.py"), "--ros-args", "-r", "__node:=a")
-    ]
+    assert nodes["a"].argv()[-4:] == [*(str(robot / "my_sonar.py"), "--ros-args", "-r", "__node:=a")]
 
 
 HEAD = "nodes: {sonar: {exec: [x]}}\nvalues: {near_m: {between: [0.1, 0.4], digits: 3}}\nsteps:\n"

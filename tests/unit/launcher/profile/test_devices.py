@@ -79,9 +79,7 @@ def test_devices_that_make_no_sense_are_told(pico: str, hardware: str, tmp_path:
         load_profile(path, hardware=hardware, environ={}, ports=lambda: [PICO])
 
 
-PICO_SERIAL_CHOICE = SerialPort(
-    "/dev/ttyACM0", "/dev/serial/by-id/usb-MicroPython-if00", "2e8a:0005", "Board"
-)
+PICO_SERIAL_CHOICE = SerialPort("/dev/ttyACM0", "/dev/serial/by-id/usb-MicroPython-if00", "2e8a:0005", "Board")
 LUNA = SerialPort("/dev/ttyUSB0", "/dev/serial/by-id/usb-CP2102-if00", "10c4:ea60", "CP2102")
 MODEM = SerialPort("/dev/ttyACM1", "/dev/serial/by-id/usb-modem", "1234:5678", "Modem")
 UART = SerialPort("/dev/ttyAMA0")
@@ -94,10 +92,7 @@ SERVO_BOARD = WantedPort(usb=KINDS["lsc16"])
 def paths(chosen: dict[str, SerialPort | UnresolvedPort]) -> dict[str, str | None]:
     unresolved = [each for each in chosen.values() if isinstance(each, UnresolvedPort)]
     assert all("DECK_" in each.hint and "devices." in each.hint for each in unresolved)
-    return {
-        device: each.path if isinstance(each, SerialPort) else None
-        for device, each in chosen.items()
-    }
+    return {device: each.path if isinstance(each, SerialPort) else None for device, each in chosen.items()}
 
 
 def test_a_pico_is_found_among_others_by_its_lasting_name() -> None:

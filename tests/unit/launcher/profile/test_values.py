@@ -36,12 +36,7 @@ INTEGERS = st.integers(-(2**63), 2**63 - 1)
 FLOATS = st.floats(allow_subnormal=False)
 SINGLES = st.one_of(st.booleans(), INTEGERS, FLOATS, TEXTS, TRICKY)
 LISTS = st.one_of(*(st.lists(kind, min_size=1, max_size=5) for kind in (st.booleans(), INTEGERS)))
-VALUES = st.one_of(
-    SINGLES,
-    LISTS,
-    st.lists(FLOATS, min_size=1, max_size=5),
-    st.lists(TEXTS, min_size=1, max_size=5),
-)
+VALUES = st.one_of(SINGLES, LISTS, st.lists(FLOATS, min_size=1, max_size=5), st.lists(TEXTS, min_size=1, max_size=5))
 
 
 def same(first: Any, second: Any) -> bool:
@@ -63,10 +58,7 @@ def test_what_yaml_says_is_what_the_argument_says(value: Any) -> None:
     # PyYAML writes the texts 1e3, inf and 0o17 without quotes, which are numbers here.
     words = value if isinstance(value, list) else [value]
     assume(
-        not any(
-            isinstance(word, str) and not isinstance(meaning(word), (str, bool, type(None)))
-            for word in words
-        )
+        not any(isinstance(word, str) and not isinstance(meaning(word), (str, bool, type(None))) for word in words)
     )
     problems = Problems()
     text = yaml.safe_dump({"p": value})
@@ -95,15 +87,10 @@ def test_the_command_line_of_a_node(yaml_value: str, argument: str, tmp_path: Pa
 
 
 def test_a_run_node_is_named_remapped_and_given_its_parameters(tmp_path: Path) -> None:
-    profile = loaded(
-        tmp_path, "nodes: {a: {run: nodes.hello, remap: {/drive: /safe}, params: {rate: 2.0}}}"
-    )
+    profile = loaded(tmp_path, "nodes: {a: {run: nodes.hello, remap: {/drive: /safe}, params: {rate: 2.0}}}")
     argv = profile.nodes["a"].argv()
     assert argv[1:4] == ["-u", node_program.__file__, "nodes.hello"]
-    assert argv[4:] == [
-        *("--ros-args", "-r", "__node:=a", "-r", "/drive:=/safe"),
-        *("-p", "rate:=2.0"),
-    ]
+    assert argv[4:] == [*("--ros-args", "-r", "__node:=a", "-r", "/drive:=/safe"), *("-p", "rate:=2.0")]
 
 
 @pytest.mark.parametrize("name", ["a", "a.b", "_x1", "qos_overrides./scan.publisher.depth"])
@@ -304,6 +291,4 @@ def test_a_profile_with_nothing_left_is_refused(tmp_path: Path) -> None:
 
 
 def test_an_unknown_hardware_is_refused(tmp_path: Path) -> None:
-    assert told(tmp_path, TWO_WORLDS, hardware="moc") == [
-        "--hardware: expected mock or real, found 'moc'"
-    ]
+    assert told(tmp_path, TWO_WORLDS, hardware="moc") == ["--hardware: expected mock or real, found 'moc'"]

@@ -47,9 +47,7 @@ async def test_a_node_that_is_not_ready_in_time_runs_on_and_says_so(session: Fak
     assert (node.state, node.detail, node.serves) == (NodeState.READY, "", True)
 
 
-async def test_what_there_is_in_place_of_what_is_awaited_is_told_at_once(
-    session: FakeSession,
-) -> None:
+async def test_what_there_is_in_place_of_what_is_awaited_is_told_at_once(session: FakeSession) -> None:
     awaited = ReadyCondition("topic", "/sonar", "std_msgs/msg/Float32", 5)
     node = await started(session, replace(PLAN, ready=awaited, within_s=7))
     session.tell(Seen(("std_msgs/msg/String",)))
@@ -106,9 +104,7 @@ async def test_a_node_that_waits_can_be_started_by_hand(session: FakeSession) ->
     assert node.state is NodeState.RUNNING
 
 
-async def test_a_crash_is_told_and_the_node_started_again_after_a_while(
-    session: FakeSession,
-) -> None:
+async def test_a_crash_is_told_and_the_node_started_again_after_a_while(session: FakeSession) -> None:
     node = await started(session)
     await crash(session)
     assert node.state is NodeState.BACKOFF
@@ -122,9 +118,7 @@ async def test_a_crash_is_told_and_the_node_started_again_after_a_while(
 
 
 @pytest.mark.parametrize("file", ["", "/own/hello.py"])
-async def test_why_it_has_crashed_is_told_until_it_has_been_well_for_a_while(
-    session: FakeSession, file: str
-) -> None:
+async def test_why_it_has_crashed_is_told_until_it_has_been_well_for_a_while(session: FakeSession, file: str) -> None:
     fault = NodeFault("crash", file, 3, exception="ValueError: x") if file else None
     session.fault = fault
     node = await started(session, replace(PLAN, file=file))
@@ -140,9 +134,7 @@ async def test_why_it_has_crashed_is_told_until_it_has_been_well_for_a_while(
     assert (node.status().fault, node.status().detail) == (None, "")
 
 
-async def test_a_node_that_is_started_by_hand_has_no_crash_to_tell_of(
-    session: FakeSession,
-) -> None:
+async def test_a_node_that_is_started_by_hand_has_no_crash_to_tell_of(session: FakeSession) -> None:
     node = await started(session)
     await crash(session)
     await session.clock.advance(1.1)
@@ -161,9 +153,7 @@ async def test_a_crash_before_it_is_ready_waits_as_long(session: FakeSession) ->
     assert (node.state, len(session.started)) == (NodeState.STARTING, 2)
 
 
-async def test_a_file_that_does_not_compile_is_not_tried_again_until_it_is_saved(
-    session: FakeSession,
-) -> None:
+async def test_a_file_that_does_not_compile_is_not_tried_again_until_it_is_saved(session: FakeSession) -> None:
     node = await started(session, replace(PLAN, file="/own/hello.py"))
     session.fault = fault = NodeFault("syntax", "/own/hello.py", 3, exception="SyntaxError: x")
     await crash(session)
@@ -200,9 +190,7 @@ async def test_a_stuck_callback_ails_the_node_until_it_returns(session: FakeSess
     assert well(node.status())
 
 
-async def test_a_node_that_a_signal_has_suspended_is_not_healthy_until_it_goes_on(
-    session: FakeSession,
-) -> None:
+async def test_a_node_that_a_signal_has_suspended_is_not_healthy_until_it_goes_on(session: FakeSession) -> None:
     node = await started(session, replace(PLAN, file="/own/hello.py"))
     node.warn(warning := NodeFault("warning", "/own/hello.py", 3, exception="a warning"))
     node.halted(100)
@@ -277,13 +265,7 @@ LESSON_GOES_ON = "not installed; the lesson continues without it"
         (PLAN, 0, "", "EXITED", "ended"),
         (PLAN, 127, "", "FAILED", "exit code 127"),
         (PLAN, 127, ABSENT, "FAILED", "sonar is not installed"),
-        (
-            OPTIONAL,
-            127,
-            ABSENT,
-            "EXITED",
-            "sonar is not installed; the lesson continues without it",
-        ),
+        (OPTIONAL, 127, ABSENT, "EXITED", "sonar is not installed; the lesson continues without it"),
         (replace(OPTIONAL, restart="never"), 127, "x", "EXITED", "exit code 127: x"),
         (MODULE, 2, "no such port", "FAILED", "exit code 2: no such port"),
         (replace(MODULE, restart="always"), 2, "", "FAILED", "exit code 2"),
@@ -293,13 +275,7 @@ LESSON_GOES_ON = "not installed; the lesson continues without it"
     ],
 )
 async def test_an_end_is_told_as_what_it_is_and_not_tried_again(
-    session: FakeSession,
-    plan: NodePlan,
-    code: int,
-    last: str,
-    state: str,
-    detail: str,
-    was_ready: bool,
+    session: FakeSession, plan: NodePlan, code: int, last: str, state: str, detail: str, was_ready: bool
 ) -> None:
     if was_ready:
         session.is_ready.set()

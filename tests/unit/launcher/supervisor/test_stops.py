@@ -24,13 +24,7 @@ from launcher.supervisor.restart_policy import (
     GivenUp,
     RestartPolicy,
 )
-from tests.unit.launcher.supervisor.fake_session import (
-    PLAN,
-    FakeProcess,
-    FakeSession,
-    crash,
-    started,
-)
+from tests.unit.launcher.supervisor.fake_session import PLAN, FakeProcess, FakeSession, crash, started
 from tests.unit.manual_clock import settle
 from tests.unit.profile_files import loaded
 from tests.waiting import until
@@ -45,9 +39,7 @@ async def test_a_stop_by_hand_is_never_undone(session: FakeSession, restart: str
     assert len(session.started) == 1
 
 
-async def test_a_stop_during_the_wait_for_the_next_try_is_never_undone(
-    session: FakeSession,
-) -> None:
+async def test_a_stop_during_the_wait_for_the_next_try_is_never_undone(session: FakeSession) -> None:
     node = await started(session)
     await crash(session)
     await node.stop()
@@ -133,9 +125,7 @@ async def test_a_stop_is_not_over_when_only_the_leader_has_ended(session: FakeSe
     assert (node.state, session.process.left()) == (NodeState.EXITED, [])
 
 
-async def test_what_a_crashed_node_leaves_is_stopped_before_it_returns(
-    session: FakeSession,
-) -> None:
+async def test_what_a_crashed_node_leaves_is_stopped_before_it_returns(session: FakeSession) -> None:
     session.grandchild_ends_by = {signal.SIGTERM}
     node = await started(session)
     await crash(session)
@@ -159,10 +149,7 @@ async def test_who_outlives_sigkill_is_named_and_not_called_stopped(session: Fak
     await session.clock.advance(2)
     await stopping
     assert [process.pid for process in node.outlived] == [100]
-    assert (node.state, node.detail) == (
-        NodeState.STOPPING,
-        "still running after SIGKILL: 100 (fake)",
-    )
+    assert (node.state, node.detail) == (NodeState.STOPPING, "still running after SIGKILL: 100 (fake)")
     assert session.gravest is Severity.ERROR
     # It is killed as soon as that is possible, and only then has it stopped.
     session.process.immortal = False
@@ -170,9 +157,7 @@ async def test_who_outlives_sigkill_is_named_and_not_called_stopped(session: Fak
     assert (node.state, node.outlived) == (NodeState.EXITED, ())
 
 
-async def test_an_end_of_which_nobody_tells_is_looked_up_and_not_waited_for(
-    session: FakeSession,
-) -> None:
+async def test_an_end_of_which_nobody_tells_is_looked_up_and_not_waited_for(session: FakeSession) -> None:
     node = await started(session)
     session.process.told = False
     stopping = asyncio.ensure_future(node.stop())
@@ -227,13 +212,7 @@ def test_a_node_that_ran_well_for_a_while_begins_anew() -> None:
     assert policy.after(clean=False, lasted_s=STABLE_S, now=40.0) == Again(1.0)
 
 
-NEEDS = {
-    "sonar": (),
-    "camera": (),
-    "safety": ("sonar",),
-    "drive": ("safety",),
-    "brain": ("camera", "drive"),
-}
+NEEDS = {"sonar": (), "camera": (), "safety": ("sonar",), "drive": ("safety",), "brain": ("camera", "drive")}
 
 
 def test_what_a_node_needs_comes_before_it() -> None:
