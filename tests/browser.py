@@ -19,6 +19,7 @@ import cv2
 import numpy as np
 from websockets.sync.client import connect
 
+from tests.slowness import patient
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
@@ -104,7 +105,7 @@ class Browser:
         number = next(self._numbers)
         self._line.send(json.dumps({"id": number, "method": method, "params": parameters}))
         while True:
-            message = json.loads(self._line.recv(timeout=ANSWER_S))
+            message = json.loads(self._line.recv(timeout=patient(ANSWER_S)))
             if message.get("id") == number:
                 return message
             self._hear(message)

@@ -74,7 +74,6 @@ class Installed:
             stderr=subprocess.STDOUT,
             text=True,
             check=False,
-            timeout=55,
         )
         assert done.returncode == code, done.stdout
         return done.stdout

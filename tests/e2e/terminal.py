@@ -25,6 +25,7 @@ from rich.console import Console
 from rich.style import Style
 from rich.text import Text
 
+from tests.slowness import patient
 from tests.waiting import DEADLINE_S, wait_until
 
 KEYS = {
@@ -193,7 +194,7 @@ class Terminal:
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
             try:
-                self.process.wait(timeout=15)
+                self.process.wait(timeout=patient(15))
             except subprocess.TimeoutExpired:
                 self.process.kill()
                 self.process.wait()

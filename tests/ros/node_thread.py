@@ -90,7 +90,7 @@ class NodeThread:
             return
         self._ending = True
         self._executor.create_task(lambda: None)
-        self._thread.join(timeout=10)
+        self._thread.join()
         self.node.before_end()
         for pace in self._paces:
             pace.close()

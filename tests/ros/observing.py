@@ -16,6 +16,7 @@ from graph.observer.process.started import ObserverProcess
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
 from tests import ports
 from tests.ros.observer_thread import ObserverThread
+from tests.slowness import patient
 from tests.waiting import DEADLINE_S, wait_until
 from tests.warm_program import PIPE, WarmProgram
 
@@ -47,7 +48,7 @@ class Peer:
         )
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
-        self._answers.get(timeout=DEADLINE_S)
+        self._answers.get(timeout=patient(DEADLINE_S))
 
     def __getattr__(self, order: str) -> Any:
         def do(topic: str = "", /, **words: Any) -> Any:
@@ -55,7 +56,7 @@ class Peer:
             assert self.process.stdin is not None
             self.process.stdin.write(json.dumps({"order": order, **words}) + "\n")
             self.process.stdin.flush()
-            return self._answers.get(timeout=DEADLINE_S)
+            return self._answers.get(timeout=patient(DEADLINE_S))
 
         return do
 

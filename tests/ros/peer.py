@@ -70,7 +70,7 @@ class Peer:
     def close(self) -> None:
         self._closing = True
         self._executor.create_task(lambda: None)
-        self._thread.join(timeout=10)
+        self._thread.join()
         self._executor.shutdown()
         # Clients of actions, which would keep its participant in the domain.
         for waitable in list(self.node.waitables):

@@ -34,6 +34,7 @@ from robot.topics import DRIVE_SAFE, LLM_RESULT
 from tests.deck_process import DeckProcess, deck
 from tests.ros.peer import Peer
 from tests.ros.supervised import until_state
+from tests.slowness import patient
 from tests.waiting import until, wait_until
 
 pytestmark = pytest.mark.nightly
@@ -316,7 +317,7 @@ def status(address: str, **headers: str) -> int:
         **{name.replace("_", "-"): value for name, value in headers.items()},
     }
     try:
-        with urllib.request.urlopen(urllib.request.Request(address, body, given), timeout=20) as it:
+        with urllib.request.urlopen(urllib.request.Request(address, body, given), timeout=patient(20)) as it:
             return int(it.status)
     except urllib.error.HTTPError as error:
         return error.code

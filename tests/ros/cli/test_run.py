@@ -15,7 +15,7 @@ import pytest
 
 from tests.deck_process import DeckProcess, alive, deck
 from tests.unit.profile_files import written
-from tests.waiting import DEADLINE_S, wait_until
+from tests.waiting import wait_until
 
 
 @pytest.fixture(autouse=True)
@@ -126,7 +126,7 @@ def test_a_reader_that_goes_stops_the_nodes_and_harms_nobody(tmp_path: Path) -> 
     os.close(writer)
     with os.fdopen(reader) as lines:
         node = next(int(line.split()[-1]) for line in lines if "] pid " in line)
-    _out, errors = process.communicate(timeout=DEADLINE_S)
+    _out, errors = process.communicate()
     assert errors == ""
     assert process.returncode in (0, 1)
     wait_until(lambda: not alive(node), "the node has ended")

@@ -92,7 +92,6 @@ def test_in_the_shell_they_run_as_well_and_their_ends_are_explained(folder: Path
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        timeout=150,
         check=False,
     )
     assert own_words(done.stdout).splitlines() == [f"{file} 1" for file in FILES], done.stderr

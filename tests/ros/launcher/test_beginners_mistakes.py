@@ -79,7 +79,6 @@ def _told(
         stdout=subprocess.PIPE,
         text=True,
         check=True,
-        timeout=AT_MOST_S,
     )
     said: dict[str, str] = json.loads(done.stdout.splitlines()[-1])
     return {names[stem]: (_fault(text), text) for stem, text in said.items()}

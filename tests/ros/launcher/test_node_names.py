@@ -32,7 +32,6 @@ def test_only_the_first_is_named_anew(given: str, names: str, tmp_path: Path, ro
         env={**os.environ, "ROS_DOMAIN_ID": str(ros_domain)},
         capture_output=True,
         text=True,
-        timeout=60,
         check=True,
     )
     assert done.stdout == f"{names}\n"

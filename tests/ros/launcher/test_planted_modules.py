@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from tests.middleware_words import own_words
-from tests.waiting import DEADLINE_S
 
 pytestmark = pytest.mark.nightly
 
@@ -47,7 +46,6 @@ def deck(folder: Path, command: list[str], *words: str, **environ: str) -> str:
         stderr=subprocess.STDOUT,
         text=True,
         check=False,
-        timeout=DEADLINE_S,
     )
     return own_words(done.stdout)
 

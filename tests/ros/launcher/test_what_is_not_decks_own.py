@@ -12,7 +12,7 @@ import pytest
 
 from launcher.rundir import run_dir
 from tests.ros.supervised import SLEEPER, Launch, running_pid, script, start
-from tests.waiting import DEADLINE_S, until
+from tests.waiting import until
 
 __all__ = ["start"]
 
@@ -31,7 +31,6 @@ def deck(*words: str, **environ: str) -> subprocess.CompletedProcess[str]:
         capture_output=True,
         text=True,
         check=False,
-        timeout=DEADLINE_S,
     )
 
 

@@ -16,7 +16,7 @@ from std_msgs.msg import Bool
 from tests.middleware_words import own_words
 from tests.ros.peer import ROOT, Peer
 from tests.ros.ros2.typed import typed
-from tests.waiting import DEADLINE_S, wait_until
+from tests.waiting import wait_until
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -243,7 +243,7 @@ def test_as_a_program_it_ends_quietly() -> None:
         assert echo.stdout is not None
         assert next(filter(own_words, echo.stdout)) == "data: 0.25\n"
         echo.send_signal(signal.SIGINT)
-        _rest, err = echo.communicate(timeout=DEADLINE_S)
+        _rest, err = echo.communicate()
         assert (echo.returncode, err) == (signal.SIGINT, "")
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as echo:
         assert echo.stdout is not None

@@ -39,7 +39,6 @@ def run(home: Path, ros_domain: int) -> Run:
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
-            timeout=WITHIN_S,
             check=False,
         )
         done.stdout, done.stderr = own_words(done.stdout), own_words(done.stderr)

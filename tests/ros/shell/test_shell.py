@@ -14,6 +14,7 @@ from std_msgs.msg import String
 from launcher.ros_tools import COMMANDS
 from tests.ros.peer import Peer
 from tests.ros.shell.conftest import DECK, WITHIN_S, Run
+from tests.slowness import patient
 from tests.waiting import wait_until
 
 
@@ -54,7 +55,9 @@ def test_the_prompt_tells_the_domain_and_the_users_settings_are_read(
 ) -> None:
     (home / settings).write_text("PS1='mine> '; PATH=/usr/bin:/bin; tried() { echo it $1; }\n")
     env = {**os.environ, "SHELL": f"/bin/{shell}", **{k: str(home / v) for k, v in extra.items()}}
-    terminal = pexpect.spawn(DECK[0], list(DECK[1:]), env=env, cwd=str(home), encoding="utf-8", timeout=WITHIN_S)
+    terminal = pexpect.spawn(
+        DECK[0], list(DECK[1:]), env=env, cwd=str(home), encoding="utf-8", timeout=patient(WITHIN_S)
+    )
     terminal.expect_exact(f"(domain {ros_domain}) mine> ")
     terminal.sendline("tried works; which ros2; exit 3")
     terminal.expect_exact("it works")
@@ -70,7 +73,7 @@ def test_what_is_not_there_is_told_with_what_is(own: str, home: Path, ros_domain
     (home / ".bashrc").write_text(f"PS1='mine> '\n{own}")
     terminal = pexpect.spawn(
         DECK[0], list(DECK[1:]), env={**os.environ, "SHELL": "/bin/bash", "PATH": "/usr/bin:/bin"},
-        cwd=str(home), encoding="utf-8", timeout=WITHIN_S,
+        cwd=str(home), encoding="utf-8", timeout=patient(WITHIN_S),
     )  # fmt: skip
     terminal.expect_exact(f"(domain {ros_domain}) mine> ")
     terminal.sendline("rviz2 --help; echo code $?")

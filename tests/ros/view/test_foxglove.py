@@ -18,6 +18,7 @@ from websockets.typing import Subprotocol
 
 from tests.deck_process import DeckProcess
 from tests.ros.peer import Peer
+from tests.slowness import patient
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,7 +54,7 @@ def test_messages_arrive_as_they_were_published(served: DeckProcess, peer: Peer)
         peer.saying("/distance", Float32(data=1.25)),
     ):
         while not raw:
-            message = line.recv(timeout=ANSWER_S)
+            message = line.recv(timeout=patient(ANSWER_S))
             if isinstance(message, bytes):
                 raw = message[DATA.size :]
                 continue

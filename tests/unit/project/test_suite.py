@@ -42,7 +42,6 @@ def run_of(folder: Path, files: dict[str, list[str]]) -> subprocess.CompletedPro
         cwd=folder,
         capture_output=True,
         text=True,
-        timeout=120,
         check=False,
     )
 
@@ -97,7 +96,6 @@ def made_run_of(folder: Path, *bodies: str) -> subprocess.CompletedProcess[str]:
         cwd=folder,
         capture_output=True,
         text=True,
-        timeout=120,
         check=False,
     )
 

@@ -33,7 +33,7 @@ class Pico:
         assert json.loads(self._process.stdout.readline()) == "ready"
 
     def close(self) -> None:
-        self._process.communicate(timeout=20)
+        self._process.communicate()
         assert self._process.returncode == 0
 
     def order(self, **order: object) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from graph.observer.requests import ObserverError
 from graph.publishing.dead_man_switch import HeldCommand
 from tests.middleware_words import own_words
 from tests.ros.observing import ROOT, Peer, Watcher, let_updates_come
-from tests.waiting import DEADLINE_S, wait_until
+from tests.waiting import wait_until
 
 BOOL, FLOAT = "std_msgs/msg/Bool", "std_msgs/msg/Float32"
 ADD, DRIVE = "example_interfaces/srv/AddTwoInts", "deck_interfaces/action/DriveToPoint"
@@ -201,7 +201,6 @@ def run(program: str, domain: int, **env: str) -> subprocess.CompletedProcess[st
         env={**os.environ, "ROS_DOMAIN_ID": str(domain), **env},
         capture_output=True,
         text=True,
-        timeout=DEADLINE_S,
         check=False,
     )
 
