@@ -1,4 +1,4 @@
-"""What messages become in Rerun, and where the viewer opens."""
+"""What messages become in Rerun."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ import pytest
 from graph.data import Sample
 from space.transform import Transform
 from tests.unit.space.trees import cloud_tree, pose_tree
-from view.place import ssh_command
 from view.scene.drawn import Drawn
 from view.scene.scene import ViewScene
 
@@ -105,14 +104,3 @@ def test_a_picture_has_its_colours_to_the_byte() -> None:
 def test_a_message_of_another_shape_ends_nothing() -> None:
     drawn = draw(ViewScene(), "/tf", "std_msgs/msg/String", {"data": "?"})
     assert "the message has no field transforms" in said(drawn)
-
-
-OVER_SSH = {"SSH_CONNECTION": "192.168.1.7 51234 192.168.1.20 22"}
-
-
-def test_the_command_forwards_each_port_to_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("getpass.getuser", lambda: "pi")
-    command = ssh_command((9090, 9876), OVER_SSH)
-    assert command == ("ssh -N -L 9090:127.0.0.1:9090 -L 9876:127.0.0.1:9876 pi@192.168.1.20")
-    other = {"SSH_CONNECTION": "192.168.1.7 51234 192.168.1.20 2222"}
-    assert ssh_command((1,), other).endswith(" -p 2222 pi@192.168.1.20")
