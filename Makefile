@@ -54,7 +54,7 @@ run: catalogues
 
 # What only those need who want to see the robot in 3D, and the tests.
 .venv/.view: .venv/.ready $(wildcard locked/view.txt)
-	@echo 'deck: installing the viewers, 250 MB to load' >&2
+	@.venv/bin/python scripts/setup_words.py 'deck: installing the viewers, 250 MB to load'
 	@.venv/bin/python -m pip --disable-pip-version-check install --quiet --no-compile --no-deps --require-hashes \
 	--requirement locked/view.txt
 	@touch $@

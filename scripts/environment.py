@@ -22,10 +22,11 @@ from typing import TYPE_CHECKING
 
 # Run by its path, before there is an environment: modules beside it have bare names.
 from interface_names import wrong_names
+from setup_words import told
 from wheel_cache import WheelCache
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 ROOT = Path(__file__).resolve().parent.parent
 WORK = ROOT / "build" / "setup"
@@ -35,6 +36,8 @@ TICK_S = 1.0
 BUILD = "--build-interfaces"
 PLAIN = re.compile(r"[\w/.,:=@%+~ -]+")
 """Paths that need no quoting in CMake and the shells it starts."""
+BUILT = re.compile(rb"^\s*\[(\d+)/(\d+)\]", re.MULTILINE)
+"""What ninja says before each file that it builds."""
 REQUIRE = ("install", "--no-deps", "--require-hashes", "--requirement")
 """Packages after this are installed only at the locked version, and only from the locked file.
 
@@ -66,7 +69,7 @@ def only_one() -> Iterator[None]:
         try:
             fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            say("deck: another `make` is setting up here, waiting for it")
+            say(told("deck: another `make` is setting up here, waiting for it"))
             fcntl.flock(folder, fcntl.LOCK_EX)
         yield
     finally:
@@ -85,15 +88,16 @@ class Step:
     total = 0
     """How many steps there are in all."""
 
-    def __init__(self, what: str, *command: str | Path, **environ: str) -> None:
-        self.what = what
+    def __init__(self, what: str, *command: str | Path, done: Callable[[Path], str] = lambda _log: "") -> None:
+        """`what` is one of the words of setup_words; `done` says from the log how far it has come."""
+        self.what = told(what)
         self.log = WORK / f"{what.split(maxsplit=1)[0].lower()}.log"
         self.started = time.monotonic()
+        self.done = done
         with self.log.open("wb") as log:
             self.process = subprocess.Popen(
                 command,
                 cwd=ROOT,
-                env=os.environ | environ,
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=log,
@@ -114,20 +118,21 @@ class Step:
                     code = self.process.wait(TICK_S if screen else None)
                     break
                 except subprocess.TimeoutExpired:
-                    say(f"\r{line}{self.seconds()}", end="")
+                    done = self.done(self.log)
+                    say(f"\r\x1b[K{line}{done}{', ' if done else ''}{self.seconds()}", end="")
         except KeyboardInterrupt:
             self.abandon()
             raise
-        ended = self.seconds() if code == 0 else "failed"
+        ended = self.seconds() if code == 0 else told("failed")
         say(f"\r\x1b[K{line}{ended}" if screen else ended)
         if code < 0:
-            raise ChildProcessError(f"{self.what}: killed by signal {-code}")
+            raise ChildProcessError(told("%s: killed by signal %d", self.what, -code))
         if code:
             raise StepError(self.what, self.log)
 
     def seconds(self) -> str:
         """Return how long the command has been running."""
-        return f"{time.monotonic() - self.started:.0f} s"
+        return told("%d s", time.monotonic() - self.started)
 
     def abandon(self) -> None:
         """Stop the command and everything it has started, if it is still running."""
@@ -139,7 +144,22 @@ class Step:
 def heading(what: str) -> str:
     """Return the start of the next step's line."""
     Step.ended += 1
-    return f"  {Step.ended} of {Step.total}: {what} ... "
+    return told("  %d of %d: %s ... ", Step.ended, Step.total, what)
+
+
+def loaded(log: Path) -> str:
+    """Return how many of the locked packages pip has loaded by its log; while it unpacks them, all."""
+    lines = read(log).decode(errors="replace").splitlines()
+    left_out = sum(line.startswith("Ignoring ") for line in lines)
+    loaded = sum(line.startswith("Collecting ") for line in lines)
+    wanted = sum("==" in line for line in (LOCKED / "deck.txt").read_text().splitlines())
+    return f"{loaded}/{wanted - left_out}"
+
+
+def built(log: Path) -> str:
+    """Return how much of the message types is built, by what the build itself says last."""
+    said = BUILT.findall(read(log))
+    return f"{100 * int(said[-1][0]) // int(said[-1][1])} %" if said else ""
 
 
 def wanted_interfaces() -> str:
@@ -205,7 +225,7 @@ class Environment:
         """Create the folder, or empty it if it was made by this script; else leave it alone."""
         self.folder.mkdir(exist_ok=True)
         if any(self.folder.iterdir()) and not (self.ready.exists() or self.unfinished.exists()):
-            raise FileExistsError(f"{self.folder} already exists and was not made by `make`; move it away")
+            raise FileExistsError(told("%s already exists and was not made by `make`; move it away", self.folder))
         # The mark stays: whatever happens now, the folder is known to be ours.
         self.unfinished.touch()
         for entry in self.folder.iterdir():
@@ -226,19 +246,21 @@ class Environment:
         kept = WheelCache(wanted, builder)
         if kept.fetch(wheels):
             self.install_deck()
-            say(f"{heading('Message types')}kept from an earlier set-up")
+            say(heading(told("Message types")) + told("kept from an earlier set-up"))
         else:
             self.build(wheels)
             kept.keep(wheels)
         self.interfaces.unlink(missing_ok=True)
         force = ("--force-reinstall", "--no-deps", "--no-index")
-        Step("Installing them", *pip(self.python, "install", *force, *wheels.iterdir())).finish()
+        Step("Installing the message types", *pip(self.python, "install", *force, *wheels.iterdir())).finish()
         self.interfaces.write_text(wanted)
 
     def build(self, wheels: Path) -> None:
         """Install Deck and build the message types, in parallel."""
         with folder_for_cmake() as folder:
-            build = Step("Message types, meanwhile", sys.executable, __file__, BUILD, wheels, folder)
+            build = Step(
+                "Message types, built meanwhile", sys.executable, __file__, BUILD, wheels, folder, done=built
+            )
             try:
                 self.install_deck()
                 build.finish()
@@ -248,7 +270,7 @@ class Environment:
     def install_deck(self) -> None:
         """Install ROS 2, Deck's libraries and the test tools, then Deck itself, editable."""
         locked = LOCKED / "deck.txt"
-        Step("Libraries of Deck and ROS 2", *pip(self.python, *REQUIRE, locked)).finish()
+        Step("Libraries of Deck and ROS 2", *pip(self.python, *REQUIRE, locked), done=loaded).finish()
         bare = ("install", "--no-deps", "--no-build-isolation", "--editable", ".")
         Step("Deck itself", *pip(self.python, *bare)).finish()
 
@@ -273,7 +295,7 @@ def folder_for_cmake() -> Iterator[Path]:
             with tempfile.TemporaryDirectory(prefix="deck-build-", dir=place) as folder:
                 yield Path(folder)
             return
-    raise OSError(f"{ROOT}: CMake cannot build in a folder of that name; move it elsewhere")
+    raise OSError(told("%s: CMake cannot build in a folder of that name; move it elsewhere", ROOT))
 
 
 def build_interfaces(wheels: Path, folder: Path) -> None:
@@ -287,7 +309,7 @@ def build_interfaces(wheels: Path, folder: Path) -> None:
     # Pythons started by a build must not import half-installed packages.
     environ["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     environ["PATH"] = f"{python.parent}{os.pathsep}{environ.get('PATH', os.defpath)}"
-    made = ("wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels, sources)
+    made = ("wheel", "--verbose", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels, sources)
     for command in (
         (sys.executable, "-m", "venv", "--clear", folder),
         pip(python, *REQUIRE, LOCKED / "interfaces.txt"),
@@ -309,11 +331,11 @@ def set_up(environment: Environment) -> None:
         if environment.is_sound() and environment.ready.stat().st_mtime > asked:
             return
         version = "{}.{}.{}".format(*sys.version_info)
-        say(f"deck: setting up {environment.folder} with Python {version}")
-        say("  1 to 3 minutes at first, more on a busy machine")
+        say(told("deck: setting up %s with Python %s", environment.folder, version))
+        say(told("  1 to 3 minutes at first, more on a busy machine"))
         WORK.mkdir(parents=True, exist_ok=True)
         environment.update()
-        say("deck: set-up complete")
+        say(told("deck: set-up complete"))
 
 
 def main(folder: str) -> int:
@@ -322,15 +344,15 @@ def main(folder: str) -> int:
         set_up(Environment(Path(folder).absolute()))
     except StepError as failed:
         say("\n".join(read(failed.log).decode(errors="replace").splitlines()[-TAIL:]))
-        say(f"deck: failed at: {failed}; the whole log is in {failed.log}")
+        say(told("deck: failed at: %s; the whole log is in %s", failed, failed.log))
     except WrongNameError as wrong:
         say(str(wrong))
-        say("deck: nothing is built before these names are fixed")
+        say(told("deck: nothing is built before these names are fixed"))
         return 2
     except OSError as error:
-        say(f"deck: cannot set up here: {error}")
+        say(told("deck: cannot set up here: %s", error))
     except KeyboardInterrupt:
-        say("\ndeck: set-up interrupted; the next `make` starts it again")
+        say(told("\ndeck: set-up interrupted; the next `make` starts it again"))
     else:
         return 0
     return 1

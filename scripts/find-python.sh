@@ -22,7 +22,11 @@ for name; do
     best=${best:-$python}
 done
 if [ -z "$best" ]; then
-    echo "deck: ${PYTHON:-python3} does not run here: install Python 3.10 to 3.13 and its venv module" >&2
+    # There is no Python that could ask setup_words.py.
+    case "${DECK_LANG:-${LC_ALL:-${LC_MESSAGES:-${LANG:-}}}}" in
+    ru*) echo "deck: ${PYTHON:-python3} здесь не запускается: установите Python 3.10–3.13 и его модуль venv" >&2 ;;
+    *) echo "deck: ${PYTHON:-python3} does not run here: install Python 3.10 to 3.13 and its venv module" >&2 ;;
+    esac
     exit 1
 fi
 exec "$best" "$here/preflight.py"

@@ -8,6 +8,9 @@ import platform
 import sys
 import sysconfig
 
+# Run by its path: the module beside it has a bare name.
+from setup_words import tell, told
+
 OLDEST, NEWEST = (3, 10), (3, 13)
 PIXI = "install pixi (https://pixi.sh) and use `pixi run deck`"
 
@@ -60,26 +63,23 @@ def complaints(machine):
     """Yield what is wrong and how to fix it, the most serious first."""
     version = "%d.%d" % machine.python
     if machine.system != "Linux" or machine.arch != "x86_64" or machine.bits != 64:
-        yield "ROS 2 is on PyPI for 64-bit Linux on x86-64 only, this is %s on %s, %d-bit: %s." % (
-            machine.system,
-            machine.arch,
-            machine.bits,
-            PIXI,
-        )
+        only = "ROS 2 is on PyPI for 64-bit Linux on x86-64 only, this is %s on %s, %d-bit: %s."
+        yield told(only, machine.system, machine.arch, machine.bits, told(PIXI))
     if machine.libc[0] != "glibc" or release(machine.libc[1]) < (2, 28):
-        yield "the ROS 2 of PyPI needs glibc 2.28 or newer, which this Linux lacks: %s." % PIXI
+        yield told("the ROS 2 of PyPI needs glibc 2.28 or newer, which this Linux lacks: %s.", told(PIXI))
     if not OLDEST <= machine.python <= NEWEST:
-        yield "this is Python %s and Deck runs on 3.10 to 3.13: install one of them." % version
+        yield told("this is Python %s and Deck runs on 3.10 to 3.13: install one of them.", version)
     if "venv" not in machine.modules or "ensurepip" not in machine.modules:
-        yield ("Python {0} cannot make virtual environments: sudo apt install python{0}-venv.").format(version)
+        yield told("Python %s cannot make virtual environments: sudo apt install python%s-venv.", version, version)
     if not has_program(machine.path, compilers("CC", "cc", "gcc", "clang")):
-        yield "there is no C compiler: sudo apt install build-essential."
+        yield told("there is no C compiler: sudo apt install build-essential.")
     if not has_program(machine.path, compilers("CXX", "c++", "g++", "clang++")):
-        yield "there is no C++ compiler: sudo apt install build-essential."
+        yield told("there is no C++ compiler: sudo apt install build-essential.")
     if not os.path.exists(os.path.join(machine.include, "Python.h")):
-        yield "Python {0} lacks its headers: sudo apt install python{0}-dev.".format(version)
+        yield told("Python %s lacks its headers: sudo apt install python%s-dev.", version, version)
 
 
 if __name__ == "__main__":
     for found in complaints(Machine()):
-        sys.exit("deck: " + found)
+        tell("deck: " + found)
+        sys.exit(1)

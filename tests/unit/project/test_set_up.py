@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -13,8 +15,9 @@ from typing import Any
 import pytest
 
 from tests.unit.scripts_of_setup import ROOT, SCRIPTS, load
+from text.i18n import detect
 
-preflight, environment, wheel_cache = map(load, ("preflight", "environment", "wheel_cache"))
+preflight, environment, wheel_cache, words = map(load, ("preflight", "environment", "wheel_cache", "setup_words"))
 PI = "pixi run deck"
 
 
@@ -99,6 +102,58 @@ def test_which_python_is_taken(
     assert found.returncode == (0 if taken else 1)
     assert said in found.stderr
     assert found.stderr.count("\n") == bool(said)
+
+
+# ---------------------------------------------------------------- its words
+
+
+def test_all_that_the_set_up_says_has_its_russian() -> None:
+    """`told` takes literals, or a constant of capitals; `Step` and `heading` pass theirs on."""
+    said = {"install pixi (https://pixi.sh) and use `pixi run deck`", *re.findall("'(deck: .*)'", makefile())}
+    for script in ("preflight.py", "environment.py"):
+        for call in ast.walk(ast.parse((SCRIPTS / script).read_text())):
+            if isinstance(call, ast.Call) and getattr(call.func, "id", "") in {"told", "Step"}:
+                said |= {word.value for word in call.args[:1] if isinstance(word, ast.Constant)}
+    assert said <= set(words.RUSSIAN)
+    for english, russian in words.RUSSIAN.items():
+        assert re.findall("%.", english) == re.findall("%.", russian)
+
+
+def makefile() -> str:
+    return "".join(re.findall("setup_words.py .*\n", (ROOT / "Makefile").read_text()))
+
+
+@pytest.mark.parametrize(
+    "environ",
+    [
+        {},
+        {"LANG": "ru_RU.UTF-8"},
+        {"LANG": "ru_RU.UTF-8", "LC_ALL": "C"},
+        {"LANG": "C", "LC_MESSAGES": "ru"},
+        {"DECK_LANG": "en", "LANG": "ru_RU.UTF-8"},
+        {"DECK_LANG": "xx", "LANG": "ru_RU.UTF-8"},
+    ],
+)
+def test_the_set_up_speaks_the_language_that_deck_will_speak(
+    environ: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("DECK_LANG", "LC_ALL", "LC_MESSAGES", "LANG"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in environ.items():
+        monkeypatch.setenv(name, value)
+    assert words.speaks_russian() == (detect(environ=environ) == "ru")
+
+
+def test_a_step_says_how_far_it_has_come(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    locked = tmp_path / "deck.txt"
+    locked.write_text("a==1\nb==2 ; python_version < '3'\nc==3\n")
+    monkeypatch.setattr(environment, "LOCKED", tmp_path)
+    log = tmp_path / "log"
+    log.write_text("Ignoring b: markers\nCollecting a==1\n")
+    assert environment.loaded(log) == "1/2"
+    assert environment.built(log) == ""
+    log.write_text("  [1/400] Building\n  [100/400] Building [3/5]\n")
+    assert environment.built(log) == "25 %"
 
 
 # ---------------------------------------------------------------- the environment
