@@ -19,19 +19,27 @@ def _leave(_number: int, _frame: FrameType | None) -> None:
     os._exit(0)
 
 
-__preload__ = ("parts.runner", "parts.node", "parts.parameters", "parts.translated_logger", "parts.qos")
+__preload__ = (
+    ".parts.runner",
+    ".parts.node",
+    ".parts.parameters",
+    ".parts.translated_logger",
+    ".parts.qos",
+    ".parts.emergency",
+)
 """Imports of nearly every node: the launcher's spawn server may import them in advance."""
 __preload_idle__ = (
-    "parts.refusals",
-    "parts.emergency",
-    "driving.repeat",
-    "safety.gate",
-    "parts.sole_publisher",
-    "parts.head_client",
-    "simulated.room_scene",
-    "simulated.scene",
-    "drivers.servos",
-    "parts.sound",
+    ".parts.refusals",
+    ".driving.repeat",
+    ".safety.gate",
+    ".parts.sole_publisher",
+    ".parts.head_client",
+    ".simulated.room_scene",
+    ".simulated.scene",
+    ".drivers.servos",
+    ".parts.sound",
+    # Brings pydantic, which takes longer than all others together.
+    "robot.commands.schema",
 )
 """Imports of some nodes: the spawn server may import them while nobody waits for a node."""
 

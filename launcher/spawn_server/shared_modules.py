@@ -1,9 +1,9 @@
 """Modules that many nodes of a project share, imported once for all of them.
 
-A package lists them in its `__init__.py`: in `__preload__ = ("_life", "_topics")` those that nearly
-every node needs, in `__preload_idle__` those that some need, imported when there is time. The user
-may edit them at any time, so a node that is forked later checks whether they are unchanged, and
-imports them again if not.
+A package lists them in its `__init__.py`: in `__preload__ = ("._life", "_topics")` those that nearly every node
+needs, in `__preload_idle__` those that some need, imported when there is time; a leading dot means a module of the
+package itself. The user may edit them at any time, so a node that is forked later checks whether they are unchanged,
+and imports them again if not.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class SharedModules:
                 loaded = importlib.import_module(package)
             for name in getattr(loaded, attribute, ()):
                 with _noting(stamps):
-                    importlib.import_module(f"{package}.{name}")
+                    importlib.import_module(name, package)
                 yield name
 
     def renew(self, module: str) -> None:
