@@ -1,15 +1,20 @@
 """Starting lesson 9 with Deck, compared with starting the same nodes by `&` in a shell, in turns.
 
-`python -m bench.launch` prints the time until all nodes are in the ROS graph, as seen by an
-observer that was there before, the CPU time used until then, and the memory 5 s later. All of
-Deck's own processes are counted, including the client or screen; memory is also given for the nodes
-alone. `deck run` starts from scratch; with the list of lessons open, Deck has had time to prepare.
+`python -m bench.launch` prints the time until all nodes are in the ROS graph, as seen by an observer that has been
+there for a second, and the CPU time used until then, all of Deck's own processes included. Every round has each
+start once, in another order than the round before; what counts is the ratio within a round. `deck run` starts from
+scratch; with the list of lessons open, Deck has had time to prepare.
+
+The marks below the table say what waits for what: when the first and the last process of a node was there, and when
+the first and the last node was seen.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import os
+import select
 import shlex
 import signal
 import statistics
@@ -22,23 +27,24 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.processes import cpu_s, pss_mb
+from bench.processes import TICKS_PER_S, command, cpu_s, descendants
 from launcher.domain.discovery import set_discovery
-from launcher.processes.table import processes
 from launcher.profile.load import load_profile
 from tests.e2e.terminal import Terminal
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from launcher.profile.load import Profile
 
 DOMAIN = int(os.environ.get("BENCH_DOMAIN", "79"))
-ROUNDS = int(os.environ.get("BENCH_ROUNDS", "7"))
-SETTLE_S = 5.0
+ROUNDS = int(os.environ.get("BENCH_ROUNDS", "15"))
+OBSERVED_S = 1.0
+"""An observer that has just joined announces itself more often than later."""
 READING_S = 4.0
 """The least time that a person needs to read the list of lessons."""
-SHELL, DECK, PICKER = "`&` in a shell", "deck run", "Enter in the picker"
+LOOK_S, WITHIN_S = 0.005, 60.0
+SHELL, DECK, PICKER = "`&` in a shell", "deck run", "Enter in the list"
 
 
 @dataclass(frozen=True)
@@ -54,12 +60,15 @@ class Started:
 
 @dataclass(frozen=True)
 class Figures:
-    """The figures of one start."""
+    """One start, in seconds."""
 
-    ready_s: float
-    cpu_s: float
-    pss_mb: float
-    nodes_pss_mb: float
+    seen: float
+    cpu: float
+    first_process: float
+    last_process: float
+    first_seen: float
+    last: str
+    """The node that was seen last."""
 
 
 def environment() -> dict[str, str]:
@@ -68,20 +77,12 @@ def environment() -> dict[str, str]:
 
 
 @contextmanager
-def watch(names: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
-    """Run the observer, which announces itself often, so that it discovers nodes quickly.
-
-    Each start has a new one: an old observer may still see nodes of the previous turn.
-    """
+def observer(names: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
+    """Run a new observer: an old one may still see nodes of the turn before."""
     quick = environment()
     set_discovery(quick, "localhost")
-    process = subprocess.Popen(
-        [sys.executable, "-m", "bench.graph_watch", *names],
-        env=quick,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
+    argv = [sys.executable, "-m", "bench.launch", *names]
+    process = subprocess.Popen(argv, env=quick, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
         process.stdout.readline()
@@ -90,11 +91,34 @@ def watch(names: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
         process.communicate(timeout=30)
 
 
+def observe(names: Sequence[str]) -> None:
+    """Print `ready`, then a JSON object of name to monotonic time, once all nodes are seen; end with stdin."""
+    import rclpy
+
+    rclpy.init()
+    node = rclpy.create_node(f"_watch_{os.getpid()}", enable_rosout=False)
+    seen: dict[str, float] = {}
+    time.sleep(OBSERVED_S)
+    print("ready", flush=True)
+    deadline_s = time.monotonic() + WITHIN_S
+    while missing := set(names) - set(seen):
+        there = missing & {name for name, _ in node.get_node_names_and_namespaces()}
+        seen |= dict.fromkeys(there, time.monotonic())
+        if select.select([sys.stdin], [], [], LOOK_S)[0]:
+            return  # nobody waits for the result any more
+        if time.monotonic() > deadline_s:
+            sys.exit(f"not in the graph within {WITHIN_S:g} s: {', '.join(sorted(missing))}")
+    print(json.dumps(seen), flush=True)
+    sys.stdin.read()
+    node.destroy_node()
+    rclpy.shutdown()
+
+
 @contextmanager
 def by_shell(profile: Profile) -> Iterator[Started]:
     """Start the nodes as a user would by hand, all at once."""
     lines = [f"{shlex.join(node.argv())} &" for node in profile.nodes.values()]
-    began = time.monotonic()
+    began_s = time.monotonic()
     process = subprocess.Popen(
         ["bash", "-c", "\n".join([*lines, "wait"])],
         env=environment(),
@@ -103,7 +127,7 @@ def by_shell(profile: Profile) -> Iterator[Started]:
         start_new_session=True,
     )
     try:
-        yield Started(process.pid, began)
+        yield Started(process.pid, began_s)
     finally:
         for pid in descendants(process.pid):
             os.kill(pid, signal.SIGTERM)
@@ -113,101 +137,102 @@ def by_shell(profile: Profile) -> Iterator[Started]:
 @contextmanager
 def by_deck(profile: Profile) -> Iterator[Started]:
     """Start the profile with `deck run`."""
-    began = time.monotonic()
-    process = subprocess.Popen(
-        [sys.executable, "-m", "tui", "run", str(profile.path), "--domain", str(DOMAIN)],
-        env=environment(),
-        stdout=subprocess.DEVNULL,
-    )
+    argv = [sys.executable, "-m", "tui", "run", str(profile.path), "--domain", str(DOMAIN)]
+    began_s = time.monotonic()
+    process = subprocess.Popen(argv, env=environment(), stdout=subprocess.DEVNULL)
     try:
-        yield Started(process.pid, began)
+        yield Started(process.pid, began_s)
     finally:
         process.send_signal(signal.SIGINT)
         process.wait(30)
 
 
 @contextmanager
-def by_picker(profile: Profile) -> Iterator[Started]:
+def by_list(profile: Profile) -> Iterator[Started]:
     """Press Enter in the list of lessons, in which this lesson is preselected as the last one."""
-    argv = [sys.executable, "-m", "tui", "--domain", str(profile.domain), "--lang", "en"]
-    config = tempfile.TemporaryDirectory()
-    settings = Path(config.name) / "deck" / "settings.json"
-    settings.parent.mkdir()
-    settings.write_text(json.dumps({"lesson": profile.path.stem, "tour": "seen"}))
-    terminal = Terminal(argv, 120, 40, {**environment(), "XDG_CONFIG_HOME": config.name})
-    try:
-        terminal.wait_for(profile.document.title["en"])
-        time.sleep(READING_S)
-        pid = terminal.process.pid
-        started = Started(pid, time.monotonic(), cpu_s(descendants(pid)))
-        terminal.press("enter")
-        yield started
-    finally:
-        terminal.press("ctrl+q")
-        terminal.process.wait(30)
-        terminal.close()
-        config.cleanup()
+    argv = [sys.executable, "-m", "tui", "--domain", str(DOMAIN), "--lang", "en"]
+    with tempfile.TemporaryDirectory() as config:
+        settings = Path(config, "deck", "settings.json")
+        settings.parent.mkdir()
+        settings.write_text(json.dumps({"lesson": profile.path.stem, "tour": "seen"}))
+        terminal = Terminal(argv, 120, 40, {**environment(), "XDG_CONFIG_HOME": config})
+        try:
+            terminal.wait_for(profile.document.title["en"])
+            time.sleep(READING_S)
+            pid = terminal.process.pid
+            started = Started(pid, time.monotonic(), cpu_s(descendants(pid)))
+            terminal.press("enter")
+            yield started
+        finally:
+            terminal.press("ctrl+q")
+            terminal.process.wait(30)
+            terminal.close()
 
 
-STARTERS = {SHELL: by_shell, DECK: by_deck, PICKER: by_picker}
+STARTERS = {SHELL: by_shell, DECK: by_deck, PICKER: by_list}
 
 
-def descendants(pid: int) -> list[int]:
-    """Return a process and all its descendants."""
-    table = list(processes())
-    found = [pid]
-    for parent in found:
-        found += [process.pid for process in table if process.parent == parent]
-    return found
-
-
-def is_node(pid: int) -> bool:
-    """Whether a process is a node, and not the shell or a process of Deck."""
-    words = Path(f"/proc/{pid}/cmdline").read_bytes()
-    return b"nodes." in words and not words.startswith(b"bash")
+def begun_s(pid: int) -> float:
+    """Return when a process was started, on the monotonic clock and to 10 ms."""
+    ticks = int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[19])
+    return ticks / TICKS_PER_S + time.monotonic() - time.clock_gettime(time.CLOCK_BOOTTIME)
 
 
 def measure(kind: str, profile: Profile) -> Figures:
-    with watch(list(profile.nodes)) as watcher:
-        assert watcher.stdout is not None
-        with STARTERS[kind](profile) as started:
-            seen = watcher.stdout.readline()
-            if not seen:
-                sys.exit(f"{kind}: not all nodes came")
-            ready_s = float(seen) - started.began_s
-            used_s = cpu_s(descendants(started.pid)) - started.used_s
-            time.sleep(SETTLE_S)
-            everything = descendants(started.pid)
-            nodes = [pid for pid in everything if is_node(pid)]
-            return Figures(ready_s, used_s, pss_mb(everything), pss_mb(nodes))
+    with observer(list(profile.nodes)) as watching, STARTERS[kind](profile) as started:
+        assert watching.stdout is not None
+        line = watching.stdout.readline()
+        if not line:
+            sys.exit(f"{kind}: not all nodes came")
+        everything = descendants(started.pid)
+        used_s = cpu_s(everything) - started.used_s
+        seen: dict[str, float] = json.loads(line)
+        nodes = [begun_s(pid) for pid in everything if "nodes." in command(pid) and "bash" not in command(pid)]
+    last = max(seen, key=seen.__getitem__)
+    times = (seen[last], min(nodes), max(nodes), min(seen.values()))
+    ready, first_process, last_process, first_seen = (at_s - started.began_s for at_s in times)
+    return Figures(ready, used_s, first_process, last_process, first_seen, last)
+
+
+def interval(values: Sequence[float]) -> tuple[float, float]:
+    """Return where the median lies with 95 %, by counting signs: nothing is assumed of how the values spread."""
+    ordered, count = sorted(values), len(values)
+    tails = [sum(math.comb(count, k) for k in range(rank + 1)) / 2**count for rank in range(count // 2)]
+    rank = sum(tail <= 0.025 for tail in tails)
+    return ordered[max(0, rank - 1)], ordered[min(count - 1, count - rank)]
 
 
 def main() -> None:
-    """Take turns, and print medians and their ratios."""
+    """Take turns, and print medians, ratios and marks."""
     profile = load_profile("profiles/09-brain.yaml", domain=DOMAIN)
     taken: dict[str, list[Figures]] = {kind: [] for kind in STARTERS}
-    for _round in range(ROUNDS):
-        for kind, figures in taken.items():
-            figures.append(measure(kind, profile))
-            print(kind, figures[-1], file=sys.stderr, flush=True)
-    print(f"{'':26}{'ready s':>10}{'CPU s':>10}{'PSS MB':>10}{'nodes MB':>10}")
-    rows = {kind: medians(figures) for kind, figures in taken.items()}
-    for kind, row in rows.items():
-        print_row(kind, row)
-    for kind in (DECK, PICKER):
-        print_row(f"ratio, {kind}", [deck / shell for deck, shell in zip(rows[kind], rows[SHELL], strict=True)])
-
-
-def print_row(name: str, values: Iterable[float]) -> None:
-    """Print one line of the table."""
-    print(f"{name:26}" + "".join(f"{value:10.2f}" for value in values))
-
-
-def medians(figures: list[Figures]) -> list[float]:
-    """Return the median of each column."""
-    columns = zip(*(vars(one).values() for one in figures), strict=True)
-    return [statistics.median(column) for column in columns]
+    kinds = list(STARTERS)
+    for number in range(ROUNDS):
+        for kind in kinds[number % 3 :] + kinds[: number % 3]:
+            taken[kind].append(measure(kind, profile))
+            print(kind, taken[kind][-1], file=sys.stderr, flush=True)
+    print(f"{ROUNDS} rounds; load of the machine {os.getloadavg()[0]:.1f}\n")
+    print("| | all nodes seen, s | of `&`, within a round | 95 % | goal | CPU, s | of `&` | 95 % |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for kind, figures in taken.items():
+        cells = []
+        for column, goal in (("seen", "0.5, below 0.6"), ("cpu", "")):
+            ratios = [getattr(a, column) / getattr(b, column) for a, b in zip(figures, taken[SHELL], strict=True)]
+            low, high = interval(ratios)
+            cells.append(f"{statistics.median(getattr(one, column) for one in figures):.2f}")
+            compared = (f"{statistics.median(ratios):.2f}", f"{low:.2f} to {high:.2f}", goal)
+            cells += ("1.00", "", "") if kind == SHELL else compared
+        print(f"| {kind} | {' | '.join(cells[:-1])} |")
+    print("\n| medians, s | first process of a node | last | first node seen | last | most often the last |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for kind, figures in taken.items():
+        marks = ("first_process", "last_process", "first_seen", "seen")
+        cells = [f"{statistics.median(getattr(one, mark) for one in figures):.2f}" for mark in marks]
+        print(f"| {kind} | {' | '.join(cells)} | {statistics.mode(one.last for one in figures)} |")
 
 
 if __name__ == "__main__":
-    main()
+    if len(sys.argv) > 1:
+        observe(sys.argv[1:])
+    else:
+        main()

@@ -1,14 +1,20 @@
-"""CPU and memory of processes, and CPU of the machine, read from /proc."""
+"""CPU and memory of processes, and CPU of the machine, read from /proc; programs for a measurement."""
 
 from __future__ import annotations
 
 import os
 import re
+import subprocess
 import sys
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from launcher.domain.discovery import set_discovery
+from launcher.processes.table import processes
+
+ROOT = Path(__file__).resolve().parents[1]
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
 
@@ -32,11 +38,12 @@ def stolen_s() -> float:
     return int(fields[8]) / TICKS_PER_S
 
 
-def children(pid: int) -> list[int]:
-    """Return the pids of the direct children of a process."""
-    found = []
-    for thread in Path(f"/proc/{pid}/task").iterdir():
-        found += [int(child) for child in (thread / "children").read_text().split()]
+def descendants(pid: int) -> list[int]:
+    """Return a process and all its descendants."""
+    table = list(processes())
+    found = [pid]
+    for parent in found:
+        found += [process.pid for process in table if process.parent == parent]
     return found
 
 
@@ -54,8 +61,24 @@ def _pss_bytes(pid: int) -> int:
     return int(match[1]) * 1024 if match else 0
 
 
-def watch_stdin() -> threading.Event:
-    """Return an event that is set once stdin is closed, by the end of the parent's measurement."""
+@contextmanager
+def running(*argv: str, domain: int) -> Iterator[None]:
+    """Run a Python program in a domain, and end it by SIGTERM."""
+    env = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
+    set_discovery(env, "localhost")
+    nowhere = subprocess.DEVNULL
+    process = subprocess.Popen(
+        [sys.executable, *argv], cwd=ROOT, env=env, stdin=nowhere, stdout=nowhere, stderr=nowhere
+    )
+    try:
+        yield
+    finally:
+        process.terminate()
+        process.wait(30)
+
+
+def stdin_closed() -> threading.Event:
+    """Return an event that is set once stdin is closed, by the end of whoever has started this."""
     ended = threading.Event()
 
     def read() -> None:

@@ -7,17 +7,16 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
-from bench.processes import children, command, cpu_s, pss_mb
+from bench.processes import command, cpu_s, descendants, pss_mb
 from tests.e2e.terminal import Terminal, own_folders
 
 DOMAIN = int(os.environ.get("BENCH_DOMAIN", "77"))
@@ -86,12 +85,10 @@ def first_frame(folder: Path) -> tuple[float, float, float]:
 
 
 def screen_processes(terminal: Terminal) -> list[int]:
-    """Return the pids of the screen, its observer and its supervisor, without server and nodes."""
-    screen = terminal.process.pid
-    observers = [pid for pid in children(screen) if "observer/process" in command(pid)]
-    below = [pid for guardian in children(screen) for pid in children(guardian)]
-    supervisors = [pid for pid in below if "launcher.supervisor" in command(pid)]
-    return [screen, *observers, *supervisors]
+    """Return the pids of the screen, its observer, guardian and supervisor, without server and nodes."""
+    marks = ("observer/process", "launcher.supervisor")
+    screen, *others = descendants(terminal.process.pid)
+    return [screen, *(pid for pid in others if any(mark in command(pid) for mark in marks))]
 
 
 def at_rest(terminal: Terminal, pids: list[int]) -> tuple[float, float, float]:
@@ -116,18 +113,6 @@ def key_delays_ms(terminal: Terminal) -> list[float]:
         delays.append(1000 * (time.monotonic() - started))
         time.sleep(0.15)
     return delays
-
-
-def stopped_delays_ms(terminal: Terminal) -> list[float]:
-    """Return the same while the observer's process does not run."""
-    _screen, observer, _supervisor = screen_processes(terminal)
-    os.kill(observer, signal.SIGSTOP)
-    try:
-        return key_delays_ms(terminal)
-    finally:
-        # Found to hang, it is ended, and made anew.
-        with suppress(ProcessLookupError):
-            os.kill(observer, signal.SIGCONT)
 
 
 def marked_row(terminal: Terminal) -> int:
@@ -178,7 +163,6 @@ def main() -> None:
             time.sleep(5)
             cpu, pss, sent = at_rest(terminal, screen_processes(terminal))
             keys = key_delays_ms(terminal)
-            stopped = stopped_delays_ms(terminal)
         delays, growth, written, kept = flooded(folder)
     print("| what | measured | goal |")
     print("| --- | --- | --- |")
@@ -188,8 +172,6 @@ def main() -> None:
     print(f"| screen and supervisor at rest, PSS | {pss:.0f} MB | 150 MB |")
     print(f"| to the terminal at rest | {sent / 1000:.1f} kB/s | 8 kB/s |")
     print(f"| a key to its effect, median | {statistics.median(keys):.0f} ms | 50 ms |")
-    print(f"| the same, observer stopped, median | {statistics.median(stopped):.0f} ms | 50 ms |")
-    print(f"| the same, observer stopped, longest | {max(stopped):.0f} ms | - |")
     print(f"| a key under 10 000 lines/s, median | {statistics.median(delays):.0f} ms | 200 ms |")
     print(f"| a key under 10 000 lines/s, longest | {max(delays):.0f} ms | 500 ms |")
     print(f"| memory grown in {FLOOD_S:.0f} s of flood, buffers full | {growth:+.1f} MB | flat |")

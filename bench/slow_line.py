@@ -14,11 +14,11 @@ import tempfile
 import time
 from pathlib import Path
 
+from bench.processes import ROOT
 from tests.e2e.panning_camera import PROFILE, TOPIC
 from tests.e2e.terminal import Terminal, own_folders
 
 DOMAIN = os.environ.get("BENCH_DOMAIN", "79")
-ROOT = Path(__file__).resolve().parents[1]
 COLUMNS, ROWS = 160, 45
 LINE = 64_000
 WARM_UP_S = 15.0

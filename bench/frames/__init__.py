@@ -1,1 +1,0 @@
-"""What the frames of /tf cost."""

@@ -1,1 +1,0 @@
-"""What a learner waits for while writing a node."""

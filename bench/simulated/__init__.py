@@ -1,1 +1,0 @@
-"""Measurements without ROS: the robot in its simulated world."""

@@ -1,1 +1,0 @@
-"""Measurements of the Space screen."""

@@ -1,1 +1,0 @@
-"""What the viewers beside the screen cost."""
