@@ -1,4 +1,7 @@
-"""A starter's comments in one language: its files have each in English, and below it in Russian."""
+"""A starter's words in one language.
+
+Its files have each comment in English, and below it in Russian; what it logs in English, and behind it `# ru: "..."`.
+"""
 
 from __future__ import annotations
 
@@ -9,16 +12,18 @@ _RUSSIAN = re.compile("[а-яё]", re.IGNORECASE)
 _QUOTED = re.compile('"[^"]*"')
 """Words that the course's nodes know are Russian in every language."""
 _DOCSTRING = re.compile(r'"""([^"а-яё]+\.) ([^"]*[а-яё][^"]*)"""', re.IGNORECASE)
+_LOGGED = re.compile(r'"([^"\n]*)"\)  # ru: ("[^"\n]*")')
 
 
 def in_language(content: bytes, code: str) -> bytes:
-    """Return the content of a file without the comments in the other language."""
+    """Return the content of a file without the words in the other language."""
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError:
         return content
     russian = code == "ru"
     text = _DOCSTRING.sub(r'"""\2"""' if russian else r'"""\1"""', text)
+    text = _LOGGED.sub(r"\2)" if russian else r'"\1")', text)
     text = _COMMENTS.sub(lambda found: _kept(found[0].splitlines(keepends=True), russian=russian), text)
     return text.encode("utf-8")
 

@@ -13,7 +13,7 @@ class MockSonar(Node):
         # НЕ ХВАТАЕТ: издателя Float32 в топике /sensor/sonar_front, в self.publisher.
         # MISSING: a timer that calls self.measure once a second.
         # НЕ ХВАТАЕТ: таймера, который раз в секунду вызывает self.measure.
-        self.get_logger().info("the sonar is on")
+        self.get_logger().info("the sonar is on")  # ru: "сонар включён"
 
     def measure(self):
         # MISSING: a Float32 with a random distance from 0.2 to 3.0 m, published.

@@ -10,7 +10,7 @@ class SafetyStop(Node):
         self.declare_parameter("stop_distance", 0.5)
         # MISSING: a subscription to /sensor/sonar_front that calls self.on_distance.
         # НЕ ХВАТАЕТ: подписки на /sensor/sonar_front, которая вызывает self.on_distance.
-        self.get_logger().info("the safety node is on guard")
+        self.get_logger().info("the safety node is on guard")  # ru: "узел безопасности следит за расстоянием"
 
     def on_distance(self, message):
         # MISSING: below stop_distance a warning with the distance, otherwise info.

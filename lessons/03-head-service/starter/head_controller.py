@@ -21,7 +21,7 @@ class HeadController(Node):
         # НЕ ХВАТАЕТ: издателя JointState в топике /head_state, в self.publisher.
         # MISSING: a timer that calls self.tell ten times a second.
         # НЕ ХВАТАЕТ: таймера, который вызывает self.tell десять раз в секунду.
-        self.get_logger().info("the head looks ahead")
+        self.get_logger().info("the head looks ahead")  # ru: "голова смотрит вперёд"
 
     def move_head(self, request, response):
         # MISSING: refuse angles beyond -90 to 90 degrees: sum is 0.

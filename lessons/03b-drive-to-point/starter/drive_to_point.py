@@ -24,7 +24,7 @@ class DriveToPointNode(Node):
         self.odometry = self.create_publisher(Odometry, "/odom", 10)
         # MISSING: an ActionServer for DriveToPoint, "drive_to_point", that calls self.execute.
         # НЕ ХВАТАЕТ: ActionServer для DriveToPoint, "drive_to_point", вызывающего self.execute.
-        self.get_logger().info("waiting for goals")
+        self.get_logger().info("waiting for goals")  # ru: "жду целей"
 
     def on_goal(self, goal):
         # MISSING: refuse a goal more than 5 m away from the origin.

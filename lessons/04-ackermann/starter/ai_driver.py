@@ -23,7 +23,7 @@ class AiDriver(Node):
         # НЕ ХВАТАЕТ: издателя AckermannDriveStamped в топике /drive, в self.publisher.
         # MISSING: a subscription to String on /ai_command that calls self.on_command.
         # НЕ ХВАТАЕТ: подписки на String в /ai_command, которая вызывает self.on_command.
-        self.get_logger().info("I translate words into motion")
+        self.get_logger().info("I translate words into motion")  # ru: "перевожу слова в движение"
 
     def on_command(self, message):
         # "Налево 20" becomes word = "left", number = "20"; "Налево" has no number: None.

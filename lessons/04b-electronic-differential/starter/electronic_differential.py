@@ -18,7 +18,7 @@ class ElectronicDifferential(Node):
         # НЕ ХВАТАЕТ: параметров "wheelbase" (по умолчанию 0.25) и "track" (0.15).
         # MISSING (last step): a timer of 0.5 s, in self.watchdog, that calls self.on_silence.
         # НЕ ХВАТАЕТ (последний шаг): таймера 0.5 с в self.watchdog, вызывающего self.on_silence.
-        self.get_logger().info("the differential waits for /drive")
+        self.get_logger().info("the differential waits for /drive")  # ru: "дифференциал ждёт /drive"
 
     def on_drive(self, message):
         # MISSING: the speed of each wheel, by the formulas; then self.tell(left, right).

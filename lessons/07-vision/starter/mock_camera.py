@@ -16,7 +16,7 @@ class MockCamera(Node):
         # НЕ ХВАТАЕТ: издателя Image в топике /camera/color/image_raw, в self.publisher.
         # MISSING: a timer that calls self.shoot ten times a second.
         # НЕ ХВАТАЕТ: таймера, который вызывает self.shoot десять раз в секунду.
-        self.get_logger().info("the camera is on")
+        self.get_logger().info("the camera is on")  # ru: "камера включена"
 
     def shoot(self):
         # MISSING: a black picture of 640x480, in three colours of uint8.

@@ -14,7 +14,7 @@ class VlmAgentStub(Node):
         # НЕ ХВАТАЕТ: подписки на /camera/color/image_raw, которая вызывает self.on_picture.
         # MISSING: a timer that calls self.look every 3 seconds.
         # НЕ ХВАТАЕТ: таймера, который вызывает self.look раз в 3 секунды.
-        self.get_logger().info("waiting for pictures")
+        self.get_logger().info("waiting for pictures")  # ru: "жду кадров"
 
     def on_picture(self, message):
         # MISSING: the picture as an array, kept in self.newest.

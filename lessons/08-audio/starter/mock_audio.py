@@ -15,7 +15,7 @@ class MockAudio(Node):
         # НЕ ХВАТАЕТ: подписки на /audio/speaker_raw, которая вызывает self.play.
         # MISSING: a timer that calls self.speak every `period` seconds (the parameter).
         # НЕ ХВАТАЕТ: таймера, который раз в `period` секунд (параметр) вызывает self.speak.
-        self.get_logger().info("microphone and speaker are on")
+        self.get_logger().info("microphone and speaker are on")  # ru: "микрофон и динамик включены"
 
     def speak(self):
         # MISSING: the parameter `phrase` as bytes, in a ByteMultiArray, published.

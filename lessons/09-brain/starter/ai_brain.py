@@ -21,7 +21,7 @@ class AiBrain(Node):
         # в /audio/speaker_raw, в self.speaker.
         # MISSING: a client of set_head_position (AddTwoInts), in self.head.
         # НЕ ХВАТАЕТ: клиента set_head_position (AddTwoInts), в self.head.
-        self.get_logger().info("the brain is awake")
+        self.get_logger().info("the brain is awake")  # ru: "мозг проснулся"
 
     def on_picture(self, message):
         self.picture = message

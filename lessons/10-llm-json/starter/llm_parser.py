@@ -39,7 +39,7 @@ class LlmParser(Node):
         # НЕ ХВАТАЕТ: издателя AckermannDriveStamped в топике /drive, в self.publisher.
         # MISSING: a client of set_head_position (AddTwoInts), in self.head.
         # НЕ ХВАТАЕТ: клиента set_head_position (AddTwoInts), в self.head.
-        self.get_logger().info("waiting for JSON of the model")
+        self.get_logger().info("waiting for JSON of the model")  # ru: "жду JSON от модели"
 
     def on_json(self, message):
         # MISSING: make an LlmResponse of message.data; log an error if it is refused.

@@ -100,12 +100,14 @@ def test_what_was_written_is_kept_as_a_copy(course: Path, capsys: pytest.Capture
 
 
 @pytest.mark.parametrize("code", ["en", "ru"])
-def test_a_folder_has_its_comments_in_one_language(course: Path, code: str) -> None:
+def test_a_folder_has_its_words_in_one_language(course: Path, code: str) -> None:
     for lesson in folders(SHIPPED):
         assert main(["new", lesson.name, "--lang", code]) == 0
     texts = [file.read_text("utf-8") for file in course.rglob("*.py")]
     assert any(("MISSING" if code == "en" else "НЕ ХВАТАЕТ") in text for text in texts)
     assert not any(("НЕ ХВАТАЕТ" if code == "en" else "MISSING") in text for text in texts)
+    assert sum("# ru:" in text for text in texts) == 0
+    assert any(f'info("{"the sonar is on" if code == "en" else "сонар включён"}")' in text for text in texts)
     for file in course.rglob("*.yaml"):
         assert load_profile(file).nodes
 
