@@ -25,6 +25,9 @@ class Interest:
     all_images: bool = True
     """Whether `all_topics` includes those with pictures, as far as they come from this machine."""
 
+    all_fast: bool = True
+    """Whether it includes those that cost much to follow: fast ones, and large ones."""
+
     @property
     def named(self) -> frozenset[str]:
         """Topics that are wanted whether they exist or not."""

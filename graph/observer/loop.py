@@ -83,8 +83,8 @@ class ObserverLoop:
         """Hand over the newest picture."""
         self._look_at(pictures=frozenset(topics))
 
-    def measure(self, wanted: tuple[bool, bool]) -> None:
-        self._look_at(all_topics=wanted[0], all_images=wanted[1])
+    def measure(self, wanted: tuple[bool, bool, bool]) -> None:
+        self._look_at(all_topics=wanted[0], all_images=wanted[1], all_fast=wanted[2])
 
     def watch_goals(self, actions: Iterable[str]) -> None:
         self._look_at(actions=frozenset(actions))

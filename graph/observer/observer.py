@@ -87,12 +87,14 @@ class Observer:
         """
         self._client.want("watch_pictures", frozenset(topics))
 
-    def measure(self, all_topics: bool, *, images: bool = True) -> None:
+    def measure(self, all_topics: bool, *, images: bool = True, fast: bool = True) -> None:
         """Measure the rates of all topics, or only of those watched and followed.
 
-        Without `images`, of none that carries any; never of those of another machine's.
+        Without `images`, of none that carries any; never of those of another machine's. Without `fast`, of none
+        that costs much to follow, which is for the time while nobody looks: the rate of a fast one is known in a
+        moment, that of a slow one is not.
         """
-        self._client.want("measure", (all_topics, images))
+        self._client.want("measure", (all_topics, images, fast))
 
     def watch_goals(self, actions: Iterable[str]) -> None:
         """Report in each update the goals that others have sent to exactly these actions."""

@@ -34,6 +34,8 @@ LINGER_S = 30.0
 """How long a subscription is kept that nobody wants any more: whoever changes tabs comes back."""
 LIGHT_BYTES_PER_S = 50_000.0
 """Most that such a topic may cost."""
+FAST_HZ = 20.0
+"""What comes more often is left alone while nobody looks."""
 
 
 class Taps:
@@ -59,6 +61,8 @@ class Taps:
         """Topics that are subscribed whether they exist or not."""
         self._frame_ids: dict[str, str] = {}
         """What headers have named on topics that are subscribed no more."""
+        self._costly: set[str] = set()
+        """Topics that have turned out to cost much since somebody has last looked at all."""
         self._host = b""
         """What identifiers of this machine begin with; empty as long as that is not known."""
 
@@ -81,6 +85,8 @@ class Taps:
         if not interest.frames:
             self._frames.clear()
         self._scan, self._interest = scan, interest
+        if interest.all_fast:
+            self._costly.clear()
         self._host = next((host_of(end) for ends in scan.topics.values() for end in ends.own_publishers), b"")
         self._rows = {}
         for topic in (self._taps.keys() | self._frame_ids.keys()) - scan.topics.keys():
@@ -120,11 +126,18 @@ class Taps:
                 samples[wanted] = tuple(replace(sample, topic=wanted) for sample in found)
 
     def need_tuning(self) -> bool:
-        """Return whether a queue turned out to have the wrong depth, or has lingered enough."""
+        """Return whether a queue turned out to have the wrong depth or to cost much, or has lingered enough."""
         now_s = time.time()
-        return any(now_s - left_s >= LINGER_S for left_s in self._left_s.values()) or any(
-            tap.better_depth(one_publisher=self._one_publisher(topic)) != tap.depth
-            for topic, tap in self._taps.items()
+        costly = set() if self._interest.all_fast else {topic for topic in self._taps if self._costs(topic, now_s)}
+        news = costly - self._costly
+        self._costly |= costly
+        return (
+            bool(news)
+            or any(now_s - left_s >= LINGER_S for left_s in self._left_s.values())
+            or any(
+                tap.better_depth(one_publisher=self._one_publisher(topic)) != tap.depth
+                for topic, tap in self._taps.items()
+            )
         )
 
     def rows(self) -> tuple[TopicRow, ...]:
@@ -164,8 +177,14 @@ class Taps:
             return None
         return self._open(topic, ends)
 
+    def _costs(self, topic: str, now_s: float) -> bool:
+        meter = self._taps[topic].meter
+        return (meter.hz(now_s) or 0) > FAST_HZ or (meter.bytes_per_s(now_s) or 0) > LIGHT_BYTES_PER_S
+
     def _is_spared(self, topic: str, ends: TopicEnds) -> bool:
         """Whether to leave a topic alone that nobody looks at: a camera fills a network."""
+        if not self._interest.all_fast and (topic in self._costly or not LARGE_TYPES.isdisjoint(ends.type_names)):
+            return True
         if IMAGES.isdisjoint(ends.type_names):
             return False
         spared = not self._interest.all_images or topic.endswith(THINNED)

@@ -100,7 +100,7 @@ class Replay:
         """Decode every message of exactly these topics."""
         self._look_at(replace(self._interest, followed=frozenset(topics)))
 
-    def measure(self, all_topics: bool, *, images: bool = True) -> None:
+    def measure(self, all_topics: bool, *, images: bool = True, fast: bool = True) -> None:
         """Do nothing: every topic of a bag is measured."""
 
     def watch_goals(self, actions: Iterable[str]) -> None:

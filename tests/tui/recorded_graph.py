@@ -52,6 +52,7 @@ class RecordedGraph:
     followed: set[str] = field(default_factory=set)
     measured: bool = False
     measured_images: bool = True
+    measured_fast: bool = True
     pictures: set[str] = field(default_factory=set)
     """Topics of which pictures are wanted."""
     stopped: bool = False
@@ -122,8 +123,8 @@ class RecordedGraph:
     def watch_pictures(self, topics: Iterable[str]) -> None:
         self.pictures = set(topics)
 
-    def measure(self, all_topics: bool, *, images: bool = True) -> None:
-        self.measured, self.measured_images = all_topics, images
+    def measure(self, all_topics: bool, *, images: bool = True, fast: bool = True) -> None:
+        self.measured, self.measured_images, self.measured_fast = all_topics, images, fast
 
     def watch_inner_states(self, wanted: bool) -> None:
         self.inner_wanted = wanted

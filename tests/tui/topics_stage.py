@@ -30,7 +30,7 @@ class TopicsStage(ScreenStage[TopicsScreen]):
 
     def measures(self) -> bool:
         """Whether the rates of all topics are asked for now."""
-        return self.graph.measured
+        return self.graph.measured_fast
 
     def as_picture(self) -> bool:
         """Whether the message is shown as a picture now."""

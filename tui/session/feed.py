@@ -282,6 +282,11 @@ class Feed:
             self.ask_for_topics()
 
     @property
+    def _is_here(self) -> bool:
+        """Whether the nodes are on this machine, so that it costs little to know their rates before somebody asks."""
+        return self.session is not None and not self._hears_everybody and self.session.discovery == "localhost"
+
+    @property
     def _hears_everybody(self) -> bool:
         """Whether Deck started none of the nodes, as in a recording."""
         return self.watching or self.replay is not None
@@ -331,9 +336,11 @@ class Feed:
         graph.follow(followed)
         graph.watch_goals(set() if front is None else front.watch_goals())
         graph.watch_frames(front is not None and front.wants_frames)
+        looks = self._measures_all or (front is not None and front.measure_all)
         graph.measure(
-            self._measures_all or (front is not None and front.measure_all),
-            images=self._measures_all or (front is not None and front.measure_images),
+            looks or self._is_here,
+            images=self._measures_all or (looks and front is not None and front.measure_images),
+            fast=looks,
         )
         graph.period_s = 0.25 if front is None else front.period_s
 

@@ -132,7 +132,7 @@ class GraphLink(Protocol):
     def watch_pictures(self, topics: Iterable[str]) -> None:
         """Report the newest picture of exactly these topics, from wherever it costs least."""
 
-    def measure(self, all_topics: bool, *, images: bool = True) -> None:
+    def measure(self, all_topics: bool, *, images: bool = True, fast: bool = True) -> None:
         """Measure the rates of all topics, or only of those watched and followed.
 
         Without `images`, of none that carries any.

@@ -92,9 +92,11 @@ async def test_only_what_is_shown_is_asked_for() -> None:
     async with opened(opener) as (_app, pilot):
         assert opener.graph.pictures == {"/camera/color/image_raw"}
         assert {"/audio/mic_raw", "/emergency_stop", "/safety_state"} <= opener.graph.followed
+        assert opener.graph.measured, "slow topics have their rates before somebody looks"
+        assert not opener.graph.measured_fast
         await pilot.press("2")
         await pilot.pause()
-        assert opener.graph.measured
+        assert opener.graph.measured_fast
         assert "/camera/color/image_raw" not in opener.graph.watched | opener.graph.pictures
         assert "/audio/mic_raw" in opener.graph.followed
 

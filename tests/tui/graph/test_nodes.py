@@ -109,12 +109,12 @@ async def test_what_lasts_is_counted_on_the_tab_and_listed_the_worst_first(later
         await stage.wait(lambda: "Findings 4" in tab_words(stage))
         stage.screen.list_kind(GraphKind.FINDING)
         await stage.wait_for("✗ error · incompatible QoS")
-        assert stage.graph.measured
+        assert stage.graph.measured_fast
         listed = [entry.label for entry in stage.screen.index.listed[GraphKind.FINDING]]
         assert listed == ["✗ /camera/color/image_raw", "✗ /sensor/sonar_frnt", "✗ /set_head_postion", "▲ /imu"]
         stage.screen.list_kind(GraphKind.NODE)
         await stage.press()
-        assert not stage.graph.measured
+        assert not stage.graph.measured_fast
 
 
 async def test_enter_goes_to_the_topic_and_links_to_the_nodes(listed: GraphStage) -> None:

@@ -222,6 +222,27 @@ def test_a_topic_is_subscribed_only_while_somebody_looks(load: Peer, module_doma
         watcher.close()
 
 
+def test_while_nobody_looks_slow_topics_are_measured_and_costly_ones_left_alone(
+    talker: Peer, watcher: Watcher
+) -> None:
+    slow, fast, large = "/passing/slow", "/passing/fast", "/passing/large"
+    for topic, hz in ((slow, 2.0), (fast, 60.0)):
+        talker.advertise(topic, type_name=FLOAT)
+        talker.repeat(topic, value={"data": 1.0}, hz=hz)
+    talker.advertise(large, type_name="sensor_msgs/msg/PointCloud2")
+    watcher.observer.measure(True, images=False, fast=False)
+    watcher.wait_for(slow, lambda row: row.hz is not None, "has a rate")
+    watcher.wait_for(fast, lambda row: not row.measured and talker.listeners(fast) == 0, "was found to be fast")
+    row = watcher.row(large)
+    assert row is not None
+    assert not row.measured
+    watcher.observer.measure(True)
+    watcher.wait_for(fast, lambda row: row.hz is not None, "is measured for whoever looks")
+    assert watcher.wait_for(slow, lambda row: row.hz is not None, "has its rate still").count > 1
+    for topic in (slow, fast, large):
+        talker.withdraw(topic)
+
+
 # ---------------------------------------------------------------- pictures
 
 
