@@ -25,7 +25,7 @@ class FilePlace(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A single value."""
+    """A value that is neither mapping nor sequence."""
 
     value: bool | int | float | str | None
     text: str
@@ -53,7 +53,7 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """A sequence."""
+    """A sequence, in the order of the text."""
 
     items: tuple[Tree, ...]
     place: FilePlace

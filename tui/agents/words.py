@@ -18,7 +18,7 @@ LONGEST = 300
 
 
 def question_head(question: Question, more: int) -> str:
-    """Say who asks."""
+    """Return the headline of a question, with how many `more` wait behind it."""
     head = _("Agent “{name}” asks to move the robot").format(name=plain(question.agent))
     return f"{head} (+{more})" if more else head
 

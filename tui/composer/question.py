@@ -61,7 +61,7 @@ class ModelQuestion:
 
 @dataclass(frozen=True)
 class ModelAnswer:
-    """A whole answer."""
+    """The model's answer once it is whole, with its tokens and what they cost."""
 
     text: str
     usage: TokenUsage | None = None

@@ -21,7 +21,7 @@ MOST_LOOSE = 400
 
 
 class FlowBook:
-    """The newest chains."""
+    """Chains of steps that follow one cause, made from messages and log lines in whatever order they come."""
 
     def __init__(self) -> None:
         self._chains: list[Chain] = []

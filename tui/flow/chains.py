@@ -70,7 +70,7 @@ class StepKind(str, Enum):
 
 @dataclass(frozen=True, order=True)
 class FlowStep:
-    """One event."""
+    """An event on a lane of the timeline; steps are ordered by time alone."""
 
     time_s: float
     """Unix time."""

@@ -280,7 +280,7 @@ class FramesScreen(DeckScreen):
         if heard:
             recorded = self.feed.replay is not None
             lines.append(
-                _("a recording does not tell which node published it") if recorded else publisher_line(heard)
+                _("a recording does not say which node published it") if recorded else publisher_line(heard)
             )
         looks = ["bold"] + [""] * len(lines)
         self._say("#frames-pair", list(zip(lines, looks, strict=False)))

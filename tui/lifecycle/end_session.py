@@ -64,8 +64,8 @@ class EndSessionScreen(Dialog[bool]):
         """Say whose it is, how long it has been running, and what stopping it does."""
         session, count = self._session, len(self.deck.feed.nodes)
         ends = ngettext(
-            "Its {n} node will be stopped. Every screen that shows it will be told that you ended it.",
-            "Its {n} nodes will be stopped. Every screen that shows it will be told that you ended it.",
+            "Its {n} node will be stopped. Every screen that shows it will say that you ended it.",
+            "Its {n} nodes will be stopped. Every screen that shows it will say that you ended it.",
             count,
         )
         lines = [

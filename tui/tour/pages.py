@@ -70,7 +70,7 @@ PAGES = (
         (
             N_(
                 "The Lesson screen has the task of the step, and checks that look at your running "
-                "node. Save your file in any editor: Deck starts the node again, and tells of each "
+                "node. Save your file in any editor: Deck starts the node again, and shows for each "
                 "check what it expected and what it saw."
             ),
             N_("A step that has passed stays green. Nothing goes on before you do."),
