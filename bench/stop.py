@@ -94,7 +94,6 @@ class Sonar:
         self._port = port
 
     def live(self, ended: threading.Event) -> None:
-        """Send frames."""
         while not ended.wait(0.01):
             metres = self.metres
             self.told_s.setdefault(metres, time.monotonic())

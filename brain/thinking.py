@@ -31,7 +31,7 @@ Answer again with the whole JSON object, corrected."""
 
 @dataclass(frozen=True)
 class Thought(Generic[T]):
-    """An accepted answer."""
+    """An answer of the model that has passed the check, if need be after one repair."""
 
     value: T
     text: str

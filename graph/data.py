@@ -152,7 +152,7 @@ class TopicRow:
 
 @dataclass(frozen=True)
 class Sample:
-    """One decoded message."""
+    """A message decoded into plain data: mappings, lists, arrays of numpy, and scalars."""
 
     topic: str
     type_name: str

@@ -18,7 +18,7 @@ BRIDGES = {"10c4:ea60": "CP2102", "1a86:7523": "CH340", "0403:6001": "FTDI"}
 
 @dataclass(frozen=True)
 class SerialPort:
-    """One port."""
+    """A serial port of this machine, by its permanent name where udev gives one."""
 
     device: str
     """Its current name in the kernel: `/dev/ttyACM0`."""

@@ -118,7 +118,7 @@ def space(language: str) -> None:
 
 
 def main() -> int:
-    """Make all pictures."""
+    """Make the pictures of README in both languages."""
     if shutil.which("rsvg-convert") is None:
         print("rsvg-convert is missing: apt install librsvg2-bin", file=sys.stderr)
         return 1

@@ -34,7 +34,7 @@ them."""
 
 @dataclass(frozen=True)
 class ModelFile:
-    """A GGUF file."""
+    """What the header of a GGUF file says of the model in it."""
 
     path: Path
     size: int

@@ -72,7 +72,6 @@ class TransformListener:
             self.buffer.set_transform_static(transform, _WHO)
 
     def unregister(self) -> None:
-        """End the subscriptions."""
         for name in ("tf_sub", "tf_static_sub"):
             if (found := self.__dict__.pop(name, None)) is not None:
                 self.node.destroy_subscription(found)

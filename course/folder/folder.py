@@ -28,7 +28,7 @@ NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 @dataclass(frozen=True)
 class NewFolder:
-    """What was made."""
+    """A learner's folder, and what was written into it just now."""
 
     path: Path
     files: tuple[Path, ...]

@@ -33,7 +33,6 @@ class Motor:
         self._pwm.duty_u16(abs(permille) * 65535 // 1000)
 
     def brake(self):
-        """Brake the wheel."""
         self._ina.value(0)
         self._inb.value(0)
         self._pwm.duty_u16(65535)
@@ -126,7 +125,6 @@ class Board:
         self._motors[1].drive(right)
 
     def brake(self):
-        """Brake both wheels."""
         for motor in self._motors:
             motor.brake()
 

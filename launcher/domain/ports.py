@@ -24,7 +24,7 @@ _NOBODY = "0000"
 
 @dataclass(frozen=True)
 class Socket:
-    """A UDP socket."""
+    """A UDP socket of this machine, as /proc/net/udp has it."""
 
     port: int
     uid: int

@@ -41,7 +41,7 @@ EARLIEST_S = 946684800.0
 
 @dataclass(frozen=True)
 class Parsed:
-    """One parsed line."""
+    """What a line of a node's output says, without the prefix of rcutils."""
 
     severity: Severity
     text: str

@@ -36,7 +36,7 @@ _EXEC_LOOK_EVERY_S = 0.0005
 
 @dataclass(frozen=True)
 class Process:
-    """One living process."""
+    """A process as /proc/PID/stat has it; `started_ticks` with `pid` names it for good."""
 
     pid: int
     name: str

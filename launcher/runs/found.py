@@ -32,7 +32,7 @@ _LOOK_AGAIN_S = 0.05
 
 @dataclass(frozen=True)
 class FoundSupervisor:
-    """A running supervisor."""
+    """A running supervisor of this user's, found by its mark in /proc."""
 
     run_id: str
     folder: Path

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Neighbour:
-    """Another session."""
+    """Another session in the same ROS domain, of whatever run directory."""
 
     record: RunRecord
     run_dir: str

@@ -146,7 +146,7 @@ def end(problem: str, detail: object = "") -> NoReturn:
 
 
 def load() -> ModuleType:
-    """Import miniaudio."""
+    """Return miniaudio, which is imported late; raise what the user can do where it does not load."""
     try:
         import miniaudio
     except (ImportError, OSError) as error:

@@ -130,7 +130,7 @@ class Whole(Setting):
 
 @dataclass(frozen=True)
 class Switch(Setting):
-    """True or false."""
+    """A parameter that is true or false."""
 
     def accept(self, value: object) -> bool:
         """Return a bool; accept nothing that is merely similar."""

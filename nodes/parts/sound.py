@@ -9,10 +9,10 @@ from std_msgs.msg import ByteMultiArray
 
 
 def to_message(sound: bytes) -> ByteMultiArray:
-    """Pack bytes."""
+    """Return samples (signed, 16 bit, little-endian, mono) as ROS wants them: each byte a bytes of its own."""
     return ByteMultiArray(data=[sound[at : at + 1] for at in range(len(sound))])
 
 
 def from_message(message: ByteMultiArray) -> bytes:
-    """Unpack bytes."""
+    """Return the samples of a message, as `to_message` takes them."""
     return b"".join(message.data)

@@ -28,7 +28,7 @@ WAYS = ("in", "out")
 
 @dataclass(frozen=True, slots=True)
 class FrameLine:
-    """One reported frame."""
+    """A frame on a serial line as it is shown and logged, or a count of frames that were left out."""
 
     time_s: float
     way: str

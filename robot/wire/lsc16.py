@@ -62,7 +62,7 @@ class BatteryRequest:
 
 @dataclass(frozen=True)
 class Battery:
-    """The voltage."""
+    """The answer to a `BatteryRequest`: the voltage that feeds the servos."""
 
     millivolts: int
 

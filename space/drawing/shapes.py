@@ -45,7 +45,7 @@ class Speckles:
 
 @dataclass(frozen=True, eq=False)
 class Strokes:
-    """Straight lines."""
+    """Straight lines between two lists of points, in metres in the frame of the drawing."""
 
     starts: Places
     ends: Places

@@ -121,7 +121,7 @@ class QosCheck(CheckDocument):
 
 
 class ServiceCheck(CheckDocument):
-    """A service answers."""
+    """A service answers a request, with the fields that `response` asks for."""
 
     service: RosName = Field(description="This service is called.")
     type: TypeName = Field(description="Its type: `example_interfaces/srv/AddTwoInts`.")
@@ -155,7 +155,7 @@ class PublishCheck(CheckDocument):
 
 
 class NothingCheck(CheckDocument):
-    """No message comes."""
+    """For a while no message comes on a topic."""
 
     model_config = ConfigDict(populate_by_name=True)
 
@@ -182,7 +182,7 @@ class ParameterCheck(CheckDocument):
 
 
 class FrameDocument(Document):
-    """Two frames."""
+    """The place of one frame in another, in metres and degrees."""
 
     model_config = ConfigDict(populate_by_name=True)
 
