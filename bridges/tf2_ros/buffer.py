@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 LOOK_S = 0.02
 UNHEARD_S = 2.0
-"""So long nothing may fill a buffer that is asked before it is told."""
+"""So long nothing may fill a buffer that is asked before anything is in it."""
 OURS = __file__.rpartition("/")[0]
 NOW = Duration()
 
 
 class Buffer(BufferCore, BufferInterface):
-    """Keeps transforms of the last 10 s, or as long as it is told."""
+    """Keeps transforms of the last 10 s, or as long as it is asked to."""
 
     def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
         BufferCore.__init__(self, cache_time)

@@ -73,7 +73,7 @@ class Crash:
     lived_s: float
     """How old the process was."""
     status: NodeStatus
-    """What it was told with."""
+    """What it was reported with."""
 
 
 @dataclass
@@ -295,7 +295,7 @@ def _written_s(file: str) -> float:
 def _began_s(pid: int, uptime_s: float) -> float:
     """Return when a process began, unix time: by the kernel, for a status arrives late.
 
-    Of a process that is no more, by the uptime it was told with.
+    Of a process that is no more, by the uptime it was reported with.
     """
     process = read_process(pid)
     if process is not None:

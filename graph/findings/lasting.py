@@ -56,7 +56,7 @@ class LastingFindings:
         return told
 
     def settles_in_s(self, now_s: float) -> float | None:
-        """Return how long the last of those that are still to be told needs; None without one."""
+        """Return how long the last of those that are still to be reported needs; None without one."""
         left_s = [left for one in self._found if (left := self._left_s(one, now_s)) > 0.0]
         return max(left_s, default=None)
 

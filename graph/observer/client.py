@@ -355,7 +355,7 @@ class ObserverClient:
         self._forget(line)
 
     def _forget(self, line: _Line) -> None:
-        """Say of what is under way that it has ended, and keep what another is to be told."""
+        """Say of what is under way that it has ended, and keep what the next process needs to know."""
         with self._lock:
             self._line = None
             ended = () if line.update is None else self._lost.lose(line.update, line.why)

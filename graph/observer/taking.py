@@ -11,7 +11,7 @@ rcutils/types/uint8_array.h and rcutils/allocator.h, as Jazzy has them.
 Nothing of that is trusted blindly. Whoever finds another library gets no `SenderReader`, and all
 that C writes goes to buffers with room to spare. Each gid has a pointer to the name of the
 middleware before it: where that is not the very pointer that the middleware itself gives for its
-name, the layout is another one, and no sender is told.
+name, the layout is another one, and no sender is known.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ ROOM = 256
 FIRST_BYTES = 4096
 """Of the buffer, which grows with the messages."""
 SENDER = "sender"
-"""What is told of a message besides what rclpy tells: the gid of its publisher; None if it is not
+"""What is known of a message besides what rclpy says: the gid of its publisher; None if it is not
 known."""
 
 

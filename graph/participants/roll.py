@@ -74,7 +74,7 @@ class Roll:
         if silent:
             return Attendance(speaking, silent)
         ends = self._ends()
-        # The middleware takes its own copy of what was told, and may be later with that.
+        # The middleware takes its own copy of what was announced, and may be later with that.
         placed = {bytes(end["endpoint_gid"]) for end in ends if end["node_name"] != UNNAMED}
         names = frozenset(self._node.get_node_names_and_namespaces())
         partly = frozenset(one for one in speaking if not self._told[one].is_in(placed, names))

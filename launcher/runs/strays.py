@@ -68,7 +68,7 @@ def find_strays(run_dir: Path) -> tuple[Stray, ...]:
 def _is_guarded(process: Process, table: Mapping[int, Process]) -> bool:
     """Whether a guardian is above it, which ends what its supervisor leaves.
 
-    A robot in a container cannot be told by its supervisor: that has another pid in there.
+    A robot in a container cannot be recognised by its supervisor: that has another pid in there.
     """
     seen: set[int] = set()
     at: Process | None = process

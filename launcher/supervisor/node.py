@@ -44,7 +44,7 @@ ASKED_TWICE_S = 0.3
 
 @dataclass
 class _Crash:
-    """Why the process before this one has ended, which is told until this one has proved well."""
+    """Why the process before this one has ended, which is shown until this one has proved well."""
 
     words: str
     fault: NodeFault | None
@@ -124,7 +124,7 @@ class SupervisedNode:
         )
 
     def _recent_crash(self) -> _Crash | None:
-        """Return what is still to be told of the process before this one."""
+        """Return what is still to be shown of the process before this one."""
         crash, now_s = self._crash, self._around.clock.now()
         if crash is None or (crash.well_s is not None and now_s - crash.well_s > WELL_AFTER_S):
             return None

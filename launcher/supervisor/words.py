@@ -22,7 +22,7 @@ NOT_FOUND_WORDS = "deck: command not found"
 
 
 def stopped_words(last: Exit | None) -> str:
-    """How a node ended that was told to stop; `last` is None if it had no process."""
+    """How a node ended that was asked to stop; `last` is None if it had no process."""
     if last is not None and last.signal is not None:
         return say("stopped by {signal}", signal=last.signal)
     if last is not None and last.code:

@@ -36,7 +36,7 @@ _AS_JSON: Mapping[str, str] = {"\\'": "'", '"': '\\"'}
 _BLANK = re.compile(r"[ \t\n\r]*")
 _NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _PIECE = re.compile(r"\w{1,40}|\.\.\.|\S")
-"""What is told of something that has no name in `robot.commands.not_json`."""
+"""What is said of something that has no name in `robot.commands.not_json`."""
 _DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
 _UNIT = re.compile(r"[ \t]*((?:[^\W\d_]|[°%])[^\s,\]}\"']*)")
 _DIGIT = re.compile(r"[.0-9xX]")

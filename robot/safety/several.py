@@ -98,7 +98,7 @@ class Streams(Generic[Said]):
 
 
 class LowestReading:
-    """The distance that counts: the newest reading; of several publishers, the lowest of late."""
+    """The distance that counts: the newest reading; of several publishers, the lowest of the recent ones."""
 
     def __init__(self, now_s: float) -> None:
         self._distance_m: float | None = None
@@ -148,7 +148,7 @@ class LowestReading:
 
 
 class SlowestCommand(Generic[Said]):
-    """The command that counts: the newest; of several publishers, the slowest of late.
+    """The command that counts: the newest; of several publishers, the slowest of the recent ones.
 
     So whoever publishes past the gate makes the robot no faster than the gate allows.
     """

@@ -61,7 +61,7 @@ class DeckTarget(Protocol):
         """Request this of these nodes, or of all if none is named."""
 
     def exchange(self) -> Worker[None]:
-        """Run one's own file in the place of the chosen node, or Deck's node again."""
+        """Run the user's own file in place of the chosen node, or Deck's node again."""
 
     def edit(self) -> None:
         """Open the file of the chosen node in an editor."""

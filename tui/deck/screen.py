@@ -160,7 +160,7 @@ class LessonDeck(DeckScreen):
 
     @work(exclusive=True, group="exchange")
     async def exchange(self) -> None:
-        """Run one's own file in the place of the chosen node, or Deck's node again."""
+        """Run the user's own file in place of the chosen node, or Deck's node again."""
         # Not needed for the first frame.
         from tui.deck.exchange import exchange_node
 

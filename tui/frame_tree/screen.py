@@ -279,9 +279,7 @@ class FramesScreen(DeckScreen):
         heard = next((line.heard for line in self._lines if key_of(line) == self.table.chosen), ())
         if heard:
             recorded = self.feed.replay is not None
-            lines.append(
-                _("a recording does not say which node published it") if recorded else publisher_line(heard)
-            )
+            lines.append(_("a recording does not say which node published it") if recorded else publisher_line(heard))
         looks = ["bold"] + [""] * len(lines)
         self._say("#frames-pair", list(zip(lines, looks, strict=False)))
 

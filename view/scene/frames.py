@@ -1,7 +1,7 @@
 """The tree of frames: every transform as the place of a frame, with its axes and its name.
 
 Rerun takes the place of a frame from one entity only, so that of a root, which nobody publishes, is
-told at the entity that a transform of it would be told at.
+reported at the entity of its transform.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ class Stream:
 
     def __init__(self, source: str) -> None:
         """Connect to `source`, in Rerun's own notation of an address."""
-        # That a viewer has been closed is no error of the stream's, to be told on a terminal.
+        # That a viewer has been closed is no error of the stream's, to be printed on a terminal.
         os.environ.setdefault("RUST_LOG", "off")
         import rerun
 

@@ -117,7 +117,7 @@ class Server:
         return bool(packets)
 
     def _await_loop(self) -> None:
-        """Import what will be needed, and wait to be told for which domain."""
+        """Import what will be needed, and wait for the domain to watch."""
         imported = False
         while self._loop is None and not self._over:
             self.wait(SIGN_S)

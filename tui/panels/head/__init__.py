@@ -1,4 +1,4 @@
-"""The Head panel: where the head looks, and where it was told to look.
+"""The Head panel: where the head looks, and where it is commanded to look.
 
 Only `panel` is used elsewhere, by the registry.
 """

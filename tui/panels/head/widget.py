@@ -1,4 +1,4 @@
-"""The head: where it looks, seen from above and from the side, and where it was told to look."""
+"""The head: where it looks, seen from above and from the side, and where it is commanded to look."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class HeadView(Drawing):
             self.redraw()
 
     def command(self, told: HeadReading) -> None:
-        """Mark where the head was told to look; the answer is still unknown."""
+        """Mark where the head is commanded to look; the answer is still unknown."""
         self._told, self._answer = told, ""
         self.redraw()
 
@@ -123,7 +123,7 @@ class Dial(NamedTuple):
     zero_deg: float
 
     def draw(self, degrees: float, told_deg: float | None, look: str) -> None:
-        """Draw the scale, the needle, and a mark where the head was told to look."""
+        """Draw the scale, the needle, and a mark where the head is commanded to look."""
         for step in range(-90, 91, 15):
             self.dots.dot(*self._at(step, 1.0), "muted")
         if told_deg is not None and math.isfinite(told_deg):
