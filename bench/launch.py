@@ -93,13 +93,17 @@ def observer(names: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
 
 def observe(names: Sequence[str]) -> None:
     """Print `ready`, then a JSON object of name to monotonic time, once all nodes are seen; end with stdin."""
+    # Fast DDS prints its errors to stdout.
+    told = os.fdopen(os.dup(1), "w", buffering=1)
+    os.dup2(2, 1)
+
     import rclpy
 
     rclpy.init()
     node = rclpy.create_node(f"_watch_{os.getpid()}", enable_rosout=False)
     seen: dict[str, float] = {}
     time.sleep(OBSERVED_S)
-    print("ready", flush=True)
+    told.write("ready\n")
     deadline_s = time.monotonic() + WITHIN_S
     while missing := set(names) - set(seen):
         there = missing & {name for name, _ in node.get_node_names_and_namespaces()}
@@ -108,7 +112,7 @@ def observe(names: Sequence[str]) -> None:
             return  # nobody waits for the result any more
         if time.monotonic() > deadline_s:
             sys.exit(f"not in the graph within {WITHIN_S:g} s: {', '.join(sorted(missing))}")
-    print(json.dumps(seen), flush=True)
+    told.write(f"{json.dumps(seen)}\n")
     sys.stdin.read()
     node.destroy_node()
     rclpy.shutdown()
