@@ -238,7 +238,7 @@ def test_interfaces() -> None:
 
 def test_as_a_program_it_ends_quietly() -> None:
     """By Ctrl-C, and where the reader of its output goes first."""
-    command = [sys.executable, "-P", "-m", "ros2", "topic", "echo", "/distance"]
+    command = [sys.executable, "-m", "ros2", "topic", "echo", "/distance"]
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as echo:
         assert echo.stdout is not None
         assert next(filter(own_words, echo.stdout)) == "data: 0.25\n"

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from tests.domains import DomainPool
 
-collect_ignore = [] if sys.version_info >= OLDEST else ["test_page_in_a_browser.py"]
+collect_ignore = [] if sys.version_info >= OLDEST else ["test_page_in_a_browser.py", "test_view_process.py"]
 """Rerun has no wheels for older Pythons, and `deck view` says so."""
 WIDTH, HEIGHT = 160, 120
 RED = (255, 0, 0)
