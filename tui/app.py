@@ -24,11 +24,11 @@ from tui.emergency.messages import EmergencyChanged
 from tui.emergency.state import FOLLOWED
 from tui.faults import Faults
 from tui.frame.actions.agents import AGENT_ACTIONS
-from tui.frame.actions.app import APP_ACTIONS, EmergencyRelease, EmergencyStop
-from tui.frame.actions.recording import RECORDING_ACTIONS, RecordToggle
+from tui.frame.actions.app import APP_ACTIONS, emergency_release, emergency_stop
+from tui.frame.actions.recording import RECORDING_ACTIONS, record_toggle
 from tui.frame.actions.replay import REPLAY_ACTIONS
-from tui.frame.actions.ros2 import CopyAsRos2
-from tui.frame.actions.view import OpenView
+from tui.frame.actions.ros2 import copy_as_ros2
+from tui.frame.actions.view import open_view
 from tui.frame.replay_bar import ReplayBar
 from tui.lifecycle.sessions import Sessions
 from tui.recording.recording import Recording
@@ -91,7 +91,7 @@ class DeckApp(App[int], Acting):
 
     TITLE = "Deck"
     BINDINGS: ClassVar[list[BindingType]] = bindings(
-        *APP_ACTIONS, CopyAsRos2, OpenView, *REPLAY_ACTIONS, *RECORDING_ACTIONS, *AGENT_ACTIONS
+        *APP_ACTIONS, copy_as_ros2, open_view, *REPLAY_ACTIONS, *RECORDING_ACTIONS, *AGENT_ACTIONS
     )
     COMMANDS: ClassVar = {_commands}
     ENABLE_COMMAND_PALETTE = False
@@ -128,7 +128,7 @@ class DeckApp(App[int], Acting):
         self.emergency = EmergencyControl(self, self.feed, self._emergency_changed)
         self.agents = AgentControl(self, self.feed)
         self.bypass = BypassDetector()
-        self.recording = Recording(self, self.feed, lambda: self.keys_of(RecordToggle)[0])
+        self.recording = Recording(self, self.feed, lambda: self.keys_of(record_toggle)[0])
         self.view = View(self, self.feed)
         self._screens = Screens(self)
         self.sessions = Sessions(
@@ -183,24 +183,24 @@ class DeckApp(App[int], Acting):
         """Stop the wheels if this key means that where it was pressed; return whether it did."""
         return (
             isinstance(event, Key)
-            and self._is_key_of(EmergencyStop, event.key)
+            and self._is_key_of(emergency_stop, event.key)
             and await self._check_bindings(event.key, priority=True)
         )
 
-    def _is_key_of(self, action: type[Action[Any]], key: str) -> bool:
+    def _is_key_of(self, action: Action[Any], key: str) -> bool:
         keys = self._keymap.get(action.id, action.key).split(",")
         return key in map(str.strip, keys)
 
     def _is_outdated(self, event: Event) -> bool:
         """Whether this key would release a stop that was pressed after it: the stop wins."""
         return (
-            isinstance(event, Key) and event.time <= self.stopped_s and self._is_key_of(EmergencyRelease, event.key)
+            isinstance(event, Key) and event.time <= self.stopped_s and self._is_key_of(emergency_release, event.key)
         )
 
     def is_stop(self, key: str) -> bool:
         """Whether this key, pressed now, is the emergency stop; may be asked on any thread."""
         feed = self.feed
-        if feed.link is None or feed.replay is not None or not self._is_key_of(EmergencyStop, key):
+        if feed.link is None or feed.replay is not None or not self._is_key_of(emergency_stop, key):
             return False
         try:
             focused = self.focused
@@ -399,7 +399,7 @@ class DeckApp(App[int], Acting):
         for bar in self.screen.query(ReplayBar):
             bar.look()
 
-    def keys_of(self, action: type[Action[Any]] | Keys) -> list[str]:
+    def keys_of(self, action: Action[Any] | Keys) -> list[str]:
         """Return how the keys of `action` are written, following the user's keymap."""
         keys = self._keymap.get(action.id, action.key).split(",")
         return [self.key_text(key.strip()) for key in keys]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Awaitable, Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -16,29 +16,28 @@ from tui.deck.actions import DECK_ACTIONS
 from tui.devices.actions import DEVICES_ACTIONS
 from tui.flow.actions import FLOW_ACTIONS
 from tui.frame.actions.app import (
-    ShowComposer,
-    ShowDeck,
-    ShowDevices,
-    ShowFlow,
-    ShowFrames,
-    ShowGraph,
-    ShowLesson,
-    ShowLogs,
-    ShowScreen,
-    ShowSpace,
-    ShowTopics,
-    ShowWall,
+    show_composer,
+    show_deck,
+    show_devices,
+    show_flow,
+    show_frames,
+    show_graph,
+    show_lesson,
+    show_logs,
+    show_space,
+    show_topics,
+    show_wall,
 )
-from tui.frame.actions.replay import ReplayAction
+from tui.frame.actions.replay import REPLAY_ACTIONS
 from tui.frame.host import host_of
 from tui.frame_tree.actions import FRAMES_ACTIONS
 from tui.graph.actions import GRAPH_ACTIONS
 from tui.lesson.actions import LESSON_ACTIONS
 from tui.logs.actions import LOGS_ACTIONS
 from tui.space.actions import SPACE_ACTIONS
-from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
+from tui.teleop.actions import TELEOP_ACTIONS, open_teleop
 from tui.themes import CYCLE
-from tui.topics.actions import TOPICS_ACTIONS, OpenPublish
+from tui.topics.actions import TOPICS_ACTIONS, open_publish
 from tui.topics.publish.actions import PUBLISH_ACTIONS
 from tui.wall.actions import WALL_ACTIONS
 
@@ -48,8 +47,10 @@ if TYPE_CHECKING:
     from textual.fuzzy import Matcher
     from textual.screen import Screen
 
+    from tui.frame.host import Host
 
-Actions = tuple[type[Action[Any]], ...]
+
+Actions = Sequence[Action[Any]]
 Run = Callable[[], Awaitable[None] | None]
 
 HERE, IMPOSSIBLE, ELSEWHERE = 4.0, 2.0, 1.0
@@ -64,9 +65,14 @@ WORD = 4
 class ActionPlace:
     """Where actions are available: a screen, or a dialog that one of its actions opens."""
 
-    show: type[ShowScreen]
+    show: Action[Host]
+    """Brings the screen to the front."""
     actions: Actions
-    opener: type[Action[Any]] | None = None
+    opener: Action[Any] | None = None
+
+    @property
+    def screen(self) -> str:
+        return self.show.id.removeprefix("screen.")
 
     @property
     def name(self) -> str:
@@ -75,19 +81,19 @@ class ActionPlace:
 
 
 PLACES = (
-    ActionPlace(ShowDeck, (*DECK_ACTIONS, OpenTeleop)),
-    ActionPlace(ShowDeck, TELEOP_ACTIONS, OpenTeleop),
-    ActionPlace(ShowLesson, LESSON_ACTIONS),
-    ActionPlace(ShowTopics, TOPICS_ACTIONS),
-    ActionPlace(ShowTopics, PUBLISH_ACTIONS, OpenPublish),
-    ActionPlace(ShowComposer, COMPOSER_ACTIONS),
-    ActionPlace(ShowLogs, LOGS_ACTIONS),
-    ActionPlace(ShowGraph, GRAPH_ACTIONS),
-    ActionPlace(ShowFlow, FLOW_ACTIONS),
-    ActionPlace(ShowDevices, DEVICES_ACTIONS),
-    ActionPlace(ShowFrames, FRAMES_ACTIONS),
-    ActionPlace(ShowWall, WALL_ACTIONS),
-    ActionPlace(ShowSpace, SPACE_ACTIONS),
+    ActionPlace(show_deck, (*DECK_ACTIONS, open_teleop)),
+    ActionPlace(show_deck, TELEOP_ACTIONS, open_teleop),
+    ActionPlace(show_lesson, LESSON_ACTIONS),
+    ActionPlace(show_topics, TOPICS_ACTIONS),
+    ActionPlace(show_topics, PUBLISH_ACTIONS, open_publish),
+    ActionPlace(show_composer, COMPOSER_ACTIONS),
+    ActionPlace(show_logs, LOGS_ACTIONS),
+    ActionPlace(show_graph, GRAPH_ACTIONS),
+    ActionPlace(show_flow, FLOW_ACTIONS),
+    ActionPlace(show_devices, DEVICES_ACTIONS),
+    ActionPlace(show_frames, FRAMES_ACTIONS),
+    ActionPlace(show_wall, WALL_ACTIONS),
+    ActionPlace(show_space, SPACE_ACTIONS),
 )
 """Every screen of a session, listed without importing any of them: that would delay keys."""
 
@@ -140,12 +146,12 @@ def entries(app: App[Any], front: Screen[Any]) -> Iterable[PaletteEntry]:
     yield from _impossible(app, front)
     yield from _impossible(app, app)
     for place in PLACES:
-        if place.opener is not None or place.show.screen != getattr(front, "tab", ""):
+        if place.opener is not None or place.screen != getattr(front, "tab", ""):
             for action in place.actions:
                 yield _elsewhere(app, place, action)
 
 
-def _entry(action: type[Action[Any]], title: str, run: Run, weight: float = HERE) -> PaletteEntry:
+def _entry(action: Action[Any], title: str, run: Run, weight: float = HERE) -> PaletteEntry:
     return PaletteEntry(
         title,
         in_every_language(action.title),
@@ -167,7 +173,7 @@ def _impossible(app: App[Any], target: DOMNode) -> Iterable[PaletteEntry]:
     for action in bound(target):
         if not action.palette or action.possible(target):
             continue
-        if host_of(app).feed.replay is None and issubclass(action, ReplayAction):
+        if host_of(app).feed.replay is None and action in REPLAY_ACTIONS:
             continue
         title = _("{title} (not possible now)").format(title=_(action.title))
         told = f"{title}. {_(action.tooltip)}"
@@ -178,30 +184,30 @@ def _tell(app: App[Any], words: str) -> None:
     app.notify(words, severity="warning")
 
 
-def _elsewhere(app: App[Any], place: ActionPlace, action: type[Action[Any]]) -> PaletteEntry:
+def _elsewhere(app: App[Any], place: ActionPlace, action: Action[Any]) -> PaletteEntry:
     title = f"{place.name} › {_(action.title)}"
     go = partial(_go, app, place, action)
     return _entry(action, title, run=go, weight=ELSEWHERE)
 
 
-async def _go(app: App[Any], place: ActionPlace, action: type[Action[Any]]) -> None:
+async def _go(app: App[Any], place: ActionPlace, action: Action[Any]) -> None:
     """Bring the screen of an action to the front, and run the action there if that is safe."""
     if not host_of(app).feed.opened:
         told = _("{title} is on the screen {place}: open a lesson first.")
         _tell(app, told.format(title=_(action.title), place=place.name))
         return
-    await host_of(app).show_screen(place.show.screen)
+    await host_of(app).show_screen(place.screen)
     app.call_after_refresh(_arrive, app, place, action)
 
 
-async def _arrive(app: App[Any], place: ActionPlace, action: type[Action[Any]]) -> None:
+async def _arrive(app: App[Any], place: ActionPlace, action: Action[Any]) -> None:
     front = app.screen
-    if front is not app.get_screen(place.show.screen):
+    if front is not app.get_screen(place.screen):
         return
     first = place.opener or action
     possible = bool(first.possible(front))
     # A toggle that is already switched would do the opposite of what was chosen.
-    if possible and first.from_elsewhere and first.label(front) == first.title:
+    if possible and first.anywhere and first.label(front) == first.title:
         await first.run(front)
         if first is action:
             return

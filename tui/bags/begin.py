@@ -12,7 +12,7 @@ from textual.widgets import Input, Static
 from graph.heavy_types import COMPRESSED_IMAGE, HEAVY_TYPES, IMAGE, POINT_CLOUD
 from text.i18n import N_, _, ngettext
 from text.plain import plain
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.bags.estimate import OTHERS, RecordingShare, shares, total_rate
 from tui.dialogs.dialog import Dialog
 from tui.frame.key_bar import KeyBar
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.binding import BindingType
 
+action: Announce[BeginRecordingScreen] = Announce()
+
 LOOK_S = 0.5
 """How often the rates are looked at."""
 MINUTE_S = 60.0
@@ -42,62 +44,49 @@ NAMES = {
 }
 
 
-class BeginRecording(Action["BeginRecordingScreen"]):
-    """Start recording."""
-
-    id = "begin_recording.start"
-    key = "enter"
-    title = N_("Record")
-    tooltip = N_("Start recording what is ticked.")
-    footer = True
-    priority = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: BeginRecordingScreen) -> None:
-        target.begin()
+@action(
+    "begin_recording.start",
+    "enter",
+    N_("Record"),
+    N_("Start recording what is ticked."),
+    footer=True,
+    priority=True,
+    palette=False,
+)
+def begin_recording(dialog: BeginRecordingScreen) -> None:
+    dialog.begin()
 
 
-class LeaveOut(Action["BeginRecordingScreen"]):
-    """Leave out what is chosen, or record it."""
-
-    id = "begin_recording.leave_out"
-    key = "m,ь"
-    title = N_("Leave out")
-    means = "leave out"
-    tooltip = N_("Leave out the topics of the selected type, or record them again.")
-    footer = True
-    palette = False
-
-    @classmethod
-    def label(cls, target: BeginRecordingScreen) -> str:
-        """Named after what it would do now."""
-        return N_("Record it too") if target.chosen in target.left_out else cls.title
-
-    @classmethod
-    async def run(cls, target: BeginRecordingScreen) -> None:
-        target.toggle()
+@action(
+    "begin_recording.leave_out",
+    "m",
+    N_("Leave out"),
+    N_("Leave out the topics of the selected type, or record them again."),
+    means="leave out",
+    footer=True,
+    palette=False,
+    label=lambda dialog: N_("Record it too") if dialog.chosen in dialog.left_out else N_("Leave out"),
+)
+def leave_out(dialog: BeginRecordingScreen) -> None:
+    dialog.toggle()
 
 
-class NoRecording(Action["BeginRecordingScreen"]):
-    """Do not record."""
-
-    id = "begin_recording.leave"
-    key = "escape"
-    title = N_("Do not record")
-    tooltip = N_("Back, without recording anything.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: BeginRecordingScreen) -> None:
-        target.dismiss(None)
+@action(
+    "begin_recording.leave",
+    "escape",
+    N_("Do not record"),
+    N_("Back, without recording anything."),
+    footer=True,
+    palette=False,
+)
+def no_recording(dialog: BeginRecordingScreen) -> None:
+    dialog.dismiss(None)
 
 
 class BeginRecordingScreen(Dialog["RecordingWish | None"]):
     """Folder and room above the shares of the topics, and when to end; Enter starts."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(BeginRecording, LeaveOut, NoRecording)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(begin_recording, leave_out, no_recording)
     DEFAULT_CSS = """
     BeginRecordingScreen {
         #dialog-text { padding: 1 1 0 1; }
@@ -117,7 +106,7 @@ class BeginRecordingScreen(Dialog["RecordingWish | None"]):
         super().__init__()
         self._folder = folder
         self._room_bytes = room_bytes
-        self.left_out = left_out & frozenset(HEAVY_TYPES)
+        self.left_out: frozenset[str] = left_out & frozenset(HEAVY_TYPES)
         self._note = ""
         """What is wrong with the limit that was typed."""
 

@@ -14,7 +14,7 @@ from textual.widgets import Static
 from text.i18n import N_, _, localized
 from text.os_words import os_reason
 from text.plain import plain
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 from tui.frame.key_bar import KeyBar
 from tui.recording.words import length_words, size_words
@@ -30,49 +30,36 @@ if TYPE_CHECKING:
 
     from graph.bag.listing import ListedBag
 
+action: Announce[RecordingsScreen] = Announce()
+
 LONGEST = 400
 
 
-class OpenRecording(Action["RecordingsScreen"]):
-    """Play the chosen one."""
-
-    id = "recordings.open"
-    key = "enter"
-    title = N_("Open")
-    tooltip = N_("Play the selected recording on the screens; what runs here ends first.")
-    footer = True
-    priority = True
-    palette = False
-
-    @classmethod
-    def possible(cls, target: RecordingsScreen) -> bool | None:
-        """Only with one that has anything to be read."""
-        return True if target.chosen is not None else None
-
-    @classmethod
-    async def run(cls, target: RecordingsScreen) -> None:
-        target.open_chosen()
+@action(
+    "recordings.open",
+    "enter",
+    N_("Open"),
+    N_("Play the selected recording on the screens; what runs here ends first."),
+    footer=True,
+    priority=True,
+    palette=False,
+    when=lambda dialog: True if dialog.chosen is not None else None,
+)
+def open_recording(dialog: RecordingsScreen) -> None:
+    dialog.open_chosen()
 
 
-class LeaveRecordings(Action["RecordingsScreen"]):
-    """Open none."""
-
-    id = "recordings.leave"
-    key = "escape"
-    title = N_("Close")
-    tooltip = N_("Back, without opening a recording.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: RecordingsScreen) -> None:
-        target.dismiss(None)
+@action(
+    "recordings.leave", "escape", N_("Close"), N_("Back, without opening a recording."), footer=True, palette=False
+)
+def leave_recordings(dialog: RecordingsScreen) -> None:
+    dialog.dismiss(None)
 
 
 class RecordingsScreen(Dialog[None]):
     """The recordings of the usual folder, the newest first; below, what is said of one of them."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(OpenRecording, LeaveRecordings)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(open_recording, leave_recordings)
     DEFAULT_CSS = """
     RecordingsScreen {
         #dialog { width: 110; height: 90%; }

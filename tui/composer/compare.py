@@ -16,7 +16,7 @@ from brain.faults import ModelError
 from robot.commands.schema import CommandError, parse_llm
 from text.i18n import N_, _, localized, ngettext
 from text.plain import plain
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.composer.json_editor import JsonEditor
 from tui.composer.question import ModelAnswer, ModelQuestion
 from tui.dialogs.dialog import Dialog
@@ -38,44 +38,36 @@ if TYPE_CHECKING:
     from brain.thinking import Thought
     from robot.commands.schema import LlmResponse, Problem
 
+action: Announce[CompareDialog] = Announce()
+
 PROGRESS_S = 0.1
 
 
-class TakeAnswer(Action["CompareDialog"]):
-    """Take the chosen answer into the editor."""
-
-    id = "compare.take"
-    key = "enter"
-    title = N_("Take it")
-    tooltip = N_("Put the chosen answer into the editor; nothing is sent yet.")
-    footer = True
-    priority = True
-    palette = False
-
-    @classmethod
-    def possible(cls, target: CompareDialog) -> bool | None:
-        """Only if it is whole."""
-        return True if target.chosen_answer else None
-
-    @classmethod
-    async def run(cls, target: CompareDialog) -> None:
-        target.dismiss(target.chosen_answer)
+@action(
+    "compare.take",
+    "enter",
+    N_("Take it"),
+    N_("Put the chosen answer into the editor; nothing is sent yet."),
+    footer=True,
+    priority=True,
+    palette=False,
+    when=lambda dialog: True if dialog.chosen_answer else None,
+)
+def take_answer(dialog: CompareDialog) -> None:
+    dialog.dismiss(dialog.chosen_answer)
 
 
-class LeaveCompare(Action["CompareDialog"]):
-    """Take none."""
-
-    id = "compare.leave"
-    key = "escape"
-    title = N_("None of them")
-    tooltip = N_("Leave the editor as it is; a question under way is taken back.")
-    footer = True
-    priority = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: CompareDialog) -> None:
-        target.dismiss(None)
+@action(
+    "compare.leave",
+    "escape",
+    N_("None of them"),
+    N_("Leave the editor as it is; a question under way is taken back."),
+    footer=True,
+    priority=True,
+    palette=False,
+)
+def leave_compare(dialog: CompareDialog) -> None:
+    dialog.dismiss(None)
 
 
 @dataclass
@@ -178,7 +170,7 @@ class ComparedAnswer(Vertical):
 class CompareDialog(Dialog[ModelAnswer | None]):
     """Asks one model after the other, so that neither slows the other down; returns one answer."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(TakeAnswer, LeaveCompare)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(take_answer, leave_compare)
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
     VERTICAL_BREAKPOINTS = HEIGHTS
     DEFAULT_CSS: ClassVar[str] = """

@@ -10,7 +10,7 @@ from textual.content import Content
 
 from text.i18n import N_, _
 from text.plain import plain, plain_lines
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 
 if TYPE_CHECKING:
@@ -21,31 +21,23 @@ if TYPE_CHECKING:
     from brain.asking import AskedModels
     from brain.client import ModelRequest
 
+action: Announce[PromptDialog] = Announce()
+
 LONGEST = 64 * 1024
 """Characters of a part that are shown: as many as a prompt may have."""
 KIB = 1024
 _BASE64_SHARE = 3 / 4
 
 
-class ClosePrompt(Action["PromptDialog"]):
-    """Close it."""
-
-    id = "composer.prompt_close"
-    key = "escape"
-    title = N_("Close")
-    tooltip = N_("Back to the Composer.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: PromptDialog) -> None:
-        target.dismiss(None)
+@action("composer.prompt_close", "escape", N_("Close"), N_("Back to the Composer."), footer=True, palette=False)
+def close_prompt(dialog: PromptDialog) -> None:
+    dialog.dismiss(None)
 
 
 class PromptDialog(Dialog[None]):
     """Scrolls with the arrow keys."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(ClosePrompt)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(close_prompt)
     DEFAULT_CSS: ClassVar[str] = "PromptDialog #dialog { width: 110; }"
 
     def __init__(self, models: AskedModels) -> None:

@@ -17,7 +17,7 @@ from text.i18n import N_, _, decimal
 from text.plain import plain
 from tui import clock
 from tui.actions import bindings
-from tui.composer.actions import COMPOSER_ACTIONS, Send, SendAnyway
+from tui.composer.actions import COMPOSER_ACTIONS, send, send_anyway
 from tui.composer.ask_line import AskLine
 from tui.composer.asking import ComposerAsking
 from tui.composer.json_editor import JsonEditor
@@ -137,7 +137,7 @@ class ComposerScreen(DeckScreen):
 
     @property
     def send_key(self) -> str:
-        return self.deck.keys_of(Send)[0]
+        return self.deck.keys_of(send)[0]
 
     @property
     def is_asking(self) -> bool:
@@ -266,7 +266,7 @@ class ComposerScreen(DeckScreen):
         if self.problems and not anyway:
             self.go_to_next_problem()
             words = _("Not sent: there are problems. {key} sends it anyway.").format(
-                key=self.deck.keys_of(SendAnyway)[0]
+                key=self.deck.keys_of(send_anyway)[0]
             )
             self.notify(words, severity="warning", markup=False)
             return False
@@ -379,7 +379,7 @@ class ComposerScreen(DeckScreen):
         self._title("#composer-came", _("What happened"))
         trail, now_s = self._trail, clock.now()
         if trail is None:
-            hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(Send)[0])
+            hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(send)[0])
             if self.feed.replay is not None:
                 hint = _("This is a recording: there is nobody to send to.")
             nothing = _("Nothing has been sent yet.")

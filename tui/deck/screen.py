@@ -32,7 +32,7 @@ from tui.panels.panel_grid import PanelGrid
 from tui.session.messages import SessionChanged
 from tui.session.node_command import node_command
 from tui.session.past import SONARS
-from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
+from tui.teleop.actions import TELEOP_ACTIONS, open_teleop
 from tui.teleop.dock import TeleopDock
 from tui.widgets.fault_words import fault_lines
 from tui.widgets.name_head import NameHead
@@ -73,7 +73,7 @@ class LessonDeck(DeckScreen):
         "what the nodes publish on their topics."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        *bindings(*DECK_ACTIONS, OpenTeleop),
+        *bindings(*DECK_ACTIONS, open_teleop),
         Binding("escape", "leave_field", show=False),
     ]
     DEFAULT_CSS = """
@@ -295,7 +295,7 @@ class LessonDeck(DeckScreen):
     async def on_teleop_panel_closed(self) -> None:
         await self._dock.close()
 
-    def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
+    def more_keys(self) -> Iterable[tuple[str, Sequence[Action[Any]]]]:
         yield _("Keys while driving"), TELEOP_ACTIONS
 
     # Display

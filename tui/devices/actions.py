@@ -1,307 +1,237 @@
-"""The actions of the Devices screen; each letter also works as the Cyrillic one on its key."""
+"""The actions of the Devices screen."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING
 
 from text.i18n import N_
-from tui.actions.action import Action
+from tui.actions.action import Announce, actions_of
 from tui.devices.trouble import BATTERY, NOISE, SILENCE, UNPLUGGED, SimulatedTrouble
-from tui.log_view.actions import (
-    CopyLines,
-    FoldLines,
-    NextLine,
-    PauseLines,
-    PreviousLine,
-    SaveLines,
-    SearchLines,
-    ShowsLines,
-)
 
 if TYPE_CHECKING:
-    from tui.devices.frame_rows import FrameRows
-    from tui.devices.reading import Device
-
-
-class DevicesTarget(ShowsLines, Protocol):
-    """The part of the Devices screen that its actions use."""
-
-    frames: FrameRows
-
-    @property
-    def chosen(self) -> Device | None:
-        """The chosen driver."""
-
-    @property
-    def only_bad(self) -> bool:
-        """Whether good frames are hidden."""
-
-    @property
-    def has_diagnostics(self) -> bool:
-        """Whether anybody has said anything on /diagnostics."""
-
-    @property
-    def shows_tree(self) -> bool:
-        """Whether the diagnostics of everybody are shown in place of the drivers."""
-
-    def show_tree(self, shown: bool) -> None:
-        """Show them, or the drivers."""
-
-    @property
-    def simulated(self) -> tuple[str, str] | None:
-        """The simulated robot's node, and which of its serial lines is chosen."""
-
-    def next_way(self) -> None:
-        """Switch between both directions, in, and out."""
-
-    def toggle_bad(self) -> None:
-        """Show only noise and bad frames, or all."""
-
-    def toggle_hex(self) -> None:
-        """Show readable bytes in hex, or as text."""
-
-    def clear_frames(self) -> None:
-        """Discard all frames."""
-
-    def switch_trouble(self, trouble: SimulatedTrouble) -> object:
-        """Cause this trouble on the chosen device, or clear it."""
-
-
-class NextDevicesTab(Action[DevicesTarget]):
-    """Switch from the drivers to the diagnostics of everybody, and back."""
-
-    id = "devices.tab"
-    key = "right"
-    title = N_("Diagnostics")
-    means = "the tab to the right"
-    tooltip = N_("Show what everybody says on /diagnostics as a tree, or the drivers.")
-    from_elsewhere = True
-
-    @classmethod
-    def possible(cls, target: DevicesTarget) -> bool | None:
-        """Only with something to show."""
-        return target.has_diagnostics
-
-    @classmethod
-    async def run(cls, target: DevicesTarget) -> None:
-        target.show_tree(not target.shows_tree)
-
-
-class PreviousDevicesTab(NextDevicesTab):
-    """The same: there are two."""
-
-    id = "devices.tab_back"
-    key = "left"
-    title = N_("Drivers")
-    means = "the tab to the left"
-    from_elsewhere = False
-
-
-class DevicesAction(Action[DevicesTarget]):
-    """An action on the frames of the chosen port."""
-
-    @classmethod
-    def possible(cls, target: DevicesTarget) -> bool | None:
-        """Only with a driver chosen."""
-        return bool(target.chosen)
-
-
-class PauseFrames(PauseLines[DevicesTarget], DevicesAction):
-    """Pause, or follow the newest frame."""
-
-    id = "devices.pause"
-    tooltip = N_("Pause while frames come in, or follow the newest again.")
-
-
-class OneWay(DevicesAction):
-    """Show both directions, or one."""
-
-    id = "devices.way"
-    key = "b,и"
-    title = N_("In/out")
-    tooltip = N_("Show only what comes from the device, only what goes to it, or both.")
-    footer = True
-    from_elsewhere = True
-
-    @classmethod
-    async def run(cls, target: DevicesTarget) -> None:
-        """Switch to the next of the three."""
-        target.next_way()
-
-
-class OnlyBad(DevicesAction):
-    """Show only bad frames and noise, or everything."""
-
-    id = "devices.bad"
-    key = "f,а"
-    title = N_("Only bad")
-    means = "only"
-    tooltip = N_("Show only noise and frames whose check failed, or all.")
-    footer = True
-    from_elsewhere = True
-
-    @classmethod
-    def label(cls, target: DevicesTarget) -> str:
-        """Named after what it would do now."""
-        return N_("All frames") if target.only_bad else cls.title
-
-    @classmethod
-    async def run(cls, target: DevicesTarget) -> None:
-        target.toggle_bad()
-
-
-class Hex(DevicesAction):
-    """Show bytes in hex, or as text."""
-
-    id = "devices.hex"
-    key = "v,м"
-    title = N_("Hex")
-    means = "another view"
-    tooltip = N_("Show the bytes of lines of text in hex, or as text.")
-    footer = True
-    from_elsewhere = True
-
-    @classmethod
-    def label(cls, target: DevicesTarget) -> str:
-        """Named after what it would do now."""
-        return N_("Text") if target.frames.as_hex else cls.title
-
-    @classmethod
-    async def run(cls, target: DevicesTarget) -> None:
-        target.toggle_hex()
-
-
-class FoldFrames(FoldLines[DevicesTarget], DevicesAction):
-    """Wrap long lines, or not."""
-
-    id = "devices.fold"
-
-
-class ClearFrames(DevicesAction):
-    """Discard the frames so far."""
-
-    id = "devices.clear"
-    key = "d,в"
-    title = N_("Clear")
-    means = "clear"
-    tooltip = N_("Forget the frames received so far.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: DevicesTarget) -> None:
-        target.clear_frames()
-
-
-class SearchFrames(SearchLines[DevicesTarget], DevicesAction):
-    """Search the frames."""
-
-    id = "devices.search"
-    means = "find"
-    tooltip = N_("Find text in the frames as you type; Escape ends it.")
-
-
-class NextFrame(NextLine[DevicesTarget], DevicesAction):
-    """Go to the next match."""
-
-    id = "devices.next"
-    means = "next"
-    tooltip = N_("Go to the next frame found.")
-
-
-class PreviousFrame(PreviousLine[DevicesTarget], DevicesAction):
-    """Go to the previous match."""
-
-    id = "devices.previous"
-    means = "previous"
-    tooltip = N_("Go to the previous frame found.")
-
-
-class CopyFrames(CopyLines[DevicesTarget], DevicesAction):
-    """Copy the chosen frames."""
-
-    id = "devices.copy"
-
-
-class SaveFrames(SaveLines[DevicesTarget], DevicesAction):
-    """Write frames to a file."""
-
-    id = "devices.save"
-    means = "write to a file"
-
-
-class _MakeTrouble(DevicesAction):
-    """Causes or clears trouble on the chosen device; only a simulated one allows that."""
-
-    trouble: ClassVar[SimulatedTrouble]
-
-    @classmethod
-    def possible(cls, target: DevicesTarget) -> bool | None:
-        """Only with a device of the simulated robot that can have this trouble."""
-        found = target.simulated
-        return found is not None and found[1] in cls.trouble.devices
-
-    @classmethod
-    async def run(cls, target: DevicesTarget) -> None:
-        target.switch_trouble(cls.trouble)
-
-
-class Unplug(_MakeTrouble):
-    """Cut the connection."""
-
-    id = "devices.unplug"
-    key = "U,Г"
-    title = N_("Pull cable")
-    tooltip = N_("Simulated robot: unplug the selected device; press again to plug it in.")
-    footer = True
-    trouble = UNPLUGGED
-
-
-class Noise(_MakeTrouble):
-    """Add bytes that nobody sent."""
-
-    id = "devices.noise"
-    key = "Z,Я"
-    title = N_("Noise")
-    tooltip = N_("Simulated robot: noise on the line of the selected device; press again to end it.")
-    trouble = NOISE
-
-
-class Silence(_MakeTrouble):
-    """Stay connected, but send nothing."""
-
-    id = "devices.silence"
-    key = "H,Р"
-    title = N_("Silence")
-    tooltip = N_("Simulated robot: silence the selected device; press again to undo.")
-    trouble = SILENCE
-
-
-class LowBattery(_MakeTrouble):
-    """Lower the battery voltage."""
-
-    id = "devices.battery"
-    key = "B,И"
-    title = N_("Low battery")
-    tooltip = N_("Simulated robot: the battery of Pico and servos is weak; press again to charge it.")
-    trouble = BATTERY
-
-
-DEVICES_ACTIONS = (
-    NextDevicesTab,
-    PreviousDevicesTab,
-    PauseFrames,
-    OneWay,
-    OnlyBad,
-    Hex,
-    FoldFrames,
-    ClearFrames,
-    CopyFrames,
-    SaveFrames,
-    SearchFrames,
-    NextFrame,
-    PreviousFrame,
-    Unplug,
-    Noise,
-    Silence,
-    LowBattery,
+    from tui.devices.screen import DevicesScreen
+
+action: Announce[DevicesScreen] = Announce()
+
+
+@action(
+    "devices.tab",
+    "right",
+    N_("Diagnostics"),
+    N_("Show what everybody says on /diagnostics as a tree, or the drivers."),
+    means="the tab to the right",
+    anywhere=True,
+    when=lambda screen: screen.has_diagnostics,
 )
+def next_devices_tab(screen: DevicesScreen) -> None:
+    screen.show_tree(not screen.shows_tree)
+
+
+@action(
+    "devices.tab_back",
+    "left",
+    N_("Drivers"),
+    N_("Show what everybody says on /diagnostics as a tree, or the drivers."),
+    means="the tab to the left",
+    when=lambda screen: screen.has_diagnostics,
+)
+def previous_devices_tab(screen: DevicesScreen) -> None:
+    screen.show_tree(not screen.shows_tree)
+
+
+def _with_driver(screen: DevicesScreen) -> bool | None:
+    """Only with a driver chosen."""
+    return bool(screen.chosen)
+
+
+@action(
+    "devices.pause",
+    "p",
+    N_("Pause"),
+    N_("Pause while frames come in, or follow the newest again."),
+    footer=True,
+    anywhere=True,
+    when=_with_driver,
+    label=lambda screen: N_("Pause") if screen.pane.view.following else N_("Resume"),
+)
+def pause_frames(screen: DevicesScreen) -> None:
+    screen.pane.view.toggle_following()
+
+
+@action(
+    "devices.way",
+    "b",
+    N_("In/out"),
+    N_("Show only what comes from the device, only what goes to it, or both."),
+    footer=True,
+    anywhere=True,
+    when=_with_driver,
+)
+def one_way(screen: DevicesScreen) -> None:
+    screen.next_way()
+
+
+@action(
+    "devices.bad",
+    "f",
+    N_("Only bad"),
+    N_("Show only noise and frames whose check failed, or all."),
+    means="only",
+    footer=True,
+    anywhere=True,
+    when=_with_driver,
+    label=lambda screen: N_("All frames") if screen.only_bad else N_("Only bad"),
+)
+def only_bad(screen: DevicesScreen) -> None:
+    screen.toggle_bad()
+
+
+@action(
+    "devices.hex",
+    "v",
+    N_("Hex"),
+    N_("Show the bytes of lines of text in hex, or as text."),
+    means="another view",
+    footer=True,
+    anywhere=True,
+    when=_with_driver,
+    label=lambda screen: N_("Text") if screen.frames.as_hex else N_("Hex"),
+)
+def in_hex(screen: DevicesScreen) -> None:
+    screen.toggle_hex()
+
+
+@action(
+    "devices.fold",
+    "w",
+    N_("Wrap"),
+    N_("Wrap long lines, or show one row of each: left and right shift it."),
+    footer=True,
+    anywhere=True,
+    when=_with_driver,
+)
+def fold_frames(screen: DevicesScreen) -> None:
+    screen.pane.view.set_fold(not screen.pane.view.fold)
+
+
+@action(
+    "devices.clear",
+    "d",
+    N_("Clear"),
+    N_("Forget the frames received so far."),
+    means="clear",
+    footer=True,
+    when=_with_driver,
+)
+def clear_frames(screen: DevicesScreen) -> None:
+    screen.clear_frames()
+
+
+@action(
+    "devices.copy",
+    "y",
+    N_("Copy"),
+    N_("Copy the selected lines to the clipboard of your terminal."),
+    footer=True,
+    when=_with_driver,
+)
+def copy_frames(screen: DevicesScreen) -> None:
+    screen.pane.copy()
+
+
+@action(
+    "devices.save",
+    "W",
+    N_("Write"),
+    N_("Write the selected lines to a file, or all lines shown if none is selected."),
+    means="write to a file",
+    footer=True,
+    when=_with_driver,
+)
+def save_frames(screen: DevicesScreen) -> None:
+    screen.pane.save()
+
+
+@action(
+    "devices.search",
+    "slash,ctrl+f",
+    N_("Search"),
+    N_("Find text in the frames as you type; Escape ends it."),
+    means="find",
+    priority=True,
+    anywhere=True,
+    when=lambda screen: _with_driver(screen) and not screen.pane.prompt.kind,
+)
+def search_frames(screen: DevicesScreen) -> None:
+    screen.pane.search()
+
+
+@action("devices.next", "n", N_("Next"), N_("Go to the next frame found."), means="next", when=_with_driver)
+def next_frame(screen: DevicesScreen) -> None:
+    screen.pane.find(1)
+
+
+@action(
+    "devices.previous",
+    "N",
+    N_("Previous"),
+    N_("Go to the previous frame found."),
+    means="previous",
+    when=_with_driver,
+)
+def previous_frame(screen: DevicesScreen) -> None:
+    screen.pane.find(-1)
+
+
+def _may_have(screen: DevicesScreen, trouble: SimulatedTrouble) -> bool:
+    """Only a device of the simulated robot that can have this trouble."""
+    found = screen.simulated
+    return found is not None and found[1] in trouble.devices
+
+
+@action(
+    "devices.unplug",
+    "U",
+    N_("Pull cable"),
+    N_("Simulated robot: unplug the selected device; press again to plug it in."),
+    footer=True,
+    when=lambda screen: _may_have(screen, UNPLUGGED),
+)
+def unplug(screen: DevicesScreen) -> None:
+    screen.switch_trouble(UNPLUGGED)
+
+
+@action(
+    "devices.noise",
+    "Z",
+    N_("Noise"),
+    N_("Simulated robot: noise on the line of the selected device; press again to end it."),
+    when=lambda screen: _may_have(screen, NOISE),
+)
+def noise(screen: DevicesScreen) -> None:
+    screen.switch_trouble(NOISE)
+
+
+@action(
+    "devices.silence",
+    "H",
+    N_("Silence"),
+    N_("Simulated robot: silence the selected device; press again to undo."),
+    when=lambda screen: _may_have(screen, SILENCE),
+)
+def silence(screen: DevicesScreen) -> None:
+    screen.switch_trouble(SILENCE)
+
+
+@action(
+    "devices.battery",
+    "B",
+    N_("Low battery"),
+    N_("Simulated robot: the battery of Pico and servos is weak; press again to charge it."),
+    when=lambda screen: _may_have(screen, BATTERY),
+)
+def low_battery(screen: DevicesScreen) -> None:
+    screen.switch_trouble(BATTERY)
+
+
+DEVICES_ACTIONS = actions_of(__name__)

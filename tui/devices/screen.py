@@ -70,7 +70,7 @@ class DevicesScreen(DeckScreen):
 
     def __init__(self) -> None:
         super().__init__()
-        self.frames = FrameRows()
+        self.frames: FrameRows = FrameRows()
         self._diagnostics = DiagnosticsBook()
         self._update: GraphUpdate | None = None
         self._topic: str | None = None

@@ -10,7 +10,7 @@ from textual.widgets import Static
 
 from text.i18n import N_
 from text.plain import plain_lines
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 from tui.frame.key_bar import KeyBar
 from tui.widgets.rows import Cell, Column, Row, Rows
@@ -21,42 +21,25 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.binding import BindingType
 
-
-class TakeChoice(Action["ChoiceScreen"]):
-    """Take the chosen one."""
-
-    id = "choice.take"
-    key = "enter"
-    title = N_("Take it")
-    tooltip = N_("Take the selected one.")
-    footer = True
-    priority = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: ChoiceScreen) -> None:
-        target.take()
+action: Announce[ChoiceScreen] = Announce()
 
 
-class LeaveChoice(Action["ChoiceScreen"]):
-    """Take none."""
+@action(
+    "choice.take", "enter", N_("Take it"), N_("Take the selected one."), footer=True, priority=True, palette=False
+)
+def take_choice(dialog: ChoiceScreen) -> None:
+    dialog.take()
 
-    id = "choice.leave"
-    key = "escape"
-    title = N_("None of them")
-    tooltip = N_("Leave everything as it is.")
-    footer = True
-    palette = False
 
-    @classmethod
-    async def run(cls, target: ChoiceScreen) -> None:
-        target.dismiss("")
+@action("choice.leave", "escape", N_("None of them"), N_("Leave everything as it is."), footer=True, palette=False)
+def leave_choice(dialog: ChoiceScreen) -> None:
+    dialog.dismiss("")
 
 
 class ChoiceScreen(Dialog[str]):
     """Asks which one; the answer is its key, or empty."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(TakeChoice, LeaveChoice)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(take_choice, leave_choice)
     DEFAULT_CSS = """
     ChoiceScreen {
         #choices { height: auto; max-height: 12; margin-bottom: 1; }

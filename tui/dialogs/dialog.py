@@ -12,7 +12,7 @@ from textual.widgets import Static
 
 from text.i18n import N_
 from text.plain import plain
-from tui.actions import Acting, Action, bindings
+from tui.actions import Acting, Announce, bindings
 from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.widgets.working import Working
@@ -25,32 +25,26 @@ if TYPE_CHECKING:
 
 Answer = TypeVar("Answer")
 
+action: Announce[Dialog[Any]] = Announce()
 
-class ExplainDialog(Action["Dialog[Any]"]):
-    """Opens the help page from a dialog, which the app's own key cannot reach."""
 
-    id = "help.dialog"
-    key = "f1"
-    title = N_("Help")
-    means = "help"
-    tooltip = N_("Every key of this screen, and what it shows.")
-    palette = False
-
-    @classmethod
-    def possible(cls, target: Dialog[Any]) -> bool | None:
-        """Not where the dialog may have to close at any moment."""
-        return target.can_be_covered
-
-    @classmethod
-    async def run(cls, target: Dialog[Any]) -> None:
-        """Open the help page of the dialog."""
-        target.deck.show_help()
+@action(
+    "help.dialog",
+    "f1",
+    N_("Help"),
+    N_("Every key of this screen, and what it shows."),
+    means="help",
+    palette=False,
+    when=lambda dialog: dialog.can_be_covered,
+)
+def explain_dialog(dialog: Dialog[Any]) -> None:
+    dialog.deck.show_help()
 
 
 class Dialog(ModalScreen[Answer], Acting, Working):
     """A title and a text; a subclass supplies them, and binds the possible answers."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(ExplainDialog)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(explain_dialog)
     can_be_covered: ClassVar[bool] = True
     """Whether another screen may be opened on top of it."""
     DEFAULT_CSS: ClassVar[str] = """

@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
-from tui.actions.action import Action
-from tui.frame.actions.ros2 import CopyAsRos2, copy_command
+from tui.actions.action import Announce
+from tui.frame.actions.ros2 import copy_as_ros2, copy_command
 
 if TYPE_CHECKING:
     from tui.frame.host import Host
+
+action: Announce[Pastable] = Announce()
 
 
 class Pastable(Protocol):
@@ -23,16 +25,13 @@ class Pastable(Protocol):
         """Return what is filled in as a command line of `ros2`, empty if it is not valid."""
 
 
-class CopyDialogAsRos2(Action[Pastable]):
-    """Copy what is filled in as a command line of `ros2`."""
-
-    id = "app.ros2_dialog"
-    key = "alt+y"
-    title = CopyAsRos2.title
-    tooltip = N_("Copy what is filled in as a `ros2` command for a shell, and show it.")
-    priority = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: Pastable) -> None:
-        copy_command(target.deck, await target.ros2_command())
+@action(
+    "app.ros2_dialog",
+    "alt+y",
+    copy_as_ros2.title,
+    N_("Copy what is filled in as a `ros2` command for a shell, and show it."),
+    priority=True,
+    palette=False,
+)
+async def copy_dialog_as_ros2(screen: Pastable) -> None:
+    copy_command(screen.deck, await screen.ros2_command())

@@ -11,7 +11,7 @@ from textual.widget import Widget
 from text.i18n import _
 from text.plain import plain
 from tui.frame import title
-from tui.frame.actions.app import EmergencyRelease, EmergencyStop, Quit
+from tui.frame.actions.app import emergency_release, emergency_stop, leave
 from tui.frame.host import Host, host_of
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def safe_lines(deck: Host) -> list[str]:
     states = title.states(deck)
     keys = [
         _("{keys}: {title}").format(keys=" ".join(deck.keys_of(action)), title=_(action.title))
-        for action in (EmergencyStop, EmergencyRelease, Quit)
+        for action in (emergency_stop, emergency_release, leave)
     ]
     tabs = "   ".join(text for text, _action, _front in title.tabs(deck, ""))
     return [

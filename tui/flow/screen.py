@@ -61,7 +61,7 @@ class FlowScreen(DeckScreen):
 
     def __init__(self) -> None:
         super().__init__()
-        self.paused = False
+        self.paused: bool = False
         self._book, self._reader = FlowBook(), FlowReader()
         self._hidden = {Lane.LOG}
         self._has_agents = False

@@ -10,7 +10,7 @@ from textual.widget import Widget
 
 from text.i18n import _
 from tui.agents.words import question_head, question_lines, standing_words
-from tui.frame.actions.agents import AllowAgent, AllowAgentForATime, RefuseAgent
+from tui.frame.actions.agents import allow_agent, allow_agent_for_a_time, refuse_agent
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from textual.timer import Timer
 
     from launcher.consent import Question
+    from tui.actions import Action
     from tui.frame.host import Host
 
 LOOK_S = 0.2
@@ -87,21 +88,21 @@ class AgentBanner(Widget):
         yield self._line(head, "agent-banner--head")
         for line in question_lines(question):
             yield self._line(line)
-        yield self._keys(host, AllowAgent, AllowAgentForATime, RefuseAgent)
+        yield self._keys(host, allow_agent, allow_agent_for_a_time, refuse_agent)
 
     def _standing(self, host: Host) -> Iterator[Content]:
         words = standing_words(host.agents.state)
         if words:
             yield self._line(words, "agent-banner--head")
         if words and host.agents.allowed:
-            yield self._keys(host, RefuseAgent)
+            yield self._keys(host, refuse_agent)
 
     def _line(self, words: str, part: str = "") -> Content:
         style = self.get_visual_style(part) if part else ""
         line = Content.styled(f" {words}", style)
         return line.truncate(max(1, self.app.size.width), ellipsis=True)
 
-    def _keys(self, host: Host, *actions: type[AllowAgent | AllowAgentForATime | RefuseAgent]) -> Content:
+    def _keys(self, host: Host, *actions: Action[Host]) -> Content:
         key = self.get_visual_style("agent-banner--key")
         parts = []
         for action in actions:

@@ -79,7 +79,7 @@ class BesideView(Protocol):
 class KeyNames(Protocol):
     """Knows which keys run which actions."""
 
-    def keys_of(self, action: type[Action[Any]] | Keys) -> list[str]:
+    def keys_of(self, action: Action[Any] | Keys) -> list[str]:
         """Return how the keys of `action` are written, following the user's keymap."""
 
 

@@ -77,7 +77,7 @@ class KeyBar(Widget):
         names = sorted(found, key=lambda name: (found[name][0].node is self.app, place[name]))
         return [self._key(REGISTRY[name], found[name]) for name in names]
 
-    def _key(self, action: type[Action[Any]], keys: list[ActiveBinding]) -> Key:
+    def _key(self, action: Action[Any], keys: list[ActiveBinding]) -> Key:
         """Return the action with the first of its keys that the focused widget does not take."""
         wanted = action.key.split(",")
         first = min(keys, key=lambda one: (*wanted, one.binding.key).index(one.binding.key))

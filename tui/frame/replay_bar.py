@@ -9,7 +9,7 @@ from textual.style import Style
 from textual.widget import Widget
 
 from text.i18n import _, decimal
-from tui.frame.actions.replay import Back, FasterReplay, Forward, Loop, SlowerReplay, Step
+from tui.frame.actions.replay import back, faster_replay, forward, loop, slower_replay, step
 from tui.frame.host import host_of
 from tui.recording.words import length_words
 
@@ -164,7 +164,7 @@ class ReplayBar(Widget):
         app = host_of(self)
         words = self.get_visual_style("replay-bar--words")
         bold = self.get_visual_style("replay-bar--key")
-        for action in (Step, Back, Forward, SlowerReplay, FasterReplay, Loop):
+        for action in (step, back, forward, slower_replay, faster_replay, loop):
             click = Style.from_meta({"@click": f"app.act({action.id!r})"})
             key = app.keys_of(action)[0]
             yield Content.assemble((f"  {key}", bold + click), (f" {_(action.title)}", words + click))

@@ -12,7 +12,7 @@ from textual.widgets import Input, TextArea
 from tui.actions import Acting, bindings
 from tui.emergency.messages import EmergencyChanged
 from tui.frame import title
-from tui.frame.actions.enlarge import Enlarge
+from tui.frame.actions.enlarge import enlarge
 from tui.frame.agent_banner import AgentBanner
 from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
@@ -49,7 +49,7 @@ class DeckScreen(Screen[None], Acting, Working):
     something else ends that.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(Enlarge)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(enlarge)
     ALLOW_IN_MAXIMIZED_VIEW = "TitleBar, AgentBanner, ReplayBar, KeyBar"
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
     VERTICAL_BREAKPOINTS = HEIGHTS
@@ -131,7 +131,7 @@ class DeckScreen(Screen[None], Acting, Working):
         """Return what is chosen or filled in as a command line of `ros2`, empty if nothing is."""
         return ""
 
-    def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
+    def more_keys(self) -> Iterable[tuple[str, Sequence[Action[Any]]]]:
         """Yield headings and actions of the parts of the screen that have keys of their own."""
         yield from ()
 

@@ -11,7 +11,7 @@ from tui.clock import time_of_day
 from tui.emergency.gate import rare_words
 from tui.emergency.state import held_reason
 from tui.emergency.words import stop_words
-from tui.frame.actions.app import TABS, EmergencyRelease
+from tui.frame.actions.app import TABS, emergency_release
 from tui.session.hardware_words import hardware_words
 from tui.session.watching import robot_nodes
 
@@ -29,7 +29,9 @@ def show(bar: TitleBar, app: Host, front: str) -> None:
 
 def tabs(app: Host, front: str) -> Sequence[tuple[str, str, bool]]:
     """Return (text, action, in front) for every screen of the session."""
-    return [(f"{app.keys_of(tab)[0]} {_(tab.title)}", f"app.act({tab.id!r})", tab.screen == front) for tab in TABS]
+    return [
+        (f"{app.keys_of(tab)[0]} {_(tab.title)}", f"app.act({tab.id!r})", tab.id == f"screen.{front}") for tab in TABS
+    ]
 
 
 def look(app: Host) -> str:
@@ -86,7 +88,7 @@ def _alarm(app: Host) -> Sequence[str]:
 
 
 def _stopped(app: Host) -> Sequence[str]:
-    return stop_words(app.emergency.state, app.keys_of(EmergencyRelease)[0])
+    return stop_words(app.emergency.state, app.keys_of(emergency_release)[0])
 
 
 def aside(app: Host) -> str:

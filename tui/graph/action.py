@@ -13,7 +13,7 @@ from text.figures import figure
 from text.i18n import N_, _, localized
 from text.plain import plain
 from text.sentences import reason_of
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 from tui.graph.ask import AskPane
 from tui.graph.links import heading, link, node_links
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from textual.binding import BindingType
 
     from graph.data import ActionRow, SeenGoal
+
+action: Announce[CancelGoalScreen] = Announce()
 
 STATES = {
     GoalStatus.SENDING: ("◌", N_("sending"), "dim"),
@@ -232,40 +234,29 @@ def _row(goal: Goal | SeenGoal, age_s: float | None, whose: str) -> Row:
     return Row(_key(goal), cells)
 
 
-class CancelGoal(Action["CancelGoalScreen"]):
-    """Ask the server to cancel it."""
-
-    id = "cancel_goal.cancel"
-    key = "enter"
-    title = N_("Cancel the goal")
-    tooltip = N_("Ask its server to cancel it; the server informs whoever sent it.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: CancelGoalScreen) -> None:
-        target.dismiss(target.goal)
+@action(
+    "cancel_goal.cancel",
+    "enter",
+    N_("Cancel the goal"),
+    N_("Ask its server to cancel it; the server informs whoever sent it."),
+    footer=True,
+    palette=False,
+)
+def cancel_goal(dialog: CancelGoalScreen) -> None:
+    dialog.dismiss(dialog.goal)
 
 
-class LeaveGoal(Action["CancelGoalScreen"]):
-    """Let the goal continue."""
-
-    id = "cancel_goal.leave"
-    key = "escape"
-    title = N_("Leave it")
-    tooltip = N_("Back to the goals as they are.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: CancelGoalScreen) -> None:
-        target.dismiss(None)
+@action(
+    "cancel_goal.leave", "escape", N_("Leave it"), N_("Back to the goals as they are."), footer=True, palette=False
+)
+def leave_goal(dialog: CancelGoalScreen) -> None:
+    dialog.dismiss(None)
 
 
 class CancelGoalScreen(Dialog["SeenGoal | None"]):
     """Returns the goal if it is to be cancelled."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(CancelGoal, LeaveGoal)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(cancel_goal, leave_goal)
 
     def __init__(self, goal: SeenGoal, state: str) -> None:
         """Ask about `goal`, whose state in the list is `state`."""

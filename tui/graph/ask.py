@@ -14,7 +14,7 @@ from tui.graph.links import GraphLinks
 from tui.graph.pane import GraphPane
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Rows
-from tui.yaml_form.actions import SubmitForm
+from tui.yaml_form.actions import submit_form
 from tui.yaml_form.form import YamlForm
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ class AskPane(GraphPane):
 
     @property
     def submit_key(self) -> str:
-        return self.deck.keys_of(SubmitForm)[0]
+        return self.deck.keys_of(submit_form)[0]
 
     def type_names(self) -> tuple[str, ...]:
         """Return the types of what is shown; empty if it has left the graph."""

@@ -17,7 +17,7 @@ from text.i18n import _
 from text.plain import plain
 from tui.actions import bindings
 from tui.dialogs.dialog import Dialog
-from tui.dialogs.ros2 import CopyDialogAsRos2
+from tui.dialogs.ros2 import copy_dialog_as_ros2
 from tui.graph.parameter_words import allowed_words, meant, typed
 from tui.widgets.field import Field
 
@@ -39,7 +39,7 @@ Apply = Callable[["Value"], Awaitable[str]]
 class ParameterDialog(Dialog[bool]):
     """Returns whether it was set; stays open, with the reason, while the value is refused."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False), *bindings(CopyDialogAsRos2)]
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False), *bindings(copy_dialog_as_ros2)]
     DEFAULT_CSS: ClassVar[str] = """
     ParameterDialog Input { width: 1fr; margin: 0 1; }
     ParameterDialog #parameter-remark { height: auto; padding: 1 1 0 1; color: $text-warning; }

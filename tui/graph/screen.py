@@ -12,7 +12,7 @@ from textual.widgets import Input, Static, TextArea
 from text.i18n import N_, _
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
-from tui.graph.actions import GRAPH_ACTIONS, ShowEverything
+from tui.graph.actions import GRAPH_ACTIONS, show_everything
 from tui.graph.ask import AskPane
 from tui.graph.detail import GraphDetail
 from tui.graph.finding import place_meant
@@ -223,7 +223,7 @@ class GraphScreen(DeckScreen):
         if pane is not None and here is not None and self.names.chosen_name:
             self._detail.show_place(pane, here.name, everything=self.index.everything)
             return
-        key, kind = self.deck.keys_of(ShowEverything)[0], self.history.kind
+        key, kind = self.deck.keys_of(show_everything)[0], self.history.kind
         words = why_empty(self.feed, kind, self.index.all_of(kind), all_key=key)
         self._detail.show_words(*(words if not shown else ("", "")))
 

@@ -19,7 +19,7 @@ from text.i18n import N_, _, decimal, localized
 from text.plain import plain
 from text.sentences import reason_of
 from tui.clock import time_of_day
-from tui.graph.actions import CancelRequest
+from tui.graph.actions import cancel_request
 from tui.graph.ask import AskPane, now_s
 from tui.graph.links import heading, link, node_links
 from tui.graph.pane import LONGEST
@@ -213,7 +213,7 @@ class ServicePane(AskPane):
             return _("No response"), name, (_("given up"), words)
         waited = int(now_s() - call.asked_s)
         title = _("Still waiting: {n} s of {most} s").format(n=waited, most=decimal(f"{call.timeout_s:g}"))
-        key = self.deck.keys_of(CancelRequest)[0]
+        key = self.deck.keys_of(cancel_request)[0]
         way_out = _("{key} stops waiting for it.").format(key=key)
         return title, name, (_("the call is under way"), way_out)
 

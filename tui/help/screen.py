@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual.screen import ModalScreen
 
 from text.i18n import N_, _
-from tui.actions import Acting, Action, bindings, bound
-from tui.frame.actions.replay import ReplayAction
+from tui.actions import Acting, Action, Announce, bindings, bound
+from tui.frame.actions.replay import REPLAY_ACTIONS
 from tui.frame.host import host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import DeckScreen
@@ -23,27 +23,26 @@ if TYPE_CHECKING:
 
     from tui.session.messages import LanguageChanged
 
+action: Announce[HelpScreen] = Announce()
 
-class CloseHelp(Action["HelpScreen"]):
-    """Go back to the screen."""
 
-    id = "help.close"
-    key = "escape,f1,enter"
-    title = N_("Close")
-    means = "help"
-    tooltip = N_("Go back to the screen.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: HelpScreen) -> None:
-        target.dismiss()
+@action(
+    "help.close",
+    "escape,f1,enter",
+    N_("Close"),
+    N_("Go back to the screen."),
+    means="help",
+    footer=True,
+    palette=False,
+)
+def close_help(dialog: HelpScreen) -> None:
+    dialog.dismiss()
 
 
 class HelpScreen(ModalScreen[None], Acting):
     """A page generated from the actions, so that it is never wrong about a key."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(CloseHelp)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(close_help)
     DEFAULT_CSS = """
     HelpScreen {
         background: $background;
@@ -93,16 +92,15 @@ class HelpScreen(ModalScreen[None], Acting):
             )
         )
 
-    def _everywhere(self) -> list[type[Action[Any]]]:
+    def _everywhere(self) -> list[Action[Any]]:
         """Return the app's actions; those for recordings only in a replay."""
         replayed = host_of(self).feed.replay is not None
         actions = list(bound(self.app))
-        return [each for each in actions if replayed or not issubclass(each, ReplayAction)]
+        return [each for each in actions if replayed or each not in REPLAY_ACTIONS]
 
-    def _section(self, heading: str, actions: list[type[Action[Any]]]) -> Iterable[PageEntry]:
+    def _section(self, heading: str, actions: list[Action[Any]]) -> Iterable[PageEntry]:
         if actions:
             yield PageEntry(name=heading)
         app = host_of(self)
-        for action in actions:
-            keys = "  ".join(app.keys_of(action))
-            yield PageEntry(_(action.tooltip), _(action.title), keys)
+        for each in actions:
+            yield PageEntry(_(each.tooltip), _(each.title), "  ".join(app.keys_of(each)))

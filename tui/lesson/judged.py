@@ -9,9 +9,9 @@ from textual.content import Content
 from course.results import State
 from text.i18n import _
 from text.plain import plain
-from tui.frame.actions.app import CloseSession, ShowLesson
+from tui.frame.actions.app import close_session, show_lesson
 from tui.lesson import words
-from tui.lesson.actions import MakeOwnFolder
+from tui.lesson.actions import make_own_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -28,7 +28,7 @@ def judged_lines(at_work: LessonAtWork, host: Host, *, beside: bool = False) -> 
     step, lesson = at_work.step, at_work.folder
     if step is None or lesson is None:
         return
-    there = host.keys_of(ShowLesson)[0]
+    there = host.keys_of(show_lesson)[0]
     result = at_work.result(step)
     if result.state is State.WAITS:
         yield from words.waiting_lines(lesson.steps, step, at_work.passed)
@@ -36,7 +36,7 @@ def judged_lines(at_work: LessonAtWork, host: Host, *, beside: bool = False) -> 
         yield from words.check_lines(result, hinted=at_work.hinted)
     if not at_work.own:
         told = _("Deck's own nodes run. {key} starts files of your own for this lesson.")
-        key = host.keys_of(MakeOwnFolder)[0]
+        key = host.keys_of(make_own_folder)[0]
         yield Content(told.format(key=f"{there}, {key}" if beside else key))
     elif result.state is State.PASSED:
         yield Content.styled(_after(at_work, there if beside else ""), "bold $text-success")
@@ -95,4 +95,4 @@ def grade_lines(at_work: LessonAtWork) -> Iterable[Content]:
 
 def where_lessons_are(host: Host) -> str:
     """Say which key opens the list."""
-    return _("{key} opens the list of lessons.").format(key=host.keys_of(CloseSession)[0])
+    return _("{key} opens the list of lessons.").format(key=host.keys_of(close_session)[0])

@@ -82,7 +82,7 @@ class LessonScreen(DeckScreen):
 
     def __init__(self) -> None:
         super().__init__()
-        self.beside = False
+        self.beside: bool = False
         """Whether the solution is shown beside the learner's file."""
         self._shown: dict[str, tuple[object, ...]] = {}
         """What each text was drawn from."""

@@ -9,13 +9,15 @@ from textual.content import Content
 
 from text.i18n import N_, _, localized
 from text.plain import plain
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 
 if TYPE_CHECKING:
     from textual.binding import BindingType
 
     from launcher.errors import DomainTakenError
+
+action: Announce[DomainTakenScreen] = Announce()
 
 
 class DomainAnswer(Enum):
@@ -28,67 +30,47 @@ class DomainAnswer(Enum):
     NOT = "not"
 
 
-class StartApart(Action["DomainTakenScreen"]):
-    """Start it in the free domain."""
-
-    id = "domain_taken.apart"
-    key = "enter"
-    title = N_("Start in the free domain")
-    tooltip = N_("Start it in another domain: the two do not hear each other.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: DomainTakenScreen) -> None:
-        target.dismiss(DomainAnswer.APART)
+@action(
+    "domain_taken.apart",
+    "enter",
+    N_("Start in the free domain"),
+    N_("Start it in another domain: the two do not hear each other."),
+    footer=True,
+    palette=False,
+)
+def start_apart(dialog: DomainTakenScreen) -> None:
+    dialog.dismiss(DomainAnswer.APART)
 
 
-class StartTogether(Action["DomainTakenScreen"]):
-    """Start it in the same domain."""
-
-    id = "domain_taken.together"
-    key = "s,ы"
-    title = N_("Start beside it")
-    means = "start"
-    tooltip = N_("Start it in the same domain: their nodes see and hear each other.")
-    footer = True
-    palette = False
-
-    @classmethod
-    def possible(cls, target: DomainTakenScreen) -> bool | None:
-        """Not if both have nodes of the same name, or both drive."""
-        return target.taken.can_share
-
-    @classmethod
-    async def run(cls, target: DomainTakenScreen) -> None:
-        target.dismiss(DomainAnswer.TOGETHER)
+@action(
+    "domain_taken.together",
+    "s",
+    N_("Start beside it"),
+    N_("Start it in the same domain: their nodes see and hear each other."),
+    means="start",
+    footer=True,
+    palette=False,
+    when=lambda dialog: dialog.taken.can_share,
+)
+def start_together(dialog: DomainTakenScreen) -> None:
+    dialog.dismiss(DomainAnswer.TOGETHER)
 
 
-class StartNot(Action["DomainTakenScreen"]):
-    """Do not start."""
-
-    id = "domain_taken.not"
-    key = "escape"
-    title = N_("Do not start")
-    tooltip = N_("Start nothing.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: DomainTakenScreen) -> None:
-        target.dismiss(DomainAnswer.NOT)
+@action("domain_taken.not", "escape", N_("Do not start"), N_("Start nothing."), footer=True, palette=False)
+def start_not(dialog: DomainTakenScreen) -> None:
+    dialog.dismiss(DomainAnswer.NOT)
 
 
 class DomainTakenScreen(Dialog[DomainAnswer]):
     """Says who is in the domain, and which domain is free."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(StartApart, StartTogether, StartNot)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(start_apart, start_together, start_not)
 
     def __init__(self, name: str, taken: DomainTakenError) -> None:
         """Ask about starting `name` in a domain that is `taken`."""
         super().__init__()
         self._profile = name
-        self.taken = taken
+        self.taken: DomainTakenError = taken
 
     def title_words(self) -> str:
         return _("Domain {domain} is in use").format(domain=self.taken.domain)

@@ -8,7 +8,7 @@ from textual.content import Content
 
 from text.i18n import N_, _, ngettext
 from text.plain import plain
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 from tui.session.started_words import started_words
 
@@ -17,41 +17,32 @@ if TYPE_CHECKING:
 
     from launcher.status import SessionInfo
 
-
-class EndIt(Action["EndSessionScreen"]):
-    """Stop all of its nodes."""
-
-    id = "end_session.end"
-    key = "enter"
-    title = N_("End it")
-    tooltip = N_("Stop all of its nodes, dependants first, and the session.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: EndSessionScreen) -> None:
-        target.dismiss(True)
+action: Announce[EndSessionScreen] = Announce()
 
 
-class LeaveIt(Action["EndSessionScreen"]):
-    """Let it continue."""
+@action(
+    "end_session.end",
+    "enter",
+    N_("End it"),
+    N_("Stop all of its nodes, dependants first, and the session."),
+    footer=True,
+    palette=False,
+)
+def end_it(dialog: EndSessionScreen) -> None:
+    dialog.dismiss(True)
 
-    id = "end_session.leave"
-    key = "escape"
-    title = N_("Let it run")
-    tooltip = N_("Back to the session as it is.")
-    footer = True
-    palette = False
 
-    @classmethod
-    async def run(cls, target: EndSessionScreen) -> None:
-        target.dismiss(False)
+@action(
+    "end_session.leave", "escape", N_("Let it run"), N_("Back to the session as it is."), footer=True, palette=False
+)
+def leave_it(dialog: EndSessionScreen) -> None:
+    dialog.dismiss(False)
 
 
 class EndSessionScreen(Dialog[bool]):
     """Asks whether it is to be ended."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(EndIt, LeaveIt)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(end_it, leave_it)
 
     def __init__(self, session: SessionInfo) -> None:
         super().__init__()

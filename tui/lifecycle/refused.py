@@ -8,32 +8,26 @@ from textual.content import Content
 
 from text.i18n import N_, _
 from text.plain import plain
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 
 if TYPE_CHECKING:
     from textual.binding import BindingType
 
+action: Announce[RefusedScreen] = Announce()
 
-class CloseRefused(Action["RefusedScreen"]):
-    """Go back to the list."""
 
-    id = "refused.close"
-    key = "escape,enter"
-    title = N_("Close")
-    tooltip = N_("Go back to the list of lessons.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: RefusedScreen) -> None:
-        target.dismiss()
+@action(
+    "refused.close", "escape,enter", N_("Close"), N_("Go back to the list of lessons."), footer=True, palette=False
+)
+def close_refused(dialog: RefusedScreen) -> None:
+    dialog.dismiss()
 
 
 class RefusedScreen(Dialog[None]):
     """Shows the reason, one line for each problem."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(CloseRefused)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(close_refused)
 
     def __init__(self, reason: str) -> None:
         super().__init__()

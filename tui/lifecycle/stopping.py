@@ -8,35 +8,34 @@ from textual.content import Content
 
 from text.i18n import N_, _
 from text.plain import plain
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 from tui.widgets.node_words import STATES, why
 
 if TYPE_CHECKING:
     from textual.binding import BindingType
 
+action: Announce[StoppingScreen] = Announce()
 
-class StopNow(Action["StoppingScreen"]):
-    """Stop waiting."""
 
-    id = "stopping.now"
-    key = "q,й,ctrl+q,ctrl+c"
-    title = N_("Stop at once")
-    means = "leave"
-    tooltip = N_("Kill what has not stopped yet.")
-    footer = True
-    priority = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: StoppingScreen) -> None:
-        target.deck.sessions.stop_now()
+@action(
+    "stopping.now",
+    "q,ctrl+q,ctrl+c",
+    N_("Stop at once"),
+    N_("Kill what has not stopped yet."),
+    means="leave",
+    footer=True,
+    priority=True,
+    palette=False,
+)
+def stop_now(dialog: StoppingScreen) -> None:
+    dialog.deck.sessions.stop_now()
 
 
 class StoppingScreen(Dialog[None]):
     """A list of the nodes that are still running, updated a few times a second."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(StopNow)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(stop_now)
     can_be_covered = False
 
     def on_mount(self) -> None:

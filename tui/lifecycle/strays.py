@@ -8,7 +8,7 @@ from textual.content import Content
 
 from text.i18n import N_, _, ngettext
 from text.plain import plain
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 
 if TYPE_CHECKING:
@@ -16,41 +16,37 @@ if TYPE_CHECKING:
 
     from launcher.status import Stray
 
-
-class StopStrays(Action["StraysScreen"]):
-    """Stop them."""
-
-    id = "strays.stop"
-    key = "enter"
-    title = N_("Stop them")
-    tooltip = N_("Stop what an earlier run has left behind.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: StraysScreen) -> None:
-        target.dismiss(True)
+action: Announce[StraysScreen] = Announce()
 
 
-class LeaveStrays(Action["StraysScreen"]):
-    """Leave them running."""
+@action(
+    "strays.stop",
+    "enter",
+    N_("Stop them"),
+    N_("Stop what an earlier run has left behind."),
+    footer=True,
+    palette=False,
+)
+def stop_strays(dialog: StraysScreen) -> None:
+    dialog.dismiss(True)
 
-    id = "strays.leave"
-    key = "escape"
-    title = N_("Leave them")
-    tooltip = N_("Leave them running; they may disturb this session.")
-    footer = True
-    palette = False
 
-    @classmethod
-    async def run(cls, target: StraysScreen) -> None:
-        target.dismiss(False)
+@action(
+    "strays.leave",
+    "escape",
+    N_("Leave them"),
+    N_("Leave them running; they may disturb this session."),
+    footer=True,
+    palette=False,
+)
+def leave_strays(dialog: StraysScreen) -> None:
+    dialog.dismiss(False)
 
 
 class StraysScreen(Dialog[bool]):
     """Asks what to do with them."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(StopStrays, LeaveStrays)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(stop_strays, leave_strays)
 
     def __init__(self, strays: tuple[Stray, ...]) -> None:
         super().__init__()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robot.topics import LLM_RAW_JSON
 from text.i18n import N_, _
 from tui import clock
-from tui.frame.actions.app import ShowComposer
+from tui.frame.actions.app import show_composer
 from tui.frame.host import host_of
 from tui.outcome.trail import FOLLOWED, OutcomeTrail
 from tui.outcome.view import Outcome
@@ -63,7 +63,7 @@ class LlmPanel(Panel):
     def _say(self) -> None:
         outcome = self.query_one(Outcome)
         if self._trail is None:
-            key = host_of(self).keys_of(ShowComposer)[0]
+            key = host_of(self).keys_of(show_composer)[0]
             outcome.show(_("Nothing received yet; {key} opens the Composer.").format(key=key), ())
             return
         at = clock.time_of_day(self._trail.sent_s)

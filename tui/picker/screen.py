@@ -16,7 +16,7 @@ from launcher.errors import LauncherError
 from text.i18n import N_, _, localized, ngettext, pick
 from text.plain import plain
 from text.sentences import reason_of
-from tui.actions import Acting, Action, bindings
+from tui.actions import Acting, Announce, bindings
 from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import BREAKPOINTS, HEIGHTS
@@ -38,6 +38,9 @@ if TYPE_CHECKING:
 
 STEPS, POINTS = 6, 8
 """Widths of the columns."""
+
+action: Announce[PickerScreen] = Announce()
+
 RUNNING_WITHIN_S = 0.5
 """From then on the list is shown without what runs; it moves nothing that comes later."""
 OWN = "✎"
@@ -47,76 +50,58 @@ WATCHED = "watch:"
 """Prefix of the row for nodes that others have started."""
 
 
-class StartLesson(Action["PickerScreen"]):
-    """Open the chosen entry."""
-
-    id = "lesson.start"
-    key = "enter"
-    title = N_("Start")
-    tooltip = N_("Start the selected lesson: your own files if there are any, else Deck's nodes.")
-    footer = True
-    priority = True
-
-    @classmethod
-    def label(cls, target: PickerScreen) -> str:
-        """Named after what would be started."""
-        return StartOwn.title if target.chosen_task is not None and target.chosen_task.own else cls.title
-
-    @classmethod
-    def possible(cls, target: PickerScreen) -> bool | None:
-        """Not for a broken lesson."""
-        return True if target.request() is not None else None
-
-    @classmethod
-    async def run(cls, target: PickerScreen) -> None:
-        target.open_chosen()
+@action(
+    "lesson.start",
+    "enter",
+    N_("Start"),
+    N_("Start the selected lesson: your own files if there are any, else Deck's nodes."),
+    footer=True,
+    priority=True,
+    when=lambda dialog: True if dialog.request() is not None else None,
+    label=lambda dialog: (
+        N_("My own files") if dialog.chosen_task is not None and dialog.chosen_task.own else N_("Start")
+    ),
+)
+def start_lesson(dialog: PickerScreen) -> None:
+    dialog.open_chosen()
 
 
-class StartOwn(Action["PickerScreen"]):
-    """Make the learner's folder, and start it."""
-
-    id = "lesson.start_own"
-    key = "C,С"
-    title = N_("My own files")
-    means = "own files"
-    tooltip = N_("Make a folder of your own for the selected lesson, and start your files.")
-    footer = True
-
-    @classmethod
-    def possible(cls, target: PickerScreen) -> bool | None:
-        """Only for a lesson with something to do; Enter starts a folder that is there."""
-        task = target.chosen_task
-        return task is not None and task.own is None
-
-    @classmethod
-    async def run(cls, target: PickerScreen) -> None:
-        target.start_own()
+def _start_own(dialog: PickerScreen) -> bool | None:
+    """Only for a lesson with something to do; Enter starts a folder that is there."""
+    task = dialog.chosen_task
+    return task is not None and task.own is None
 
 
-class StartDecks(Action["PickerScreen"]):
-    """Start Deck's own nodes where the learner has files."""
+@action(
+    "lesson.start_own",
+    "C",
+    N_("My own files"),
+    N_("Make a folder of your own for the selected lesson, and start your files."),
+    means="own files",
+    footer=True,
+    when=_start_own,
+)
+def start_own(dialog: PickerScreen) -> None:
+    dialog.start_own()
 
-    id = "lesson.start_decks"
-    key = "u,г"
-    title = N_("Deck's nodes")
-    means = "own or Deck's"
-    tooltip = N_("Start the selected lesson with Deck's own nodes in the place of your files.")
-    footer = True
 
-    @classmethod
-    def possible(cls, target: PickerScreen) -> bool | None:
-        """Only where Enter would start the learner's files."""
-        return target.chosen_task is not None and target.chosen_task.own is not None
-
-    @classmethod
-    async def run(cls, target: PickerScreen) -> None:
-        target.open_chosen(own=False)
+@action(
+    "lesson.start_decks",
+    "u",
+    N_("Deck's nodes"),
+    N_("Start the selected lesson with Deck's own nodes in the place of your files."),
+    means="own or Deck's",
+    footer=True,
+    when=lambda dialog: dialog.chosen_task is not None and dialog.chosen_task.own is not None,
+)
+def start_decks(dialog: PickerScreen) -> None:
+    dialog.open_chosen(own=False)
 
 
 class PickerScreen(Screen[None], Acting, Working):
     """A list of lessons, and beside or below it the details of the chosen one."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(StartLesson, StartOwn, StartDecks)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(start_lesson, start_own, start_decks)
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
     VERTICAL_BREAKPOINTS = HEIGHTS
     DEFAULT_CSS = """

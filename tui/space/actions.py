@@ -1,256 +1,158 @@
-"""The actions of the Space screen; each letter also works as the Cyrillic one on its key."""
+"""The actions of the Space screen."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from text.i18n import N_
-from tui.actions.action import Action
-from tui.frame.actions.view import OpenViewHere
+from tui.actions.action import Announce, actions_of
+from tui.frame.actions.view import open_view
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable
+    from tui.space.screen import SpaceScreen
 
+action: Announce[SpaceScreen] = Announce()
 
-class SpaceTarget(Protocol):
-    """The part of the Space screen that its actions use."""
 
-    @property
-    def armed(self) -> bool:
-        """Whether a goal or an initial pose is aimed."""
+def _armed_action(screen: SpaceScreen) -> bool | None:
+    """Only while something is aimed."""
+    return screen.armed
 
-    @property
-    def has_layers(self) -> bool:
-        """Whether there is anything to show or hide."""
 
-    def next_angle(self) -> None:
-        """Look from above, from the side, or in perspective."""
-
-    def fit(self) -> None:
-        """Show everything."""
-
-    def choose_follow(self) -> None:
-        """Ask which frame stays in the middle."""
-
-    def choose_fixed(self) -> None:
-        """Ask in which frame everything is drawn."""
-
-    def toggle_layer(self) -> None:
-        """Show or hide the chosen layer."""
-
-    def only_layer(self) -> None:
-        """Show only the chosen layer."""
-
-    def all_layers(self) -> None:
-        """Show all layers."""
-
-    def arm_goal(self) -> None:
-        """Begin to aim a goal."""
-
-    def arm_initial_pose(self) -> None:
-        """Begin to aim an initial pose."""
-
-    def publish_aim(self) -> Awaitable[None]:
-        """Publish what is aimed."""
-
-    def disarm(self) -> None:
-        """Aim at nothing any more."""
-
-
-class SpaceAction(Action[SpaceTarget]):
-    """An action on the picture of space."""
-
-
-class _ArmedAction(SpaceAction):
-    """An action on what is aimed."""
-
-    palette = False
-    footer = True
-
-    @classmethod
-    def possible(cls, target: SpaceTarget) -> bool | None:
-        """Only while something is aimed."""
-        return target.armed
-
-
-class PublishAim(_ArmedAction):
-    """Publish what is aimed."""
-
-    id = "space.publish"
-    key = "enter"
-    title = N_("Publish")
-    tooltip = N_("Publish the goal or the initial pose where the cross-hair is.")
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        await target.publish_aim()
-
-
-class Disarm(_ArmedAction):
-    """Aim at nothing any more."""
-
-    id = "space.disarm"
-    key = "escape"
-    title = N_("Disarm")
-    tooltip = N_("Stop aiming, and publish nothing.")
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.disarm()
-
-
-class NextAngle(SpaceAction):
-    """Look from elsewhere."""
-
-    id = "space.angle"
-    key = "alt+v,alt+м"
-    title = N_("Angle")
-    tooltip = N_("Look from above, from the side, or in perspective, which Ctrl+arrows turn.")
-    footer = True
-    from_elsewhere = True
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.next_angle()
-
-
-class OpenIn3D(OpenViewHere):
-    """The viewer, by the letter for another view."""
-
-    id = "space.view"
-
-
-class FitAll(SpaceAction):
-    """Show everything."""
-
-    id = "space.fit"
-    key = "home"
-    title = N_("Fit")
-    tooltip = N_("Move the camera so that everything is seen, and follow no frame.")
-    footer = True
-    from_elsewhere = True
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.fit()
-
-
-class FollowFrame(SpaceAction):
-    """Keep a frame in the middle."""
-
-    id = "space.follow"
-    key = "alt+t,alt+е"
-    title = N_("Follow")
-    tooltip = N_("Choose a frame that stays in the middle of the picture.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.choose_follow()
-
-
-class FixedFrame(SpaceAction):
-    """Choose the fixed frame."""
-
-    id = "space.fixed"
-    key = "alt+r,alt+к"
-    title = N_("Fixed frame")
-    tooltip = N_("Choose the frame in which everything is drawn, and goals are given.")
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.choose_fixed()
-
-
-class _LayerAction(SpaceAction):
-    """An action that needs layers."""
-
-    @classmethod
-    def possible(cls, target: SpaceTarget) -> bool | None:
-        return target.has_layers
-
-
-class ToggleLayer(_LayerAction):
-    """Show or hide a layer."""
-
-    id = "space.layer"
-    key = "m,ь"
-    title = N_("Layer")
-    means = "leave out"
-    tooltip = N_("Show or hide the selected layer; a hidden one is not subscribed to.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.toggle_layer()
-
-
-class OnlyLayer(_LayerAction):
-    """Show one layer only."""
-
-    id = "space.only"
-    key = "o,щ"
-    title = N_("Only this")
-    means = "only this"
-    tooltip = N_("Hide all layers but the selected one.")
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.only_layer()
-
-
-class AllLayers(_LayerAction):
-    """Show all layers."""
-
-    id = "space.all"
-    key = "a,ф"
-    title = N_("All layers")
-    means = "all"
-    tooltip = N_("Show all layers.")
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.all_layers()
-
-
-class ArmGoal(SpaceAction):
-    """Begin to aim a goal."""
-
-    id = "space.goal"
-    key = "alt+g,alt+п"
-    title = N_("Goal")
-    tooltip = N_("Aim a goal for navigation: press and drag the mouse, or arrows, Ctrl+arrows and Enter.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.arm_goal()
-
-
-class ArmInitialPose(SpaceAction):
-    """Begin to aim an initial pose."""
-
-    id = "space.initial"
-    key = "alt+i,alt+ш"
-    title = N_("Initial pose")
-    tooltip = N_("Aim where the robot is now, for localization on a map, as a goal is aimed.")
-
-    @classmethod
-    async def run(cls, target: SpaceTarget) -> None:
-        target.arm_initial_pose()
-
-
-SPACE_ACTIONS = (
-    PublishAim,
-    Disarm,
-    NextAngle,
-    OpenIn3D,
-    FitAll,
-    FollowFrame,
-    ToggleLayer,
-    ArmGoal,
-    OnlyLayer,
-    AllLayers,
-    FixedFrame,
-    ArmInitialPose,
+@action(
+    "space.publish",
+    "enter",
+    N_("Publish"),
+    N_("Publish the goal or the initial pose where the cross-hair is."),
+    footer=True,
+    palette=False,
+    when=_armed_action,
 )
+async def publish_aim(screen: SpaceScreen) -> None:
+    await screen.publish_aim()
+
+
+@action(
+    "space.disarm",
+    "escape",
+    N_("Disarm"),
+    N_("Stop aiming, and publish nothing."),
+    footer=True,
+    palette=False,
+    when=_armed_action,
+)
+def disarm(screen: SpaceScreen) -> None:
+    screen.disarm()
+
+
+@action(
+    "space.angle",
+    "alt+v",
+    N_("Angle"),
+    N_("Look from above, from the side, or in perspective, which Ctrl+arrows turn."),
+    footer=True,
+    anywhere=True,
+)
+def next_angle(screen: SpaceScreen) -> None:
+    screen.next_angle()
+
+
+@action(
+    "space.view",
+    "v",
+    open_view.title,
+    open_view.tooltip,
+    means="another view",
+    footer=True,
+    palette=False,
+    when=lambda screen: open_view.possible(screen.deck),
+)
+async def open_in_3d(screen: SpaceScreen) -> None:
+    await open_view.run(screen.deck)
+
+
+@action(
+    "space.fit",
+    "home",
+    N_("Fit"),
+    N_("Move the camera so that everything is seen, and follow no frame."),
+    footer=True,
+    anywhere=True,
+)
+def fit_all(screen: SpaceScreen) -> None:
+    screen.fit()
+
+
+@action(
+    "space.follow", "alt+t", N_("Follow"), N_("Choose a frame that stays in the middle of the picture."), footer=True
+)
+def follow_frame(screen: SpaceScreen) -> None:
+    screen.choose_follow()
+
+
+def _layer_action(screen: SpaceScreen) -> bool | None:
+    return screen.has_layers
+
+
+@action(
+    "space.layer",
+    "m",
+    N_("Layer"),
+    N_("Show or hide the selected layer; a hidden one is not subscribed to."),
+    means="leave out",
+    footer=True,
+    when=_layer_action,
+)
+def toggle_layer(screen: SpaceScreen) -> None:
+    screen.toggle_layer()
+
+
+@action(
+    "space.goal",
+    "alt+g",
+    N_("Goal"),
+    N_("Aim a goal for navigation: press and drag the mouse, or arrows, Ctrl+arrows and Enter."),
+    footer=True,
+)
+def arm_goal(screen: SpaceScreen) -> None:
+    screen.arm_goal()
+
+
+@action(
+    "space.only",
+    "o",
+    N_("Only this"),
+    N_("Hide all layers but the selected one."),
+    means="only this",
+    when=_layer_action,
+)
+def only_layer(screen: SpaceScreen) -> None:
+    screen.only_layer()
+
+
+@action("space.all", "a", N_("All layers"), N_("Show all layers."), means="all", when=_layer_action)
+def all_layers(screen: SpaceScreen) -> None:
+    screen.all_layers()
+
+
+@action(
+    "space.fixed",
+    "alt+r",
+    N_("Fixed frame"),
+    N_("Choose the frame in which everything is drawn, and goals are given."),
+)
+def fixed_frame(screen: SpaceScreen) -> None:
+    screen.choose_fixed()
+
+
+@action(
+    "space.initial",
+    "alt+i",
+    N_("Initial pose"),
+    N_("Aim where the robot is now, for localization on a map, as a goal is aimed."),
+)
+def arm_initial_pose(screen: SpaceScreen) -> None:
+    screen.arm_initial_pose()
+
+
+SPACE_ACTIONS = actions_of(__name__)

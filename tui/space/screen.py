@@ -19,7 +19,7 @@ from tui.actions import bindings
 from tui.dialogs.choice import ChoiceScreen
 from tui.frame.screen import DeckScreen
 from tui.space import words
-from tui.space.actions import SPACE_ACTIONS, Disarm, PublishAim
+from tui.space.actions import SPACE_ACTIONS, disarm, publish_aim
 from tui.space.aim import AimKind
 from tui.space.aiming import Aiming
 from tui.space.layers import CLOUD
@@ -327,7 +327,7 @@ class SpaceScreen(DeckScreen):
         line, aim = self.query_one("#space-armed", Static), self.view.aim
         line.display = aim is not None
         if aim is not None:
-            keys = self.deck.keys_of(PublishAim)[0], self.deck.keys_of(Disarm)[0]
+            keys = self.deck.keys_of(publish_aim)[0], self.deck.keys_of(disarm)[0]
             line.update(words.armed(aim, self.stage.fixed, self.aiming.listeners(aim.kind), keys))
 
     def _show_status(self) -> None:

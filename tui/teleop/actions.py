@@ -1,193 +1,125 @@
-"""The actions for driving with keys; each letter also works as the Cyrillic one on its key."""
+"""The actions for driving with keys: one opens the panel, the others are the panel's."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING
 
 from text.i18n import N_
-from tui.actions.action import Action
+from tui.actions.action import Announce, actions_of
 from tui.teleop.keys import Move
 
 if TYPE_CHECKING:
-    from tui.session.feed import Feed
-    from tui.teleop.keys import TeleopLimits
+    from tui.deck.screen import LessonDeck
+    from tui.teleop.widget import TeleopPanel
+
+action: Announce[TeleopPanel] = Announce()
+on_deck: Announce[LessonDeck] = Announce()
 
 
-class CanDrive(Protocol):
-    """A screen that can be used for driving."""
-
-    @property
-    def feed(self) -> Feed:
-        """The session."""
-
-    async def open_teleop(self) -> None:
-        """Open the panel, or focus it."""
-
-
-class OpenTeleop(Action["CanDrive"]):
-    """Drive the robot with keys."""
-
-    id = "deck.teleop"
-    key = "t,е"
-    title = N_("Drive")
-    means = "drive"
-    tooltip = N_("Drive with the arrow keys or W A S D while held; releasing them stops. Escape closes.")
-    footer = True
-    from_elsewhere = True
-
-    @classmethod
-    def possible(cls, target: CanDrive) -> bool | None:
-        """Only with a robot: not in a recording, and not after the session has ended."""
-        return target.feed.link is not None and target.feed.replay is None
-
-    @classmethod
-    async def run(cls, target: CanDrive) -> None:
-        await target.open_teleop()
-
-
-class DrivenByKeys(Protocol):
-    """The panel that the keys drive."""
-
-    limits: TeleopLimits
-    """Speed and steering of the keys, from the next press on."""
-
-    def press(self, move: Move) -> None:
-        """Press a key."""
-
-    def close(self) -> None:
-        """Stop driving."""
-
-
-class TeleopAction(Action["DrivenByKeys"]):
-    """An action of the panel."""
-
-
-class CloseTeleop(TeleopAction):
-    """Stop driving."""
-
-    id = "teleop.close"
-    key = "escape,t,е"
-    title = N_("Close")
-    means = "drive"
-    tooltip = N_("Stop, and leave driving.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: DrivenByKeys) -> None:
-        target.close()
-
-
-class DriveFaster(TeleopAction):
-    """Raise the speed of the keys."""
-
-    id = "teleop.faster"
-    key = "plus,equals_sign"
-    title = N_("Faster")
-    tooltip = N_("Drive 0.05 m/s faster from the next press on, up to 0.5 m/s.")
-    footer = True
-    steps = 1
-
-    @classmethod
-    async def run(cls, target: DrivenByKeys) -> None:
-        """Change the speed of the keys."""
-        target.limits = target.limits.faster(cls.steps)
-
-
-class DriveSlower(DriveFaster):
-    """Lower the speed of the keys."""
-
-    id = "teleop.slower"
-    key = "minus,underscore"
-    title = N_("Slower")
-    tooltip = N_("Drive 0.05 m/s slower from the next press on.")
-    steps = -1
-
-
-class MoveAction(TeleopAction):
-    """A key that drives while it is held; a click counts as one short press."""
-
-    move: ClassVar[Move]
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: DrivenByKeys) -> None:
-        target.press(cls.move)
-
-
-class DriveForward(MoveAction):
-    """Forward."""
-
-    id = "teleop.forward"
-    key = "up,w,ц"
-    title = N_("Forward")
-    tooltip = N_("Forward while it is held; press it again in a curve to go straight on.")
-    move = Move.FORWARD
-
-
-class DriveBack(MoveAction):
-    """Back."""
-
-    id = "teleop.back"
-    key = "down,s,ы"
-    title = N_("Back")
-    tooltip = N_("Backwards while it is held; press it again in a curve to go straight back.")
-    move = Move.BACK
-
-
-class SteerLeft(MoveAction):
-    """To the left."""
-
-    id = "teleop.left"
-    key = "left,a,ф"
-    title = N_("Left")
-    tooltip = N_("Left while it is held; a moving robot goes on in a curve.")
-    move = Move.LEFT
-
-
-class SteerRight(MoveAction):
-    """To the right."""
-
-    id = "teleop.right"
-    key = "right,d,в"
-    title = N_("Right")
-    tooltip = N_("Right while it is held; a moving robot goes on in a curve.")
-    move = Move.RIGHT
-
-
-class Sharper(TeleopAction):
-    """Steer more sharply."""
-
-    id = "teleop.sharper"
-    key = "right_square_bracket,ъ"
-    title = N_("Sharper")
-    tooltip = N_("Steer 0.05 rad more from the next press on, up to 0.5 rad.")
-    steps = 1
-
-    @classmethod
-    async def run(cls, target: DrivenByKeys) -> None:
-        """Change the steering of the keys."""
-        target.limits = target.limits.sharper(cls.steps)
-
-
-class Wider(Sharper):
-    """Steer less sharply."""
-
-    id = "teleop.wider"
-    key = "left_square_bracket,х"
-    title = N_("Wider")
-    tooltip = N_("Steer 0.05 rad less from the next press on.")
-    steps = -1
-
-
-TELEOP_ACTIONS = (
-    CloseTeleop,
-    DriveFaster,
-    DriveSlower,
-    DriveForward,
-    DriveBack,
-    SteerLeft,
-    SteerRight,
-    Sharper,
-    Wider,
+@on_deck(
+    "deck.teleop",
+    "t",
+    N_("Drive"),
+    N_("Drive with the arrow keys or W A S D while held; releasing them stops. Escape closes."),
+    means="drive",
+    footer=True,
+    anywhere=True,
+    when=lambda screen: screen.feed.link is not None and screen.feed.replay is None,
 )
+async def open_teleop(screen: LessonDeck) -> None:
+    await screen.open_teleop()
+
+
+@action("teleop.close", "escape,t", N_("Close"), N_("Stop, and leave driving."), means="drive", footer=True)
+def close_teleop(panel: TeleopPanel) -> None:
+    panel.close()
+
+
+@action(
+    "teleop.faster",
+    "plus,equals_sign",
+    N_("Faster"),
+    N_("Drive 0.05 m/s faster from the next press on, up to 0.5 m/s."),
+    footer=True,
+)
+def drive_faster(panel: TeleopPanel) -> None:
+    panel.limits = panel.limits.faster(1)
+
+
+@action(
+    "teleop.slower",
+    "minus,underscore",
+    N_("Slower"),
+    N_("Drive 0.05 m/s slower from the next press on."),
+    footer=True,
+)
+def drive_slower(panel: TeleopPanel) -> None:
+    panel.limits = panel.limits.faster(-1)
+
+
+@action(
+    "teleop.forward",
+    "up,w",
+    N_("Forward"),
+    N_("Forward while it is held; press it again in a curve to go straight on."),
+    footer=True,
+    palette=False,
+)
+def drive_forward(panel: TeleopPanel) -> None:
+    panel.press(Move.FORWARD)
+
+
+@action(
+    "teleop.back",
+    "down,s",
+    N_("Back"),
+    N_("Backwards while it is held; press it again in a curve to go straight back."),
+    footer=True,
+    palette=False,
+)
+def drive_back(panel: TeleopPanel) -> None:
+    panel.press(Move.BACK)
+
+
+@action(
+    "teleop.left",
+    "left,a",
+    N_("Left"),
+    N_("Left while it is held; a moving robot goes on in a curve."),
+    footer=True,
+    palette=False,
+)
+def steer_left(panel: TeleopPanel) -> None:
+    panel.press(Move.LEFT)
+
+
+@action(
+    "teleop.right",
+    "right,d",
+    N_("Right"),
+    N_("Right while it is held; a moving robot goes on in a curve."),
+    footer=True,
+    palette=False,
+)
+def steer_right(panel: TeleopPanel) -> None:
+    panel.press(Move.RIGHT)
+
+
+@action(
+    "teleop.sharper",
+    "right_square_bracket,ъ",
+    N_("Sharper"),
+    N_("Steer 0.05 rad more from the next press on, up to 0.5 rad."),
+)
+def sharper(panel: TeleopPanel) -> None:
+    panel.limits = panel.limits.sharper(1)
+
+
+@action("teleop.wider", "left_square_bracket,х", N_("Wider"), N_("Steer 0.05 rad less from the next press on."))
+def wider(panel: TeleopPanel) -> None:
+    panel.limits = panel.limits.sharper(-1)
+
+
+TELEOP_ACTIONS = [each for each in actions_of(__name__) if each is not open_teleop]
+MOVES = {drive_forward: Move.FORWARD, drive_back: Move.BACK, steer_left: Move.LEFT, steer_right: Move.RIGHT}
+"""Those that drive while their key is held; a click counts as one short press."""

@@ -20,11 +20,11 @@ from text.plain import plain
 from tui import clock
 from tui.actions import REGISTRY, Acting, bindings
 from tui.emergency.gate import gate_words
-from tui.frame.actions.app import EmergencyRelease
+from tui.frame.actions.app import emergency_release
 from tui.frame.host import Host, host_of
 from tui.panels.panel import newest, row_of
 from tui.panels.wheels.reading import WheelsReading, wheels_in
-from tui.teleop.actions import TELEOP_ACTIONS, MoveAction, OpenTeleop
+from tui.teleop.actions import MOVES, TELEOP_ACTIONS, open_teleop
 from tui.teleop.keys import NOTHING, Move, TeleopLimits
 from tui.teleop.route import DRIVE_TYPE, RATE_HZ, Route, command, nowhere_words, route
 from tui.teleop.view import Driving, drawn
@@ -120,10 +120,10 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         action = None if active is None else REGISTRY.get(active.binding.id or "")
         if active is None or active.node is not self or action is None:
             return
-        if issubclass(action, MoveAction):
+        if action in MOVES:
             event.stop()
             event.prevent_default()
-            self.press(action.move, event.time)
+            self.press(MOVES[action], event.time)
 
     def press(self, move: Move, at_s: float | None = None) -> None:
         """Press a key now, or at that time of the monotonic clock."""
@@ -270,12 +270,12 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         if self._deck.emergency.state.unconfirmed:
             return _("emergency stop: pressed, nobody has confirmed it"), "stop"
         if self._deck.emergency.state.engaged:
-            key = self._deck.keys_of(EmergencyRelease)[0]
+            key = self._deck.keys_of(emergency_release)[0]
             return _("emergency stop: nothing moves; {key} releases").format(key=key), "stop"
         if not self._route.topic:
             return nowhere_words(), "warn"
         if not self.has_focus:
-            key = self._deck.keys_of(OpenTeleop)[0]
+            key = self._deck.keys_of(open_teleop)[0]
             words = _("the keyboard focus is elsewhere; {key} or a click here brings it back")
             return words.format(key=key), "warn"
         if self._error:

@@ -98,10 +98,10 @@ class TopicsScreen(DeckScreen):
 
     def __init__(self) -> None:
         super().__init__()
-        self.table = TopicsTable()
-        self.detail = TopicDetail()
+        self.table: TopicsTable = TopicsTable()
+        self.detail: TopicDetail = TopicDetail()
         self.plot = TopicPlot()
-        self.plotting = Plotting(self, self.table, self.detail, self.plot)
+        self.plotting: Plotting = Plotting(self, self.table, self.detail, self.plot)
         self._pictures = TopicPictures(self.detail, self._is_wanted, lambda: self.table.chosen_row)
         self._rates_s = 0.0
         """When the rates were last shown."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from graph.housekeeping import is_housekeeping
 from text.i18n import _, localized
 from tui.frame import title
-from tui.topics.actions import ShowHousekeeping
+from tui.topics.actions import show_housekeeping
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +29,6 @@ def why_empty(deck: Host, listed: Sequence[TopicRow]) -> tuple[str, str]:
         return _("no topics yet"), ""
     if not listed:
         return _("no topics"), _("Nobody publishes anything, and nobody listens.")
-    key = deck.keys_of(ShowHousekeeping)[0]
+    key = deck.keys_of(show_housekeeping)[0]
     words = _("There are only those of ROS itself: {key} shows them.").format(key=key)
     return _("no topics of the robot"), words

@@ -5,20 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from text.i18n import N_
-from tui.deck.actions import EditNode, ExchangeNode, RestartNode
+from tui.deck.actions import edit_node, exchange_node, restart_node
 from tui.frame.actions.app import (
-    CloseSession,
-    EmergencyRelease,
-    EmergencyStop,
-    Quit,
-    ShowDeck,
-    ShowHelp,
-    ShowLesson,
-    ShowPalette,
-    ShowTopics,
-    SwitchLanguage,
+    close_session,
+    emergency_release,
+    emergency_stop,
+    leave,
+    show_deck,
+    show_help,
+    show_lesson,
+    show_palette,
+    show_topics,
+    switch_language,
 )
-from tui.lesson.actions import GoOn, MakeOwnFolder, TakeHint
+from tui.lesson.actions import go_on, make_own_folder, take_hint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +31,7 @@ class TourPage(NamedTuple):
 
     title: str
     sentences: Sequence[str]
-    keys: Sequence[tuple[type[Action[Any]], str]] = ()
+    keys: Sequence[tuple[Action[Any], str]] = ()
 
 
 PAGES = (
@@ -60,9 +60,9 @@ PAGES = (
             ),
         ),
         (
-            (GoOn, N_("start the lesson and watch, or go on with your own files")),
-            (MakeOwnFolder, N_("make your own folder for it, in ~/deck-course, and start it")),
-            (CloseSession, N_("come back to the list")),
+            (go_on, N_("start the lesson and watch, or go on with your own files")),
+            (make_own_folder, N_("make your own folder for it, in ~/deck-course, and start it")),
+            (close_session, N_("come back to the list")),
         ),
     ),
     TourPage(
@@ -76,10 +76,10 @@ PAGES = (
             N_("A step that has passed stays green. Nothing goes on before you do."),
         ),
         (
-            (ShowLesson, N_("the Lesson screen")),
-            (EditNode, N_("open your file in your editor, at the line of the mistake")),
-            (TakeHint, N_("a hint, then a plainer one, then the solution")),
-            (GoOn, N_("go on to the next step")),
+            (show_lesson, N_("the Lesson screen")),
+            (edit_node, N_("open your file in your editor, at the line of the mistake")),
+            (take_hint, N_("a hint, then a plainer one, then the solution")),
+            (go_on, N_("go on to the next step")),
         ),
     ),
     TourPage(
@@ -91,22 +91,22 @@ PAGES = (
             ),
         ),
         (
-            (ShowDeck, N_("the nodes, the sensors and the wheels")),
-            (ShowTopics, N_("every topic, the selected one live; the other numbers show more")),
-            (RestartNode, N_("start the selected node again")),
-            (ExchangeNode, N_("put your own node in the place of Deck's, and back")),
-            (ShowHelp, N_("all keys of the screen in front")),
-            (ShowPalette, N_("find anything by its name")),
+            (show_deck, N_("the nodes, the sensors and the wheels")),
+            (show_topics, N_("every topic, the selected one live; the other numbers show more")),
+            (restart_node, N_("start the selected node again")),
+            (exchange_node, N_("put your own node in the place of Deck's, and back")),
+            (show_help, N_("all keys of the screen in front")),
+            (show_palette, N_("find anything by its name")),
         ),
     ),
     TourPage(
         N_("Stop and leave"),
         (N_("When the robot does what it should not, there is one key to know:"),),
         (
-            (EmergencyStop, N_("emergency stop: the wheels stand still at once")),
-            (EmergencyRelease, N_("release it")),
-            (Quit, N_("leave Deck; no node is left running")),
-            (SwitchLanguage, N_("English / Русский")),
+            (emergency_stop, N_("emergency stop: the wheels stand still at once")),
+            (emergency_release, N_("release it")),
+            (leave, N_("leave Deck; no node is left running")),
+            (switch_language, N_("English / Русский")),
         ),
     ),
 )

@@ -8,80 +8,65 @@ from rich.cells import cell_len
 from textual.content import Content
 
 from text.i18n import N_, _
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 from tui.tour.pages import PAGES
 
 if TYPE_CHECKING:
     from textual.binding import BindingType
 
-
-class NextPage(Action["TourScreen"]):
-    """Go on."""
-
-    id = "tour.next"
-    key = "enter,n,т"
-    title = N_("Next page")
-    means = "next"
-    tooltip = N_("Show the next page of the tour; after the last one, close it.")
-    footer = True
-    palette = False
-
-    @classmethod
-    def label(cls, target: TourScreen) -> str:
-        """Named after what comes next."""
-        return N_("To the lessons") if target.is_last else cls.title
-
-    @classmethod
-    async def run(cls, target: TourScreen) -> None:
-        target.turn(1)
+action: Announce[TourScreen] = Announce()
 
 
-class PreviousPage(Action["TourScreen"]):
-    """Go back."""
-
-    id = "tour.back"
-    key = "N,Т"
-    title = N_("Previous page")
-    means = "previous"
-    tooltip = N_("Show the page before.")
-    footer = True
-    palette = False
-
-    @classmethod
-    def possible(cls, target: TourScreen) -> bool | None:
-        """Not on the first one."""
-        return True if target.page else None
-
-    @classmethod
-    async def run(cls, target: TourScreen) -> None:
-        target.turn(-1)
+@action(
+    "tour.next",
+    "enter,n",
+    N_("Next page"),
+    N_("Show the next page of the tour; after the last one, close it."),
+    means="next",
+    footer=True,
+    palette=False,
+    label=lambda dialog: N_("To the lessons") if dialog.is_last else N_("Next page"),
+)
+def next_page(dialog: TourScreen) -> None:
+    dialog.turn(1)
 
 
-class LeaveTour(Action["TourScreen"]):
-    """Leave."""
+@action(
+    "tour.back",
+    "N",
+    N_("Previous page"),
+    N_("Show the page before."),
+    means="previous",
+    footer=True,
+    palette=False,
+    when=lambda dialog: True if dialog.page else None,
+)
+def previous_page(dialog: TourScreen) -> None:
+    dialog.turn(-1)
 
-    id = "tour.leave"
-    key = "escape"
-    title = N_("Leave the tour")
-    tooltip = N_("Close the tour; it is not shown again by itself.")
-    footer = True
-    palette = False
 
-    @classmethod
-    async def run(cls, target: TourScreen) -> None:
-        target.dismiss(None)
+@action(
+    "tour.leave",
+    "escape",
+    N_("Leave the tour"),
+    N_("Close the tour; it is not shown again by itself."),
+    footer=True,
+    palette=False,
+)
+def leave_tour(dialog: TourScreen) -> None:
+    dialog.dismiss(None)
 
 
 class TourScreen(Dialog[None]):
     """Shows the pages."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(NextPage, PreviousPage, LeaveTour)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(next_page, previous_page, leave_tour)
     DEFAULT_CSS = "TourScreen { #dialog { height: 22; } #dialog-scroll { height: 1fr; } }"
 
     def __init__(self) -> None:
         super().__init__()
-        self.page = 0
+        self.page: int = 0
         """From 0."""
 
     @property

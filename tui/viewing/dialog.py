@@ -8,7 +8,7 @@ from textual.content import Content
 
 from text.i18n import N_, _
 from text.plain import plain
-from tui.actions import Action, bindings
+from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 
 if TYPE_CHECKING:
@@ -18,86 +18,63 @@ if TYPE_CHECKING:
 
     from tui.viewing.process import OpenedView
 
-
-class CloseView(Action["ViewDialog"]):
-    """Back to the screen; the viewer stays open."""
-
-    id = "view.close"
-    key = "escape,enter"
-    title = N_("Close")
-    tooltip = N_("Back to the screen; the viewer stays open.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: ViewDialog) -> None:
-        target.dismiss()
+action: Announce[ViewDialog] = Announce()
 
 
-class CopyViewUrl(Action["ViewDialog"]):
-    """Copy the address of the page."""
-
-    id = "view.copy"
-    key = "y,н"
-    title = N_("Copy")
-    tooltip = N_("Copy the address of the page, to open it in a browser.")
-    footer = True
-    palette = False
-
-    @classmethod
-    def possible(cls, target: ViewDialog) -> bool | None:
-        """Not for a window of its own."""
-        return bool(target.opened.url)
-
-    @classmethod
-    async def run(cls, target: ViewDialog) -> None:
-        target.copy(target.opened.url)
+@action(
+    "view.close",
+    "escape,enter",
+    N_("Close"),
+    N_("Back to the screen; the viewer stays open."),
+    footer=True,
+    palette=False,
+)
+def close_view(dialog: ViewDialog) -> None:
+    dialog.dismiss()
 
 
-class CopyViewAll(Action["ViewDialog"]):
-    """Copy the command that forwards the ports, and the address."""
-
-    id = "view.copy_all"
-    key = "ctrl+y"
-    title = N_("Copy all")
-    tooltip = N_("Copy the command for the machine in front of you, and the address of the page.")
-    footer = True
-    palette = False
-
-    @classmethod
-    def possible(cls, target: ViewDialog) -> bool | None:
-        return bool(target.opened.ssh)
-
-    @classmethod
-    async def run(cls, target: ViewDialog) -> None:
-        target.copy(f"{target.opened.ssh}\n{target.opened.url}")
+@action(
+    "view.copy",
+    "y",
+    N_("Copy"),
+    N_("Copy the address of the page, to open it in a browser."),
+    footer=True,
+    palette=False,
+    when=lambda dialog: bool(dialog.opened.url),
+)
+def copy_view_url(dialog: ViewDialog) -> None:
+    dialog.copy(dialog.opened.url)
 
 
-class EndView(Action["ViewDialog"]):
-    """End the viewer."""
+@action(
+    "view.copy_all",
+    "ctrl+y",
+    N_("Copy all"),
+    N_("Copy the command for the machine in front of you, and the address of the page."),
+    footer=True,
+    palette=False,
+    when=lambda dialog: bool(dialog.opened.ssh),
+)
+def copy_view_all(dialog: ViewDialog) -> None:
+    dialog.copy(f"{dialog.opened.ssh}\n{dialog.opened.url}")
 
-    id = "view.end"
-    key = "x,ч"
-    title = N_("End it")
-    means = "stop"
-    tooltip = N_("End the viewer; the robot runs on.")
-    footer = True
-    palette = False
 
-    @classmethod
-    async def run(cls, target: ViewDialog) -> None:
-        target.end()
+@action(
+    "view.end", "x", N_("End it"), N_("End the viewer; the robot runs on."), means="stop", footer=True, palette=False
+)
+def end_view(dialog: ViewDialog) -> None:
+    dialog.end()
 
 
 class ViewDialog(Dialog[None]):
     """Where the viewer is."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(CloseView, CopyViewUrl, CopyViewAll, EndView)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(close_view, copy_view_url, copy_view_all, end_view)
 
     def __init__(self, opened: OpenedView, end: Callable[[], None]) -> None:
         """Show where it is open; `end` ends it."""
         super().__init__()
-        self.opened = opened
+        self.opened: OpenedView = opened
         self._end = end
 
     def title_words(self) -> str:

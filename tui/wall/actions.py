@@ -5,25 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.i18n import N_
-from tui.actions.action import Action
+from tui.actions.action import Announce, actions_of
 
 if TYPE_CHECKING:
     from tui.frame.screen import DeckScreen
 
-
-class LeaveWall(Action["DeckScreen"]):
-    """Go back to the Deck."""
-
-    id = "wall.leave"
-    key = "escape"
-    title = N_("Deck")
-    tooltip = N_("Back to the Deck, with all its keys.")
-    footer = True
-    palette = False
-
-    @classmethod
-    async def run(cls, target: DeckScreen) -> None:
-        await target.deck.show_screen("deck")
+action: Announce[DeckScreen] = Announce()
 
 
-WALL_ACTIONS = (LeaveWall,)
+@action("wall.leave", "escape", N_("Deck"), N_("Back to the Deck, with all its keys."), footer=True, palette=False)
+async def leave_wall(dialog: DeckScreen) -> None:
+    await dialog.deck.show_screen("deck")
+
+
+WALL_ACTIONS = actions_of(__name__)

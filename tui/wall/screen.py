@@ -13,7 +13,7 @@ from text.plain import plain
 from tui.actions import bindings
 from tui.emergency.state import held_reason
 from tui.emergency.words import stop_words
-from tui.frame.actions.app import EmergencyRelease
+from tui.frame.actions.app import emergency_release
 from tui.frame.screen import DeckScreen
 from tui.panels.camera import CameraPanel
 from tui.panels.panel import row_of
@@ -204,7 +204,7 @@ class WallScreen(DeckScreen):
         look = "stop" if emergency.engaged else "held" if held else "free" if has_gate else ""
         words = ""
         if emergency.engaged:
-            short = stop_words(emergency, self.deck.keys_of(EmergencyRelease)[0])[-1]
+            short = stop_words(emergency, self.deck.keys_of(emergency_release)[0])[-1]
             words = f"{big_word(_('STOP'))}\n\n{short}"
         elif held:
             words = _("⚠ The gate holds the wheels: {reason}")

@@ -90,8 +90,8 @@ class YamlForm(Vertical, Acting, Working):
         """
         super().__init__(id=id or None)
         self.type_name = type_name
-        self.submit_title = submit_title
-        self.submits = submits
+        self.submit_title: str = submit_title
+        self.submits: bool = submits
         self.type_is_given = type_is_given
         self.error: Wrong | None = None
         """What is wrong with the text that was checked last."""

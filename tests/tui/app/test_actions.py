@@ -20,13 +20,13 @@ from tests.tui.snapshots import opened, seen, settle
 from tests.waiting import until
 from tui.actions import REGISTRY
 from tui.app import DeckApp
-from tui.frame.actions.app import TABS, ShowComposer, ShowWall
+from tui.frame.actions.app import TABS, show_composer, show_wall
 from tui.frame.key_bar import KeyBar
 from tui.help.page import Page
 from tui.help.screen import HelpScreen
 from tui.palette import PLACES
 from tui.screens import SCREENS, every_action
-from tui.teleop.actions import MoveAction
+from tui.teleop.actions import MOVES
 
 
 def footer(app: DeckApp) -> str:
@@ -59,7 +59,7 @@ def keys_of_every_screen() -> dict[str, dict[str, list[str]]]:
     table: dict[str, dict[str, list[str]]] = {}
     for name in every_action():
         action = REGISTRY[name]
-        for key in () if issubclass(action, MoveAction) else action.key.split(","):
+        for key in () if action in MOVES else action.key.split(","):
             table.setdefault(key, {}).setdefault(action.means or action.title, []).append(name)
     return table
 
@@ -213,7 +213,7 @@ def test_every_action_of_every_screen_has_its_place() -> None:
         # What every screen inherits is offered on each of them.
         own = vars(screen).get("BINDINGS", ())
         bound = {each.id for each in own if each.id in REGISTRY}
-        placed = {action.id for place in PLACES if place.show.screen == name for action in place.actions}
+        placed = {action.id for place in PLACES if place.screen == name for action in place.actions}
         assert name == "picker" or bound <= placed, name
 
 
@@ -234,7 +234,7 @@ async def test_no_key_of_the_tabs_is_typed_into_a_field_that_nobody_has_entered(
 
     monkeypatch.setattr(Screen, "set_focus", noted)
     async with opened() as (app, pilot):
-        for tab in [*TABS, *reversed(TABS), ShowWall, ShowComposer, ShowWall]:
+        for tab in [*TABS, *reversed(TABS), show_wall, show_composer, show_wall]:
             await pilot.press(tab.key.split(",")[0])
-            await until(partial(in_front, app, tab.screen), tab.screen)
+            await until(partial(in_front, app, tab.id.removeprefix("screen.")), tab.id)
         assert [one for one in focused if isinstance(one, (Input, TextArea))] == []

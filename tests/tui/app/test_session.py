@@ -33,7 +33,7 @@ from tests.waiting import until
 from text.sentences import say
 from tui.app import DeckApp
 from tui.clock import time_of_day
-from tui.deck.actions import StartAll, WriteCommand
+from tui.deck.actions import start_all, write_command
 from tui.deck.nodes_table import NodesTable
 from tui.deck.screen import LessonDeck
 from tui.frame import title
@@ -193,8 +193,8 @@ async def test_a_session_that_ends_leaves_no_node_ready_and_no_panel_that_seems_
         assert "ended by SIGSEGV" in rows[1]
         assert [drawing.stale_words for drawing in drawings] == ["nobody publishes this topic"] * 2
         assert isinstance(app.screen, LessonDeck)
-        assert not StartAll.possible(app.screen)
-        assert not WriteCommand.possible(app.screen)
+        assert not start_all.possible(app.screen)
+        assert not write_command.possible(app.screen)
 
 
 @pytest.mark.parametrize(

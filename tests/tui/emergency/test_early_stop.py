@@ -21,7 +21,7 @@ from text.i18n import set_language
 from tui.app import DeckApp
 from tui.emergency import control
 from tui.emergency.state import TOPIC_TYPE
-from tui.frame.actions.app import EmergencyStop
+from tui.frame.actions.app import emergency_stop
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
 from tui.session.ports import SessionLink
@@ -162,7 +162,7 @@ async def test_before_the_first_look_at_the_graph_nobody_knows_who_listens() -> 
 async def test_what_could_not_be_opened_takes_its_stop_with_it() -> None:
     opener = SlowOpener(refusal=UsageError("the profile is broken"))
     async with opened(opener, "picker", order=OpenRequest()) as (app, pilot):
-        assert not EmergencyStop.possible(app), "nothing is being opened"
+        assert not emergency_stop.possible(app), "nothing is being opened"
         app.sessions.open(OpenRequest(Path("profiles/09-brain.yaml")))
         await until(lambda: app.sessions.opening, "the opening")
         await is_on(app, pilot)

@@ -5,133 +5,107 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.i18n import N_
-from tui.actions.action import Action
+from tui.actions.action import Announce, actions_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from graph.replay.replay import Replay
     from tui.frame.host import Host
+
+action: Announce[Host] = Announce()
 
 SKIP_S = 5.0
 
 
-class ReplayAction(Action["Host"]):
-    """An action that needs a replay."""
-
-    @classmethod
-    def possible(cls, target: Host) -> bool | None:
-        """Only in a replay."""
-        return target.feed.replay is not None
-
-    @classmethod
-    async def run(cls, target: Host) -> None:
-        if target.feed.replay is not None:
-            cls.do(target.feed.replay)
-            target.replay_changed()
-
-    @classmethod
-    def do(cls, replay: Replay) -> None:
-        raise NotImplementedError
+def _in_replay(host: Host) -> bool:
+    return host.feed.replay is not None
 
 
-class PlayPause(ReplayAction):
-    """Pause, or play."""
-
-    id = "replay.toggle"
-    key = "f7"
-    title = N_("Pause")
-    tooltip = N_("Pause the recording, or play it; at its end, start again.")
-    footer = True
-    priority = True
-
-    @classmethod
-    def label(cls, target: Host) -> str:
-        """Named after what it would do now."""
-        replay = target.feed.replay
-        return N_("Play") if replay is not None and replay.state.paused else cls.title
-
-    @classmethod
-    def do(cls, replay: Replay) -> None:
-        replay.toggle()
+def _do(host: Host, act: Callable[[Replay], object]) -> None:
+    if host.feed.replay is not None:
+        act(host.feed.replay)
+        host.replay_changed()
 
 
-class Step(ReplayAction):
-    """Play one message."""
-
-    id = "replay.step"
-    key = "full_stop,ю"
-    title = N_("Step")
-    tooltip = N_("Pause and show the next message of the topics on the screen.")
-
-    @classmethod
-    def do(cls, replay: Replay) -> None:
-        replay.step()
+def _play_pause_label(host: Host) -> str:
+    """Named after what it would do now."""
+    replay = host.feed.replay
+    return N_("Play") if replay is not None and replay.state.paused else N_("Pause")
 
 
-class Back(ReplayAction):
-    """Jump back a little."""
-
-    id = "replay.back"
-    key = "shift+left"
-    title = N_("5 s back")
-    tooltip = N_("Jump five seconds back in the recording.")
-
-    @classmethod
-    def do(cls, replay: Replay) -> None:
-        replay.skip(-SKIP_S)
-
-
-class Forward(ReplayAction):
-    """Jump ahead a little."""
-
-    id = "replay.forward"
-    key = "shift+right"
-    title = N_("5 s forward")
-    tooltip = N_("Jump five seconds ahead in the recording.")
-
-    @classmethod
-    def do(cls, replay: Replay) -> None:
-        replay.skip(SKIP_S)
+@action(
+    "replay.toggle",
+    "f7",
+    N_("Pause"),
+    N_("Pause the recording, or play it; at its end, start again."),
+    footer=True,
+    priority=True,
+    when=_in_replay,
+    label=_play_pause_label,
+)
+def play_pause(host: Host) -> None:
+    _do(host, lambda replay: replay.toggle())
 
 
-class SlowerReplay(ReplayAction):
-    """Play more slowly."""
-
-    id = "replay.slower"
-    key = "minus,underscore"
-    title = N_("Slower")
-    tooltip = N_("Play the recording slower: down to a tenth.")
-
-    @classmethod
-    def do(cls, replay: Replay) -> None:
-        """Use the next lower rate."""
-        replay.change_rate(faster=False)
+@action(
+    "replay.step",
+    "full_stop,ю",
+    N_("Step"),
+    N_("Pause and show the next message of the topics on the screen."),
+    when=_in_replay,
+)
+def step(host: Host) -> None:
+    _do(host, lambda replay: replay.step())
 
 
-class FasterReplay(ReplayAction):
-    """Play faster."""
-
-    id = "replay.faster"
-    key = "plus,equals_sign"
-    title = N_("Faster")
-    tooltip = N_("Play the recording faster: up to ten times.")
-
-    @classmethod
-    def do(cls, replay: Replay) -> None:
-        """Use the next higher rate."""
-        replay.change_rate(faster=True)
+@action("replay.back", "shift+left", N_("5 s back"), N_("Jump five seconds back in the recording."), when=_in_replay)
+def back(host: Host) -> None:
+    _do(host, lambda replay: replay.skip(-SKIP_S))
 
 
-class Loop(ReplayAction):
-    """Repeat the recording."""
-
-    id = "replay.loop"
-    key = "shift+f7"
-    title = N_("Loop")
-    tooltip = N_("At the end of the recording start again, or stay there.")
-
-    @classmethod
-    def do(cls, replay: Replay) -> None:
-        replay.set_loop(not replay.state.loop)
+@action(
+    "replay.forward",
+    "shift+right",
+    N_("5 s forward"),
+    N_("Jump five seconds ahead in the recording."),
+    when=_in_replay,
+)
+def forward(host: Host) -> None:
+    _do(host, lambda replay: replay.skip(SKIP_S))
 
 
-REPLAY_ACTIONS = (PlayPause, Step, Back, Forward, SlowerReplay, FasterReplay, Loop)
+@action(
+    "replay.slower",
+    "minus,underscore",
+    N_("Slower"),
+    N_("Play the recording slower: down to a tenth."),
+    when=_in_replay,
+)
+def slower_replay(host: Host) -> None:
+    _do(host, lambda replay: replay.change_rate(faster=False))
+
+
+@action(
+    "replay.faster",
+    "plus,equals_sign",
+    N_("Faster"),
+    N_("Play the recording faster: up to ten times."),
+    when=_in_replay,
+)
+def faster_replay(host: Host) -> None:
+    _do(host, lambda replay: replay.change_rate(faster=True))
+
+
+@action(
+    "replay.loop",
+    "shift+f7",
+    N_("Loop"),
+    N_("At the end of the recording start again, or stay there."),
+    when=_in_replay,
+)
+def loop(host: Host) -> None:
+    _do(host, lambda replay: replay.set_loop(not replay.state.loop))
+
+
+REPLAY_ACTIONS = actions_of(__name__)

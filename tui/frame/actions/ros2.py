@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 from text.i18n import N_, _
 from text.plain import plain
-from tui.actions.action import Action
+from tui.actions.action import Announce
 
 if TYPE_CHECKING:
     from tui.frame.host import Host
+
+action: Announce[Host] = Announce()
 
 LONGEST = 400
 SHOWN_S = 12.0
@@ -26,21 +28,14 @@ def copy_command(host: Host, command: str) -> None:
     host.notify(plain(command, LONGEST), title=_("Copied for a shell"), timeout=SHOWN_S, markup=False)
 
 
-class CopyAsRos2(Action["Host"]):
-    """Copy what is shown or chosen as a command line of `ros2`."""
-
-    id = "app.ros2"
-    key = "Y,Н,alt+y"
-    title = N_("As ros2 command")
-    tooltip = N_("Copy what is selected or filled in as a `ros2` command for a shell, and show it.")
-    priority = True
-
-    @classmethod
-    def possible(cls, target: Host) -> bool | None:
-        """Only on a screen of a session."""
-        return target.feed.opened and target.feed.front is not None
-
-    @classmethod
-    async def run(cls, target: Host) -> None:
-        if target.feed.front is not None:
-            copy_command(target, await target.feed.front.ros2_command())
+@action(
+    "app.ros2",
+    "Y,alt+y",
+    N_("As ros2 command"),
+    N_("Copy what is selected or filled in as a `ros2` command for a shell, and show it."),
+    priority=True,
+    when=lambda host: host.feed.opened and host.feed.front is not None,
+)
+async def copy_as_ros2(host: Host) -> None:
+    if host.feed.front is not None:
+        copy_command(host, await host.feed.front.ros2_command())

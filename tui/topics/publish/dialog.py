@@ -15,9 +15,9 @@ from text import ros2_words
 from text.i18n import _, decimal, ngettext
 from tui.actions import bindings
 from tui.dialogs.dialog import Dialog
-from tui.dialogs.ros2 import CopyDialogAsRos2
+from tui.dialogs.ros2 import copy_dialog_as_ros2
 from tui.frame import title
-from tui.frame.actions.app import EmergencyStop
+from tui.frame.actions.app import emergency_stop
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
 from tui.topics.publish.actions import PUBLISH_ACTIONS
@@ -47,7 +47,7 @@ LONGEST_ARRAY = 1000
 class PublishDialog(Dialog[None]):
     """Topic, type and form; below them a rate, and what is being published now."""
 
-    BINDINGS: ClassVar = bindings(*PUBLISH_ACTIONS, CopyDialogAsRos2)
+    BINDINGS: ClassVar = bindings(*PUBLISH_ACTIONS, copy_dialog_as_ros2)
     DEFAULT_CSS: ClassVar[str] = """
     PublishDialog {
         align: center top; background: $background;
@@ -122,7 +122,7 @@ class PublishDialog(Dialog[None]):
     def redraw(self) -> None:
         dialog = self.query_one("#dialog")
         dialog.border_title = Content(self.title_words())
-        stop = f"{self.deck.keys_of(EmergencyStop)[-1]} {_(EmergencyStop.title)}"
+        stop = f"{self.deck.keys_of(emergency_stop)[-1]} {_(emergency_stop.title)}"
         dialog.border_subtitle = Content(stop)
         self.target.relabel()
         self.form.relabel()
