@@ -6,8 +6,7 @@ import sys
 import threading
 
 from .finding import DEADLOCK_S, LOST, NOBODY, STUCK_S, UNSPUN_S, Finding
-from .stacks import ACTION_SERVER, is_of
-from .unspun import awaits_calls
+from .stacks import ACTION_SERVER, awaits_calls, is_of
 from .waits import CALL, EVENT, LOCK, LOOP, RATE, SPIN, awaiting, is_offered, is_told, name_of, pending, waits_of
 
 TYPE_CHECKING = False

@@ -100,3 +100,17 @@ def is_in(frame: FrameType, folder: str) -> bool:
 def class_of(module: str, name: str) -> Any:  # noqa: ANN401
     """Return a class for `isinstance`; one that nothing is of, where it has not been imported."""
     return getattr(sys.modules.get(module), name, ())
+
+
+def awaits_calls(node: Any) -> bool:  # noqa: ANN401 - a node of rclpy
+    """Whether a node has timers, subscriptions, clients or services of its learner's."""
+    own = ("timers", "subscriptions", "clients")
+    try:
+        # rclpy names its own services by the node's name alone, others by the whole.
+        everybodys = (f"{node.get_name()}/", f"{node.get_fully_qualified_name()}/")
+        served = (each.srv_name for each in node.services)
+        return any(any(True for _ in getattr(node, kind)) for kind in own) or not all(
+            name.startswith(everybodys) for name in served
+        )
+    except Exception:  # noqa: BLE001 - its constructor is not through: nothing can be said
+        return False

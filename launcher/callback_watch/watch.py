@@ -9,9 +9,8 @@ import threading
 import time
 
 from .callbacks import Look
-from .forsaken import Homes
+from .nodes import Homes, unspun
 from .stacks import Thread
-from .unspun import unspun
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

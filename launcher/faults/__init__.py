@@ -1,5 +1,8 @@
 """What is wrong with a learner's own file: where, in which line, and what it means.
 
-`source` looks at a file without running it, `crash` reads what a process printed before it ended,
-`meanings` has a sentence for each of the usual mistakes of beginners.
+`source` looks at a file without running it, `explain` at an exception within its process, by the table and the
+rules in `rules`; `crash` reads what a process has printed where it has told nothing itself.
 """
+
+CHECK_FIELDS = "ROS_PYTHON_CHECK_FIELDS"
+"""The variable that has messages of Jazzy check the values of their fields, if it is 1."""

@@ -1,21 +1,24 @@
-"""Reading what a process has printed, where it has told nothing itself: its last traceback."""
+"""Reading what a process has printed, where it has told nothing itself: its last traceback, a line of the log."""
 
 from __future__ import annotations
 
 import linecache
 import os
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.faults.meanings import warning_of
-from launcher.faults.rules.ros import UNHEARD
+from launcher.faults.rules.said import OF_ROS, TAKEN_ARGUMENTS, UNHEARD
 from launcher.faults.stuck import MENDS, STILL_RUNS
 from launcher.status import NodeFault
+from text.i18n import N_
 from text.plain import plain
 from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from text.sentences import Words
 
 _BLOCKED = re.compile(
     r"(?:callback|обработчик) (?P<name>\S+) (?:still runs after|не закончил и через) "
@@ -25,11 +28,31 @@ _BLOCKED = re.compile(
 """What `launcher.callback_watch` writes."""
 _UNHEARD = re.compile(r"(?P<words>nothing fills this buffer), .*: asked in (?P<file>.+), line (?P<line>\d+)")
 """What the Buffer of `bridges/tf2_ros` writes."""
+_WARNINGS = (
+    (r"incompatible QoS", N_("The QoS of publisher and subscription do not fit each other: nothing arrives.")),
+    (
+        r"Publisher already registered for (?:provided )?node name",
+        N_("Two nodes have the same name: rename one of them."),
+    ),
+    (
+        r"Callback returned an invalid type, it should return SetParameterResult",
+        N_(
+            "The callback of add_on_set_parameters_callback has to return"
+            " SetParametersResult(successful=True), from rcl_interfaces.msg; without it no"
+            " parameter changes."
+        ),
+    ),
+)
+"""Mistakes that show in a line of the log only, while the node runs on."""
 BEGIN = "Traceback (most recent call last):"
 _FRAME = re.compile(r'^\s*File "(.+)", line (\d+)(?:, in .*)?$')
 _EXCEPTION = re.compile(r"^[A-Za-z_][\w.]*(?:Error|Exception|Interrupt|Exit|Warning)(: .*)?$")
+_SYNTAX = ("SyntaxError", "IndentationError", "TabError")
 _LONG_NUMBER = re.compile(r"(\d{4})\d{30,}(\.\d+)?")
 """Such as the limits of a float64, written out, that rclpy puts into its sentence on a list."""
+_READS_ARGUMENTS = re.compile(r"\.parse(?:_known)?_args\s*\(|\bsys\.argv\b|\bgetopt\b")
+_LAST_LINES = 8
+_LONGEST, _LONGEST_LINE = 200, 1000
 
 
 def crash_of(lines: Sequence[str], folder: str) -> NodeFault | None:
@@ -38,8 +61,7 @@ def crash_of(lines: Sequence[str], folder: str) -> NodeFault | None:
     Of its frames, the last one in a file of this folder counts, else the last one.
     """
     starts = [number for number, line in enumerate(lines) if line.strip() == BEGIN]
-    syntax = _syntax_without_traceback(lines)
-    begin = starts[-1] if starts else syntax
+    begin = starts[-1] if starts else _syntax_without_traceback(lines)
     if begin is None:
         return None
     frames: list[tuple[str, int, str]] = []
@@ -48,46 +70,64 @@ def crash_of(lines: Sequence[str], folder: str) -> NodeFault | None:
         if found:
             source = lines[number + 1].strip() if number + 1 < len(lines) else ""
             frames.append((found[1], int(found[2]), source))
-    exception = _exception(lines[begin:])
-    if not frames or not exception:
+    exceptions = [line.strip() for line in lines[begin:] if _EXCEPTION.match(line)]
+    if not frames or not exceptions:
         return None
+    exception = _LONG_NUMBER.sub(r"\1…", exceptions[-1])
     own = [frame for frame in frames if os.path.dirname(frame[0]) == folder] or frames  # noqa: PTH120
     file, line, source = own[-1]
-    kind = "syntax" if exception.startswith(("SyntaxError", "Indentation", "TabError")) else "crash"
+    kind = "syntax" if exception.startswith(_SYNTAX) else "crash"
     return NodeFault(kind, file, line=line, source_line=source, exception=exception)
+
+
+def _syntax_without_traceback(lines: Sequence[str]) -> int | None:
+    """Return where a syntax error begins that Python reports without `Traceback`."""
+    errors = [number for number, line in enumerate(lines) if line.startswith(_SYNTAX)]
+    above = range(errors[-1], -1, -1) if errors else ()
+    return next((number for number in above if _FRAME.match(lines[number])), None)
 
 
 def warning_in(line: str, file: str) -> NodeFault | None:
     """Return the mistake in this file that a line of the log tells of while the node runs."""
     blocked = _BLOCKED.fullmatch(line)
     if blocked:
-        where, number = blocked["file"], int(blocked["line"])
         words = say(STILL_RUNS, name=blocked["name"], seconds=blocked["seconds"])
-        source = linecache.getline(where, number).strip()
-        linecache.clearcache()
-        mend = MENDS.get(blocked["waits_in"] or "", MENDS[""])
-        return NodeFault("warning", where, number, 0, plain(source), words, say(mend))
+        return _warning(blocked, words, MENDS.get(blocked["waits_in"] or "", MENDS[""]))
     unheard = _UNHEARD.fullmatch(line)
     if unheard:
-        where, number = unheard["file"], int(unheard["line"])
-        source = linecache.getline(where, number).strip()
-        linecache.clearcache()
-        return NodeFault("warning", where, number, 0, plain(source), unheard["words"], say(UNHEARD))
+        return _warning(unheard, unheard["words"], UNHEARD)
     meaning = warning_of(line)
     return NodeFault("warning", file, exception=line, meaning=meaning) if meaning else None
 
 
-def _syntax_without_traceback(lines: Sequence[str]) -> int | None:
-    """Return where a syntax error begins that Python reports without `Traceback`."""
-    for number in range(len(lines) - 1, -1, -1):
-        if lines[number].startswith(("SyntaxError", "IndentationError", "TabError")):
-            for above in range(number, -1, -1):
-                if _FRAME.match(lines[above]):
-                    return above
-    return None
+def _warning(found: re.Match[str], words: Words | str, mend: str) -> NodeFault:
+    file, line = found["file"], int(found["line"])
+    source = linecache.getline(file, line).strip()
+    linecache.clearcache()
+    return NodeFault("warning", file, line, 0, plain(source), words, say(mend))
 
 
-def _exception(lines: Sequence[str]) -> str:
-    """Return the line that names the exception, which other lines may follow."""
-    found = [line.strip() for line in lines if _EXCEPTION.match(line)]
-    return _LONG_NUMBER.sub(r"\1…", found[-1]) if found else ""
+def warning_of(line: str) -> Words | str:
+    """Return the sentence for a line of the log, empty if there is none."""
+    found = (sentence for pattern, sentence in _WARNINGS if re.search(pattern, line[:_LONGEST_LINE]))
+    return next((say(sentence) for sentence in found), "")
+
+
+def refused_arguments(lines: Sequence[str], file: str) -> NodeFault | None:
+    """Return the fault if the last lines of a program say that it refuses an argument of ROS.
+
+    Deck starts a node as `ros2 run` does: what stands after `--ros-args` is for rclpy.
+    https://design.ros2.org/articles/ros_command_line_arguments.html
+    """
+    refused = (line for line in reversed(lines[-_LAST_LINES:]) if re.search(r"\berror:", line, re.IGNORECASE))
+    line = next((each for each in refused if re.search(OF_ROS, each)), None)
+    if line is None:
+        return None
+    try:
+        program = Path(file).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        program = []
+    reads = [number for number, each in enumerate(program, 1) if _READS_ARGUMENTS.search(each)]
+    number = reads[-1] if reads else 0
+    source = plain(program[number - 1].strip()[:_LONGEST]) if number else ""
+    return NodeFault("crash", file, number, 0, source, plain(line.strip()[:_LONGEST]), say(TAKEN_ARGUMENTS))

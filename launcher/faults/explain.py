@@ -7,71 +7,24 @@ variables, rclpy's own functions. What is printed afterwards is only words.
 from __future__ import annotations
 
 import linecache
+import sys
 from typing import TYPE_CHECKING
 
 from launcher.faults.failure import Failure
 from launcher.faults.first_cause import first_cause
-from launcher.faults.ros_arguments import meaning_of_arguments
-from launcher.faults.rules import (
-    actions,
-    arrays,
-    attributes,
-    callbacks,
-    calling,
-    classes,
-    creating,
-    field_names,
-    fields,
-    handed,
-    imports,
-    logger,
-    names,
-    opencv,
-    operating,
-    outside,
-    parameters,
-    ros,
-    threads,
-    values,
-)
+from launcher.faults.rules import RULES
+from launcher.faults.rules.callbacks import place_of
 from launcher.faults.rules.syntax import encoding_of, syntax
 from launcher.status import NodeFault
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from launcher.faults.failure import Rule
     from text.sentences import Words
 
-RULES: tuple[Rule, ...] = (
-    lambda failure: meaning_of_arguments(str(failure.error)),
-    *callbacks.RULES,
-    *names.RULES[:1],
-    actions.result,
-    *fields.RULES,
-    *field_names.RULES,
-    *creating.RULES,
-    *parameters.RULES,
-    *ros.RULES,
-    *opencv.RULES,
-    *actions.RULES,
-    logger.unfit,
-    *handed.RULES,
-    *imports.RULES,
-    *names.RULES[1:],
-    *ros.LAST,
-    *attributes.RULES,
-    *operating.RULES,
-    logger.several,
-    *classes.RULES,
-    *calling.RULES,
-    *values.RULES,
-    *outside.RULES,
-    *arrays.RULES,
-    *values.LAST,
-)
-"""In order: the first that recognises the mistake counts."""
 LONGEST = 240
 """Characters of an exception that are kept: rclpy writes the limits of a float64 out."""
+BROKEN = "[WARN] [deck]: a rule on mistakes is broken:"
+"""How the line begins that tells of it."""
 
 
 def explained(error: BaseException, program: str, kind: str = "crash") -> NodeFault:
@@ -84,7 +37,7 @@ def explained(error: BaseException, program: str, kind: str = "crash") -> NodeFa
     failure = Failure(error, folder)
     level = failure.own or failure.inner
     file, line = (level.file, level.line) if level is not None else ("", 0)
-    file, line = callbacks.place_of(failure) or threads.place_of(failure, program) or (file, line)
+    file, line = place_of(failure, program) or (file, line)
     return NodeFault(
         kind,
         file,
@@ -96,11 +49,15 @@ def explained(error: BaseException, program: str, kind: str = "crash") -> NodeFa
 
 
 def meaning(failure: Failure) -> Words | str:
-    """Return the sentence for a failure, empty if there is none."""
+    """Return the sentence of the first rule that recognises a failure, empty if none does.
+
+    A rule that fails itself is told on standard error; the place and Python's own words are left.
+    """
     for rule in RULES:
         try:
             words = rule(failure)
-        except Exception:  # noqa: BLE001 - a learner's objects may raise whatever is asked
+        except Exception as error:  # noqa: BLE001 - a learner's objects may raise whatever is asked
+            sys.stderr.write(f"{BROKEN} {rule.__module__}.{rule.__name__}: {type(error).__name__}: {error}\n")
             continue
         if words is not None:
             return words

@@ -157,7 +157,7 @@ class Failure:
 
     # Values.
 
-    def value(self, node: ast.AST | None) -> Any:  # noqa: ANN401 - of any type
+    def value(self, node: ast.AST | None) -> Any:
         """Return what an expression stands for, `UNKNOWN` if something would have to be run."""
         if isinstance(node, ast.Constant):
             return node.value
@@ -181,7 +181,7 @@ class Failure:
             return -inner if isinstance(inner, (int, float)) else UNKNOWN
         return UNKNOWN
 
-    def _parameter(self, call: ast.Call) -> Any:  # noqa: ANN401 - a parameter of rclpy
+    def _parameter(self, call: ast.Call) -> Any:
         """Return the parameter that a call of a node's `get_parameter` gives."""
         func = call.func
         if not isinstance(func, ast.Attribute) or func.attr != "get_parameter" or not call.args:
@@ -189,9 +189,9 @@ class Failure:
         node, name = self.value(func.value), self.value(call.args[0])
         if not is_from(node, "rclpy", "Node") or not isinstance(name, str):
             return UNKNOWN
-        return node._parameters.get(name, UNKNOWN)  # noqa: SLF001 - get_parameter declares as well
+        return node._parameters.get(name, UNKNOWN)
 
-    def named(self, name: str) -> Any:  # noqa: ANN401 - of any type
+    def named(self, name: str) -> Any:
         """Return the value of a variable."""
         if self.own is None:
             return UNKNOWN
@@ -229,7 +229,7 @@ class Failure:
             return called
         return _returned(called)
 
-    def called(self, call: ast.Call) -> Any:  # noqa: ANN401 - of any type
+    def called(self, call: ast.Call) -> Any:
         """Return the function or class that is called, `UNKNOWN` if it is not known."""
         value = self.value(call.func)
         if value is UNKNOWN and isinstance(call.func, ast.Attribute):
@@ -245,7 +245,7 @@ def shown(node: ast.AST | None) -> str:
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
 
 
-def attribute(of: Any, name: str) -> Any:  # noqa: ANN401 - of any type
+def attribute(of: Any, name: str) -> Any:
     """Return an attribute if that runs nothing of the learner's own."""
     if of is UNKNOWN:
         return UNKNOWN
@@ -278,7 +278,7 @@ def is_action_class(value: object) -> bool:
     return isinstance(value, type) and hasattr(value, "Goal") and hasattr(value, "Feedback")
 
 
-def fields_of(message: Any) -> dict[str, str]:  # noqa: ANN401 - of any type
+def fields_of(message: Any) -> dict[str, str]:
     """Return the fields of a message or its class, and their types."""
     fields: dict[str, str] = message.get_fields_and_field_types()
     return {name: of for name, of in fields.items() if not name.startswith("_")}
@@ -326,7 +326,7 @@ def _covers(node: ast.AST, line: int) -> bool:
     return begin is not None and begin <= line <= (node.end_lineno or begin)  # type: ignore[attr-defined]
 
 
-def _item(of: Any, index: Any) -> Any:  # noqa: ANN401 - of any type
+def _item(of: Any, index: Any) -> Any:
     if isinstance(of, (list, tuple, dict, str, bytes, array.array)) and index is not UNKNOWN:
         try:
             return of[index]
@@ -364,7 +364,10 @@ def _returned(called: object) -> type | None:
     return returns if isinstance(returns, type) else None
 
 
-Rule = typing.Callable[["Failure"], "Words | None"]
-"""What recognises mistakes of one kind, and says what they mean."""
-ENTERING = ("__enter__", "__exit__")
-"""All that Python 3.10 says of a `with` whose object cannot stand there."""
+class Rule(typing.Protocol):
+    """What recognises mistakes of one kind, and says what they mean."""
+
+    __module__: str
+    __name__: str
+
+    def __call__(self, failure: Failure, /) -> Words | None: ...

@@ -16,20 +16,28 @@ if TYPE_CHECKING:
 
 FEW = 6
 """As many fields are named."""
+_CHANGING = ("append", "sort", "reverse", "extend", "update", "add", "insert")
 
 
-def remedy(failure: Failure, node: ast.AST | None, value: Any = UNKNOWN) -> Words | None:  # noqa: ANN401
+def remedy(failure: Failure, node: ast.AST | None, value: Any = UNKNOWN) -> Words | None:
     """Return what to write in an expression's place where a number or a text is needed."""
     what = f"({shown(node)})" if isinstance(node, ast.BinOp) else shown(node)
     value = failure.value(node) if value is UNKNOWN else value
-    if value is not UNKNOWN:
-        return _of_value(failure, what, node, value)
-    kind = failure.type_of(node)
-    return None if kind is None else _of_type(failure, what, node, kind)
+    if value is UNKNOWN:
+        kind = failure.type_of(node)
+        return None if kind is None else _of_type(failure, what, node, kind)
+    if isinstance(value, type):
+        return say("{what} is a class: the brackets are missing, {what}().", what=what)
+    if inspect.isroutine(value):
+        return say("{what} is a function: the brackets are missing, {what}().", what=what)
+    if isinstance(value, ModuleType):
+        return say("{what} is a module: name what is meant in it, {what}.x.", what=what)
+    if isinstance(value, str):
+        return of_text(what, value)
+    return _of_type(failure, what, node, type(value))
 
 
 def of_list(what: str, call: str) -> Words:
-    """Say that a function of one number was given many."""
     return say(
         "{what} is a list: take one of its values, {call}({what}[0]), or all, [{call}(v) for v in {what}].",
         what=what,
@@ -39,7 +47,7 @@ def of_list(what: str, call: str) -> Words:
 
 def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
     """Say that an expression is None, and what that may come from."""
-    what, call = shown(node), failure.given_by(node)
+    what = shown(node)
     if isinstance(node, ast.Attribute) and node.attr == "value" and isinstance(node.value, ast.Call):
         words = unset_parameter(failure, node.value)
         if words is not None:
@@ -52,11 +60,8 @@ def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
             " is False. Is the camera there?",
             what=what,
         )
-    if call is not None:
-        return _nothing_given(call)
-    if isinstance(node, ast.Call):
-        return _nothing_given(node)
-    return is_none_here(what)
+    call = node if isinstance(node, ast.Call) else failure.given_by(node)
+    return is_none_here(what) if call is None else _nothing_given(call)
 
 
 def unset_parameter(failure: Failure, call: ast.Call) -> Words | None:
@@ -92,8 +97,7 @@ def _read_from(failure: Failure, node: ast.AST) -> bool:
     return any(
         isinstance(each, ast.Assign)
         and isinstance(each.value, ast.Call)
-        and isinstance(each.value.func, ast.Attribute)
-        and each.value.func.attr == "read"
+        and getattr(each.value.func, "attr", "") == "read"
         and isinstance(each.targets[0], ast.Tuple)
         and shown(node) in [shown(target) for target in each.targets[0].elts[1:]]
         for each in ast.walk(failure.tree)
@@ -113,7 +117,7 @@ def _nothing_given(call: ast.Call) -> Words:
             " slash in front is looked for where the program was started.",
             what=shown(call),
         )
-    if name in ("append", "sort", "reverse", "extend", "update", "add", "insert"):
+    if name in _CHANGING:
         return say(
             "{name} changes the list itself and gives None: write it on a line of its own, without an equals sign.",
             name=name,
@@ -121,10 +125,10 @@ def _nothing_given(call: ast.Call) -> Words:
     return say("{what} gives None: does it have a return, and does it return a value in this case?", what=shown(call))
 
 
-def of_message(what: str, kind: Any) -> Words:  # noqa: ANN401 - a class of messages
+def of_message(what: str, kind: Any) -> Words:
     """Say that an expression is a whole message, and which of its fields may be meant."""
     fields = list(fields_of(kind))
-    if fields == ["data"] or "data" in fields:
+    if "data" in fields:
         return say("{what} is a whole message, {type}; what is in it is {what}.data.", what=what, type=name_of(kind))
     return say(
         "{what} is a whole message, {type}; use one of its fields: {fields}.",
@@ -134,12 +138,17 @@ def of_message(what: str, kind: Any) -> Words:  # noqa: ANN401 - a class of mess
     )
 
 
+def given(value: object) -> Words | str:
+    """Return what an object is in a sentence: of a class that it is one."""
+    return say("the class {name}", name=name_of(value)) if isinstance(value, type) else name_of(type(value))
+
+
 def listed(names: list[str]) -> str:
     """Return some names, with an ellipsis if they are many."""
     return ", ".join(names[:FEW]) + (", …" if len(names) > FEW else "")
 
 
-def future(what: str, of: Any = None) -> Words:  # noqa: ANN401 - a future, if it is known
+def future(what: str, of: Any = None) -> Words:
     """Say how to get at the answer that a future promises, or has."""
     if of is not None and of.done():
         return say("{what} is the future; the answer is in it: {what}.result().", what=what)
@@ -151,22 +160,7 @@ def future(what: str, of: Any = None) -> Words:  # noqa: ANN401 - a future, if i
 
 
 def parameter(what: str) -> Words:
-    """Say that a parameter is not its value."""
     return say("{what} is a parameter; its value is {what}.value.", what=what)
-
-
-def _of_value(failure: Failure, what: str, node: ast.AST | None, value: Any) -> Words | None:  # noqa: ANN401
-    if value is None:
-        return is_none(failure, node)
-    if isinstance(value, type):
-        return say("{what} is a class: the brackets are missing, {what}().", what=what)
-    if inspect.isroutine(value):
-        return say("{what} is a function: the brackets are missing, {what}().", what=what)
-    if isinstance(value, ModuleType):
-        return say("{what} is a module: name what is meant in it, {what}.x.", what=what)
-    if isinstance(value, str):
-        return of_text(what, value)
-    return _of_type(failure, what, node, type(value))
 
 
 def of_text(what: str, value: str) -> Words | None:
@@ -179,39 +173,37 @@ def of_text(what: str, value: str) -> Words | None:
 
 
 def _of_type(failure: Failure, what: str, node: ast.AST | None, kind: type) -> Words | None:
+    module, name = kind.__module__.partition(".")[0], kind.__name__
     if kind is type(None):
         return is_none(failure, node)
-    if is_message_class(kind) and kind.__name__ == "ParameterValue":
+    if is_message_class(kind) and name == "ParameterValue":
         return say(
             "{what} is a message around the value; the value alone is self.get_parameter(name).value.", what=what
         )
-    if is_message_class(kind) and not _is_time(kind):
-        return of_message(what, kind)
-    module, name = kind.__module__.partition(".")[0], kind.__name__
-    if module == "rclpy" and name == "Parameter":
-        return parameter(what)
-    if module == "rclpy" and name in ("Future", "Task"):
-        return future(what)
-    if module == "rclpy" and name == "Duration":
-        return say(
-            "{what} is of type Duration: {what}.nanoseconds / 1e9 are its seconds, and"
-            " Duration(seconds=0.5) makes one.",
-            what=what,
-        )
-    if module == "rclpy" and name == "Time":
-        return say(
-            "{what} is of type Time: {what}.nanoseconds / 1e9 are seconds, and a Duration can be"
-            " added to it: Duration(seconds=0.5).",
-            what=what,
-        )
-    if _is_time(kind):
+    if module == "builtin_interfaces":
         return say(
             "{what} is the message {type}: Time.from_msg({what}) of rclpy.time can be calculated with.",
             what=what,
             type=name_of(kind),
         )
+    if is_message_class(kind):
+        return of_message(what, kind)
+    if module != "rclpy":
+        return None
+    if name == "Parameter":
+        return parameter(what)
+    if name in ("Future", "Task"):
+        return future(what)
+    if name == "Duration":
+        return say(
+            "{what} is of type Duration: {what}.nanoseconds / 1e9 are its seconds, and"
+            " Duration(seconds=0.5) makes one.",
+            what=what,
+        )
+    if name == "Time":
+        return say(
+            "{what} is of type Time: {what}.nanoseconds / 1e9 are seconds, and a Duration can be"
+            " added to it: Duration(seconds=0.5).",
+            what=what,
+        )
     return None
-
-
-def _is_time(kind: type) -> bool:
-    return kind.__module__.startswith("builtin_interfaces.")

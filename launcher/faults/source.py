@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import contextlib
 import importlib.util
 import sys
 from pathlib import Path
@@ -49,10 +48,7 @@ def look_at(file: str) -> NodeFault | None:
 
 def unspun(file: str) -> NodeFault | None:
     """Return why a node's program ended by itself: nothing calls main, or nothing spins."""
-    try:
-        tree = ast.parse(Path(file).read_bytes()[:MAX_BYTES])
-    except (OSError, SyntaxError, ValueError):
-        return None
+    tree, _lines = _read(file)
     named = {getattr(node, "id", getattr(node, "attr", "")) for node in ast.walk(tree)}
     mains = [each for each in tree.body if isinstance(each, ast.FunctionDef) and each.name == MAIN]
     if "rclpy" not in {name for name, _node in _imports(tree)}:
@@ -69,18 +65,25 @@ def unspun(file: str) -> NodeFault | None:
     return None
 
 
+def _read(file: str) -> tuple[ast.Module, list[str]]:
+    """Return a program and its lines; nothing if it cannot be read."""
+    try:
+        data = Path(file).read_bytes()[:MAX_BYTES]
+        return ast.parse(data), data.decode("utf-8", "replace").splitlines()
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+        return ast.Module([], []), []
+
+
 def modules_of(file: str) -> set[str]:
     """Return the files of the same folder that it imports, and that those import."""
     found: set[str] = set()
     pending = [Path(file)]
     while pending:
         path = pending.pop()
-        with contextlib.suppress(OSError, SyntaxError, ValueError):
-            tree = ast.parse(path.read_bytes()[:MAX_BYTES])
-            names = {name for name, _node in _imports(tree, deep=True)}
-            beside = {str(path.with_name(f"{name}.py")) for name in names} - found
-            pending += [Path(each) for each in beside if Path(each).is_file()]
-            found |= beside
+        names = {name for name, _node in _imports(_read(str(path))[0], deep=True)}
+        beside = {str(path.with_name(f"{name}.py")) for name in names} - found
+        pending += [Path(each) for each in beside if Path(each).is_file()]
+        found |= beside
     return found - {file}
 
 
@@ -131,3 +134,65 @@ def _missing(file: str, name: str, node: ast.stmt, lines: list[str]) -> NodeFaul
         exception=f"ModuleNotFoundError: No module named '{plain(name)}'",
         meaning=missing_import(name, node, file.rpartition("/")[0]),
     )
+
+
+_BEGINS = ("init", "try_shutdown", "shutdown")
+"""What ends one life of ROS in a process, or begins another, in which a node may be spun anew."""
+
+
+def spun_in_turn(file: str) -> NodeFault | None:
+    """Return the fault of a program whose `rclpy.spin` keeps another one from its turn."""
+    tree, lines = _read(file)
+    for node in ast.walk(tree):
+        line = _second(list(_straight(node.body))) if isinstance(node, (ast.Module, ast.FunctionDef)) else 0
+        if line:
+            meaning = say(
+                "rclpy.spin does not return while the node before it runs: give both to one executor,"
+                " executor = MultiThreadedExecutor(), executor.add_node(node) for each, and"
+                " executor.spin() once."
+            )
+            exception = say("the turn of this node does not come")
+            return NodeFault("warning", file, line, 0, plain(lines[line - 1].strip()), exception, meaning)
+    return None
+
+
+def _straight(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """Yield the statements that are run one after the other, whatever happens."""
+    for statement in body:
+        yield statement
+        if isinstance(statement, (ast.With, ast.Try)):
+            yield from _straight(statement.body)
+
+
+def _second(statements: list[ast.stmt]) -> int:
+    """Return the line of the spin whose turn does not come, 0 if there is none."""
+    first = ""
+    for statement in statements:
+        if isinstance(statement, ast.For):
+            each = ast.unparse(statement.target)
+            turns = (inner.lineno for inner in statement.body if _spun(inner) == each)
+            if line := next(turns, 0):
+                return line
+        if isinstance(statement, ast.Expr) and _called(statement.value) in _BEGINS:
+            first = ""
+        node = _spun(statement)
+        if node and first and node != first:
+            return statement.lineno
+        first = first or node
+    return 0
+
+
+def _spun(statement: ast.stmt) -> str:
+    """Return the node that `rclpy.spin(node)` is given, empty if it is something else."""
+    call = statement.value if isinstance(statement, ast.Expr) else None
+    if not isinstance(call, ast.Call) or len(call.args) != 1 or call.keywords:
+        return ""
+    return ast.unparse(call.args[0]) if _called(call) == "spin" else ""
+
+
+def _called(call: ast.AST) -> str:
+    func = call.func if isinstance(call, ast.Call) else None
+    if isinstance(func, ast.Attribute):
+        of = func.value
+        return func.attr if isinstance(of, ast.Name) and of.id == "rclpy" else ""
+    return func.id if isinstance(func, ast.Name) else ""

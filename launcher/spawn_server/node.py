@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from launcher import node_program
-from launcher.faults.meanings import CHECK_FIELDS
+from launcher.faults import CHECK_FIELDS
 from launcher.processes.confinement import confine
 from launcher.processes.prctl import die_with_parent, leave_libraries_alone_at_exit
 from launcher.processes.table import NODE_MARK

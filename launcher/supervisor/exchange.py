@@ -6,7 +6,7 @@ import dataclasses
 import sys
 
 from launcher import node_program
-from launcher.faults.meanings import CHECK_FIELDS
+from launcher.faults import CHECK_FIELDS
 from launcher.supervisor.plan import NodePlan
 
 _ROS_ARGS = "--ros-args"

@@ -15,7 +15,7 @@ from launcher.consent import DEFAULT_RULES, AgentRules
 from launcher.control.protocol import unpack_rules
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
-from launcher.faults.meanings import CHECK_FIELDS
+from launcher.faults import CHECK_FIELDS
 from launcher.profile.defaults import READY_WITHIN_S
 from launcher.profile.driving import drives
 from launcher.ros_tools import ros_tools, without_wheels

@@ -1,4 +1,4 @@
-"""Attributes that are not there: of None, of a message, of a module, of an object of rclpy's."""
+"""Attributes that are not there: of None, of a message, of a module, of rclpy's objects, of the learner's own."""
 
 from __future__ import annotations
 
@@ -22,178 +22,145 @@ from launcher.faults.failure import (
 )
 from launcher.faults.homes import ROS1, home_of, ros1
 from launcher.faults.remedy import future, is_none, parameter
-from launcher.faults.rules import own_attributes
-from launcher.faults.rules.field_names import no_field, time_now
-from launcher.faults.rules.own_attributes import near, taken_name, wanted
+from launcher.faults.rules.fields import no_field, time_now
 from text.sentences import Words, say
-from text.suggestions import nearest
+from text.suggestions import near
 
-OTHER_NAMES = {
-    (list, "push"): "append", (list, "add"): "append", (list, "length"): "len(…)",
-    (list, "size"): "len(…)", (str, "length"): "len(…)", (dict, "has_key"): "key in d",
-    (str, "decode"): "", (bytes, "encode"): "", (list, "shape"): "np.array(…).shape",
-    (bytes, "shape"): "np.frombuffer(…)", (list, "tolist"): "", ("array", "tolist"): "",
+_OTHER_NAMES = {
+    ("list", "push"): "append", ("list", "add"): "append", ("list", "length"): "len(…)", ("list", "size"): "len(…)",
+    ("str", "length"): "len(…)", ("list", "shape"): "np.array(…).shape", ("array", "shape"): "np.array(…).shape",
     ("array", "min"): "min(…)", ("array", "max"): "max(…)", ("array", "sum"): "sum(…)",
-    ("array", "shape"): "np.array(…).shape", ("ndarray", "append"): "np.append(…, x)",
-    ("ndarray", "length"): "len(…)", (str, "append"): "+", (str, "contains"): "x in text",
-    (str, "size"): "len(…)", (str, "toUpperCase"): "upper()", (str, "toLowerCase"): "lower()",
-    (list, "contains"): "x in list", (list, "includes"): "x in list",
-    (list, "forEach"): "for x in list:", (list, "map"): "[f(x) for x in list]",
-    ("Serial", "println"): "write(b\"…\\n\")", ("Serial", "print"): "write(b\"…\")",
-    ("lock", "lock"): "with lock:", ("lock", "unlock"): "with lock:",
-    ("Queue", "push"): "put(x)", ("Queue", "pop"): "get()",
-    ("Time", "to_sec"): ".nanoseconds / 1e9", ("Time", "secs"): ".nanoseconds",
-    ("Time", "nsecs"): ".nanoseconds", ("Time", "sec"): ".to_msg().sec",
-    ("Time", "nanosec"): ".to_msg().nanosec", ("Time", "seconds"): ".nanoseconds / 1e9",
-    ("Duration", "to_sec"): ".nanoseconds / 1e9", ("Duration", "seconds"): ".nanoseconds / 1e9",
-    ("Duration", "sec"): ".nanoseconds / 1e9", ("Timer", "stop"): ".cancel()",
-    ("Timer", "start"): ".reset()", ("Publisher", "send"): ".publish(msg)",
-    ("Publisher", "pub"): ".publish(msg)", ("Client", "call_service"): ".call_async(request)",
-    ("Client", "send_request"): ".call_async(request)", ("RcutilsLogger", "print"): ".info(…)",
-    ("RcutilsLogger", "log_info"): ".info(…)",
-    ("RcutilsLogger", "warning_once"): ".warn(…, once=True)",
-    ("RcutilsLogger", "critical"): ".fatal(…)", ("Clock", "time"): ".now()",
-    ("Rate", "wait"): ".sleep()",
-    ("ServerGoalHandle", "set_succeeded"): ".succeed()",
-    ("ServerGoalHandle", "succeeded"): ".succeed()",
-    ("ServerGoalHandle", "set_aborted"): ".abort()",
-    ("ServerGoalHandle", "aborted"): ".abort()",
-    ("ServerGoalHandle", "set_canceled"): ".canceled()",
-    ("ServerGoalHandle", "set_preempted"): ".canceled()",
+    ("ndarray", "append"): "np.append(…, x)",
+    ("Time", "to_sec"): ".nanoseconds / 1e9", ("Time", "secs"): ".nanoseconds", ("Time", "nsecs"): ".nanoseconds",
+    ("Time", "sec"): ".to_msg().sec", ("Time", "nanosec"): ".to_msg().nanosec",
+    ("Time", "seconds"): ".nanoseconds / 1e9", ("Duration", "to_sec"): ".nanoseconds / 1e9",
+    ("Duration", "seconds"): ".nanoseconds / 1e9", ("Duration", "sec"): ".nanoseconds / 1e9",
+    ("Timer", "stop"): ".cancel()", ("Timer", "start"): ".reset()",
+    ("Publisher", "send"): ".publish(msg)", ("Publisher", "pub"): ".publish(msg)",
+    ("Client", "call_service"): ".call_async(request)", ("Client", "send_request"): ".call_async(request)",
+    ("Client", "publish"): ".call_async(request)",
+    ("RcutilsLogger", "print"): ".info(…)", ("RcutilsLogger", "critical"): ".fatal(…)",
+    ("ServerGoalHandle", "set_succeeded"): ".succeed()", ("ServerGoalHandle", "set_aborted"): ".abort()",
+    ("ServerGoalHandle", "set_canceled"): ".canceled()", ("ServerGoalHandle", "set_preempted"): ".canceled()",
     ("ServerGoalHandle", "send_feedback"): ".publish_feedback(feedback)",
     ("ActionClient", "wait_for_service"): ".wait_for_server()",
     ("ActionClient", "call_async"): ".send_goal_async(goal)",
-    ("ActionClient", "call"): ".send_goal_async(goal)",
 }  # fmt: skip
-"""What beginners call by another name, or need not call at all."""
-_CHANGES = ("append", "add", "extend", "insert", "remove", "sort", "pop")
+"""By class and name: what beginners call by another name."""
+_OF_RCLPY = {
+    "spin": "rclpy.spin(node)", "spin_once": "rclpy.spin_once(node)", "ok": "rclpy.ok()",
+    "shutdown": "rclpy.try_shutdown()", "init": "rclpy.init()",
+}  # fmt: skip
+_LOGGER = ("logger", "log", "info", "warn", "warning", "error", "debug", "fatal", "get_log")
+_MADE_BY = {
+    "timer": "create_timer", "publisher": "create_publisher", "pub": "create_publisher",
+    "subscription": "create_subscription", "subscriber": "create_subscription", "sub": "create_subscription",
+    "client": "create_client", "service": "create_service", "rate": "create_rate",
+}  # fmt: skip
+_ACTIONS = {
+    "create_action_client": "ActionClient(self, Fibonacci, 'name')",
+    "create_action_server": "ActionServer(self, Fibonacci, 'name', self.execute)",
+}
 
 
-def expression(failure: Failure, name: str) -> ast.Attribute | None:
-    """Return the expression of the learner's own line that asks for the attribute."""
-    if not failure.is_own:
+def _wanted(failure: Failure) -> tuple[Any, str] | None:
+    """Return the object and the name of the attribute that it has not."""
+    error = failure.error
+    if not isinstance(error, AttributeError):
         return None
-    return next((each for each in failure.all(ast.Attribute) if each.attr == name), None)
+    name, of = getattr(error, "name", None), getattr(error, "obj", UNKNOWN)
+    if name is None and not str(error).startswith("__"):
+        return next(((failure.value(each.value), each.attr) for each in failure.all(ast.Attribute)), None)
+    return None if name is None else (of, name)
+
+
+def _asks(failure: Failure, name: str) -> ast.Attribute | None:
+    """Return the expression of the learner's own line that asks for the attribute."""
+    return next((each for each in failure.all(ast.Attribute) if each.attr == name), None) if failure.is_own else None
+
+
+def _known(of: object) -> list[str]:
+    return [each for each in dir(of) if not each.startswith("_")]
 
 
 def unsettable(failure: Failure) -> Words | None:
     """A name of rclpy's own in every node was given another value."""
-    if not isinstance(failure.error, AttributeError):
-        return None
-    asked = getattr(failure.error, "name", None)
-    for each in failure.all(ast.Attribute):
-        if asked not in (None, each.attr):
-            continue
+    for each in failure.all(ast.Attribute) if isinstance(failure.error, AttributeError) else ():
         of = failure.value(each.value)
         found = inspect.getattr_static(type(of), each.attr, None)
-        if isinstance(each.ctx, ast.Store) and isinstance(found, property):
-            if is_from(of, "rclpy", "Node"):
-                return say(
-                    "self.{name} is rclpy's own in every node, and cannot be set: take another name, self.my_{name}.",
-                    name=each.attr,
-                )
-            return say("{name} can be read, and not be set.", name=shown(each))
+        if isinstance(each.ctx, ast.Store) and isinstance(found, property) and is_from(of, "rclpy", "Node"):
+            return say(
+                "self.{name} is rclpy's own in every node, and cannot be set: take another name, self.my_{name}.",
+                name=each.attr,
+            )
     return None
 
 
-def unset_field(failure: Failure) -> Words | None:
-    """A field was set that the message has not."""
-    found = wanted(failure)
-    if found is None:
+def missing(failure: Failure) -> Words | None:
+    """What was asked has no such attribute."""
+    found = _wanted(failure)
+    if found is None or found[0] is UNKNOWN:
         return None
     of, name = found
-    if not is_message(of):
-        return None
-    return _one_up(failure, of, name) or no_field(type(of), name)
+    node = _asks(failure, name)
+    what = shown(node.value) if node is not None else "x"
+    if is_message(of):
+        return no_field(type(of), name)
+    call = node.value if node is not None and isinstance(node.value, ast.Call) else None
+    if call is not None and _is_of_rclpy(failure.called(call)) and not _is_of_rclpy(type(of)):
+        words = taken_name(failure)
+        if words is not None:
+            return words
+    if of is None:
+        return is_none(failure, node.value) if node is not None else None
+    if isinstance(of, ModuleType):
+        return _of_module(of, name, failure.folder)
+    if isinstance(of, type):
+        return _of_class(of, name)
+    if inspect.isroutine(of):
+        return _of_routine(of, name, what)
+    return _of_rclpy(of, name, what) or _of_object(failure, of, name)
 
 
-def _one_up(failure: Failure, of: Any, name: str) -> Words | None:  # noqa: ANN401
-    """Say that the message around the one that was asked has the field."""
-    node = expression(failure, name)
-    if node is None or not isinstance(node.value, ast.Attribute):
-        return None
-    around = failure.value(node.value.value)
-    if not is_message(around) or name not in fields_of(around):
-        return None
-    return say(
-        "{type} has no field {field}; the message around it has: {what}.{field}.",
-        type=name_of(type(of)),
-        field=name,
-        what=shown(node.value.value),
-    )
+def _is_of_rclpy(function: object) -> bool:
+    return str(getattr(function, "__module__", "")).startswith("rclpy.")
 
 
-def of_taken(failure: Failure) -> Words | None:
-    """A function of rclpy's has given something else than it does, since its name was taken."""
-    found = wanted(failure)
-    node = expression(failure, found[1]) if found is not None else None
-    if found is None or node is None or not isinstance(node.value, ast.Call):
-        return None
-    given = type(found[0]).__module__.partition(".")[0]
-    if given == "rclpy" or not is_of_rclpy(failure.called(node.value)):
-        return None
-    return taken_name(failure)
-
-
-def of_none(failure: Failure) -> Words | None:
-    """Something is None that was used as an object."""
-    found = wanted(failure)
-    if found is None or found[0] is not None or not failure.is_own:
-        return None
-    node = expression(failure, found[1])
-    if node is None:
-        return None
-    return is_none(failure, node.value)
-
-
-def of_module(failure: Failure) -> Words | None:
-    """A module has no such name: it lives elsewhere, or the module is the learner's own file."""
-    found = wanted(failure)
-    if found is None or not isinstance(found[0], ModuleType):
-        return None
-    module, name = found
-    own = shadowing(module, failure.folder)
+def _of_module(module: ModuleType, name: str, folder: str) -> Words:
+    """Say where a name lives that a module has not, or that the module is the learner's own file."""
+    own = shadowing(module, folder)
     if own is not None:
         return own
-    home = home_of(name, module.__name__)
-    if module.__name__ == "rclpy" and name in ROS1:
+    of, home = module.__name__, home_of(name, module.__name__)
+    if of == "rclpy" and name in ROS1:
         return ros1(name)
-    if name in ("msg", "srv", "action"):
-        return say(
-            "{module}.{name} has to be imported by its own name: import {module}.{name}, or from"
-            " {module}.{name} import ….",
-            module=module.__name__,
-            name=name,
-        )
     if home:
         return say("{name} is in {home}: from {home} import {name}.", name=name, home=home)
-    known = [each for each in dir(module) if not each.startswith("_")]
-    if module.__name__ == "rclpy" and hasattr(module.node.Node, name):
+    if name == "now" and of in ("rclpy.time", "rclpy.clock"):
+        return time_now()
+    if of == "rclpy" and hasattr(module.node.Node, name):
         return say("{name} is of the node, not of rclpy: self.{name}(…).", name=name)
-    same = [each for each in known if each.casefold() == name.casefold()]
-    meant = same[0] if same else nearest(name, known)
+    meant = _meant(name, _known(module), 0.6)
     if meant:
-        return say("{module} has no {name}; did you mean {meant}?", module=module.__name__, name=name, meant=meant)
-    return say("{module} has no {name}: is it spelled right, capitals included?", module=module.__name__, name=name)
+        return say("{module} has no {name}; did you mean {meant}?", module=of, name=name, meant=meant)
+    return say("{module} has no {name}: is it spelled right, capitals included?", module=of, name=name)
+
+
+def _meant(name: str, known: list[str], cutoff: float) -> str:
+    same = [each for each in known if each.casefold() == name.casefold()]
+    return next(iter(same or near(name, known, cutoff=cutoff)), "")
 
 
 def shadowing(module: ModuleType | None, folder: str) -> Words | None:
     """Say that a file of the learner's own has the name of a module, and hides it."""
-    file = getattr(module, "__file__", None) or ""
-    name = getattr(module, "__name__", "")
-    if file.rpartition("/")[0] != folder:
+    file, name = getattr(module, "__file__", None) or "", getattr(module, "__name__", "")
+    known = name in sys.stdlib_module_names or name in ("rclpy", "numpy", "cv2", "std_msgs", "tf2_ros")
+    if not known or file.rpartition("/")[0] != folder:
         return None
-    if name in sys.stdlib_module_names or name in ("rclpy", "numpy", "cv2", "std_msgs", "tf2_ros"):
-        return say("Your own file {name}.py hides the module {name}: give the file another name.", name=name)
-    return None
+    return say("Your own file {name}.py hides the module {name}: give the file another name.", name=name)
 
 
-def of_class(failure: Failure) -> Words | None:
-    """A class was asked for something that it, or only an object of it, has."""
-    found = wanted(failure)
-    if found is None or not isinstance(found[0], type):
-        return None
-    kind, name = found
+def _of_class(kind: type, name: str) -> Words:
     if is_service_class(kind) or is_action_class(kind):
         parts = ("Request", "Response") if is_service_class(kind) else ("Goal", "Result", "Feedback")
         return say(
@@ -204,79 +171,249 @@ def of_class(failure: Failure) -> Words | None:
         )
     if is_message_class(kind):
         return no_field(kind, name)
-    if name == "now" and kind.__name__ == "Time":
-        return time_now()
-    return near(kind.__name__, name, [each for each in dir(kind) if not each.startswith("_")])
+    return time_now() if name == "now" and kind.__name__ == "Time" else _near(kind.__name__, name, _known(kind))
 
 
-def is_of_rclpy(function: object) -> bool:
-    """Whether a function is one of rclpy's."""
-    return str(getattr(function, "__module__", "")).startswith("rclpy.")
-
-
-def of_routine(failure: Failure) -> Words | None:
-    """A function was used without being called."""
-    found = wanted(failure)
-    if found is None or not inspect.isroutine(found[0]):
-        return None
-    node = expression(failure, found[1])
-    what = shown(node.value) if node is not None else found[0].__name__
-    if found[0].__name__.startswith("create_") and is_of_rclpy(found[0]):
+def _of_routine(of: Any, name: str, what: str) -> Words:
+    if of.__name__.startswith("create_") and _is_of_rclpy(of):
         return say(
             "{what} makes what is asked for: keep what it gives, self.x = {what}(…), and use that: self.x.{name}.",
             what=what,
-            name=found[1],
-        )
-    return say("{what} is a function: its brackets are missing, {what}().{name}.", what=what, name=found[1])
-
-
-def of_rclpy(failure: Failure) -> Words | None:
-    """An object of rclpy, or of Python, has it under another name."""
-    found = wanted(failure)
-    if found is None or found[0] is UNKNOWN:
-        return None
-    of, name = found
-    node = expression(failure, name)
-    what = shown(node.value) if node is not None else "x"
-    if is_from(of, "rclpy", "Future", "Task"):
-        return future(what, of)
-    if is_from(of, "rclpy", "Subscription") and name == "publish":
-        return say(
-            "{what} is a subscription, which hears; what publishes is made by self.create_publisher(…).", what=what
-        )
-    if is_from(of, "rclpy", "Parameter"):
-        return parameter(what)
-    for kind in type(of).__mro__:
-        for key in (kind, kind.__name__):
-            if (key, name) in OTHER_NAMES:
-                return _other(what, of, name, OTHER_NAMES[key, name])
-    if isinstance(of, dict):
-        return say('{what} is a dictionary: its values are had by key, {what}["{name}"].', what=what, name=name)
-    if isinstance(of, tuple) and name in _CHANGES:
-        return say(
-            "{what} is of type {type}, which cannot be changed: make a new one, such as list({what}).",
-            what=what,
-            type=type(of).__name__,
-        )
-    if isinstance(of, (int, float, str, bool)) and name in ("data", "value"):
-        return say(
-            "{what} is the value itself, of type {type}: without .{name}.",
-            what=what,
-            type=type(of).__name__,
             name=name,
         )
-    return None
+    return say("{what} is a function: its brackets are missing, {what}().{name}.", what=what, name=name)
 
 
-def _other(what: str, of: Any, name: str, meant: str) -> Words:  # noqa: ANN401
+def _of_rclpy(of: Any, name: str, what: str) -> Words | None:
+    """Say that an object of rclpy, or of Python, has it under another name, or that another one is meant."""
+    if is_from(of, "rclpy", "Node") and name in _ACTIONS:
+        return say(
+            "A node makes no actions; they have classes of their own: {call}, from rclpy.action import {name}.",
+            call=_ACTIONS[name],
+            name=_ACTIONS[name].partition("(")[0],
+        )
+    if is_from(of, "rclpy", "ClientGoalHandle") and (name in ("result", "get_result") or not near(name, _known(of))):
+        return say(
+            "{what} is the goal's handle, not its result: {what}.get_result_async() gives a future, and"
+            " in the done callback of that future.result().result is the result.",
+            what=what,
+        )
+    if is_from(of, "rclpy", "ServerGoalHandle") and name in ("goal", *(fields := list(fields_of(of.request)))):
+        return say(
+            "{what} is the goal's handle; the goal itself is {what}.request: {what}.request.{field}.",
+            what=what,
+            field=name if name in fields else next(iter(fields), "x"),
+        )
+    if is_from(of, "rclpy", "Future", "Task"):
+        return future(what, of)
+    if is_from(of, "rclpy", "Parameter"):
+        return parameter(what)
     kind = type(of).__name__
-    if not meant:
+    if isinstance(of, str) and name == "decode":
         return say("{what} is of type {type} already: {name} is not needed.", what=what, type=kind, name=name)
+    meant = next(
+        (_OTHER_NAMES[each.__name__, name] for each in type(of).__mro__ if (each.__name__, name) in _OTHER_NAMES), ""
+    )
     if meant.startswith("."):
         return say(
             "{type} of rclpy has no {name}: write {what}{meant}.", type=kind, name=name, what=what, meant=meant
         )
-    return say("{type} has no {name}: {meant} does that.", type=kind, name=name, meant=meant)
+    if meant:
+        return say("{type} has no {name}: {meant} does that.", type=kind, name=name, meant=meant)
+    return None
 
 
-RULES = (unsettable, unset_field, of_taken, of_none, of_module, of_class, of_routine, of_rclpy, own_attributes.unmade)
+def _of_object(failure: Failure, of: Any, name: str) -> Words | None:
+    """Say of an object what it has instead; of the learner's own, where its attribute is made."""
+    is_node = is_from(of, "rclpy", "Node")
+    if is_node and not {"_Node__handle", "_Node__node"} & vars(of).keys():
+        return say(
+            "super().__init__(name) has not been called yet: it comes first in __init__, before"
+            " anything of the node is used."
+        )
+    module = sys.modules.get(type(of).__module__)
+    is_own = (getattr(module, "__file__", None) or "").rpartition("/")[0] == failure.folder
+    if not failure.is_own:
+        # What a library asks of it says nothing about the learner's own line.
+        return taken_name(failure) if is_own and is_node else None
+    if type(of).__module__ != "__main__" and not is_own:
+        return (_of_node(name) if is_node else None) or _near(name_of(type(of)), name, _known(of))
+    return _made_where(failure, of, name) or _near_own(of, name) or _made_nowhere(failure, of, name)
+
+
+def other_names(failure: Failure) -> Words | None:
+    """A name of rclpy's own was taken, and rclpy fails by it."""
+    is_likely = isinstance(failure.error, (AttributeError, TypeError)) and not failure.is_own
+    return taken_name(failure) if is_likely else None
+
+
+def taken_name(failure: Failure) -> Words | None:
+    """Say that a name that rclpy uses itself in each node has another value, or another method."""
+    assigned = {
+        each.attr
+        for each in ast.walk(failure.tree)
+        if isinstance(each, ast.Attribute) and isinstance(each.ctx, ast.Store) and shown(each.value) == "self"
+    }
+    for node in (value for level in failure.levels for value in level.values.values()):
+        if not is_from(node, "rclpy", "Node"):
+            continue
+        base = next(each for each in type(node).__mro__ if each.__module__.startswith("rclpy."))
+        used = {*dir(base), *inspect.unwrap(vars(base)["__init__"]).__code__.co_names}
+        own = (each for each in type(node).__mro__ if each.__module__ not in (base.__module__, "builtins"))
+        clash = sorted(
+            name
+            for name in {*assigned, *(one for each in own for one in vars(each))} & used
+            if not name.startswith("__")
+        )
+        if clash:
+            return say(
+                "{name} is a name that rclpy uses itself in every node: give yours another one.", name=clash[0]
+            )
+    return None
+
+
+def _made_where(failure: Failure, of: Any, name: str) -> Words | None:
+    """Say where the attribute is made, if it is made anywhere."""
+    cls = failure.own_class
+    if cls is None or failure.own is None:
+        return None
+    methods = [each for each in cls.body if isinstance(each, ast.FunctionDef)]
+    for method, each in _stores(methods, name):
+        statement = getattr(each, "parent", None)
+        # What changes it, as += does, needs it made before.
+        if not isinstance(statement, ast.AugAssign) and statement is not failure.statement:
+            return _only_there(failure, name, method, each)
+    for method in methods:
+        for one in ast.walk(method):
+            if isinstance(one, ast.FunctionDef) and one is not method and one.name == name:
+                return say(
+                    "{name} (line {line}) stands within {method}, since it is indented too deep:"
+                    " its def belongs at the depth of that of {method}.",
+                    name=name,
+                    line=one.lineno,
+                    method=method.name,
+                )
+            if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store) and one.id == name:
+                return say(
+                    "In line {line} {name} is made without self, and is forgotten when {method}"
+                    " ends: write self.{name} there.",
+                    line=one.lineno,
+                    name=name,
+                    method=method.name,
+                )
+    for one in failure.tree.body:
+        if isinstance(one, ast.FunctionDef) and one.name == name and one.args.args:
+            return say(
+                "{name} (line {line}) stands outside of the class {owner}: indent it, as deep as the other methods.",
+                name=name,
+                line=one.lineno,
+                owner=cls.name,
+            )
+    node = getattr(sys.modules.get("rclpy.node"), "Node", None)
+    if node is not None and not isinstance(of, node) and hasattr(node, name):
+        return say("The class {name} is not a node yet: class {name}(Node).", name=cls.name)
+    return None
+
+
+def _stores(methods: list[ast.FunctionDef], name: str) -> list[tuple[ast.FunctionDef, ast.Attribute]]:
+    """Return the places of a class that give an attribute a value, with their methods."""
+    return [
+        (method, each)
+        for method in methods
+        for each in ast.walk(method)
+        if isinstance(each, ast.Attribute) and isinstance(each.ctx, ast.Store) and each.attr == name
+    ]
+
+
+def _only_there(failure: Failure, name: str, method: ast.FunctionDef, node: ast.expr) -> Words:
+    """Say that the attribute is made elsewhere, and why it is not there now."""
+    assert failure.own is not None
+    here, line = failure.own.function, node.lineno
+    if method.name == here and line > failure.own.line:
+        return say("self.{name} is only made in line {line}, after this one.", name=name, line=line)
+    above = getattr(node, "parent", None)
+    while above is not None and above is not method:
+        if isinstance(above, (ast.If, ast.For, ast.While, ast.Try)):
+            return say(
+                "self.{name} is only made in line {line}, in a branch that was not taken: give it a"
+                " value in __init__ in every case.",
+                name=name,
+                line=line,
+            )
+        above = getattr(above, "parent", None)
+    if method.name in (here, "__init__"):
+        return say(
+            "self.{name} is made in line {line}, and this line is run before: make it at the very"
+            " beginning of __init__.",
+            name=name,
+            line=line,
+        )
+    return say(
+        "self.{name} is only made in {method} (line {line}), which has not run yet: make it in __init__.",
+        name=name,
+        method=method.name,
+        line=line,
+    )
+
+
+def _near_own(of: Any, name: str) -> Words | None:
+    is_node = is_from(of, "rclpy", "Node")
+    base = next((each for each in type(of).__mro__ if each.__module__.startswith("rclpy.")), object)
+    known = [each for each in dir(of) if each[0] != "_" or (name[0] == "_" and each[1:2] != "_")]
+    meant = next(iter(near(name, [each for each in known if not hasattr(base, each)])), "")
+    words = _of_node(name) if is_node and not meant else None
+    if words is None and not meant and name in ROS1:
+        words = ros1(name)
+    if words is not None:
+        return words
+    meant = meant or next(iter(near(name, known, cutoff=0.7)), "")
+    if not meant:
+        return None
+    if is_node:
+        return say("The node has no {name}; did you mean self.{meant}?", name=name, meant=meant)
+    return say("{type} has no {name}; did you mean {meant}?", type=type(of).__name__, name=name, meant=meant)
+
+
+def _of_node(name: str) -> Words | None:
+    """Say what beginners ask a node for, and another thing has."""
+    if name == "publish":
+        return say(
+            "It is not the node that publishes, but its publisher: self.pub ="
+            " self.create_publisher(…), self.pub.publish(msg)."
+        )
+    if name in _LOGGER:
+        return say("A node logs by self.get_logger().info(…), .warn(…) and .error(…).")
+    if name in _OF_RCLPY:
+        return say("{name} is of rclpy, not of the node: {instead}.", name=name, instead=_OF_RCLPY[name])
+    maker = _MADE_BY.get(name.strip("_"))
+    if not maker:
+        return None
+    return say(
+        "self.{name} is made nowhere: keep what {maker} gives, self.{name} = self.{maker}(…), in __init__.",
+        name=name,
+        maker=maker,
+    )
+
+
+def _made_nowhere(failure: Failure, of: Any, name: str) -> Words:
+    methods = [each for each in getattr(failure.own_class, "body", ()) if isinstance(each, ast.FunctionDef)]
+    if _stores(methods, name):
+        return say(
+            "self.{name} is changed here, and has no value before: give it one in __init__, self.{name} = 0.",
+            name=name,
+        )
+    return say(
+        "{type} has no {name}: it is made nowhere in this class. Make it in __init__, self.{name} = ….",
+        type=type(of).__name__,
+        name=name,
+    )
+
+
+def _near(kind: str, name: str, known: list[str]) -> Words:
+    """Say that a type has no such attribute, and which of those known may be meant."""
+    meant = _meant(name, known, 0.7)
+    if meant:
+        return say("{type} has no {name}; did you mean {meant}?", type=kind, name=name, meant=meant)
+    return say(
+        "{type} has no {name}: is it spelled right, or is something else meant than {type}?", type=kind, name=name
+    )

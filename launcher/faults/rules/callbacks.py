@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.faults.failure import Failure, is_from, is_message, name_of, shown
@@ -12,20 +13,16 @@ from text.sentences import say
 if TYPE_CHECKING:
     from text.sentences import Words
 
-TIMER = "tmr"
-SUBSCRIPTION = "sub"
-SERVICE = "srv"
-FEEDBACK = "feedback"
-GOAL = "goal"
+TIMER, SUBSCRIPTION, SERVICE = "tmr", "sub", "srv"
+"""The names of the local variables in rclpy's executors that hold what has called back."""
+FEEDBACK, GOAL = "feedback", "goal"
 _ARGUMENTS = {
     TIMER: "self", SUBSCRIPTION: "self, msg", SERVICE: "self, request, response",
     FEEDBACK: "self, msg", GOAL: "self, goal_handle",
 }  # fmt: skip
-_OWNERS = (TIMER, SUBSCRIPTION, SERVICE)
-"""The names of the local variables in rclpy's executors that hold what has called back."""
 
 
-def called_back(failure: Failure) -> tuple[str, Any] | None:
+def _called_back(failure: Failure) -> tuple[str, Any] | None:
     """Return what rclpy could not call, and of which kind the callback is."""
     inner = failure.inner
     if inner is None or not isinstance(failure.error, TypeError) or not inner.is_in("rclpy"):
@@ -37,7 +34,7 @@ def called_back(failure: Failure) -> tuple[str, Any] | None:
         if above.is_in("rclpy", "action/server"):
             return GOAL, inner.values["callback"]
         for level in failure.levels[-2::-1]:
-            for owner in _OWNERS:
+            for owner in (TIMER, SUBSCRIPTION, SERVICE):
                 if owner in level.values and level.is_in("rclpy", "executors"):
                     return owner, inner.values["callback"]
     if inner.function == "callback" and inner.is_in("rclpy", "subscription"):
@@ -45,24 +42,40 @@ def called_back(failure: Failure) -> tuple[str, Any] | None:
     return None
 
 
-def place_of(failure: Failure) -> tuple[str, int] | None:
-    """Return where the callback is defined that rclpy could not call."""
-    found = called_back(failure) or _answering(failure) or _resulting(failure)
+def place_of(failure: Failure, program: str) -> tuple[str, int] | None:
+    """Return where the callback is defined that rclpy could not call, or the thread begun that has failed."""
+    found = _called_back(failure) or _answering(failure) or _resulting(failure)
     code = getattr(getattr(found and found[1], "__func__", found and found[1]), "__code__", None)
-    if code is None or code.co_filename.rpartition("/")[0] != failure.folder:
+    if code is None:
+        return _thread(failure, program)
+    return (code.co_filename, code.co_firstlineno) if code.co_filename.startswith(f"{failure.folder}/") else None
+
+
+def _thread(failure: Failure, program: str) -> tuple[str, int] | None:
+    """Return where a program starts the thread of a failure in which no line is its own."""
+    begins = [each for each in failure.levels if not each.file.endswith("/threading.py")]
+    if failure.own is not None or not begins or begins[0] is failure.levels[0]:
         return None
-    return code.co_filename, code.co_firstlineno
+    try:
+        tree = ast.parse(Path(program).read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return None
+    found = [
+        each.lineno
+        for each in ast.walk(tree)
+        if isinstance(each, ast.Call)
+        for word in each.keywords
+        if word.arg == "target" and shown(word.value).rpartition(".")[2] == begins[0].function
+    ]
+    return (program, min(found)) if found else None
 
 
 def signature(failure: Failure) -> Words | None:
     """A callback cannot be called with what rclpy gives it."""
-    found = called_back(failure)
+    found = _called_back(failure)
     if found is None:
         return None
-    owner, callback = found
-    if not callable(callback):
-        return not_handed_over(callback)
-    return asks_for_other(owner, callback)
+    return asks_for_other(*found) if callable(found[1]) else not_handed_over(found[1])
 
 
 def not_handed_over(instead: object = None) -> Words:
@@ -77,22 +90,17 @@ def not_handed_over(instead: object = None) -> Words:
     )
 
 
-def asks_for_other(owner: str, callback: Any) -> Words | None:  # noqa: ANN401
+def asks_for_other(owner: str, callback: Any) -> Words | None:
     """Say which arguments a callback gets, None if it takes them."""
-    given = {TIMER: 0, SUBSCRIPTION: 1, SERVICE: 2, FEEDBACK: 1, GOAL: 1}[owner]
+    function, name = getattr(callback, "__func__", None), getattr(callback, "__name__", "callback")
+    me = "self, " if function is not None else ""
     try:
-        inspect.signature(callback).bind(*range(given))
-    except ValueError:
+        inspect.signature(callback).bind(*range(_ARGUMENTS[owner].count(",")))
+    except (TypeError, ValueError):
         if inspect.isbuiltin(callback):
             return None
-        # Of a method without any parameter, not even self.
-    except TypeError:
-        pass
     else:
         return None
-    function = getattr(callback, "__func__", None)
-    name = getattr(callback, "__name__", "callback")
-    me = "self, " if function is not None else ""
     if function is not None and not function.__code__.co_argcount:
         return say(
             "The first argument of a method is self: def {name}({arguments}).", name=name, arguments=_ARGUMENTS[owner]
@@ -124,10 +132,8 @@ def _answering(failure: Failure) -> tuple[str, Any] | None:
     inner = failure.inner
     if inner is None or inner.function != "send_response" or not inner.is_in("rclpy", "service"):
         return None
-    for level in failure.levels[-2::-1]:
-        if SERVICE in level.values:
-            return SERVICE, level.values[SERVICE].callback
-    return None
+    services = (each.values[SERVICE] for each in failure.levels[-2::-1] if SERVICE in each.values)
+    return next(((SERVICE, each.callback) for each in services), None)
 
 
 def _resulting(failure: Failure) -> tuple[str, Any] | None:
@@ -135,23 +141,19 @@ def _resulting(failure: Failure) -> tuple[str, Any] | None:
     inner = failure.inner
     if inner is None or not type(inner.values.get("self")).__name__.endswith("_GetResult_Response"):
         return None
-    for level in failure.levels[::-1]:
-        if is_from(level.values.get("self"), "rclpy", "ActionServer"):
-            return GOAL, level.values["self"]._execute_callback  # noqa: SLF001 - nobody else knows
-    return None
+    found = (each.values.get("self") for each in failure.levels[::-1])
+    server: Any = next((each for each in found if is_from(each, "rclpy", "ActionServer")), None)
+    return None if server is None else (GOAL, server._execute_callback)
 
 
 def response(failure: Failure) -> Words | None:
     """The callback of a service has not returned its response."""
-    inner = failure.inner
-    found = _answering(failure)
+    inner, found = failure.inner, _answering(failure)
     if inner is None or found is None or not isinstance(failure.error, TypeError):
         return None
     answer, name = inner.values["response"], getattr(found[1], "__name__", "callback")
     if answer is None:
         return say("{name} has to return the response in every case: return response.", name=name)
-    if inspect.iscoroutine(answer):
-        return None
     if isinstance(answer, type):
         return say(
             "{name} returns the class {type}, and not the response: fill response, and write return response.",
@@ -186,18 +188,6 @@ def done(failure: Failure) -> Words | None:
     inner = failure.inner
     if inner is None or not isinstance(failure.error, TypeError) or not inner.is_in("rclpy", "task"):
         return None
-    method = _unfit_for_done(failure)
-    if method is None:
-        return None
-    return say(
-        "A done callback gets the future, and nothing else: def {name}({me}future).",
-        name=method.name,
-        me="self, " if _is_method(method) else "",
-    )
-
-
-def _unfit_for_done(failure: Failure) -> ast.FunctionDef | None:
-    """Return the function that `add_done_callback` was given, and that does not take one thing."""
     given = {
         shown(each.args[0]).rpartition(".")[2]
         for each in ast.walk(failure.tree)
@@ -205,14 +195,11 @@ def _unfit_for_done(failure: Failure) -> ast.FunctionDef | None:
     }
     for each in ast.walk(failure.tree):
         if isinstance(each, ast.FunctionDef) and each.name in given:
-            wanted = len(each.args.args) - len(each.args.defaults)
-            if wanted != 1 + _is_method(each):
-                return each
+            is_method = isinstance(getattr(each, "parent", None), ast.ClassDef)
+            if len(each.args.args) - len(each.args.defaults) != 1 + is_method:
+                return say(
+                    "A done callback gets the future, and nothing else: def {name}({me}future).",
+                    name=each.name,
+                    me="self, " if is_method else "",
+                )
     return None
-
-
-def _is_method(function: ast.FunctionDef) -> bool:
-    return isinstance(getattr(function, "parent", None), ast.ClassDef)
-
-
-RULES = (signature, response, swapped, done)

@@ -8,8 +8,7 @@ import sys
 from collections.abc import Iterable
 
 from launcher.faults.failure import Failure
-from launcher.faults.homes import KINDS, PACKAGES, ROS1, home_of, ros1
-from launcher.faults.ros_packages import OF_ROS, OF_ROS1, apt_name
+from launcher.faults.homes import KINDS, OF_ROS, OF_ROS1, PACKAGES, ROS1, apt_name, home_of, ros1
 from launcher.faults.rules.attributes import shadowing
 from text.sentences import Words, say
 from text.suggestions import near, nearest
@@ -31,26 +30,17 @@ OF_CPP = {"tf2": "tf2_ros", "rclcpp": "rclpy"}
 """Packages for C++, and what takes their place in Python."""
 
 
-def relative(failure: Failure) -> Words | None:
-    """A file of the learner's own folder was imported with a point before it."""
-    statement = failure.statement
-    if not isinstance(failure.error, ImportError) or not isinstance(statement, ast.ImportFrom):
-        return None
-    if not statement.level:
-        return None
-    return say(
-        "A file beside this one is imported without a point: from {module} import {name}.",
-        module=statement.module or "x",
-        name=statement.names[0].name,
-    )
-
-
 def missing(failure: Failure) -> Words | None:
-    """There is no such module."""
-    error = failure.error
+    """There is no such module, or it is beside this file and imported with a point before it."""
+    error, statement = failure.error, failure.statement
+    if isinstance(error, ImportError) and isinstance(statement, ast.ImportFrom) and statement.level:
+        return say(
+            "A file beside this one is imported without a point: from {module} import {name}.",
+            module=statement.module or "x",
+            name=statement.names[0].name,
+        )
     if not isinstance(error, ModuleNotFoundError) or not error.name:
         return None
-    statement = failure.statement
     if isinstance(statement, ast.ImportFrom) and "." in error.name:
         name = statement.names[0].name
         home = home_of(name, error.name)
@@ -160,18 +150,11 @@ def _within(name: str, first: str, rest: str, folder: str) -> Words:
             last=last,
             parent=home_of(last, parent) or parent,
         )
-    if rest in KINDS:
-        return say("The package {package} has no {kind}.", package=first, kind=f".{rest}")
-    meant = next(iter(near(rest, [*KINDS, *_modules_of(first)], cutoff=0.7)), "")
+    places = getattr(sys.modules.get(first), "__path__", ())
+    meant = next(iter(near(rest, [*KINDS, *(each.name for each in pkgutil.iter_modules(places))], cutoff=0.7)), "")
     if meant:
         return say("There is no module {name}; did you mean {meant}?", name=name, meant=f"{first}.{meant}")
     return say("The module {package} has no {name}.", package=first, name=rest)
-
-
-def _modules_of(package: str) -> list[str]:
-    places = getattr(sys.modules.get(package), "__path__", ())
-    found = (each.name for each in pkgutil.iter_modules(places))
-    return [name for name in found if not name.startswith("_")]
 
 
 def misplaced(failure: Failure) -> Words | None:
@@ -213,6 +196,3 @@ def _elsewhere(name: str, module: str, known: list[str]) -> Words:
             module=module,
         )
     return say("{module} has no {name}: is it spelled right, capitals included?", module=module, name=name)
-
-
-RULES = (relative, missing, misplaced)

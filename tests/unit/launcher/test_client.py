@@ -21,8 +21,8 @@ from launcher.control.feed import MAX_LINES, ClientFeed
 from launcher.control.protocol import encode
 from launcher.errors import ConnectionLostError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
+from launcher.faults.crash import refused_arguments
 from launcher.faults.explain import explained
-from launcher.faults.ros_arguments import refused_arguments
 from launcher.logs.packing import pack_line
 from launcher.logs.ring import LogRing
 from launcher.spawn_server.arrival_rate import COUNTED, ArrivalRate

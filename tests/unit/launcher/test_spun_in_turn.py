@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.faults.spun_in_turn import spun_in_turn
+from launcher.faults.source import spun_in_turn
 
 BEGIN = "import rclpy\n"
 

@@ -84,15 +84,6 @@ def given(value: str, default: str) -> str:
     return script(f'rclpy.init(args=["--ros-args", "-p", "p:={value}"])\nNode("n").declare_parameter("p", {default})')
 
 
-def given_in_file(lines: str) -> str:
-    """Return a program that is given these lines of a file of parameters."""
-    return script(
-        "from pathlib import Path\nfile = Path(__file__).with_name('given.yaml')\n"
-        f"file.write_text('/**:\\n  ros__parameters:\\n    {lines}')\n"
-        'rclpy.init(args=["--ros-args", "--params-file", str(file)])'
-    )
-
-
 # ---------------------------------------------------------------- actions
 
 IMPORTS = """\

@@ -1,4 +1,4 @@
-"""A node that is in the hands of no executor any more, while its own one spins on without it.
+"""Nodes that nobody spins: taken out of their executor, or in a main thread that does not come to it.
 
 `rclpy.spin_until_future_complete(node, …)` and `rclpy.spin_once` take a node into the global
 executor, by which it leaves its own, and then out of that.
@@ -11,9 +11,9 @@ import linecache
 import sys
 import weakref
 
-from .finding import DEADLOCK_S, Finding
-from .stacks import EXECUTORS, RCLPY, class_of, is_of
-from .unspun import awaits_calls
+from .finding import DEADLOCK_S, UNSPUN_S, Finding
+from .stacks import EXECUTORS, RCLPY, awaits_calls, class_of, is_of
+from .waits import CALL, LOOP, RATE, waits_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from .callbacks import Look
+    from .stacks import Thread
 
 FORSAKEN = "forsaken"
 _SPINS = ("spin_until_future_complete(", "spin_once(")
@@ -93,3 +94,42 @@ def _endless(look: Look) -> Iterable[Any]:
             executor = frame.f_locals.get(name)
             if executor is not None:
                 yield executor
+
+
+MAIN, MAIN_CALL, MAIN_RATE, MAIN_LOOP = "main", "main_call", "main_rate", "main_loop"
+"""Where it is."""
+
+
+def unspun(thread: Thread) -> list[Finding]:
+    """Return where the main thread is if it has a node that waits for being spun."""
+    if not thread.own or thread.debugged:
+        return []
+    own = thread.own[0]
+    waits = {each.how: each for each in waits_of(thread) if each.own is own and not each.limited}
+    for how, where in ((CALL, MAIN_CALL), (RATE, MAIN_RATE), (LOOP, MAIN_LOOP)):
+        if how in waits and (how != LOOP or waits[how].client is not None):
+            return [Finding.at("main", own, own, where, DEADLOCK_S)]
+    node = class_of("rclpy.node", "Node")
+    in_constructor = any(
+        each.f_code.co_name == "__init__" and isinstance(each.f_locals.get("self"), node) for each in thread.frames
+    )
+    # The outermost: it stays, whatever it calls by turns.
+    finding = Finding.at("main", thread.own[-1], own, MAIN, UNSPUN_S)
+    finding.proof = lambda: _is_proven(in_constructor=in_constructor)
+    return [finding]
+
+
+def _is_proven(*, in_constructor: bool) -> bool:
+    """Whether what has taken so long can be nothing else.
+
+    No executor has ever spun, and there is a node with something to be called, or not yet whole.
+    """
+    node, executor = class_of("rclpy.node", "Node"), class_of("rclpy.executors", "Executor")
+    everything = gc.get_objects()
+    if any(isinstance(each, executor) and _has_spun(each) for each in everything):
+        return False
+    return in_constructor or any(isinstance(each, node) and awaits_calls(each) for each in everything)
+
+
+def _has_spun(executor: object) -> bool:
+    return getattr(executor, "_last_args", None) is not None
