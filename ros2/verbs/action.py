@@ -1,44 +1,84 @@
-"""`ros2 action send_goal`: a goal for an action, and how it ends."""
+"""`ros2 action`: lists, types, who serves and uses one, and goals."""
 
 from __future__ import annotations
 
 import math
 import sys
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ros2 import naming, options
+from ros2 import naming, options, rows
 from ros2.filling import filled, read
 from ros2.joining import SPIN_S, joined
 from ros2.printing import to_yaml
+from ros2.verb import arg, either, flag, verb
 
 if TYPE_CHECKING:
     import argparse
 
     from ros2.joining import Guest
 
-SUMMARY = "Send an action goal"
-
-
-STATUS = (
-    "UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED",
-)  # fmt: skip
+STATUS = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
 """By the numbers of action_msgs/msg/GoalStatus."""
 ENDED = (4, 5, 6)
+TYPES = flag("-t", "--show-types", help="Additionally show the action type")
+
+verb(
+    "action list", "Output a list of action names", options.of_graph, TYPES,
+    flag("-c", "--count-actions", dest="count", help="Only display the number of actions"),
+)(partial(rows.listed, "action"))  # fmt: skip
+verb(
+    "action type", "Print a action's type", options.of_graph,
+    arg("name", metavar="action_name", help="Name of the ROS action to get type"),
+)(partial(rows.types, "action"))  # fmt: skip
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    options.of_node(parser)
-    options.answers(parser)
-    add = parser.add_argument
-    add("action_name", help="Name of the ROS action (e.g. '/fibonacci')")
-    add("action_type", help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')")
-    goal = parser.add_mutually_exclusive_group()
-    goal.add_argument("goal", nargs="?", default="{}", help="Goal request values in YAML format (e.g. '{order: 10}')")
-    goal.add_argument("--stdin", action="store_true", help="Read goal from standard input")
-    add("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
+@verb(
+    "action info", "Print information about an action", options.of_graph,
+    arg("action_name", help="Name of the ROS action to get info (e.g. '/fibonacci')"), TYPES,
+    flag("-c", "--count", help="Only display the number of action clients and action servers"),
+)  # fmt: skip
+def info(args: argparse.Namespace) -> int | str | None:
+    """Print its clients and servers."""
+    from rclpy.action import graph
+    from rclpy.node import NodeNameNonExistentError
+
+    clients: list[str] = []
+    servers: list[str] = []
+    with joined(args, settled=True) as me:
+        name = naming.expanded(args.action_name, me.node)
+        for full in naming.nodes(me.node, hidden=True):
+            who = naming.split_name(full)
+            for found, ask in (
+                (clients, graph.get_action_client_names_and_types_by_node),
+                (servers, graph.get_action_server_names_and_types_by_node),
+            ):
+                try:
+                    types = dict(ask(me.node, *who)).get(name)
+                except NodeNameNonExistentError:
+                    # It left in between.
+                    continue
+                if types:
+                    found.append(f"{full} [{', '.join(types)}]" if args.show_types else full)
+    print(f"Action: {args.action_name}")
+    for what, found in (("clients", clients), ("servers", servers)):
+        print(f"Action {what}: {len(found)}")
+        if not args.count:
+            print("".join(f"    {each}\n" for each in found), end="")
+    return None
 
 
-def main(args: argparse.Namespace) -> int | str | None:
+@verb(
+    "action send_goal", "Send an action goal", options.of_node, options.answers,
+    arg("action_name", help="Name of the ROS action (e.g. '/fibonacci')"),
+    arg("action_type", help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')"),
+    either(
+        arg("goal", nargs="?", default="{}", help="Goal request values in YAML format (e.g. '{order: 10}')"),
+        flag("--stdin", help="Read goal from standard input"),
+    ),
+    flag("-f", "--feedback", help="Echo feedback messages for the goal"),
+)  # fmt: skip
+def send_goal(args: argparse.Namespace) -> int | str | None:
     """Send it, and wait for its result; Ctrl-C cancels it."""
     kind = naming.action_class(args.action_type)
     values = read(sys.stdin.read() if args.stdin else args.goal)

@@ -1,27 +1,38 @@
-"""`ros2 node info`: what one node publishes, hears, serves and calls."""
+"""`ros2 node`: the nodes of the graph, and what one has."""
 
 from __future__ import annotations
 
 import sys
 from typing import TYPE_CHECKING
 
-from ros2 import naming, options
+from ros2 import naming, options, rows
 from ros2.joining import joined
+from ros2.verb import arg, flag, verb
 
 if TYPE_CHECKING:
     import argparse
 
-SUMMARY = "Output information about a node"
+
+@verb("node list", "Output a list of available nodes", options.of_node_list)
+def list_nodes(args: argparse.Namespace) -> None:
+    """Print them in order."""
+    with joined(args, settled=True) as me:
+        names = sorted(naming.nodes(me.node, hidden=args.all))
+    if len(set(names)) < len(names) and not args.count_nodes:
+        print(
+            "WARNING: Be aware that there are nodes in the graph that share an exact name, "
+            "which can have unintended side effects.",
+            file=sys.stderr,
+        )
+    rows.print_names(names, count=args.count_nodes)
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    options.of_graph(parser)
-    add = parser.add_argument
-    add("node_name", help="Node name to request information")
-    add("--include-hidden", action="store_true", help="Display hidden topics, services, and actions as well")
-
-
-def main(args: argparse.Namespace) -> int | str | None:
+@verb(
+    "node info", "Output information about a node", options.of_graph,
+    arg("node_name", help="Node name to request information"),
+    flag("--include-hidden", help="Display hidden topics, services, and actions as well"),
+)  # fmt: skip
+def info(args: argparse.Namespace) -> int | str | None:
     """Print its topics, services and actions, each kind under a title."""
     from rclpy.action import graph as actions
 

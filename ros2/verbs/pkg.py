@@ -1,4 +1,4 @@
-"""`ros2 pkg create`: a new package of nodes in Python, ready for `colcon build`."""
+"""`ros2 pkg`: the packages that are installed, and a new one of nodes in Python, ready for `colcon build`."""
 
 from __future__ import annotations
 
@@ -9,48 +9,55 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ros2 import package_files
+from ros2.packages import NoPackageError, executables, packages, prefix_of
+from ros2.verb import arg, flag, verb
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
 
-SUMMARY = "Create a new ROS 2 package"
 NO_LICENSE = "TODO: License declaration"
 LICENSES = (
-    "Apache-2.0",
-    "BSL-1.0",
-    "BSD-2.0",
-    "BSD-2-Clause",
-    "BSD-3-Clause",
-    "GPL-3.0-only",
-    "LGPL-2.1-only",
-    "LGPL-3.0-only",
-    "MIT",
-    "MIT-0",
-)
+    "Apache-2.0", "BSL-1.0", "BSD-2.0", "BSD-2-Clause", "BSD-3-Clause", "GPL-3.0-only",
+    "LGPL-2.1-only", "LGPL-3.0-only", "MIT", "MIT-0",
+)  # fmt: skip
 BUILD_TYPES = ("cmake", "ament_cmake", "ament_python")
+NAMED = arg("package_name", help="The package name")
 
 
-def arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("package_name", type=_name, help="The package name")
-    parser.add_argument(
-        "--package-format", "--package_format", choices=("2", "3"), default="3",
-        help="The package.xml format.",
-    )  # fmt: skip
-    parser.add_argument(
-        "--description", default="TODO: Package description", help="The description given in the package.xml"
-    )
-    parser.add_argument("--license", default=NO_LICENSE, help="The license attached to this package")
-    parser.add_argument(
-        "--destination-directory", type=Path, default=Path(), help="Directory where to create the package directory"
-    )
-    parser.add_argument(
-        "--build-type", default="ament_cmake", choices=BUILD_TYPES, help="The build type to process the package with"
-    )
-    parser.add_argument("--dependencies", nargs="+", default=[], help="list of dependencies")
-    parser.add_argument("--maintainer-email", default="", help="email address of the maintainer")
-    parser.add_argument("--maintainer-name", default="", help="name of the maintainer")
-    parser.add_argument("--node-name", type=_name, help="name of the empty executable")
-    parser.add_argument("--library-name", help="name of the empty library")
+@verb("pkg list", "Output a list of available packages")
+def list_packages(_args: Namespace) -> None:
+    print("".join(f"{name}\n" for name in sorted(packages())), end="")
+
+
+@verb(
+    "pkg prefix", "Output the prefix path of a package", NAMED,
+    flag("--share", help="Show share directory for the package prefix"),
+)  # fmt: skip
+def prefix_path(args: Namespace) -> str | None:
+    try:
+        prefix = prefix_of(args.package_name)
+    except NoPackageError:
+        return "Package not found"
+    print(prefix / "share" / args.package_name if args.share else prefix)
+    return None
+
+
+@verb(
+    "pkg executables", "Output a list of package specific executables",
+    arg("package_name", nargs="?", help="The package name"),
+    flag("--full-path", help="Show the full path of each executable"),
+)  # fmt: skip
+def list_executables(args: Namespace) -> str | None:
+    """Print package and program, or the path of each."""
+    names = sorted(packages()) if args.package_name is None else [args.package_name]
+    for package in names:
+        try:
+            paths = sorted(executables(package), key=lambda path: path.name)
+        except NoPackageError:
+            return f"Package '{package}' not found"
+        for path in paths:
+            print(path if args.full_path else f"{package} {path.name}")
+    return None
 
 
 def _name(text: str) -> str:
@@ -59,7 +66,27 @@ def _name(text: str) -> str:
     return text
 
 
-def main(args: Namespace) -> int | str | None:
+@verb(
+    "pkg create", "Create a new ROS 2 package", arg("package_name", type=_name, help="The package name"),
+    arg(
+        "--package-format", "--package_format", choices=("2", "3"), default="3", help="The package.xml format.",
+    ),
+    arg("--description", default="TODO: Package description", help="The description given in the package.xml"),
+    arg("--license", default=NO_LICENSE, help="The license attached to this package"),
+    arg(
+        "--destination-directory", type=Path, default=Path(), help="Directory where to create the package directory",
+    ),
+    arg(
+        "--build-type", default="ament_cmake", choices=BUILD_TYPES,
+        help="The build type to process the package with",
+    ),
+    arg("--dependencies", nargs="+", default=[], help="list of dependencies"),
+    arg("--maintainer-email", default="", help="email address of the maintainer"),
+    arg("--maintainer-name", default="", help="name of the maintainer"),
+    arg("--node-name", type=_name, help="name of the empty executable"),
+    arg("--library-name", help="name of the empty library"),
+)  # fmt: skip
+def create(args: Namespace) -> int | str | None:
     """Write the files, and print each of them."""
     if args.build_type != "ament_python":
         return "Deck's ros2 makes packages in Python only: add --build-type ament_python"
