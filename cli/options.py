@@ -8,7 +8,7 @@ from cli.values import bandwidth, domain, whole
 from text.i18n import LANGUAGES, _
 
 if TYPE_CHECKING:
-    from cli.arguments.parser import Parser
+    from cli.commands import Parser
 
 
 def add_profile(parser: Parser) -> None:
