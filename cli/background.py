@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 from cli.commands import command
 from cli.doctor.login import before_logout, collect
 from cli.health import settled, well
-from cli.options import add_json, add_profile, add_profile_options, add_running
+from cli.options import add_json, add_profile, add_profile_options, add_running, count
 from cli.report import TextReport
 from cli.sessions import as_json, show, silent_as_json, silent_words
 from cli.shared_domain import in_own_domain
 from cli.stop_in_force import stop_is_kept, stop_words
-from cli.values import count
 from launcher.client import client
 from launcher.client.hung_supervisor import kill_supervisor, left_of, nodes_of
 from launcher.client.log_history import newer

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from cli.commands import command
 from cli.observing import FOUND_S, domain_view, tell_that_it_takes_time
-from cli.options import add_graph, add_json
-from cli.values import seconds
+from cli.options import add_graph, add_json, seconds
 from graph.data import GraphUpdate
 from graph.diagnostics.book import DiagnosticsBook
 from graph.diagnostics.reading import StatusLevel

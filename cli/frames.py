@@ -11,9 +11,8 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from cli.commands import command
-from cli.options import add_graph, add_json
+from cli.options import add_graph, add_json, seconds
 from cli.running_domain import beyond_this_machine, running_domain
-from cli.values import seconds
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from text.i18n import _, localized

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cli.commands import command
-from cli.options import add_domain, add_seed
-from cli.values import at_once, folder, seconds
+from cli.options import add_domain, add_seed, at_once, folder, seconds
 from course.folder.folder import folder_of
 from course.grade.defaults import CLASSROOM50, FORMATS, WITHIN_S
 from course.grade.formats.choice import writer_of

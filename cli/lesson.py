@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cli.commands import command
-from cli.options import add_seed
-from cli.values import at_once
+from cli.options import add_seed, at_once
 from course.lessons.catalog import find_lesson, lessons
 from course.proof.domains import unused_domains
 from course.proof.proof import ProofVerdict, incomplete, prove, variants

@@ -10,8 +10,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from cli.commands import command
-from cli.options import add_graph, add_running
-from cli.values import port
+from cli.options import add_graph, add_running, port
 from launcher.processes.ending import ENDING
 from launcher.processes.interrupts import run
 from text.i18n import _

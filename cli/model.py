@@ -20,8 +20,7 @@ from brain.serving.server import Order
 from brain.serving.service import ServedAnswer, Service, installed, require_port
 from brain.settings import load, settings_path
 from cli.commands import command
-from cli.options import add_language
-from cli.values import between, port
+from cli.options import add_language, between, port
 from launcher.processes.ending import ENDING
 from launcher.processes.interrupts import run
 from launcher.profile.text import shown

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from cli.commands import command
-from cli.options import add_graph, add_screen
+from cli.options import add_graph, add_screen, rate, seconds
 from cli.recordings import find_recording, list_recordings
 from cli.screen import has_terminal
-from cli.values import rate, seconds
 from launcher.errors import UsageError
 from text.i18n import _, localized
 from text.output import say_error

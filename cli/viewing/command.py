@@ -16,9 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, Protocol, TypeVar
 
 from cli.commands import command
-from cli.options import add_graph
+from cli.options import add_graph, port
 from cli.running_domain import running_domain
-from cli.values import port
 from launcher.errors import LauncherError, UsageError
 from launcher.processes.ending import stop_by_signals
 from launcher.processes.shared_memory_unfinished import discard_unfinished
