@@ -117,19 +117,13 @@ def chosen_qos(args: argparse.Namespace, profile: QoSProfile) -> QoSProfile:
     if args.qos_profile:
         profile = policies.QoSPresetProfiles.get_from_short_key(args.qos_profile)
     profile = copy.copy(profile)
-    if args.qos_history:
-        profile.history = policies.HistoryPolicy.get_from_short_key(args.qos_history)
     if args.qos_depth >= 0:
         profile.depth = args.qos_depth
-    if args.qos_reliability:
-        profile.reliability = policies.ReliabilityPolicy.get_from_short_key(args.qos_reliability)
-    if args.qos_durability:
-        profile.durability = policies.DurabilityPolicy.get_from_short_key(args.qos_durability)
-        keep = policies.DurabilityPolicy.TRANSIENT_LOCAL
-        if profile.durability == keep and profile.depth == 0:
-            profile.depth = 1
-    if args.qos_liveliness:
-        profile.liveliness = policies.LivelinessPolicy.get_from_short_key(args.qos_liveliness)
+    for name in ("history", "reliability", "durability", "liveliness"):
+        if value := getattr(args, f"qos_{name}"):
+            setattr(profile, name, getattr(policies, f"{name.title()}Policy").get_from_short_key(value))
+    if args.qos_durability == "transient_local" and profile.depth == 0:
+        profile.depth = 1
     if args.qos_liveliness_lease_duration_seconds is not None:
         seconds = args.qos_liveliness_lease_duration_seconds
         profile.liveliness_lease_duration = Duration(seconds=seconds)
