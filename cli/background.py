@@ -7,8 +7,10 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from cli.commands import command
 from cli.doctor.login import before_logout, collect
 from cli.health import settled, well
+from cli.options import add_json, add_profile, add_profile_options, add_running, count
 from cli.report import TextReport
 from cli.sessions import as_json, show, silent_as_json, silent_words
 from cli.shared_domain import in_own_domain
@@ -36,6 +38,7 @@ from text.program import typable
 if TYPE_CHECKING:
     from argparse import Namespace
 
+    from cli.commands import Parser
     from launcher.status import NodeState, NodeStatus, SessionInfo
 
 UP_WITHIN_S = 60.0
@@ -45,21 +48,43 @@ STEADY_S = 0.5
 """How long all must stay up: a node that fails does so right after its start."""
 
 
+def _up_options(parser: Parser) -> None:
+    add_profile(parser)
+    add_profile_options(parser)
+
+
+@command("up", _up_options)
 def up_command(options: Namespace) -> int:
     """Start a profile in the background, wait until it is up, and show its nodes."""
     return run(_up(options))
 
 
+def _ps_options(parser: Parser) -> None:
+    add_json(parser)
+
+
+@command("ps", _ps_options)
 def ps_command(options: Namespace) -> int:
     """Show the running sessions."""
     return run(_ps(options))
 
 
+def _logs_options(parser: Parser) -> None:
+    parser.add_argument("node", nargs="?", metavar=_("NODE"), help=_("name of the node; all of them by default"))
+    parser.add_argument("-f", "--follow", action="store_true", help=_("keep showing new lines"))
+    parser.add_argument(
+        "-n", dest="lines", metavar="N", type=count, default=100, help=_("how many past lines, 100 by default")
+    )
+    parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several are running"))
+
+
+@command("logs", _logs_options)
 def logs_command(options: Namespace) -> int:
     """Show the log of one node or of all."""
     return run(_logs(options))
 
 
+@command("down", add_running)
 def down_command(options: Namespace) -> int:
     """Stop a running session."""
     return run(_down(options))

@@ -6,7 +6,9 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
+from cli.commands import command
 from cli.observing import FOUND_S, domain_view, tell_that_it_takes_time
+from cli.options import add_graph, add_json, seconds
 from graph.data import GraphUpdate
 from graph.diagnostics.book import DiagnosticsBook
 from graph.diagnostics.reading import StatusLevel
@@ -20,6 +22,7 @@ from text.sentences import say
 if TYPE_CHECKING:
     from argparse import Namespace
 
+    from cli.commands import Parser
     from cli.observing import DomainView
     from graph.diagnostics.book import StatusRecord
     from graph.diagnostics.tree import TreeRow
@@ -32,6 +35,16 @@ LOOKS = {
 }
 
 
+def _diagnostics_options(parser: Parser) -> None:
+    parser.add_argument(
+        "--for", dest="seconds", metavar="S", type=seconds, default=3.0, help=_("listen for S seconds, 3 by default")
+    )
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
+    add_json(parser)
+    parser.epilog = _("Exit code: 0 if everything is all right, 1 if anything is not, 2 if nobody says anything.")
+
+
+@command("diagnostics", _diagnostics_options)
 def diagnostics_command(options: Namespace) -> int:
     """Listen for a moment, and show the tree; return 1 if anything is not all right."""
     with domain_view(options.domain, options.discovery, follow=(DIAGNOSTICS,)) as view:

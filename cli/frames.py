@@ -10,6 +10,8 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
+from cli.commands import command
+from cli.options import add_graph, add_json, seconds
 from cli.running_domain import beyond_this_machine, running_domain
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Sequence
 
+    from cli.commands import Parser
     from graph.data import FrameRow, GraphUpdate
     from space.tree.finding import FrameFinding
     from space.tree.tree import FrameTree
@@ -34,6 +37,19 @@ LOOK_S = 3.0
 """Seconds in which nodes are found, rates measured and silence noticed."""
 
 
+def _frames_options(parser: Parser) -> None:
+    parser.add_argument(
+        "--for", dest="seconds", metavar="S", type=seconds, help=_("listen for S seconds; 3 by default")
+    )
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
+    add_json(parser)
+    parser.epilog = _(
+        "Exit code: 0 if nothing is wrong with the frames, 1 if something is or there are none, 2 "
+        "if ROS or the command line cannot be used."
+    )
+
+
+@command("frames", _frames_options)
 def frames_command(options: Namespace) -> int:
     """Listen for some seconds and print; return 1 if there is no frame or anything is wrong."""
     from graph.frames.around import findings_in

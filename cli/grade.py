@@ -8,8 +8,10 @@ from contextlib import aclosing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cli.commands import command
+from cli.options import add_domain, add_seed, at_once, folder, seconds
 from course.folder.folder import folder_of
-from course.grade.defaults import CLASSROOM50
+from course.grade.defaults import CLASSROOM50, FORMATS, WITHIN_S
 from course.grade.formats.choice import writer_of
 from course.grade.formats.words import look, message, remarks, title
 from course.grade.grades import GradeState
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Sequence
 
+    from cli.commands import Parser
     from course.grade.grades import Grade, StepGrade
     from course.grade.submission import Submission
 
@@ -51,6 +54,46 @@ _STATES = {
 _COLOURS = {State.PASSED: GREEN, State.FAILED: RED, State.WAITS: YELLOW, State.UNJUDGED: RED}
 
 
+def _grade_options(parser: Parser) -> None:
+    parser.add_argument("lesson", metavar=_("LESSON"), help=_("name, number or folder"))
+    parser.add_argument(
+        "folders",
+        nargs="*",
+        metavar=_("FOLDER"),
+        help=_("with a learner's files; by default your own of this lesson, or the current one"),
+    )
+    parser.add_argument(
+        "--format",
+        choices=FORMATS,
+        help=_("write the grades for a program; gradescope and classroom50: of one folder"),
+    )
+    parser.add_argument(
+        "--output", metavar=_("FILE"), help=_("write them into this file, and what people read to standard output")
+    )
+    parser.add_argument(
+        "--bag", metavar=_("DIR"), type=folder, help=_("keep a recording of each folder in this one, as evidence")
+    )
+    parser.add_argument(
+        "--jobs", metavar="N", type=at_once, default=1, help=_("how many folders at once, 1 by default")
+    )
+    parser.add_argument(
+        "--timeout",
+        dest="within",
+        metavar="S",
+        type=seconds,
+        default=WITHIN_S,
+        help=_("how long a folder may take, 180 s by default"),
+    )
+    add_domain(parser, _("ROS domain, with one job; by default one that nobody is in"))
+    add_seed(parser, _("draw the values from this number; by default one that is made of the files"))
+    parser.epilog = _(
+        "The folders are left as they are. Exit code: 0 if all steps of all folders have passed, 1"
+        " if not, 2 for a wrong request, 3 if a folder could not be graded; with --format"
+        " classroom50 also 0 if steps have failed."
+    )
+
+
+@command("grade", _grade_options)
 def grade_command(options: Namespace) -> int:
     """Grade the folders; write the grades; return 0 if all have passed."""
     lesson = find_lesson(options.lesson)

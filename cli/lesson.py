@@ -6,6 +6,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cli.commands import command
+from cli.options import add_seed, at_once
 from course.lessons.catalog import find_lesson, lessons
 from course.proof.domains import unused_domains
 from course.proof.proof import ProofVerdict, incomplete, prove, variants
@@ -20,9 +22,22 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Sequence
 
+    from cli.commands import Parser
     from course.lessons.lesson import LessonFolder
 
 
+def _lesson_options(parser: Parser) -> None:
+    parser.add_argument("action", choices=("check", "new"))
+    parser.add_argument("lessons", nargs="*", metavar=_("LESSON"), help=_("name, number or folder; all by default"))
+    parser.add_argument("--jobs", metavar="N", type=at_once, default=2, help=_("how many runs at once, 2 by default"))
+    add_seed(parser)
+    parser.epilog = _(
+        "check: the starter must fail, the solution pass, and each mistake in wrong/STEP/ be caught"
+        " at its step. Exit code: 0 if so, else 1."
+    )
+
+
+@command("lesson", _lesson_options)
 def lesson_command(options: Namespace) -> int:
     """Prove lessons, or begin a new one."""
     if options.action == "new":

@@ -7,16 +7,36 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from cli.commands import command
 from cli.observing import domain_view
+from cli.options import add_graph
 from cli.running_domain import beyond_this_machine
-from text.i18n import localized
+from graph.inner_states import LOG_LEVELS
+from text.i18n import _, localized
 from text.output import say_error, write
 from text.plain import plain
 
 if TYPE_CHECKING:
     from argparse import Namespace
 
+    from cli.commands import Parser
 
+
+def _level_options(parser: Parser) -> None:
+    parser.add_argument("node", metavar=_("NODE"), help=_("a node by its name in the graph"))
+    parser.add_argument(
+        "level",
+        nargs="?",
+        choices=tuple(LOG_LEVELS),
+        help=_("from this severity on it is to log; without it, the level is only shown"),
+    )
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
+    parser.epilog = _(
+        "Exit code: 0, or 1 if the node is not there, does not answer or does not let others change its level."
+    )
+
+
+@command("level", _level_options)
 def level_command(options: Namespace) -> int:
     """Print the level that the node has now."""
     node = f"/{options.node.removeprefix('/')}"

@@ -6,6 +6,8 @@ import sys
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
+from cli.commands import command
+from cli.options import add_json, add_profile_options
 from launcher.errors import ProfileError
 from launcher.profile.catalog import find_profile, list_profiles
 from launcher.profile.load import load_profile
@@ -19,11 +21,17 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from pathlib import Path
 
+    from cli.commands import Parser
     from launcher.errors import ProfileProblem
     from launcher.profile.catalog import ProfileEntry
     from launcher.profile.load import Profile
 
 
+def _list_options(parser: Parser) -> None:
+    add_json(parser)
+
+
+@command("list", _list_options)
 def list_command(options: Namespace) -> int:
     """Show all profiles, broken ones with their first problem."""
     entries = list_profiles()
@@ -45,6 +53,19 @@ def list_command(options: Namespace) -> int:
     return 0
 
 
+def _check_options(parser: Parser) -> None:
+    parser.add_argument("profile", nargs="?", metavar=_("PROFILE"), help=_("name or file; all of them by default"))
+    parser.add_argument(
+        "--preflight",
+        action="store_true",
+        help=_("check the devices too, with --hardware real: found, permitted, free, answering"),
+    )
+    add_json(parser)
+    add_profile_options(parser)
+    parser.epilog = _("Exit code: 0 if everything is all right, else 2. Nothing is moved.")
+
+
+@command("check", _check_options)
 def check_command(options: Namespace) -> int:
     """Report problems of one profile, of all, or of devices; return 0 if there are none."""
     if options.preflight:

@@ -7,13 +7,10 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib import import_module
 from typing import TYPE_CHECKING
 
-from cli.arguments.commands import OPEN, parser_of, split, wanted_language
-from cli.arguments.parser import speak
+from cli.commands import COMMANDS, OPEN, handler_of, parser_of, speak, split, wanted_language
 from launcher.errors import LauncherError
-from launcher.processes.interrupts import held
 from text.i18n import LANGUAGES, detect, localized, set_language
 from text.output import drop_output, make_streams_safe, say_error
 
@@ -21,36 +18,8 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Sequence
 
-HANDLERS = {
-    "open": ("cli.screen", "open_command"),
-    "attach": ("cli.screen", "attach_command"),
-    "watch": ("cli.watch", "watch_command"),
-    "level": ("cli.level", "level_command"),
-    "frames": ("cli.frames", "frames_command"),
-    "mcp": ("cli.mcp", "mcp_command"),
-    "run": ("cli.run", "run_command"),
-    "list": ("cli.listing", "list_command"),
-    "check": ("cli.listing", "check_command"),
-    "up": ("cli.background", "up_command"),
-    "ps": ("cli.background", "ps_command"),
-    "logs": ("cli.background", "logs_command"),
-    "down": ("cli.background", "down_command"),
-    "stop": ("cli.stop", "stop_command"),
-    "record": ("cli.record", "record_command"),
-    "replay": ("cli.replay", "replay_command"),
-    "view": ("cli.viewing.command", "view_command"),
-    "foxglove": ("cli.viewing.command", "foxglove_command"),
-    "new": ("cli.new", "new_command"),
-    "lesson": ("cli.lesson", "lesson_command"),
-    "grade": ("cli.grade", "grade_command"),
-    "model": ("cli.model", "model_command"),
-    "shell": ("cli.shell.command", "shell_command"),
-    "diagnostics": ("cli.diagnostics", "diagnostics_command"),
-    "doctor": ("cli.doctor.command", "doctor_command"),
-}
-"""Command to module and function: only the module of the given command is imported."""
-STARTERS = ("run", "up")
-"""Commands that start a profile as soon as they have read it."""
+    from launcher.client.start import StartingSupervisor
+
 INTERRUPTED = 130
 READER_GONE = 141
 OPENBLAS_PATIENCE = ("OPENBLAS_THREAD_TIMEOUT", "4")
@@ -72,8 +41,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         set_language(detect(asked if asked in LANGUAGES else None))
         speak()
         command, rest = split(words)
-        options = _parsed(command, rest)
-        return options if isinstance(options, int) else _run(command, options)
+        if command == OPEN or not COMMANDS[command].starts or {"-h", "--help"} & {*rest}:
+            return _run(command, rest)
+        from launcher.client.start import StartingSupervisor
+
+        # It has more to import than this process, so it is started at once.
+        with StartingSupervisor() as supervisor:
+            return _run(command, rest, supervisor)
     except LauncherError as error:
         return complain(error)
     except KeyboardInterrupt:
@@ -120,20 +94,11 @@ def complain(error: LauncherError) -> int:
     return error.exit_code
 
 
-def _run(command: str, options: Namespace) -> int:
-    if command not in STARTERS:
-        return _handle(command, options)
-    from launcher.client.start import StartingSupervisor
-
-    # It has more to import than this process, so it is started at once.
-    with StartingSupervisor() as options.supervisor:
-        return _handle(command, options)
-
-
-def _handle(command: str, options: Namespace) -> int:
-    module, function = HANDLERS[command]
-    with held():
-        loaded = import_module(module)
-    code: int = getattr(loaded, function)(options)
+def _run(command: str, words: Sequence[str], supervisor: StartingSupervisor | None = None) -> int:
+    options = _parsed(command, words)
+    if isinstance(options, int):
+        return options
+    options.supervisor = supervisor
+    code = handler_of(command)(options)
     sys.stdout.flush()
     return code

@@ -9,6 +9,8 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from cli.commands import command
+from cli.options import add_graph, add_running, port
 from launcher.processes.ending import ENDING
 from launcher.processes.interrupts import run
 from text.i18n import _
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
 
     from agents.server import AgentServer
+    from cli.commands import Parser
 
 
 class _PlainHandler(logging.Handler):
@@ -29,6 +32,39 @@ class _PlainHandler(logging.Handler):
         say_error(f"deck mcp: {plain(record.getMessage(), 500)}")
 
 
+MCP_PORT = 8730
+"""Where agents find `deck mcp --http`. Not that of Foxglove, which may be served beside it."""
+
+
+def _mcp_options(parser: Parser) -> None:
+    add_running(parser)
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
+    parser.add_argument(
+        "--approve",
+        choices=("never", "ask", "always"),
+        default="ask",
+        help=_("whether agents drive: never, after the person at the screen is asked (the default), or always"),
+    )
+    parser.add_argument(
+        "--http", action="store_true", help=_("serve agents on this machine by HTTP, not the one that has started it")
+    )
+    parser.add_argument(
+        "--port",
+        metavar="N",
+        type=port,
+        default=MCP_PORT,
+        help=_("with --http: the port, {port} by default; 0 takes a free one").format(port=MCP_PORT),
+    )
+    parser.add_argument(
+        "--show-token", action="store_true", help=_("show the token that agents need for --http, and end")
+    )
+    parser.epilog = _(
+        "Limits of speed and distance are in the profile, and no approval lifts them. The agent "
+        "finds the robot whenever it runs. Exit code: 0, or 2 if it could not start."
+    )
+
+
+@command("mcp", _mcp_options)
 def mcp_command(options: Namespace) -> int:
     """Serve agents until the agent, or a signal, ends it."""
     if options.show_token:

@@ -19,6 +19,8 @@ from brain.serving.model_file import ModelFile, examine
 from brain.serving.server import Order
 from brain.serving.service import ServedAnswer, Service, installed, require_port
 from brain.settings import load, settings_path
+from cli.commands import command
+from cli.options import add_language, between, port
 from launcher.processes.ending import ENDING
 from launcher.processes.interrupts import run
 from launcher.profile.text import shown
@@ -30,16 +32,63 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Coroutine
 
+    from cli.commands import Parser
+
 T = TypeVar("T")
 EVERYWHERE = ("0.0.0.0", "::")
 CONTEXT = 8192
 """Tokens at once where nobody says how many: a picture and a long conversation fit in."""
 
 
+def _model_options(parser: Parser) -> None:
+    actions = parser.add_subparsers(dest="action", metavar=_("ACTION"))
+    about = _("serve a model from a file on this machine, by the protocol of OpenAI")
+    serve = actions.add_parser("serve", help=about, description=about, allow_abbrev=False)
+    _add_serve(serve)
+    add_language(serve)
+
+
+def _add_serve(parser: Parser) -> None:
+    parser.add_argument("file", metavar=_("FILE"), help=_("the model, a GGUF file"))
+    parser.add_argument(
+        "--mmproj",
+        dest="eyes",
+        metavar=_("FILE"),
+        help=_("for a model that sees: the file beside it that turns pictures into tokens"),
+    )
+    parser.add_argument(
+        "--port", metavar="N", type=port, default=8080, help=_("8080 by default; 0: any that is free")
+    )
+    parser.add_argument(
+        "--host",
+        metavar=_("ADDRESS"),
+        default="127.0.0.1",
+        help=_("for whom: by default this machine only; 0.0.0.0: everybody on the network"),
+    )
+    parser.add_argument(
+        "--context",
+        metavar="N",
+        type=between(256, 1 << 24),
+        help=_(
+            "tokens at once, question and answer together: 8192 by default, or what the model was"
+            " trained for if that is less"
+        ),
+    )
+    parser.add_argument(
+        "--threads", metavar="N", type=between(1, 512), help=_("by default one less than there are cores")
+    )
+    parser.add_argument("--verbose", action="store_true", help=_("show the log of llama.cpp"))
+    parser.epilog = _(
+        "Runs until Ctrl-C, with llama.cpp inside. Exit code: 0 when it was ended, 1 if llama.cpp"
+        " broke off, 2 if it could not start."
+    )
+
+
+@command("model", _model_options)
 def model_command(options: Namespace) -> int:
     """Serve a model until interrupted; without an action, show the help."""
     if options.action is None:
-        from cli.arguments.commands import parser_of
+        from cli.commands import parser_of
 
         parser_of("model").print_help()
         return 0

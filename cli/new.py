@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from typing import TYPE_CHECKING
 
+from cli.commands import command
 from course.folder.folder import NewFolder, new_folder, new_node
 from course.lessons.catalog import find_lesson
 from launcher.errors import UsageError
@@ -18,7 +19,21 @@ from text.sentences import say
 if TYPE_CHECKING:
     from argparse import Namespace
 
+    from cli.commands import Parser
 
+
+def _new_options(parser: Parser) -> None:
+    parser.add_argument("lesson", nargs="?", metavar=_("LESSON"), help=_("name or number of the lesson"))
+    parser.add_argument("--node", metavar=_("NAME"), help=_("instead: an empty node of this name, and its profile"))
+    parser.add_argument(
+        "--again",
+        action="store_true",
+        help=_("begin anew where there are files of yours, which are kept as copies (.1)"),
+    )
+    parser.epilog = _("The folder is in ~/deck-course, or where DECK_COURSE says.")
+
+
+@command("new", _new_options)
 def new_command(options: Namespace) -> int:
     """Make the folder, and say what is in it and what comes next."""
     if bool(options.lesson) == bool(options.node):

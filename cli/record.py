@@ -16,6 +16,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cli.commands import command
+from cli.options import add_graph, add_json, folder, seconds
 from cli.running_domain import beyond_this_machine, running_domain
 from graph.bag.errors import BagError
 from graph.heavy_types import IMAGES, POINT_CLOUD
@@ -35,11 +37,37 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Sequence
 
+    from cli.commands import Parser
     from graph.recording.recorder import Recorder, RecordingStatus
 
 TOLD_S = 1.0
 
 
+def _record_options(parser: Parser) -> None:
+    parser.add_argument("topics", nargs="*", metavar=_("TOPIC"), help=_("what to record; all topics by default"))
+    parser.add_argument("--hidden", action="store_true", help=_("hidden topics too: feedback and status of actions"))
+    parser.add_argument("--no-images", dest="images", action="store_false", help=_("all topics without pictures"))
+    parser.add_argument("--no-clouds", dest="clouds", action="store_false", help=_("all topics without point clouds"))
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar=_("FOLDER"),
+        type=folder,
+        help=_(
+            "a new folder to record into; by default in DECK_RECORDINGS_DIR, else "
+            "~/deck-recordings, named after lesson and time"
+        ),
+    )
+    parser.add_argument("--for", dest="seconds", metavar="S", type=seconds, help=_("stop after S seconds"))
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
+    add_json(parser)
+    parser.epilog = _(
+        "Exit code: 0 if the recording is complete, 1 if it broke off or no messages "
+        "arrived, 2 if it could not start."
+    )
+
+
+@command("record", _record_options)
 def record_command(options: Namespace) -> int:
     """Record until stopped; return 0 if the bag is complete and not empty."""
     from graph.recording.recorder import Recorder

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from cli.commands import command
+from cli.options import add_graph, add_screen, rate, seconds
 from cli.recordings import find_recording, list_recordings
 from cli.screen import has_terminal
 from launcher.errors import UsageError
@@ -16,7 +18,32 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from pathlib import Path
 
+    from cli.commands import Parser
 
+
+def _replay_options(parser: Parser) -> None:
+    parser.add_argument(
+        "bag",
+        nargs="?",
+        metavar=_("BAG"),
+        help=_("name, folder with metadata.yaml, or .mcap file; without it, list the recordings"),
+    )
+    parser.add_argument("--rate", metavar="R", type=rate, default=1.0, help=_("speed factor, 0.1 to 10"))
+    parser.add_argument("--loop", action="store_true", help=_("start again at the end"))
+    parser.add_argument(
+        "--start", metavar="S", type=seconds, default=0.0, help=_("start S seconds after the first message")
+    )
+    parser.add_argument(
+        "--publish",
+        action="store_true",
+        help=_("publish to the ROS graph instead of opening a screen, but nothing that moves a robot"),
+    )
+    parser.add_argument("--motion", action="store_true", help=_("with --publish: also what moves a robot"))
+    add_graph(parser, _("with --publish: ROS domain; by default that of the running robot"))
+    add_screen(parser)
+
+
+@command("replay", _replay_options)
 def replay_command(options: Namespace) -> int:
     """Show a bag on the screen until the user quits, or publish it; return 2 if it is not a bag."""
     if (options.motion or options.domain is not None) and not options.publish:

@@ -7,8 +7,10 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
+from cli.commands import command
 from cli.health import over, settled, well
 from cli.line_writer import LineWriter
+from cli.options import add_json, add_profile, add_profile_options, seconds
 from cli.report import JsonReport, Summary, TextReport
 from cli.shared_domain import in_own_domain
 from cli.stop_in_force import stop_is_kept, stop_words
@@ -25,6 +27,7 @@ from text.output import Paint, drop_output, say_error
 if TYPE_CHECKING:
     from argparse import Namespace
 
+    from cli.commands import Parser
     from cli.report import Report
     from launcher.client.client import SupervisorClient
     from launcher.client.start import StartingSupervisor
@@ -37,6 +40,20 @@ PAST_LINES = 1000
 """How many lines are kept of the output before the client has connected."""
 
 
+def _run_options(parser: Parser) -> None:
+    add_profile(parser)
+    parser.add_argument(
+        "--for", dest="seconds", metavar="S", type=seconds, help=_("stop S seconds after all nodes are ready")
+    )
+    add_json(parser)
+    add_profile_options(parser)
+    parser.epilog = _(
+        "Ctrl-C stops the nodes, dependants first; a second Ctrl-C does not wait. Exit code: 0 if"
+        " every node stayed healthy, 1 if one failed, 2 if nothing could be started."
+    )
+
+
+@command("run", _run_options)
 def run_command(options: Namespace) -> int:
     """Start a profile, report events, stop it; return 0 if every node stayed healthy."""
     profile = load_profile(

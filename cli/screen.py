@@ -6,7 +6,8 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from cli.arguments.commands import COMMANDS, HELP
+from cli.commands import COMMANDS, HELP, OPEN, command
+from cli.options import add_running, add_screen
 from launcher.errors import ProfileNotFoundError, UsageError
 from launcher.profile.catalog import find_profile
 from text.i18n import _
@@ -18,7 +19,10 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from pathlib import Path
 
+    from cli.commands import Parser
 
+
+@command(OPEN, lambda _parser: None)
 def open_command(options: Namespace) -> int:
     """Show the screen; without a terminal, behave like `deck run`."""
     if options.version:
@@ -59,6 +63,12 @@ def profile_or_command(name: str) -> Path:
         raise UsageError(words) from error
 
 
+def _attach_options(parser: Parser) -> None:
+    add_running(parser)
+    add_screen(parser)
+
+
+@command("attach", _attach_options)
 def attach_command(options: Namespace) -> int:
     """Show the screen of a profile that is running in the background."""
     if not has_terminal():

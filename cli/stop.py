@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+from cli.commands import command
 from cli.observing import domain_view
 from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.client.running import find_running, running_records
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Mapping, Sequence
 
+    from cli.commands import Parser
     from launcher.runs.record import RunRecord
 
 CARRIED_WITHIN_S = 3.0
@@ -37,6 +39,15 @@ SETTLED_S = 1.5
 LOOK_S = 0.02
 
 
+def _stop_options(parser: Parser) -> None:
+    parser.add_argument("name", nargs="?", metavar=_("NAME"), help=_("name of the profile; without it, all stop"))
+    parser.epilog = _(
+        "Exit code: 0 if all nodes that report on the emergency stop obey it, 1 if that is not "
+        "confirmed within seconds. The stop holds until it is released."
+    )
+
+
+@command("stop", _stop_options)
 def stop_command(options: Namespace) -> int:
     """Stop the robot of the session that is named, or of all; return 1 unless all confirm it."""
     records = running_records() if options.name is None else [find_running(options.name)]

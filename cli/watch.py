@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
+from cli.commands import command
+from cli.options import add_graph, add_screen
 from cli.screen import has_terminal
 from text.i18n import _
 from text.output import say_error
@@ -13,7 +15,16 @@ from tui.session.requests import OpenRequest, WatchRequest
 if TYPE_CHECKING:
     from argparse import Namespace
 
+    from cli.commands import Parser
 
+
+def _watch_options(parser: Parser) -> None:
+    add_graph(parser, _("ROS domain; by default ROS_DOMAIN_ID, else one of your own"))
+    add_screen(parser)
+    parser.epilog = _("Deck starts and stops nothing here.")
+
+
+@command("watch", _watch_options)
 def watch_command(options: Namespace) -> int:
     """Show the screen until the user quits."""
     from launcher.domain.domain import choose_domain

@@ -8,29 +8,34 @@ import os
 import signal
 import sys
 from importlib import import_module
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Final
 
+from ros2 import elsewhere
 from ros2.options import UsageError
-from ros2.table import COMMANDS, ELSEWHERE, VERBS, VERBS_ELSEWHERE
+from ros2.verb import VERBS
 from text.output import harmless_output
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
+
+    from ros2.verb import Verb
 
 USAGE_ERROR = 2
 
 
-class Verb(Protocol):
-    """A module of `ros2.verbs`."""
-
-    SUMMARY: str
-    """One line for `--help`."""
-
-    def arguments(self, parser: argparse.ArgumentParser) -> None:
-        """Declare the options."""
-
-    def main(self, args: argparse.Namespace) -> int | str | None:
-        """Do it; return the exit code, or an error text, which is the exit code 1."""
+COMMANDS: Final = {
+    "action": "Various action related sub-commands",
+    "bag": "Various rosbag related sub-commands",
+    "interface": "Show information about ROS interfaces",
+    "lifecycle": "Various lifecycle related sub-commands",
+    "node": "Various node related sub-commands",
+    "param": "Various param related sub-commands",
+    "pkg": "Various package related sub-commands",
+    "run": "Run a package specific executable",
+    "service": "Various service related sub-commands",
+    "topic": "Various topic related sub-commands",
+}
+"""The commands, and what `ros2 --help` says of each."""
 
 
 def main(argv: Sequence[str]) -> int:
@@ -76,14 +81,19 @@ def _run(argv: list[str]) -> int | str | None:
     if command.startswith("-"):
         return _top().error(f"unrecognized arguments: {command}")
     if command not in COMMANDS:
-        return _unknown("ros2", command, ELSEWHERE.get(command), sorted(COMMANDS))
+        return _unknown("ros2", command, elsewhere.COMMANDS.get(command), sorted(COMMANDS))
     return _run_verb(command, rest)
 
 
 def _run_verb(command: str, rest: list[str]) -> int | str | None:
-    verbs = {verb: module for (owner, verb), module in VERBS.items() if owner == command}
-    if "" in verbs:
-        return _call(verbs[""], f"ros2 {command}", rest)
+    import_module(f"ros2.verbs.{command}")
+    if command in VERBS:
+        return _call(command, rest)
+    verbs = {
+        name.removeprefix(f"{command} "): each
+        for name, each in sorted(VERBS.items())
+        if name.startswith(f"{command} ")
+    }
     # Options of the command itself, as in `ros2 topic --include-hidden-topics list`.
     options = []
     while rest and rest[0].startswith("--include-hidden"):
@@ -93,17 +103,18 @@ def _run_verb(command: str, rest: list[str]) -> int | str | None:
         return 0
     verb, *rest = rest
     if verb not in verbs:
-        where = VERBS_ELSEWHERE.get((command, verb))
+        where = elsewhere.VERBS.get((command, verb))
         return _unknown(f"ros2 {command}", verb, where, sorted(verbs))
-    return _call(verbs[verb], f"ros2 {command} {verb}", [*options, *rest])
+    return _call(f"{command} {verb}", [*options, *rest])
 
 
-def _call(module: str, program: str, argv: list[str]) -> int | str | None:
-    verb = _load(module)
+def _call(name: str, argv: list[str]) -> int | str | None:
+    verb = VERBS[name]
     parser = argparse.ArgumentParser(
-        prog=program, description=verb.SUMMARY, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog=f"ros2 {name}", description=verb.summary, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    verb.arguments(parser)
+    for part in verb.parts:
+        part(parser)
     args = parser.parse_args(argv)
     code = verb.main(args)
     if missing := getattr(args, "missing", ""):
@@ -113,16 +124,12 @@ def _call(module: str, program: str, argv: list[str]) -> int | str | None:
     return code
 
 
-def _load(module: str) -> Verb:
-    return cast("Verb", import_module(f"ros2.verbs.{module}"))
-
-
 def _top() -> argparse.ArgumentParser:
     return _list_of("ros2", "ros2 is an extensible command-line tool for ROS 2.", COMMANDS)
 
 
-def _of_command(command: str, verbs: dict[str, str]) -> argparse.ArgumentParser:
-    summaries = {verb: _load(module).SUMMARY for verb, module in sorted(verbs.items())}
+def _of_command(command: str, verbs: Mapping[str, Verb]) -> argparse.ArgumentParser:
+    summaries = {name: each.summary for name, each in verbs.items()}
     return _list_of(f"ros2 {command}", COMMANDS[command], summaries)
 
 

@@ -110,30 +110,26 @@ def load(type_name: str, kind: str) -> type[Any]:
     return found
 
 
+def _class(type_name: str, kind: str, word: str, *parts: str) -> type[Any]:
+    try:
+        found = load(type_name, kind)
+    except (AttributeError, ImportError, ValueError) as error:
+        raise RuntimeError(f"The passed {word} type is invalid") from error
+    if not all(hasattr(found, part) for part in parts):
+        raise RuntimeError(f"The passed type is not {'an' if word == 'action' else 'a'} {word}")
+    return found
+
+
 def message_class(type_name: str) -> type[Any]:
     """Return the class of a message; RuntimeError if there is none."""
-    try:
-        return load(type_name, "msg")
-    except (AttributeError, ImportError, ValueError) as error:
-        raise RuntimeError("The passed message type is invalid") from error
+    return _class(type_name, "msg", "message")
 
 
 def service_class(type_name: str) -> type[Any]:
     """Return the class of a service; RuntimeError if there is none."""
-    try:
-        found = load(type_name, "srv")
-    except (AttributeError, ImportError, ValueError) as error:
-        raise RuntimeError("The passed service type is invalid") from error
-    if not hasattr(found, "Request") or not hasattr(found, "Response"):
-        raise RuntimeError("The passed type is not a service")
-    return found
+    return _class(type_name, "srv", "service", "Request", "Response")
 
 
 def action_class(type_name: str) -> type[Any]:
     """Return the class of an action; RuntimeError if there is none."""
-    try:
-        found = load(type_name, "action")
-        _ = found.Goal
-    except (AttributeError, ImportError, ValueError) as error:
-        raise RuntimeError("The passed action type is invalid") from error
-    return found
+    return _class(type_name, "action", "action", "Goal")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ros2.presence import ANSWERED_WITHIN_S
+from ros2.verb import arg, every, flag
 
 if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
+
+    from ros2.verb import Part
 
 PROFILES = (
     "unknown", "system_default", "sensor_data", "services_default", "parameters",
@@ -24,62 +27,71 @@ class UsageError(RuntimeError):
     """What is wrong with the command line has shown only later: the exit code is 2."""
 
 
-def of_node(parser: argparse.ArgumentParser) -> None:
-    """Declare what a verb with a node of its own takes."""
-    parser.add_argument(
-        "--spin-time",
-        type=float,
-        default=None,
+def positive_int(text: str) -> int:
+    """Read a number of messages."""
+    if not text.isdecimal() or int(text) <= 0:
+        raise argparse.ArgumentTypeError("value must be a positive integer")
+    return int(text)
+
+
+def unsigned_int(text: str) -> int:
+    """Read a length."""
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError("value must be non-negative integer")
+    return int(text)
+
+
+def positive_float(text: str) -> float:
+    """Read a rate."""
+    value = float(text)
+    if value <= 0:
+        raise ValueError
+    return value
+
+
+of_node: Final = every(
+    arg(
+        "--spin-time", type=float,
         help="Spin time in seconds to wait for discovery (only applies when not using an already running daemon)",
-    )
-    parser.add_argument("-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time")
+    ),
+    flag("-s", "--use-sim-time", help="Enable ROS simulation time"),
+)  # fmt: skip
+"""What a verb with a node of its own takes."""
+of_graph: Final = every(of_node, flag("--no-daemon", help="Do not spawn nor use an already running daemon"))
+"""What a verb takes that could ask the daemon; here there is none."""
+answers: Final = arg(
+    "--timeout", type=positive_float, default=ANSWERED_WITHIN_S, metavar="SECONDS",
+    help="Seconds to wait for the answer of a node (default: %(default)g)",
+)  # fmt: skip
+"""For how long a verb waits for the answer of a node; the real tool waits for ever."""
+of_node_list: Final = every(
+    of_graph,
+    flag("-a", "--all", help="Display all nodes even hidden ones"),
+    flag("-c", "--count-nodes", help="Only display the number of nodes discovered"),
+)
 
 
-def of_graph(parser: argparse.ArgumentParser) -> None:
-    """Declare what a verb takes that could ask the daemon; here there is none."""
-    of_node(parser)
-    parser.add_argument("--no-daemon", action="store_true", help="Do not spawn nor use an already running daemon")
+def hidden(kind: str) -> Part:
+    """Return `--include-hidden-topics`, or of other things that are not all listed."""
+    return flag(f"--include-hidden-{kind}", dest="hidden", help=f"Consider hidden {kind} as well")
 
 
-def answers(parser: argparse.ArgumentParser) -> None:
-    """Declare for how long a verb waits for the answer of a node; the real tool waits for ever."""
-    parser.add_argument(
-        "--timeout",
-        type=positive_float,
-        default=ANSWERED_WITHIN_S,
-        metavar="SECONDS",
-        help="Seconds to wait for the answer of a node (default: %(default)g)",
-    )
-
-
-def of_node_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of the commands that list nodes."""
-    of_graph(parser)
-    add = parser.add_argument
-    add("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
-    add("-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered")
-
-
-def hidden_topics(parser: argparse.ArgumentParser) -> None:
-    """Declare `--include-hidden-topics`, where it means nothing to the verb itself."""
-    parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
-
-
-def qos(parser: argparse.ArgumentParser, doing: str, default: str) -> None:
-    """Declare the options `--qos-...`."""
+def qos(doing: str, default: str) -> Part:
+    """Return the options `--qos-...`."""
     over = f"setting to {doing} with (overrides the value of --qos-profile option, default: "
-    add = parser.add_argument
-    add(
-        "--qos-profile",
-        choices=PROFILES,
-        help=f"Quality of service preset profile to {doing} with (default: {default})",
-    )
-    add("--qos-depth", metavar="N", type=int, default=-1, help=f"Queue size {over}the profile's)")
-    add("--qos-history", choices=HISTORIES, help=f"History of samples {over}the profile's)")
-    add("--qos-reliability", choices=RELIABILITIES, help=f"Reliability {over}the profile's)")
-    add("--qos-durability", choices=DURABILITIES, help=f"Durability {over}the profile's)")
-    add("--qos-liveliness", choices=LIVELINESSES, help=f"Liveliness {over}the profile's)")
-    add("--qos-liveliness-lease-duration-seconds", type=float, help=f"Liveliness lease duration {over}the profile's)")
+    preset = f"Quality of service preset profile to {doing} with (default: {default})"
+    return every(
+        arg("--qos-profile", choices=PROFILES, help=preset),
+        arg("--qos-depth", metavar="N", type=int, default=-1, help=f"Queue size {over}the profile's)"),
+        arg("--qos-history", choices=HISTORIES, help=f"History of samples {over}the profile's)"),
+        arg("--qos-reliability", choices=RELIABILITIES, help=f"Reliability {over}the profile's)"),
+        arg("--qos-durability", choices=DURABILITIES, help=f"Durability {over}the profile's)"),
+        arg("--qos-liveliness", choices=LIVELINESSES, help=f"Liveliness {over}the profile's)"),
+        arg(
+            "--qos-liveliness-lease-duration-seconds", type=float,
+            help=f"Liveliness lease duration {over}the profile's)",
+        ),
+    )  # fmt: skip
 
 
 def asks_for_qos(args: argparse.Namespace) -> bool:
@@ -105,42 +117,14 @@ def chosen_qos(args: argparse.Namespace, profile: QoSProfile) -> QoSProfile:
     if args.qos_profile:
         profile = policies.QoSPresetProfiles.get_from_short_key(args.qos_profile)
     profile = copy.copy(profile)
-    if args.qos_history:
-        profile.history = policies.HistoryPolicy.get_from_short_key(args.qos_history)
     if args.qos_depth >= 0:
         profile.depth = args.qos_depth
-    if args.qos_reliability:
-        profile.reliability = policies.ReliabilityPolicy.get_from_short_key(args.qos_reliability)
-    if args.qos_durability:
-        profile.durability = policies.DurabilityPolicy.get_from_short_key(args.qos_durability)
-        keep = policies.DurabilityPolicy.TRANSIENT_LOCAL
-        if profile.durability == keep and profile.depth == 0:
-            profile.depth = 1
-    if args.qos_liveliness:
-        profile.liveliness = policies.LivelinessPolicy.get_from_short_key(args.qos_liveliness)
+    for name in ("history", "reliability", "durability", "liveliness"):
+        if value := getattr(args, f"qos_{name}"):
+            setattr(profile, name, getattr(policies, f"{name.title()}Policy").get_from_short_key(value))
+    if args.qos_durability == "transient_local" and profile.depth == 0:
+        profile.depth = 1
     if args.qos_liveliness_lease_duration_seconds is not None:
         seconds = args.qos_liveliness_lease_duration_seconds
         profile.liveliness_lease_duration = Duration(seconds=seconds)
     return profile
-
-
-def positive_int(text: str) -> int:
-    """Read a number of messages."""
-    if not text.isdecimal() or int(text) <= 0:
-        raise argparse.ArgumentTypeError("value must be a positive integer")
-    return int(text)
-
-
-def unsigned_int(text: str) -> int:
-    """Read a length."""
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError("value must be non-negative integer")
-    return int(text)
-
-
-def positive_float(text: str) -> float:
-    """Read a rate."""
-    value = float(text)
-    if value <= 0:
-        raise ValueError
-    return value

@@ -5,7 +5,9 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+from cli.commands import command
 from cli.doctor import Level, examine
+from cli.options import add_graph, add_json
 from launcher.errors import UsageError
 from text.i18n import N_, _
 from text.output import DIM, GREEN, RED, YELLOW, Paint, json_text, write
@@ -16,11 +18,26 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Iterable
 
+    from cli.commands import Parser
     from cli.doctor import Finding
 
 LOOKS = {Level.OK: (N_("ok"), GREEN), Level.WARN: (N_("warn"), YELLOW), Level.FAIL: (N_("FAIL"), RED)}
 
 
+def _doctor_options(parser: Parser) -> None:
+    parser.add_argument("what", nargs="?", choices=("llm",), help=_("llm: ask the language model for a test"))
+    parser.add_argument(
+        "--graph", action="store_true", help=_("examine the running ROS graph instead, whoever has started its nodes")
+    )
+    add_graph(parser, _("with --graph: ROS domain; by default that of the running robot"))
+    add_json(parser)
+    parser.epilog = _(
+        "Exit code: 0, or 1 if something essential is missing. With --graph: 0 without findings, 1 "
+        "with some, 2 if there is no graph to look at."
+    )
+
+
+@command("doctor", _doctor_options)
 def doctor_command(options: Namespace) -> int:
     """Examine everything, or try the language model; return 1 if something essential is missing.
 

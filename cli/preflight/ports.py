@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from cli.doctor.finding import Level
 from cli.preflight.answers import DeviceAnswer, ask
-from cli.preflight.opening import advice, opened
+from cli.preflight.open_port import advice, opened
 from launcher.profile.devices import wanted
 from launcher.profile.serial_choice import AUTO, UnresolvedPort, choose
 from text.i18n import _, localized

@@ -16,6 +16,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cli.commands import command
+from cli.options import add_graph
 from cli.running_domain import running_domain
 from cli.shell.elsewhere import for_bash, for_fish, for_zsh
 from launcher.domain.discovery import settings_of_discovery
@@ -28,6 +30,8 @@ from text.plain import plain
 
 if TYPE_CHECKING:
     from argparse import Namespace
+
+    from cli.commands import Parser
 
 KNOWN = ("bash", "zsh", "fish", "sh", "dash", "ksh")
 LABEL = "DECK_SHELL"
@@ -60,6 +64,14 @@ PS1="($DECK_SHELL) ${PS1-$ }"
 """
 
 
+def _shell_options(parser: Parser) -> None:
+    parser.add_argument("profile", nargs="?", metavar=_("PROFILE"), help=_("by default the lesson that is running"))
+    parser.add_argument("-c", dest="line", metavar=_("LINE"), help=_("run this command line and end"))
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
+    parser.epilog = _("The shell is that of SHELL. The exit code is that of the shell or command.")
+
+
+@command("shell", _shell_options)
 def shell_command(options: Namespace) -> int:
     """Become the shell; return only if that is impossible."""
     name, domain, discovery = _place(options)

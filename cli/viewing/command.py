@@ -15,6 +15,8 @@ import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, Protocol, TypeVar
 
+from cli.commands import command
+from cli.options import add_graph, port
 from cli.running_domain import running_domain
 from launcher.errors import LauncherError, UsageError
 from launcher.processes.ending import stop_by_signals
@@ -28,6 +30,8 @@ from view.place import has_window, ssh_command
 if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Callable
+
+    from cli.commands import Parser
 
 T = TypeVar("T")
 
@@ -51,6 +55,31 @@ class Waiting(Protocol):
         """Wait until it ends or `stop` is set. Raises ViewError if it broke."""
 
 
+def _view_options(parser: Parser) -> None:
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--web",
+        action="store_true",
+        help=_("a page for a browser, as over SSH; by default a window, where there is a display"),
+    )
+    where.add_argument("--rviz", action="store_true", help=_("RViz2 with the robot's settings, if it is installed"))
+    parser.add_argument("--port", metavar="N", type=port, help=_("port of the page; by default 9090 or the next"))
+    parser.add_argument("--no-open", dest="open", action="store_false", help=_("do not open the page in a browser"))
+    _add_common(parser)
+    parser.epilog = _(
+        "Exit code: 0 if it was closed, 1 if it broke off, 2 if it could not start: the viewer is "
+        "not installed, or the port is taken."
+    )
+
+
+def _add_common(parser: Parser) -> None:
+    add_graph(parser, _("ROS domain; by default that of the running robot"))
+    parser.add_argument(
+        "--json", action="store_true", help=_("print JSON, for programs, and end with standard input")
+    )
+
+
+@command("view", _view_options)
 def view_command(options: Namespace) -> int:
     """Show the robot in 3D until the viewer is closed."""
     _name, domain, discovery = running_domain(options.domain, options.discovery)
@@ -75,6 +104,16 @@ def view_command(options: Namespace) -> int:
         return _wait(showing, stop)
 
 
+def _foxglove_options(parser: Parser) -> None:
+    parser.add_argument("--port", metavar="N", type=port, help=_("port to serve at; by default 8765 or the next"))
+    _add_common(parser)
+    parser.epilog = _(
+        "Exit code: 0 if it was stopped, 1 if it broke off, 2 if it could not start: the server "
+        "is not installed, or the port is taken."
+    )
+
+
+@command("foxglove", _foxglove_options)
 def foxglove_command(options: Namespace) -> int:
     """Serve what is published to Foxglove until it is stopped."""
     _name, domain, discovery = running_domain(options.domain, options.discovery)

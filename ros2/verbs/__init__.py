@@ -1,1 +1,1 @@
-"""The verbs, one file each: `SUMMARY`, `arguments(parser)` and `main(args)`; see `ros2.table`."""
+"""The commands, a file each, in which each verb is a function with `@verb`; see `ros2.verb`."""

@@ -8,36 +8,34 @@ import shlex
 import sys
 from typing import TYPE_CHECKING
 
+from ros2.elsewhere import PACKAGES
 from ros2.package_files import CONFIG
 from ros2.packages import NoPackageError, executables, misplaced
-from ros2.table import PACKAGES_ELSEWHERE
+from ros2.verb import arg, verb
 from text.i18n import localized
 from text.sentences import say
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-SUMMARY = "Run a package specific executable"
 
-
-def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
+@verb(
+    "run", "Run a package specific executable",
+    arg(
         "--prefix",
-        help="Prefix command, which should go before the executable. "
-        "Command must be wrapped in quotes if it contains spaces "
-        "(e.g. --prefix 'gdb -ex run --args').",
-    )
-    parser.add_argument("package_name", help="Name of the ROS package")
-    parser.add_argument("executable_name", help="Name of the executable")
-    parser.add_argument("argv", nargs=argparse.REMAINDER, help="Pass arbitrary arguments to the executable")
-
-
-def main(args: argparse.Namespace) -> int | str | None:
+        help="Prefix command, which should go before the executable. Command must be wrapped in quotes if it "
+        "contains spaces (e.g. --prefix 'gdb -ex run --args').",
+    ),
+    arg("package_name", help="Name of the ROS package"),
+    arg("executable_name", help="Name of the executable"),
+    arg("argv", nargs=argparse.REMAINDER, help="Pass arbitrary arguments to the executable"),
+)  # fmt: skip
+def run(args: argparse.Namespace) -> int | str | None:
     """Find the program and become it."""
     try:
         paths = executables(args.package_name)
     except NoPackageError:
-        instead = PACKAGES_ELSEWHERE.get(args.package_name, "")
+        instead = PACKAGES.get(args.package_name, "")
         return f"Package '{args.package_name}' not found{instead and '. '}{instead}"
     fitting = [path for path in paths if path.name == args.executable_name]
     if not fitting:

@@ -13,7 +13,7 @@ import pytest
 
 from cli import main
 from cli import main as cli_main
-from cli.arguments.commands import COMMANDS, split
+from cli.commands import COMMANDS, Place, split
 from cli.running_domain import running_domain
 from text.i18n import set_language
 
@@ -126,10 +126,12 @@ def test_nothing_heavy_is_imported_before_the_screen(tmp_path: Path) -> None:
 
 COMMAND = """
 import signal
+from cli.commands import command
 signal.raise_signal(signal.SIGINT)
 IMPORTED = True
 
-def command(options):
+@command("slow", lambda parser: None)
+def slow_command(options):
     raise AssertionError("the command began")
 """
 
@@ -137,8 +139,8 @@ def command(options):
 def test_it_ends_with_130_once_the_import_is_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "slow_command.py").write_text(COMMAND)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setitem(sys.modules["cli.main"].HANDLERS, "list", ("slow_command", "command"))
+    monkeypatch.setitem(COMMANDS, "slow", Place("slow_command", ""))
     before = signal.getsignal(signal.SIGINT)
-    assert cli_main(["list"]) == 130
+    assert cli_main(["slow"]) == 130
     assert sys.modules.pop("slow_command").IMPORTED
     assert signal.getsignal(signal.SIGINT) is before

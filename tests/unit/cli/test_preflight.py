@@ -16,8 +16,7 @@ import pytest
 from cli.doctor import Level
 from cli.preflight import examine, media
 from cli.preflight.answers import DeviceAnswer, ask
-from cli.preflight.open_port import OpenPort
-from cli.preflight.opening import opened
+from cli.preflight.open_port import OpenPort, opened
 from launcher.profile.load import Profile
 from launcher.profile.model import ProfileDocument
 from launcher.serial_ports import SerialPort

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.arguments.commands import parser_of, split
+from cli.commands import parser_of, split
 from launcher.profile.load import load_profile
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -1,1 +1,0 @@
-"""`ros2 component`: containers and what they hold."""

@@ -1,1 +1,0 @@
-"""`ros2 param`: one file a verb."""

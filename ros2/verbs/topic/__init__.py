@@ -1,1 +1,0 @@
-"""`ros2 topic`: one file a verb."""
