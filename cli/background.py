@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import sys
 from typing import TYPE_CHECKING
 
-from cli.doctor.login import before_logout, collect
 from cli.health import settled, well
 from cli.report import TextReport
 from cli.sessions import as_json, show, silent_as_json, silent_words
@@ -94,8 +92,6 @@ async def _up(options: Namespace) -> int:
         healthy = all(well(node, optional) for node in link.nodes.values())
     finally:
         await link.aclose()
-    for line in before_logout(collect(), os.environ):
-        say_error(line)
     if stop_is_kept(profile.domain):
         say_error(stop_words(profile.domain))
     if healthy:
