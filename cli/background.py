@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import sys
 from typing import TYPE_CHECKING
 
 from cli.commands import command
-from cli.doctor.login import before_logout, collect
 from cli.health import settled, well
 from cli.options import add_json, add_profile, add_profile_options, add_running, count
 from cli.report import TextReport
@@ -119,8 +117,6 @@ async def _up(options: Namespace) -> int:
         healthy = all(well(node, optional) for node in link.nodes.values())
     finally:
         await link.aclose()
-    for line in before_logout(collect(), os.environ):
-        say_error(line)
     if stop_is_kept(profile.domain):
         say_error(stop_words(profile.domain))
     if healthy:

@@ -14,7 +14,6 @@ from cli.commands import command
 from cli.options import add_graph, add_json, seconds
 from cli.running_domain import beyond_this_machine, running_domain
 from launcher.errors import UsageError
-from launcher.processes.shared_memory_unfinished import discard_unfinished
 from text.i18n import _, localized
 from text.output import DIM, RED, Paint, json_text, keep_stdout_to_ourselves, table, write
 from tui.frame_tree import cells
@@ -57,8 +56,6 @@ def frames_command(options: Namespace) -> int:
 
     _name, domain, discovery = running_domain(options.domain, options.discovery)
     keep_stdout_to_ourselves()
-    # There may be no supervisor here that does it.
-    discard_unfinished()
     update = _listen(domain, discovery, options.seconds or LOOK_S)
     tree = FrameTree(update.frames)
     findings = findings_in(update, tree)

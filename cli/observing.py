@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from cli.running_domain import running_domain
 from launcher.errors import UsageError
-from launcher.processes.shared_memory_unfinished import discard_unfinished
 from text.output import keep_stdout_to_ourselves, say_error
 from text.sentences import say
 
@@ -129,8 +128,6 @@ def domain_view(
 
     _name, domain, discovery = running_domain(asked, wanted)
     keep_stdout_to_ourselves()
-    # There may be no supervisor here that does it.
-    discard_unfinished()
     updates: queue.SimpleQueue[GraphUpdate] = queue.SimpleQueue()
     observer = Observer(domain, discovery, period_s=LOOK_S)
     observer.follow(follow)

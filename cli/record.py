@@ -23,7 +23,6 @@ from graph.bag.errors import BagError
 from graph.heavy_types import IMAGES, POINT_CLOUD
 from launcher.errors import UsageError
 from launcher.processes.ending import stop_by_signals
-from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.rundir import new_recording
 from text.i18n import _, localized
 from text.output import BOLD, Paint, json_text, keep_stdout_to_ourselves, table, write
@@ -79,8 +78,6 @@ def record_command(options: Namespace) -> int:
     recorder = Recorder(domain, discovery, folder, topics or None, hidden=options.hidden, without=without)
     stop = stop_by_signals()
     keep_stdout_to_ourselves()
-    # There may be no supervisor here that does it.
-    discard_unfinished()
     try:
         recorder.start()
     except BagError as error:

@@ -12,7 +12,6 @@ from cli.running_domain import running_domain
 from graph.bag.errors import BagError, nothing_to_publish
 from launcher.errors import UsageError
 from launcher.processes.ending import stop_by_signals
-from launcher.processes.shared_memory_unfinished import discard_unfinished
 from robot.safety.moving_topics import STOPPED_BY_ZEROS, moves
 from robot.topics import EMERGENCY_STOP
 from text.i18n import _, localized, ngettext
@@ -54,8 +53,6 @@ def _publish(
     from graph.bag.publishing import BagPublisher
     from graph.ros import open_ros
 
-    # There may be no supervisor here that does it.
-    discard_unfinished()
     try:
         ros = open_ros(domain, discovery, "replay")
     except Exception as error:  # noqa: BLE001 - rclpy may raise anything, or be missing

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 
+from launcher.domain.discovery import OF_PEERS, RANGE, VARIABLES
 from launcher.domain.domain import choose_domain
 from launcher.errors import UsageError
 from text.sentences import say
@@ -26,7 +27,7 @@ def running_domain(asked: int | None, wanted: str | None = None) -> tuple[str, i
         raise UsageError(say("robots are running in domains {domains}: choose one with --domain", domains=named))
     if sessions:
         return sessions[0].name, sessions[0].domain, wanted or sessions[0].discovery
-    wide = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() == "SUBNET"
+    wide = os.environ.get(RANGE, "").upper() == "SUBNET" and os.environ.get(VARIABLES[0]) != str(OF_PEERS)
     domain = choose_domain(asked, None, os.environ)
     return f"domain-{domain}", domain, wanted or ("subnet" if wide else "localhost")
 

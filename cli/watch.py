@@ -33,10 +33,7 @@ def watch_command(options: Namespace) -> int:
     if not has_terminal():
         say_error(_("watch needs a terminal; `deck record` works without one"))
         return 2
-    from launcher.processes.shared_memory_unfinished import discard_unfinished
     from tui.live import run_live
 
-    # There may be no supervisor here that does it.
-    discard_unfinished()
     order = OpenRequest(watch=WatchRequest(domain, options.discovery or "localhost"), wall=options.wall)
     return run_live(order, options.lang, options.bandwidth)

@@ -2,7 +2,7 @@
 
 For each topic of raw images that is published on this machine it offers another one, whose name
 begins with that topic's and ends with `graph.pictures.source.THINNED`. While somebody listens
-there, and only then, it takes the raw pictures, by shared memory, and publishes what a terminal can
+there, and only then, it takes the raw pictures, and publishes what a terminal can
 draw: see `graph.pictures.thinning`. It runs until its stdin ends.
 """
 

@@ -25,11 +25,14 @@ DOMAINS = range(233)
 """Fast DDS ends the whole process at a greater domain: its port numbers would be out of range."""
 FAST_DDS = Path(__file__).with_name("fastdds.xml")
 """Fast DDS settings for all of Deck's processes: fast discovery, on this machine only."""
+FAST_DDS_OF_PEERS = FAST_DDS.with_name("fastdds_peers.xml")
+TRANSPORTS = "FASTDDS_BUILTIN_TRANSPORTS"
 FAST_DDS_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
 """Jazzy's Fast DDS reads the first one first."""
 ONLY_THESE = "SKIP_DEFAULT_XML_FILE"
 """Keeps Fast DDS from reading DEFAULT_FASTRTPS_PROFILES.xml in the current folder as well."""
 LOCALHOST_ONLY = "ROS_LOCALHOST_ONLY"
+RMW, FAST_RTPS = "RMW_IMPLEMENTATION", ("", "rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp")
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 PEERS = "ROS_STATIC_PEERS"
 RANGES = {"localhost": "LOCALHOST", "subnet": "SUBNET"}
@@ -119,15 +122,20 @@ def _discovery(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
 def announcing(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
     """Return the variables for Deck's Fast DDS settings, unless the user has set their own.
 
-    They apply to a single machine only: on a network, the announcements of a whole class would add
-    up.
+    As in `launcher.domain.discovery`. Those that hurry apply to a single machine only: on a network,
+    the announcements of a whole class would add up.
     """
-    ours = str(FAST_DDS)
-    if any(os.environ.get(name, ours) not in ("", ours) for name in FAST_DDS_VARIABLES):
+    ours = ("", str(FAST_DDS), str(FAST_DDS_OF_PEERS))
+    others = os.environ.get(RMW, "") not in FAST_RTPS
+    if others or any(os.environ.get(name, "") not in ours for name in FAST_DDS_VARIABLES):
         return {}
-    if discovery != "localhost":
-        return dict.fromkeys((*FAST_DDS_VARIABLES, ONLY_THESE))
-    return {**dict.fromkeys(FAST_DDS_VARIABLES, ours), ONLY_THESE: "1"}
+    if discovery == "subnet":
+        kept = os.environ.get(TRANSPORTS, "UDPv4")
+        return {**dict.fromkeys((*FAST_DDS_VARIABLES, ONLY_THESE)), TRANSPORTS: kept}
+    local = discovery == "localhost"
+    file = str(FAST_DDS if local else FAST_DDS_OF_PEERS)
+    reach = "SYSTEM_DEFAULT" if local else "SUBNET"
+    return {**dict.fromkeys(FAST_DDS_VARIABLES, file), ONLY_THESE: "1", RANGE: reach}
 
 
 @contextmanager

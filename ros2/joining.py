@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from graph.participants.roll import Roll
-from graph.ros import FAST_DDS_VARIABLES, RANGE, announcing
+from graph.ros import PEERS, RANGE, announcing
 from launcher.domain.participants import LocalParticipants
 from ros2.ending import was_interrupted
 from ros2.presence import ANSWERED_WITHIN_S, NETWORK_S, Missing, is_off, is_wide, missing, stopped, words
@@ -188,10 +188,8 @@ def joined(args: argparse.Namespace, name: str = "", *, settled: bool = False) -
     from rclpy.parameter import Parameter
 
     context = Context()
-    if os.environ.get(RANGE, "").upper() == "LOCALHOST":
-        for variable, value in announcing("localhost").items():
-            if value is not None and variable in FAST_DDS_VARIABLES:
-                os.environ.setdefault(variable, value)
+    if os.environ.get(RANGE, "").upper() == "LOCALHOST" and not os.environ.get(PEERS):
+        os.environ.update({name: value for name, value in announcing("localhost").items() if value})
     context.init(args=[], initialize_logging=False)
     own = [Parameter("start_type_description_service", value=False)]
     if getattr(args, "use_sim_time", False):

@@ -14,7 +14,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from graph.ros import LOCALHOST_ONLY, PEERS, RANGE
+from graph.ros import FAST_DDS, FAST_DDS_VARIABLES, LOCALHOST_ONLY, PEERS, RANGE
 from launcher.processes.table import NODE_MARK, command_line, read_environment, read_process
 from text.i18n import localized
 from text.sentences import say
@@ -101,7 +101,11 @@ def stopped(pids: Iterable[int]) -> list[int]:
 
 def is_wide(environ: Mapping[str, str] = os.environ) -> bool:
     """Return whether participants of other machines can be found, by ROS's variables."""
-    if environ.get(LOCALHOST_ONLY) == "1" or not _has_network():
+    if (
+        environ.get(LOCALHOST_ONLY) == "1"
+        or environ.get(FAST_DDS_VARIABLES[0]) == str(FAST_DDS)
+        or not _has_network()
+    ):
         return False
     reach = environ.get(RANGE, "").upper()
     return reach not in ("LOCALHOST", "OFF") or (reach != "OFF" and bool(environ.get(PEERS)))

@@ -10,8 +10,6 @@ import shutil
 import signal
 import sys
 import tempfile
-import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -22,8 +20,7 @@ import pytest
 import pytest_timeout
 from hypothesis import HealthCheck, settings
 
-from graph.ros import FAST_DDS_VARIABLES, LOCALHOST_ONLY, ONLY_THESE, PEERS
-from launcher.processes.shared_memory_held import release_held, release_locks
+from graph.ros import FAST_DDS_VARIABLES, LOCALHOST_ONLY, ONLY_THESE, PEERS, TRANSPORTS, announcing
 from tests.distribution import ALONE, EachTestOnce
 from tests.domains import DomainPool
 from tests.machine import PLAIN, left_out, needs_of
@@ -51,7 +48,7 @@ TESTS = Path(__file__).resolve().parent
 STATE_DIR = "DECK_STATE_DIR"
 _STATE = "deck-test-state-"
 
-MIDDLEWARE = (*FAST_DDS_VARIABLES, ONLY_THESE, PEERS, LOCALHOST_ONLY)
+MIDDLEWARE = (*FAST_DDS_VARIABLES, ONLY_THESE, PEERS, LOCALHOST_ONLY, TRANSPORTS)
 """Whom a developer's own programs find, and who finds them."""
 
 
@@ -79,8 +76,6 @@ REAL_STDERR = pytest.StashKey[int]()
 AFTER_TIMEOUT_S = 60.0
 """How long after its time a test may still be there, to fail and to clean up."""
 
-_CLEARED_EVERY_S = 0.3
-
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The option of `make test`."""
@@ -92,20 +87,6 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[REAL_STDERR] = os.dup(2)
     if not hasattr(config, "workerinput"):
         keep_measured(Path(os.environ[STATE_DIR], "slowness"))
-        if config.getoption("numprocesses", None):
-            threading.Thread(target=_clear_the_way, daemon=True).start()
-
-
-def _clear_the_way() -> None:
-    """Do for the tests what a supervisor does for its nodes, in the process that has no ROS.
-
-    A test kills nodes that hold a lock or a message, and ROS in another test waits for them.
-    """
-    while True:
-        release_held()
-        for _each in range(3):
-            time.sleep(_CLEARED_EVERY_S)
-            release_locks()
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -219,7 +200,9 @@ def _own_environment(_unchanged_environment: None, monkeypatch: pytest.MonkeyPat
     monkeypatch.setenv("DECK_RECORDINGS_DIR", str(tmp_path / "recordings"))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros-logs"))
-    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    for name, value in announcing("localhost").items():
+        if value is not None:
+            monkeypatch.setenv(name, value)
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,7 @@
 
 Each module here examines one thing: `collect` gathers plain facts, `diagnose` only interprets them,
 so that it can be tested with the facts of any machine. Elsewhere `command` is used by the command
-line, `login` before a start in the background, and `finding` and `serial_ports` by `cli.preflight`.
+line, and `finding` and `serial_ports` by `cli.preflight`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ __all__ = ["Finding", "Level", "examine"]
 
 THINGS = (
     *("python", "ros", "network", "terminal"),
-    *("serial_ports", "media", "groups", "power", "shared_memory", "login", "runs", "model"),
+    *("serial_ports", "media", "groups", "power", "runs", "model"),
     "llama",
 )
 

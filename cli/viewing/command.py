@@ -20,7 +20,6 @@ from cli.options import add_graph, port
 from cli.running_domain import running_domain
 from launcher.errors import LauncherError, UsageError
 from launcher.processes.ending import stop_by_signals
-from launcher.processes.shared_memory_unfinished import discard_unfinished
 from text.i18n import _
 from text.output import json_text, keep_stdout_to_ourselves, write
 from text.sentences import reason_of
@@ -151,8 +150,6 @@ def _stopping(options: Namespace) -> threading.Event:
     """Return what is set when it is to end: by a signal, or by the end of standard input."""
     stop = stop_by_signals()
     keep_stdout_to_ourselves()
-    # There may be no supervisor here that does it.
-    discard_unfinished()
     if options.json:
         threading.Thread(target=_until_input_ends, args=(stop,), daemon=True).start()
     return stop

@@ -1,8 +1,8 @@
 """Who is in the domain: by the middleware of this process, and by the kernel of this machine.
 
 What the middleware has not found, or has lost in a load peak or in a cut of the network, it does
-not know of. But each participant of Fast DDS holds a port in shared memory, whose number tells its
-domain, and the kernel tells who has locked the file beside it.
+not know of. But each participant holds two UDP ports, whose numbers tell its domain, and the kernel
+tells whose they are.
 """
 
 from __future__ import annotations
@@ -10,8 +10,11 @@ from __future__ import annotations
 import os
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import psutil
 
 from graph.data import PROCESS_NUMBERS
 from graph.scan.endpoints import publishers
@@ -23,8 +26,7 @@ EVENTS = "/parameter_events"
 """Nearly every node publishes there, whatever else it does."""
 PREFIX_BYTES = 12
 """Of an identifier: the participant, which begins with its vendor and its host, two bytes each."""
-SHARED_MEMORY = Path("/dev/shm")
-LOCKS = Path("/proc/locks")
+SOCKETS = Path("/proc/net/udp")
 FIRST, OF_DOMAIN, FIRST_DATA = 7400, 250, 11
 """Ports: the first of all, how many each domain has, the first for data (RTPS 2.5, 9.6.2.3)."""
 MOST = 120
@@ -61,21 +63,24 @@ def census(node: Node, own_name: str, domain: int, is_networked: bool) -> Census
 def living(domain: int) -> frozenset[int]:
     """Return the processes here that listen in the domain; empty if nobody tells."""
     first = FIRST + OF_DOMAIN * domain + FIRST_DATA
-    files = set()
-    for port in range(first, first + 2 * MOST, 2):
-        with suppress(OSError):
-            file = (SHARED_MEMORY / f"fastrtps_port{port}_el").stat()
-            files.add(_as_in_locks(file.st_dev, file.st_ino))
-    if not files:
-        return frozenset()
-    found = set()
+    ports = {port for data in range(first, first + 2 * MOST, 2) for port in (data - 1, data)}
+    held = set()
     with suppress(OSError, ValueError):
-        for words in map(str.split, LOCKS.read_text().splitlines()):
-            # `1: FLOCK ADVISORY WRITE 698 00:1b:709083 0 EOF`; one who waits has an arrow.
-            if words[1] == "FLOCK" and words[5] in files:
-                found.add(int(words[4]) % PROCESS_NUMBERS)
-    return frozenset(found - {0})
+        for words in map(str.split, SOCKETS.read_text().splitlines()[1:]):
+            # `7: 0100007F:1D0B 00000000:0000 07 ... 0 0 709083`: the port in hexadecimal, the inode.
+            if int(words[1].rpartition(":")[2], 16) in ports:
+                held.add((int(words[1].rpartition(":")[2], 16), words[9]))
+    return _holders(frozenset(held))
 
 
-def _as_in_locks(device: int, inode: int) -> str:
-    return f"{os.major(device):02x}:{os.minor(device):02x}:{inode}"
+@lru_cache(maxsize=1)
+def _holders(sockets: frozenset[tuple[int, str]]) -> frozenset[int]:
+    """Return who has both ports of a participant; the kernel is asked once for the same sockets."""
+    ports = {port for port, _ in sockets}
+    held: set[tuple[int, int]] = set()
+    if ports:
+        with suppress(OSError, psutil.Error):
+            held = {(one.laddr.port, one.pid) for one in psutil.net_connections("udp4") if one.pid and one.laddr}
+    return frozenset(
+        pid % PROCESS_NUMBERS for port, pid in held if port in ports and port % 2 and (port - 1, pid) in held
+    )

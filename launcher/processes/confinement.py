@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 ALWAYS = ("/dev/shm", "/dev/null", "/dev/zero", "/dev/full", "/dev/tty")
-"""Where everybody may write: DDS talks through shared memory."""
+"""Where everybody may write."""
 
 _CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446
 """The numbers of these calls, on every architecture (asm-generic/unistd.h)."""

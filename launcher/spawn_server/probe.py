@@ -2,7 +2,7 @@
 
 The supervisor does not load rclpy. While it waits for a node to become ready, this process, forked
 from the spawn server, watches the graph for it and writes a line of JSON to its stdout for every
-change. It ends with its stdin, or when nobody can reach it any more, and is replaced then.
+change. It ends with its stdin.
 
 `met` lists the conditions that hold now, by their position in the list it was given; `seen` has
 `[position, types, messages per second or null]` for each topic that is published but not as
@@ -19,7 +19,6 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from launcher.processes.shared_memory import lost_ports
 from text.nested import read_json
 
 if TYPE_CHECKING:
@@ -35,8 +34,6 @@ EAGER_PERIOD_S = 0.03
 CALM_PERIOD_S = 0.25
 RATES_S = 1.0
 """A rate that is too low is reported no more often than this."""
-REACHED_S = 1.0
-"""How often to ask whether others can still reach this process."""
 CLASHES_S = 0.25
 """How often to look for topics of several types."""
 KNOWN_AFTER_S = 1.5
@@ -72,7 +69,7 @@ class _Report:
 
 
 def probe(argv: Sequence[str]) -> None:
-    """Watch until stdin ends or nobody can reach this process any more.
+    """Watch until stdin ends.
 
     `argv` is a single JSON list of `[kind, name, type, rate]`.
     """
@@ -103,13 +100,8 @@ def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates, re
     told: _Report | None = None
     told_at = 0.0
     clashes, clashes_at = None, started + KNOWN_AFTER_S
-    reached_at = started + REACHED_S
     while True:
         now = time.monotonic()
-        if now >= reached_at:
-            if lost_ports(os.getpid()):
-                return
-            reached_at = now + REACHED_S
         report = _look(node, conditions, arrivals)
         if now >= clashes_at:
             clashes, clashes_at = _clashes(node), now + CLASHES_S

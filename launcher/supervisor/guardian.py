@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NoReturn
 
 from launcher.processes.abandoned import KILLED_AFTER_S, LEFT_AFTER_S
 from launcher.processes.prctl import become_subreaper
-from launcher.processes.shared_memory_held import release_held
 from launcher.processes.signal import send
 from launcher.processes.table import GUARDIAN_NAME, processes
 from launcher.processes.title import show_name, show_title
@@ -56,7 +55,6 @@ def _end_all() -> None:
     began = time.monotonic()
     told: set[int] = set()
     while left := _descendants():
-        release_held()
         elapsed = time.monotonic() - began
         if elapsed > LEFT_AFTER_S:
             return
@@ -68,8 +66,6 @@ def _end_all() -> None:
         told.update(process.pid for process in left)
         _reap()
         time.sleep(_LOOK_EVERY_S)
-    # Nobody else looks after them any more, and whoever has met these nodes still sends to them.
-    release_held()
 
 
 def _descendants() -> list[Process]:

@@ -9,15 +9,12 @@ from typing import TYPE_CHECKING
 
 from launcher.logs.reader import PipeReader, node_pipe
 from launcher.processes.members import Members
-from launcher.processes.ports import BlockedPorts
-from launcher.processes.shared_memory import held_segments, port_numbers, sweep
-from launcher.processes.shared_memory_held import release_held, release_locks
 from launcher.processes.signal import send
 from launcher.spawn_server.spawner import SpawnRequest
 
 if TYPE_CHECKING:
     import asyncio
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from launcher.logs.session_log import SessionLog
     from launcher.processes.exit import Exit, Reaper
@@ -81,12 +78,10 @@ class NodeProcess:
         """Read its last output and forget it."""
         for reader in self._readers:
             reader.close()
-        self._launcher.sweep_segments(self.name)
         self._launcher.scan.members.remove(self.pid)
         self._launcher.spawner.forget(self.pid)
 
     def _on_end(self, _ended: object) -> None:
-        release_locks()
         self._launcher.scan.forget()
         for reader in self._readers:
             reader.drain()
@@ -101,20 +96,6 @@ class ProcessLauncher:
         self.scan = scan
         self._plan = plan
         self._log = log
-        self._segments: dict[str, set[str]] = {}
-        self._blocked = BlockedPorts()
-        # This must happen before the probe joins: its port would be shifted, and those of the
-        # nodes.
-        self._blocked.avoid_others(plan.domain)
-
-    def note_segments(self, name: str, pids: Iterable[int]) -> None:
-        """Note the shared memory that a node's processes hold: after a kill it is unknown."""
-        self._segments.setdefault(name, set()).update(*map(held_segments, pids))
-
-    def sweep_segments(self, name: str) -> None:
-        """Remove the shared memory that a node left, and keep others from taking its ports."""
-        release_held()
-        self._blocked.keep(port_numbers(sweep(self._segments.pop(name, ()))))
 
     async def launch(self, node: NodePlan) -> NodeProcess:
         """Start a node; raises `SpawnError`."""
@@ -132,7 +113,6 @@ class ProcessLauncher:
         # Read from the beginning: output from before the process is known is its own too.
         readers = [self._log.read(node.name, out, "stdout"), self._log.read(node.name, err, "stderr")]
         try:
-            self._blocked.avoid_others(self._plan.domain)
             spawned = await self.spawner.spawn(request, (out_write, err_write))
         except BaseException:
             for reader in readers:

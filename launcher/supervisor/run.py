@@ -22,7 +22,6 @@ from launcher.private_files import open_file
 from launcher.processes.exit import Reaper
 from launcher.processes.members import Members
 from launcher.processes.owner import who_runs, who_words
-from launcher.processes.shared_memory import sweep_abandoned
 from launcher.processes.stop import end_all
 from launcher.runs.found import supervisors
 from launcher.runs.record import RunRecord, exclusively
@@ -207,7 +206,6 @@ class Supervisor:
         _answer({"folder": str(self._run_folder.record.folder)})
         helpers = [
             asyncio.create_task(self._session.measure()),
-            asyncio.create_task(self._session.keep_ports_open()),
             asyncio.create_task(relay_pictures(self._plan, self._spawner, self._reaper)),
             asyncio.create_task(self._look_for_strays()),
             asyncio.create_task(self._run_folder.keep(self.control.serve, self._warn)),
@@ -393,7 +391,6 @@ class Supervisor:
     async def _look_for_strays(self) -> None:
         self._find_strays()
         await asyncio.to_thread(self._prune_logs)
-        await asyncio.to_thread(sweep_abandoned)
         if self.strays:
             await asyncio.sleep(STRAYS_AGAIN_S)
             self._find_strays()

@@ -11,7 +11,6 @@ from launcher.faults.crash import crash_of, refused_arguments, warning_in
 from launcher.faults.source import look_at, spun_in_turn, unspun
 from launcher.faults.stuck import stuck_in
 from launcher.faults.telling import fault_in
-from launcher.logs.session_log import DECK
 from launcher.processes.usage import UsageMeter
 from launcher.status import NodeState, Severity
 from launcher.supervisor.clashes import clash_of
@@ -20,7 +19,6 @@ from launcher.supervisor.exchange import exchanged
 from launcher.supervisor.lifecycle import LIFECYCLE, LifecycleWaits
 from launcher.supervisor.node import SupervisedNode
 from launcher.supervisor.readiness import Readiness
-from launcher.supervisor.shared_memory import SharedMemory
 from launcher.supervisor.words import who
 from text.sentences import say
 
@@ -36,8 +34,6 @@ if TYPE_CHECKING:
     from launcher.supervisor.readiness import Clash, ReadyCondition, Seen
 
 USAGE_EVERY_S = 2.0
-RELEASED_EVERY_S = 0.5
-"""Fast DDS waits 1 s."""
 
 
 class Session:
@@ -83,14 +79,12 @@ class Session:
         """Nodes that are being stopped for a restart."""
         self._restarting: asyncio.Task[None] | None = None
         self._hurry = asyncio.Event()
-        self._shared_memory = SharedMemory(lambda *words: log.say(DECK, *words))
 
     # Requests.
 
     def start(self, names: Iterable[str] = ()) -> None:
         """Start these nodes and everything they need; all nodes if none is named."""
         chosen = self._chosen(names)
-        self._shared_memory.clear()
         # The probe goes first: nodes that appear while it watches are found sooner.
         if self._is_watched():
             self._readiness.expect()
@@ -154,24 +148,15 @@ class Session:
         """Measure the resource use of the nodes periodically."""
         while True:
             await asyncio.sleep(USAGE_EVERY_S)
-            self._shared_memory.clear()
             if not any(node.state.alive for node in self.nodes.values()):
                 continue
             members = self._launcher.scan.look(0.0)
-            for name, processes in members.items():
-                self._launcher.note_segments(name, (process.pid for process in processes))
             usages = self._meter.measure(members, self.clock.now())
             for name, node in self.nodes.items():
                 if node.state.alive:
                     node.usage = usages.get(name)
                     node.halted(_halted_of(members.get(name, ())))
                     self._on_change(name)
-
-    async def keep_ports_open(self) -> None:
-        """Open what others have locked who were killed, before nodes give up waiting for it."""
-        while True:
-            await asyncio.sleep(RELEASED_EVERY_S)
-            self._shared_memory.release()
 
     # The `NodeContext` of the nodes.
 
@@ -285,10 +270,7 @@ class Session:
     def changed(self, name: str, state: NodeState) -> None:
         """Notify the clients, and the nodes that need this one."""
         if state is NodeState.READY:
-            # It may be killed before the next measurement.
-            pid, _started = self.processes[name]
-            self._launcher.note_segments(name, (pid,))
-            self._tell_turns(name, pid)
+            self._tell_turns(name, self.processes[name][0])
         self._on_change(name)
         for other in self.nodes.values():
             if name in other.plan.needs:

@@ -6,17 +6,14 @@ import os
 import signal
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 from tests.e2e import marked
 from tests.e2e.terminal import Terminal
-from tests.unfinished_shared_memory import unfinished
 from tests.waiting import comes
-
-__all__ = ["unfinished"]
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -28,8 +25,6 @@ class Deck:
     mark: str
     env: dict[str, str]
     terminals: list[Terminal]
-    held: set[str] = field(default_factory=set)
-    """What its processes held in shared memory."""
 
     def open(self, *args: str, columns: int = 120, rows: int = 40, env: Mapping[str, str] | None = None) -> Terminal:
         """Start `deck ARGS` in a terminal of this size, with `env` besides its own."""

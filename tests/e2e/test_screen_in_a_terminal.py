@@ -8,7 +8,6 @@ import signal
 from tests.e2e import marked
 from tests.e2e.conftest import Deck
 from tests.e2e.listening import wait_for_the_gate
-from tests.shared_memory_port import ports_of
 from tests.waiting import wait_until
 
 SCREENS = {
@@ -116,25 +115,3 @@ def test_a_killed_supervisor_is_said_and_leaves_no_node(deck: Deck) -> None:
     wait_until(lambda: not marked.nodes(deck.mark), "every node gone")
     assert terminal.process.poll() is None
     terminal.wait_until(lambda text: "supervisor" in text, "a word about the supervisor")
-
-
-def test_nodes_that_die_with_a_message_in_hand_do_not_freeze_the_screen(deck: Deck) -> None:
-    """Fast DDS tries for ever to take their marks away; in the observer's process, not in its."""
-    terminal = deck.open("02-sonar-safety", "--lang", "en")
-    terminal.wait_for("2/2")
-    observer = marked.observer(deck.mark)
-    ports = [port for node in marked.nodes(deck.mark) for port in ports_of(node)]
-    wait_until(lambda: any(port.is_open_in(observer) for port in ports), "it met a node")
-    for port in ports:
-        port.lock()
-        port.take_in_hand()
-    (supervisor,) = supervisors(deck.mark)
-    os.kill(supervisor, signal.SIGKILL)
-    wait_until(lambda: not marked.nodes(deck.mark), "every node gone")
-    wait_until(lambda: any(port.is_awaited_by(observer) for port in ports), "it is sending")
-    for port in ports:
-        port.break_down()
-        port.unlock()
-    terminal.wait_for("the supervisor is gone")
-    terminal.press("q")
-    assert terminal.wait_exit() == 0

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests import ports
 from tests.e2e import marked
 from tests.ros.devices import mock_robot
 from tests.ros.peer import Peer
@@ -61,7 +60,6 @@ def driving(deck: Deck, wheels: Wheels, *arguments: str) -> Terminal:
     terminal = deck.open(*arguments)
     wheels.drive()
     wheels.wait_moving()
-    deck.held |= ports.held_by(marked.alive(deck.mark))
     return terminal
 
 
@@ -75,8 +73,6 @@ def assert_stopped_for_good(deck: Deck, wheels: Wheels) -> None:
     wait_until(lambda: not marked.nodes(deck.mark), "the end of every node")
     wheels.assert_stands()
     wait_until(lambda: not marked.alive(deck.mark), "every process gone")
-    # The robot and the driver go on, and talk to the nodes of the next test.
-    ports.burn(deck.held)
 
 
 @pytest.mark.parametrize("way", ["run", "up"])

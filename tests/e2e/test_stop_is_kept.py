@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests import ports
 from tests.e2e import marked
 from tests.e2e.listening import wait_for_the_gate
 from tests.ros.peer import Peer
@@ -84,7 +83,6 @@ def detach(terminal: Terminal) -> None:
 
 
 def kill(deck: Deck, words: str) -> None:
-    deck.held |= ports.held_by(marked.alive(deck.mark))
     (pid,) = (pid for pid, line in marked.alive(deck.mark).items() if words in line)
     os.kill(pid, signal.SIGKILL)
 
@@ -120,7 +118,6 @@ def test_it_outlives_the_screen_the_gate_and_the_supervisor(deck: Deck, profile:
 
     kill(deck, "-m launcher.sup")
     wait_until(lambda: not marked.nodes(deck.mark), "the end of every node")
-    ports.burn(deck.held)
     up(deck, profile)
     terminal = attached(deck)
     terminal.wait_for(KEPT)

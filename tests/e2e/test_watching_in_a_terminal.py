@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from pathlib import Path
 
 from tests.e2e.conftest import ROOT, Deck
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
-from tests.unfinished_shared_memory import is_unfinished, make_old
 from tests.waiting import wait_until
 
 
@@ -30,16 +28,6 @@ def test_a_running_node_is_seen_stopped_by_nobody_and_left_alone(deck: Deck, ros
         terminal.press("q")
         assert terminal.wait_exit() == 0
         assert node.process.poll() is None
-
-
-def test_it_begins_where_a_process_was_killed_as_it_joined(
-    deck: Deck, unfinished: list[Path], ros_domain: int
-) -> None:
-    make_old(unfinished)
-    terminal = deck.open("watch", "--lang", "en")
-    wait_until(lambda: not any(map(is_unfinished, unfinished)), "a clear way")
-    with NodeProcess("nodes.hello", ros_domain, name="ours"):
-        terminal.wait_for("1 node runs here: ours")
 
 
 def test_the_emergency_stop_reaches_who_listens(deck: Deck, ros_domain: int) -> None:

@@ -13,7 +13,6 @@ from tests.ros import warm_supervisor
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.ros.supervised import start
-from tests.unfinished_shared_memory import unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
     from tests.domains import DomainPool
 
-__all__ = ["start", "unfinished"]
+__all__ = ["start"]
 
 
 @pytest.fixture(autouse=True, scope="package")

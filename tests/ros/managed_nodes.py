@@ -14,7 +14,6 @@ from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.node import Node
 
-from tests import ports
 from tests.ros.peer import DISCOVERY, ROOT
 
 if TYPE_CHECKING:
@@ -47,10 +46,8 @@ def started(domain: int) -> Iterator[subprocess.Popen[bytes]]:
     try:
         yield process
     finally:
-        held = ports.held_by([process.pid])
         process.kill()
         process.wait(10)
-        ports.burn(held)
 
 
 def main() -> None:

@@ -9,7 +9,6 @@ import sys
 import tempfile
 from typing import TYPE_CHECKING
 
-from tests import ports
 from tests.middleware_words import own_words
 from tests.ros.peer import DISCOVERY, ROOT
 from tests.ros.warm_node import WarmNode
@@ -62,7 +61,6 @@ class NodeProcess:
             "DECK_LANG": lang,
         }
         self._log = tempfile.TemporaryFile("w+b")  # noqa: SIM115 - closed in `close`
-        self._held: set[str] = set()
         self.hung = False
         """Whether it has ever been told to."""
         if not (cold or mortal):
@@ -101,21 +99,14 @@ class NodeProcess:
 
     def send(self, number: signal.Signals) -> None:
         """Send a signal; after one to kill, wait for the end."""
-        self._held |= ports.held_by([self.process.pid])
         self.hung |= number == signal.SIGSTOP
         self.process.send_signal(number)
         if number == signal.SIGKILL:
             self.wait()
 
     def wait(self, within_s: float = DEADLINE_S) -> int:
-        """Wait for the end; the exit code comes back.
-
-        What it has left in shared memory is swept up then, as a launcher does: a node that hangs at
-        its end says no good-bye, whatever the signal, and leaves its ports to the next.
-        """
-        code = self.process.wait(within_s)
-        ports.burn(self._held, hung=self.hung)
-        return code
+        """Wait for the end; the exit code comes back."""
+        return self.process.wait(within_s)
 
     def close(self) -> None:
         if self.process.poll() is None:

@@ -14,7 +14,6 @@ from graph.data import GraphUpdate, NodeRow, Sample, TopicRow
 from graph.observer.observer import Observer
 from graph.observer.process.started import ObserverProcess
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
-from tests import ports
 from tests.ros.observer_thread import ObserverThread
 from tests.slowness import patient
 from tests.waiting import DEADLINE_S, wait_until
@@ -39,7 +38,7 @@ class Peer:
             env={
                 **os.environ,
                 "ROS_DOMAIN_ID": str(domain),
-                "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+                "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
                 # As Deck's own processes have it: found in tenths of a second, not in three.
                 FAST_DDS_VARIABLES[0]: str(fast_dds),
             },
@@ -61,11 +60,8 @@ class Peer:
         return do
 
     def kill(self) -> None:
-        """Kill it, and keep its ports from whoever comes next."""
-        held = ports.held_by([self.process.pid])
         self.process.kill()
         self.process.wait(10)
-        ports.burn(held)
 
     def close(self) -> None:
         assert self.process.stdin is not None

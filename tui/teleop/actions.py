@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Announce, actions_of
 from tui.teleop.keys import Move
 
 if TYPE_CHECKING:
-    from tui.deck.screen import LessonDeck
+    from tui.session.feed import Feed
     from tui.teleop.widget import TeleopPanel
 
+
+class CanDrive(Protocol):
+    """The screen that opens the panel."""
+
+    @property
+    def feed(self) -> Feed: ...
+
+    async def open_teleop(self) -> None: ...
+
+
 action: Announce[TeleopPanel] = Announce()
-on_deck: Announce[LessonDeck] = Announce()
+on_screen: Announce[CanDrive] = Announce()
 
 
-@on_deck(
+@on_screen(
     "deck.teleop",
     "t",
     N_("Drive"),
@@ -26,7 +36,7 @@ on_deck: Announce[LessonDeck] = Announce()
     anywhere=True,
     when=lambda screen: screen.feed.link is not None and screen.feed.replay is None,
 )
-async def open_teleop(screen: LessonDeck) -> None:
+async def open_teleop(screen: CanDrive) -> None:
     await screen.open_teleop()
 
 

@@ -96,7 +96,6 @@ def results(domain_pool: DomainPool, tmp_path_factory: pytest.TempPathFactory) -
         with pytest.MonkeyPatch.context() as environment:
             for variable in ("DECK_RUN_DIR", "DECK_LOG_DIR", "ROS_LOG_DIR"):
                 environment.setenv(variable, str(folder / variable))
-            environment.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
             return asyncio.run(_judged(LessonFolder(folder), domain))
     finally:
         domain_pool.let_go(domain)

@@ -42,7 +42,6 @@ def complaints(
         with pytest.MonkeyPatch.context() as environment:
             for variable in ("DECK_RUN_DIR", "DECK_LOG_DIR", "ROS_LOG_DIR"):
                 environment.setenv(variable, str(place / variable))
-            environment.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
             found = asyncio.run(_all(chosen, domains))
     finally:
         domain_pool.let_go(*domains)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from graph.ros import RANGE
+from tests.conftest import MIDDLEWARE
 from tests.deck_process import DeckProcess
 from tests.namespaces import Machine
 from tests.waiting import wait_until
@@ -51,7 +53,8 @@ class Seeing:
     """A stranger on a machine, and what he has seen."""
 
     def __init__(self, machine: Machine, domain: int, *words: str, **environ: str) -> None:
-        settings = {**os.environ, "ROS_DOMAIN_ID": str(domain), **environ}
+        plain = {name: value for name, value in os.environ.items() if name not in MIDDLEWARE}
+        settings = {**plain, RANGE: "LOCALHOST", "ROS_DOMAIN_ID": str(domain), **environ}
         command = [*machine.inside(), sys.executable, "-m", "tests.ros.stranger", *words]
         self._process = subprocess.Popen(
             command, env=settings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
@@ -90,7 +93,7 @@ class Seeing:
 
 def intruder(machine: Machine, domain: int) -> Seeing:
     """Somebody who knows the robot's address and its domain, and means to drive it."""
-    wide = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": ROBOT}
+    wide = {RANGE: "SUBNET", "ROS_STATIC_PEERS": ROBOT}
     return Seeing(machine, domain, "drive", **wide)
 
 

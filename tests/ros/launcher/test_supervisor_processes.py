@@ -67,7 +67,7 @@ async def test_a_node_gets_its_environment_and_no_terminal(start: Launch, tmp_pa
     environ, cwd, read = json.loads(await said(client, "env", "env"))
     assert environ["SPEED"] == "3"
     assert environ["ROS_DOMAIN_ID"] == str(ros_domain)
-    assert environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+    assert environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SYSTEM_DEFAULT"
     assert environ["DECK_NODE"] == "env"
     assert (cwd, read) == (str(tmp_path), "")
 

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import os
 import re
-import signal
 import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from launcher.processes.shared_memory import SHARED_MEMORY, held_segments, port_numbers
 from launcher.processes.table import NODE_MARK, RUN_MARK, command_line, processes, read_marks, read_process
 from launcher.processes.usage import proportional_memory
 from launcher.status import NodeState, Severity
-from tests.domains import domain_of
-from tests.ros.supervised import SLEEPER, Launch, alive, kill, running_pid, said, until_state
+from tests.ros.supervised import SLEEPER, Launch, alive, running_pid, said, until_state
 from tests.waiting import until
 
 if TYPE_CHECKING:
@@ -151,27 +148,6 @@ async def test_a_topic_of_another_type_or_too_seldom_is_not_what_was_promised(st
     assert client.nodes["seldom"].detail.endswith("expected 500 Hz")
 
 
-async def test_a_probe_that_nobody_can_reach_is_replaced(start: Launch, tmp_path: Path) -> None:
-    """Fast DDS sometimes removes the memory that names of nodes are sent to, while it is in use."""
-    client = await start(
-        {
-            "node": {**module(tmp_path, "talker_module", TALKER), "needs": ["mute"]},
-            "mute": {"exec": SLEEPER, "ready": {"topic": "/never", "within": 60}},
-        }
-    )
-
-    def listens() -> tuple[int, str] | None:
-        held = [(pid, name) for pid in probes(client) for name in held_segments(pid)]
-        # Below the first port of the first domain.
-        return next((each for each in held if {*port_numbers(each[1:])} & {*range(7400)}), None)
-
-    pid, port = await until(listens, "the probe listens for names of nodes")
-    (SHARED_MEMORY / port).unlink()
-    await until(lambda: probes(client) not in ([], [pid]), "another probe")
-    await client.start("node")
-    await until_state(client, "node", NodeState.READY)
-
-
 @pytest.mark.cold
 async def test_where_rclpy_is_missing_nodes_run_and_nobody_waits_for_ever(
     start: Launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -191,34 +167,3 @@ async def test_where_rclpy_is_missing_nodes_run_and_nobody_waits_for_ever(
 def _python_path() -> list[str]:
     before = os.environ.get("PYTHONPATH")
     return [before] if before else []
-
-
-def is_of_domain(segment: str, domain: int) -> bool:
-    return all(domain_of(number) == domain for number in port_numbers([segment]))
-
-
-async def test_a_killed_nodes_shared_memory_is_given_back_and_its_port_is_nobodys(
-    start: Launch, tmp_path: Path, ros_domain: int
-) -> None:
-    """Who has talked to it would go on talking to it, and not to a newcomer on its port."""
-    await check_ports_of_killed(start, tmp_path, ros_domain)
-
-
-async def check_ports_of_killed(start: Launch, tmp_path: Path, ros_domain: int) -> None:
-    client = await start({"node": module(tmp_path, "talker_module", TALKER)})
-    dead: set[int] = set()
-    # The first may be followed by one on the port of the probe, which has left in order.
-    for _ in range(3):
-        status = await until_state(client, "node", NodeState.READY)
-        assert status.pid is not None
-        # Ports that are of all domains, or another's, may be somebody else's by then.
-        held = held_segments(status.pid)
-        segments = {name for name in held if is_of_domain(name, ros_domain)}
-        (port,) = port_numbers(segments)
-        assert port not in dead
-        dead.add(port)
-        kill(status.pid, signal.SIGKILL)
-        await until_state(client, "node", NodeState.FAILED)
-        assert not [name for name in segments if (SHARED_MEMORY / name).exists()]
-        assert not [name for name in segments if (SHARED_MEMORY / f"{name}_el").exists()]
-        await client.start("node")

@@ -25,7 +25,7 @@ def test_a_command_runs_in_the_domain_and_its_exit_code_is_passed_on(run: Run, r
     )
     assert seen.returncode == 7
     assert seen.stdout.splitlines() == [
-        f"{ros_domain} LOCALHOST",
+        f"{ros_domain} SYSTEM_DEFAULT",
         str(COMMANDS / "ros2"),
         str(COMMANDS / "python3"),
         sys.executable,

@@ -11,21 +11,7 @@ import pytest
 
 from brain.ladder import Rung
 from cli import main
-from cli.doctor import (
-    Finding,
-    Level,
-    groups,
-    login,
-    media,
-    network,
-    power,
-    python,
-    ros,
-    runs,
-    serial_ports,
-    shared_memory,
-    terminal,
-)
+from cli.doctor import Finding, Level, groups, media, network, power, python, ros, runs, serial_ports, terminal
 from launcher.serial_ports import SerialPort
 from tests.model_server import KEY, ModelServer, obeys
 
@@ -68,15 +54,6 @@ MACHINES: list[tuple[Any, Any, list[str], str]] = [
      "sudo usermod -aG dialout maria"),
     (serial_ports, serial_ports.SerialFacts((PICO,), "maria", ("dialout",)), ["serial warn"],
      "udev"),
-    (shared_memory, shared_memory.SharedMemoryFacts(), [], ""),
-    (shared_memory, shared_memory.SharedMemoryFacts(free=10_000_000), ["shm warn"], ""),
-    (shared_memory, shared_memory.SharedMemoryFacts(stale=3), ["shm.stale warn"],
-     "-user $(id -un)"),
-    (shared_memory, shared_memory.SharedMemoryFacts(foreign=("/dev/shm/p",)), ["shm.foreign fail"],
-     "sudo rm /dev/shm/p"),
-    (login, login.LoginFacts(logind=False), [], ""),
-    (login, login.LoginFacts(logind=True), ["login.remove_ipc warn"], ""),
-    (login, login.LoginFacts(logind=True, lingers=True), [], ""),
     (media, media.MediaFacts(), [], ""),
     (media, media.MediaFacts((("/dev/video0", "Orbbec", False),), ("USB",), sound_allowed=False),
      ["camera warn", "sound warn"], "/dev/video0 Orbbec"),

@@ -7,7 +7,9 @@ import pytest
 from graph.observer.census import Census
 from graph.observer.doubt import LOOKS_FOR_S, SURE_S, SecondLook
 from graph.observer.vigil import GIVEN_UP_AFTER_S, HUNG_AFTER_S, LOOK_S, OLD_AFTER_S, Vigil
-from graph.ros import FAST_DDS, FAST_DDS_VARIABLES, ONLY_THESE, announcing
+from graph.ros import FAST_DDS, FAST_DDS_VARIABLES, RMW, announcing
+from launcher.domain.discovery import settings_of_discovery
+from tests.conftest import MIDDLEWARE
 
 
 def idle() -> bool:
@@ -69,20 +71,16 @@ def test_only_one_that_surely_sees_more_takes_over() -> None:
 
 @pytest.fixture
 def nothing_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in FAST_DDS_VARIABLES:
+    for name in MIDDLEWARE:
         monkeypatch.delenv(name, raising=False)
 
 
 @pytest.mark.usefixtures("nothing_chosen")
-def test_on_one_machine_it_is_hurried() -> None:
-    ours = dict.fromkeys(FAST_DDS_VARIABLES, str(FAST_DDS))
-    assert announcing("localhost") == {**ours, ONLY_THESE: "1"}
-
-
-@pytest.mark.usefixtures("nothing_chosen")
-@pytest.mark.parametrize("discovery", ["subnet", ("192.0.2.7",)])
-def test_on_a_network_it_is_not_even_under_a_program_that_is(
-    discovery: str | tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("discovery", ["localhost", "subnet", ("192.0.2.7",)])
+@pytest.mark.parametrize("environ", [{}, {FAST_DDS_VARIABLES[0]: str(FAST_DDS)}, {RMW: "rmw_cyclonedds_cpp"}])
+def test_it_is_found_as_the_nodes_of_a_session_are(
+    discovery: str | tuple[str, ...], environ: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(FAST_DDS_VARIABLES[0], str(FAST_DDS))
-    assert announcing(discovery) == dict.fromkeys((*FAST_DDS_VARIABLES, ONLY_THESE))
+    for name, value in environ.items():
+        monkeypatch.setenv(name, value)
+    assert announcing(discovery) == settings_of_discovery(environ, discovery)

@@ -11,7 +11,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from launcher.domain.discovery import ONLY_THESE, VARIABLES, settings_of_discovery
+from launcher.domain.discovery import OF_PEERS, ONLY_THESE, RANGE, TRANSPORTS, VARIABLES, settings_of_discovery
 from launcher.domain.domain import default_domain, ros_environment
 from launcher.errors import RunDirError
 from launcher.run_id import new_run_id
@@ -112,11 +112,30 @@ def test_where_somebody_else_has_planted_the_lock_starts_still_wait_for_each_oth
 
 def test_on_one_machine_both_names_lead_to_the_file() -> None:
     chosen = settings_of_discovery({}, "localhost")
-    assert set(chosen) == {*VARIABLES, ONLY_THESE}
+    assert set(chosen) == {*VARIABLES, ONLY_THESE, RANGE}
+    # For LOCALHOST the middleware would add shared memory, and a port open to the network.
+    assert chosen[RANGE] == "SYSTEM_DEFAULT"
     (path,) = {chosen[name] for name in VARIABLES}
     assert path is not None
     period = ET.parse(Path(path)).getroot().findtext(".//{*}leaseAnnouncement/{*}nanosec")
     assert period == "200000000"
+
+
+@pytest.mark.parametrize(
+    ("environ", "discovery", "settings"),
+    [
+        ({}, ("192.0.2.7",), {**dict.fromkeys(VARIABLES, str(OF_PEERS)), ONLY_THESE: "1", RANGE: "SUBNET"}),
+        ({}, "subnet", {**dict.fromkeys((*VARIABLES, ONLY_THESE)), TRANSPORTS: "UDPv4"}),
+        ({TRANSPORTS: "LARGE_DATA"}, "subnet", {**dict.fromkeys((*VARIABLES, ONLY_THESE)), TRANSPORTS: "LARGE_DATA"}),
+        ({VARIABLES[0]: "/own.xml"}, "localhost", {}),
+        # Whoever else is the middleware, the range alone keeps it from looking for others.
+        ({"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}, "localhost", {}),
+    ],
+)
+def test_what_others_are_to_find_and_what_the_user_has_chosen(
+    environ: dict[str, str], discovery: str | tuple[str, ...], settings: dict[str, str | None]
+) -> None:
+    assert settings_of_discovery(environ, discovery) == settings
 
 
 FROM_A = {"SSH_CONNECTION": "10.0.0.1 50000 10.0.0.9 22"}
