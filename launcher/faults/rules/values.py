@@ -276,6 +276,8 @@ def builtin(failure: Failure) -> Words | None:
             continue
         for each in call.args:
             value = failure.value(each)
+            if function is bytes and isinstance(value, (list, tuple)) and value and isinstance(value[0], bytes):
+                return say('{what} is a list of single bytes: b"".join({what}) puts them together.', what=shown(each))
             if function is range and isinstance(value, float) and len(call.args) < 3:
                 return say("range takes whole numbers: range(int({what})).", what=shown(each))
             if (function in (float, int) or getattr(function, "__module__", "") == "math") and isinstance(
