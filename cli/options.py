@@ -11,9 +11,8 @@ from launcher.errors import DomainError
 from text.i18n import LANGUAGES, _, localized
 
 if TYPE_CHECKING:
+    from argparse import ArgumentParser
     from collections.abc import Callable
-
-    from cli.commands import Parser
 
 MOST_AT_ONCE = 64
 LAST_PORT = 65535
@@ -105,12 +104,12 @@ at_once = between(1, MOST_AT_ONCE)
 """Parses how many runs there may be at once."""
 
 
-def add_profile(parser: Parser) -> None:
+def add_profile(parser: ArgumentParser) -> None:
     """Add the name of a profile, which has to be given."""
     parser.add_argument("profile", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain"))
 
 
-def add_profile_options(parser: Parser) -> None:
+def add_profile_options(parser: ArgumentParser) -> None:
     """Add what changes a profile: its hardware, its parameters, its domain."""
     parser.add_argument(
         "--hardware",
@@ -129,12 +128,12 @@ def add_profile_options(parser: Parser) -> None:
     add_domain(parser, _("ROS domain, 0 to 232, preferably 1 to 101"))
 
 
-def add_domain(parser: Parser, help_text: str) -> None:
+def add_domain(parser: ArgumentParser, help_text: str) -> None:
     """Add the ROS domain; what it is by default differs."""
     parser.add_argument("--domain", metavar="N", type=domain, help=help_text)
 
 
-def add_graph(parser: Parser, help_text: str) -> None:
+def add_graph(parser: ArgumentParser, help_text: str) -> None:
     """Add the ROS domain, and how far to look for nodes: what joins a graph that somebody runs."""
     add_domain(parser, help_text)
     parser.add_argument(
@@ -146,7 +145,7 @@ def add_graph(parser: Parser, help_text: str) -> None:
     )
 
 
-def add_screen(parser: Parser) -> None:
+def add_screen(parser: ArgumentParser) -> None:
     """Add what the screen begins with, and the limit for its pictures."""
     parser.add_argument(
         "--wall", action="store_true", help=_("begin with the wall: big numbers and a big picture, for a projector")
@@ -159,22 +158,22 @@ def add_screen(parser: Parser) -> None:
     )
 
 
-def add_json(parser: Parser) -> None:
+def add_json(parser: ArgumentParser) -> None:
     """Add the output for programs."""
     parser.add_argument("--json", action="store_true", help=_("print JSON, for programs"))
 
 
-def add_language(parser: Parser) -> None:
+def add_language(parser: ArgumentParser) -> None:
     """Add the language."""
     parser.add_argument("--lang", choices=LANGUAGES, help=_("language; by default that of the locale"))
 
 
-def add_running(parser: Parser) -> None:
+def add_running(parser: ArgumentParser) -> None:
     """Add the name of a running profile, for when there are several."""
     parser.add_argument("name", nargs="?", metavar=_("NAME"), help=_("name of the profile, if several are running"))
 
 
-def add_seed(parser: Parser, words: str = "") -> None:
+def add_seed(parser: ArgumentParser, words: str = "") -> None:
     """Add the number that draws the values of tasks; `words`: the help, if it is not as usual."""
     parser.add_argument(
         "--seed",
