@@ -17,7 +17,7 @@ from launcher.serial_ports import serial_ports
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from cli.preflight.answers import DeviceAnswer
+    from cli.preflight.open_port import DeviceAnswer
     from launcher.profile.load import Profile
     from launcher.serial_ports import SerialPort
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from cli.doctor.finding import Level
+from cli.preflight.open_port import DeviceAnswer, OpenPort
 from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder
 from robot.wire.lsc16 import encode as encode_servos
 from robot.wire.pico import PROTOCOL, Hello, PicoDecoder, Telemetry, Welcome
@@ -21,7 +22,6 @@ from text.i18n import LocalizedFloat, _
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cli.preflight.open_port import OpenPort
 
 NAMES = {"pico": "Pico", "tf_luna": "TF-Luna", "tfmini_s": "TFmini-S", "lsc16": "LSC-16"}
 """Kind of device to its display name."""
@@ -31,14 +31,6 @@ GREETINGS = 10
 MEASURE_S = 0.5
 ENOUGH_FRAMES = 3
 """Readings needed to recognise a sonar at an unexpected port: fewer may be chance."""
-
-
-class DeviceAnswer(NamedTuple):
-    """The result of checking a device."""
-
-    level: Level
-    text: str
-    fix: str = ""
 
 
 def ask(kind: str, line: OpenPort) -> DeviceAnswer:

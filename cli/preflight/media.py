@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 from cli.child_python import python
 from cli.doctor.finding import Level
 from cli.doctor.serial_ports import permission_fix
-from cli.preflight.answers import DeviceAnswer
-from cli.preflight.open_port import holders
+from cli.preflight.open_port import DeviceAnswer, holders
 from launcher.profile.device_variables import variable
 from text.i18n import _
 from text.nested import read_json

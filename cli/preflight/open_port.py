@@ -14,7 +14,6 @@ import serial
 
 from cli.doctor.finding import Level
 from cli.doctor.serial_ports import permission_fix
-from cli.preflight.answers import DeviceAnswer
 from launcher.profile.serial_choice import how_to_choose
 from launcher.serial_ports import lasting_names
 from text.i18n import _, localized
@@ -27,6 +26,14 @@ if TYPE_CHECKING:
 
 PROC = Path("/proc")
 MASTERS = ("/dev/ptmx", "/dev/pts/ptmx")
+
+
+class DeviceAnswer(NamedTuple):
+    """The result of checking a device."""
+
+    level: Level
+    text: str
+    fix: str = ""
 
 
 class Holder(NamedTuple):

@@ -8,8 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from cli.doctor.finding import Level
-from cli.preflight.answers import DeviceAnswer, ask
-from cli.preflight.open_port import advice, opened
+from cli.preflight.answers import ask
+from cli.preflight.open_port import DeviceAnswer, advice, opened
 from launcher.profile.devices import wanted
 from launcher.profile.serial_choice import AUTO, UnresolvedPort, choose
 from text.i18n import _, localized

@@ -15,8 +15,8 @@ import pytest
 
 from cli.doctor import Level
 from cli.preflight import examine, media
-from cli.preflight.answers import DeviceAnswer, ask
-from cli.preflight.open_port import OpenPort, opened
+from cli.preflight.answers import ask
+from cli.preflight.open_port import DeviceAnswer, OpenPort, opened
 from launcher.profile.load import Profile
 from launcher.profile.model import ProfileDocument
 from launcher.serial_ports import SerialPort
