@@ -99,26 +99,26 @@ def at_rest(terminal: Terminal, pids: list[int]) -> tuple[float, float, float]:
     return (100 * (cpu_s(pids) - cpu) / passed, pss_mb(pids), (terminal.received - sent) / passed)
 
 
-def key_delays_ms(terminal: Terminal) -> list[float]:
-    """Return the times from pressing an arrow key to the selection of the next node."""
+def key_delays_ms(terminal: Terminal, presses: int = PRESSES) -> list[float]:
+    """Return the times from pressing an arrow key to the selection of the next row, told by its name."""
     delays = []
-    for press in range(PRESSES):
-        before = marked_row(terminal)
-        started = time.monotonic()
+    for press in range(presses):
+        before, started_s = marked(terminal), time.monotonic()
         terminal.press("up" if press % 2 else "down")
-        while marked_row(terminal) == before:
-            if time.monotonic() - started > 10:
+        while marked(terminal) in (before, ""):
+            if time.monotonic() - started_s > 10:
                 raise RuntimeError(f"no answer to a key:\n{terminal.text()}")
             time.sleep(0.001)
-        delays.append(1000 * (time.monotonic() - started))
-        time.sleep(0.15)
+        delays.append(1000 * (time.monotonic() - started_s))
+        # No multiple of the quarter of a second in which the graph is redrawn.
+        time.sleep(0.23)
     return delays
 
 
-def marked_row(terminal: Terminal) -> int:
-    """Return the row of the selected node."""
-    rows = terminal.text().splitlines()
-    return next(number for number, row in enumerate(rows) if row.startswith("▶"))
+def marked(terminal: Terminal) -> str:
+    """Return the first word of the selected row, empty while there is none."""
+    rows = (row.split() for row in terminal.text().splitlines() if row.startswith("▶"))
+    return next((row[1] for row in rows if len(row) > 1), "")
 
 
 def flooded(folder: Path) -> tuple[list[float], float, int, int]:

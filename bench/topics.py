@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.processes import cpu_s, pss_mb, stdin_closed
-from bench.screen import screen_processes
+from bench.screen import key_delays_ms, screen_processes
 from tests.e2e.terminal import Terminal, own_folders
 
 if TYPE_CHECKING:
@@ -125,26 +125,6 @@ def costs(terminal: Terminal) -> tuple[float, float, float, int]:
     return 100 * (cpu_s(pids) - cpu) / passed_s, (terminal.received - sent) / passed_s / 1000, worst, fewest
 
 
-def key_delays_ms(terminal: Terminal) -> list[float]:
-    """Return the times from pressing an arrow key to the selection of the next topic."""
-
-    def marked() -> str:
-        rows = (row.split() for row in terminal.text().splitlines() if row.startswith("▶"))
-        return next((row[1] for row in rows if len(row) > 1), "")
-
-    delays = []
-    for press in range(PRESSES):
-        before, started_s = marked(), time.monotonic()
-        terminal.press("up" if press % 2 else "down")
-        while marked() in (before, ""):
-            if time.monotonic() - started_s > 10:
-                raise RuntimeError(f"no answer to a key:\n{terminal.text()}")
-            time.sleep(0.002)
-        delays.append(1000 * (time.monotonic() - started_s))
-        time.sleep(0.23)
-    return delays
-
-
 def main() -> None:
     """Measure, and print the results."""
     listed, shown, delays, memory = [], [], [], 0.0
@@ -152,7 +132,7 @@ def main() -> None:
         for _ in range(ROUNDS):
             with topics_open(Path(name)) as terminal:
                 listed.append(costs(terminal))
-                delays += key_delays_ms(terminal)
+                delays += key_delays_ms(terminal, PRESSES)
                 terminal.press("/")
                 terminal.type(f"{PICTURE}\r")
                 terminal.wait_for("640×480")
