@@ -14,5 +14,5 @@ class Keys(NamedTuple):
     """Default keys, in Textual's notation."""
 
 
-WRITE_COMMAND = Keys("deck.command", "c,с")
+WRITE_COMMAND = Keys("deck.command", "c")
 """Focuses the command line of the Deck."""

@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 action: Announce[ComposerScreen] = Announce()
 
 
-def _send_action(screen: ComposerScreen) -> bool | None:
+def _is_not_asking(screen: ComposerScreen) -> bool | None:
     """Not while an answer is under way."""
     return not screen.is_asking
 
 
-def _send_action_shown(screen: ComposerScreen) -> bool:
+def _is_live(screen: ComposerScreen) -> bool:
     """Not in a replay."""
     return screen.feed.replay is None
 
@@ -31,8 +31,8 @@ def _send_action_shown(screen: ComposerScreen) -> bool:
     means="submit",
     footer=True,
     priority=True,
-    when=_send_action,
-    shown=_send_action_shown,
+    when=_is_not_asking,
+    shown=_is_live,
 )
 def send(screen: ComposerScreen) -> None:
     screen.send()
@@ -46,7 +46,7 @@ def send(screen: ComposerScreen) -> None:
     footer=True,
     priority=True,
     when=lambda screen: bool(screen.problems),
-    shown=_send_action_shown,
+    shown=_is_live,
 )
 def send_anyway(screen: ComposerScreen) -> None:
     screen.send(anyway=True)
@@ -86,7 +86,7 @@ def leave(screen: ComposerScreen) -> None:
     N_("Go to the line in which you say in words what the robot should do."),
     footer=True,
     priority=True,
-    when=lambda screen: not screen.is_asking,
+    when=_is_not_asking,
 )
 def ask(screen: ComposerScreen) -> None:
     screen.go_to_line()
@@ -113,7 +113,7 @@ def stop_asking(screen: ComposerScreen) -> None:
     N_("Send valid answers of the model by themselves, until the emergency stop."),
     footer=True,
     priority=True,
-    shown=_send_action_shown,
+    shown=_is_live,
     label=lambda screen: N_("Auto off") if screen.is_auto else N_("Auto"),
 )
 def auto(screen: ComposerScreen) -> None:
@@ -127,7 +127,7 @@ def auto(screen: ComposerScreen) -> None:
     N_("Ask two models the same words, and see both answers side by side."),
     footer=True,
     priority=True,
-    when=lambda screen: not screen.is_asking,
+    when=_is_not_asking,
 )
 def compare(screen: ComposerScreen) -> None:
     screen.compare()
@@ -145,11 +145,6 @@ def show_prompt(screen: ComposerScreen) -> None:
     screen.show_prompt()
 
 
-def _writing_action(screen: ComposerScreen) -> bool | None:
-    """Not while an answer is under way."""
-    return not screen.is_asking
-
-
 @action(
     "composer.templates",
     "ctrl+t",
@@ -159,7 +154,7 @@ def _writing_action(screen: ComposerScreen) -> bool | None:
     footer=True,
     priority=True,
     anywhere=True,
-    when=_writing_action,
+    when=_is_not_asking,
 )
 def templates(screen: ComposerScreen) -> None:
     screen.choose_template()
@@ -172,7 +167,7 @@ def templates(screen: ComposerScreen) -> None:
     N_("Bring back what was sent before."),
     footer=True,
     priority=True,
-    when=_writing_action,
+    when=_is_not_asking,
 )
 def older_sent(screen: ComposerScreen) -> None:
     screen.recall(older=True)
@@ -184,7 +179,7 @@ def older_sent(screen: ComposerScreen) -> None:
     N_("Newer"),
     N_("Go back towards what you were writing."),
     priority=True,
-    when=_writing_action,
+    when=_is_not_asking,
 )
 def newer_sent(screen: ComposerScreen) -> None:
     screen.recall(older=False)

@@ -8,6 +8,7 @@ from launcher.status import NodeState
 from text.i18n import N_, _
 from text.plain import plain
 from tui.actions.action import Announce, actions_of
+from tui.actions.keys import WRITE_COMMAND
 
 if TYPE_CHECKING:
     from tui.deck.screen import LessonDeck
@@ -143,8 +144,8 @@ def hear_only(screen: LessonDeck) -> None:
 
 
 @action(
-    "deck.command",
-    "c",
+    WRITE_COMMAND.id,
+    WRITE_COMMAND.key,
     N_("Command"),
     N_("Write a word to /ai_command: forward, left, right, back, stop. Escape leaves."),
     footer=True,
@@ -171,7 +172,7 @@ def turn_page(screen: LessonDeck) -> None:
     screen.turn_page()
 
 
-def _lesson_beside(screen: LessonDeck) -> bool | None:
+def _has_room_for_lesson(screen: LessonDeck) -> bool | None:
     """Only where there is room, and nodes that could be judged."""
     if screen.feed.watching or screen.feed.replay is not None or not screen.feed.nodes:
         return False
@@ -183,7 +184,7 @@ def _lesson_beside(screen: LessonDeck) -> bool | None:
     "shift+f2",
     N_("Lesson beside"),
     N_("Show the step, its task and its checks beside the nodes, from 120x34 on."),
-    when=_lesson_beside,
+    when=_has_room_for_lesson,
 )
 async def lesson_beside(screen: LessonDeck) -> None:
     await screen.toggle_lesson()
@@ -208,12 +209,12 @@ def hear_all_nodes(screen: LessonDeck) -> None:
     screen.hear_all()
 
 
-def _ask_all(screen: LessonDeck) -> bool | None:
+def _has_own_nodes(screen: LessonDeck) -> bool | None:
     """Only if there are nodes that Deck has started."""
     return screen.feed.link is not None and bool(screen.feed.nodes)
 
 
-@action("nodes.start", "S", N_("Start all"), N_("Start every node that does not run."), when=_ask_all)
+@action("nodes.start", "S", N_("Start all"), N_("Start every node that does not run."), when=_has_own_nodes)
 def start_all(screen: LessonDeck) -> None:
     screen.ask("start")
 
@@ -223,13 +224,13 @@ def start_all(screen: LessonDeck) -> None:
     "X",
     N_("Stop all"),
     N_("Stop every node, dependants first; press again to force it."),
-    when=_ask_all,
+    when=_has_own_nodes,
 )
 def stop_all(screen: LessonDeck) -> None:
     screen.ask("stop")
 
 
-@action("nodes.restart", "R", N_("Restart all"), N_("Stop every node and start it again."), when=_ask_all)
+@action("nodes.restart", "R", N_("Restart all"), N_("Stop every node and start it again."), when=_has_own_nodes)
 def restart_all(screen: LessonDeck) -> None:
     screen.ask("restart")
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 action: Announce[FramesScreen] = Announce()
 
 
-def _frames_action(screen: FramesScreen) -> bool | None:
+def _has_frames(screen: FramesScreen) -> bool | None:
     """Only with a frame at the cursor."""
     return True if screen.chosen else None
 
@@ -25,13 +25,13 @@ def _frames_action(screen: FramesScreen) -> bool | None:
     N_("Relative"),
     N_("Show the other frames relative to this one; again: relative to the root."),
     footer=True,
-    when=_frames_action,
+    when=_has_frames,
 )
 def relative_to(screen: FramesScreen) -> None:
     screen.relate()
 
 
-def _findings(screen: FramesScreen) -> bool | None:
+def _has_findings(screen: FramesScreen) -> bool | None:
     """Only if anything is wrong."""
     return True if screen.has_findings else None
 
@@ -43,7 +43,7 @@ def _findings(screen: FramesScreen) -> bool | None:
     N_("Go to the next frame that something is wrong with."),
     means="next",
     footer=True,
-    when=_findings,
+    when=_has_findings,
     shown=lambda screen: screen.has_findings,
     label=lambda _: N_("Finding"),
 )
@@ -57,7 +57,7 @@ def next_finding(screen: FramesScreen) -> None:
     N_("Previous finding"),
     N_("Go to the frame before this one that something is wrong with."),
     means="previous",
-    when=_findings,
+    when=_has_findings,
 )
 def previous_finding(screen: FramesScreen) -> None:
     screen.go_to_finding(-1)
@@ -69,7 +69,7 @@ def previous_finding(screen: FramesScreen) -> None:
     N_("Copy"),
     N_("Copy the transform that is shown, with the command that publishes it."),
     footer=True,
-    when=_frames_action,
+    when=_has_frames,
 )
 def copy_transform(screen: FramesScreen) -> None:
     screen.copy_pair()
@@ -110,7 +110,7 @@ async def frames_in_3d(screen: FramesScreen) -> None:
     N_("Other way"),
     N_("Show the first frame in the second, or the second in the first."),
     footer=True,
-    when=_frames_action,
+    when=_has_frames,
 )
 def other_way_round(screen: FramesScreen) -> None:
     screen.turn_round()

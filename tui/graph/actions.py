@@ -28,7 +28,7 @@ def fill_in(screen: GraphScreen) -> None:
         screen.ask_pane.first().focus()
 
 
-def _change_lifecycle(screen: GraphScreen) -> bool | None:
+def _may_change_state(screen: GraphScreen) -> bool | None:
     """Only for a node that can change now."""
     pane = screen.node_pane
     return pane is not None and pane.can_change and screen.shows_pane
@@ -40,7 +40,7 @@ def _change_lifecycle(screen: GraphScreen) -> bool | None:
     N_("Lifecycle"),
     N_("Configure, activate or shut down the selected node, if it has a lifecycle."),
     footer=True,
-    when=_change_lifecycle,
+    when=_may_change_state,
 )
 def change_lifecycle(screen: GraphScreen) -> None:
     if screen.node_pane is not None:
@@ -75,7 +75,7 @@ def show_map(screen: GraphScreen) -> None:
     screen.toggle_map()
 
 
-def _show_parameters(screen: GraphScreen) -> bool | None:
+def _shows_live_node(screen: GraphScreen) -> bool | None:
     """Only for a node, and not in a recording."""
     if screen.feed.replay is not None:
         return False
@@ -89,14 +89,14 @@ def _show_parameters(screen: GraphScreen) -> bool | None:
     N_("Read the parameters of the selected node, or hide them; Enter changes one."),
     footer=True,
     anywhere=True,
-    when=_show_parameters,
+    when=_shows_live_node,
 )
 def show_parameters(screen: GraphScreen) -> None:
     if screen.node_pane is not None:
         screen.node_pane.toggle_parameters()
 
 
-def _parameters_action(screen: GraphScreen) -> bool | None:
+def _shows_parameters(screen: GraphScreen) -> bool | None:
     """Only while they are shown."""
     return screen.shows_parameters
 
@@ -108,7 +108,7 @@ def _parameters_action(screen: GraphScreen) -> bool | None:
     N_("Save the node's parameters as YAML."),
     means="write to a file",
     footer=True,
-    when=_parameters_action,
+    when=_shows_parameters,
 )
 def save_parameters(screen: GraphScreen) -> None:
     if screen.node_pane is not None:
@@ -121,18 +121,11 @@ def save_parameters(screen: GraphScreen) -> None:
     N_("Load"),
     N_("Set the node's parameters from a YAML file."),
     footer=True,
-    when=_parameters_action,
+    when=_shows_parameters,
 )
 def load_parameters(screen: GraphScreen) -> None:
     if screen.node_pane is not None:
         screen.node_pane.load_parameters()
-
-
-def _change_level(screen: GraphScreen) -> bool | None:
-    """Only for a node, and not in a recording."""
-    if screen.feed.replay is not None:
-        return False
-    return screen.node_pane is not None and screen.shows_pane
 
 
 @action(
@@ -140,7 +133,7 @@ def _change_level(screen: GraphScreen) -> bool | None:
     "K",
     N_("Log level"),
     N_("Read from which severity on the selected node logs, and change it."),
-    when=_change_level,
+    when=_shows_live_node,
 )
 def change_level(screen: GraphScreen) -> None:
     if screen.node_pane is not None:
@@ -177,7 +170,7 @@ def cancel_request(screen: GraphScreen) -> None:
         screen.ask_pane.cancel()
 
 
-def _forget_goal(screen: GraphScreen) -> bool | None:
+def _shows_own_goal(screen: GraphScreen) -> bool | None:
     """Only for an action whose goals are visible."""
     pane = screen.ask_pane
     return pane is not None and pane.can_forget and screen.shows_pane
@@ -189,7 +182,7 @@ def _forget_goal(screen: GraphScreen) -> bool | None:
     N_("Forget"),
     N_("Remove the selected goal from the list; one that has not ended is cancelled."),
     means="clear",
-    when=_forget_goal,
+    when=_shows_own_goal,
 )
 def forget_goal(screen: GraphScreen) -> None:
     if screen.ask_pane is not None:

@@ -132,7 +132,7 @@ def hear_all_in_log(screen: LogsScreen) -> None:
     screen.hear_all()
 
 
-def _change_level_in_log(screen: LogsScreen) -> bool | None:
+def _may_ask_node(screen: LogsScreen) -> bool | None:
     """Only with a node that can be asked."""
     if screen.feed.replay is not None:
         return False
@@ -144,7 +144,7 @@ def _change_level_in_log(screen: LogsScreen) -> bool | None:
     "K",
     N_("Log level"),
     N_("Read from which severity on the selected node logs, and change it."),
-    when=_change_level_in_log,
+    when=_may_ask_node,
 )
 def change_level_in_log(screen: LogsScreen) -> None:
     screen.change_level()

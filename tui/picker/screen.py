@@ -66,7 +66,7 @@ def start_lesson(dialog: PickerScreen) -> None:
     dialog.open_chosen()
 
 
-def _start_own(dialog: PickerScreen) -> bool | None:
+def _has_no_folder(dialog: PickerScreen) -> bool | None:
     """Only for a lesson with something to do; Enter starts a folder that is there."""
     task = dialog.chosen_task
     return task is not None and task.own is None
@@ -79,7 +79,7 @@ def _start_own(dialog: PickerScreen) -> bool | None:
     N_("Make a folder of your own for the selected lesson, and start your files."),
     means="own files",
     footer=True,
-    when=_start_own,
+    when=_has_no_folder,
 )
 def start_own(dialog: PickerScreen) -> None:
     dialog.start_own()

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 action: Announce[SpaceScreen] = Announce()
 
 
-def _armed_action(screen: SpaceScreen) -> bool | None:
+def _is_armed(screen: SpaceScreen) -> bool | None:
     """Only while something is aimed."""
     return screen.armed
 
@@ -26,7 +26,7 @@ def _armed_action(screen: SpaceScreen) -> bool | None:
     N_("Publish the goal or the initial pose where the cross-hair is."),
     footer=True,
     palette=False,
-    when=_armed_action,
+    when=_is_armed,
 )
 async def publish_aim(screen: SpaceScreen) -> None:
     await screen.publish_aim()
@@ -39,7 +39,7 @@ async def publish_aim(screen: SpaceScreen) -> None:
     N_("Stop aiming, and publish nothing."),
     footer=True,
     palette=False,
-    when=_armed_action,
+    when=_is_armed,
 )
 def disarm(screen: SpaceScreen) -> None:
     screen.disarm()
@@ -90,7 +90,7 @@ def follow_frame(screen: SpaceScreen) -> None:
     screen.choose_follow()
 
 
-def _layer_action(screen: SpaceScreen) -> bool | None:
+def _has_layers(screen: SpaceScreen) -> bool | None:
     return screen.has_layers
 
 
@@ -101,7 +101,7 @@ def _layer_action(screen: SpaceScreen) -> bool | None:
     N_("Show or hide the selected layer; a hidden one is not subscribed to."),
     means="leave out",
     footer=True,
-    when=_layer_action,
+    when=_has_layers,
 )
 def toggle_layer(screen: SpaceScreen) -> None:
     screen.toggle_layer()
@@ -124,13 +124,13 @@ def arm_goal(screen: SpaceScreen) -> None:
     N_("Only this"),
     N_("Hide all layers but the selected one."),
     means="only this",
-    when=_layer_action,
+    when=_has_layers,
 )
 def only_layer(screen: SpaceScreen) -> None:
     screen.only_layer()
 
 
-@action("space.all", "a", N_("All layers"), N_("Show all layers."), means="all", when=_layer_action)
+@action("space.all", "a", N_("All layers"), N_("Show all layers."), means="all", when=_has_layers)
 def all_layers(screen: SpaceScreen) -> None:
     screen.all_layers()
 

@@ -97,7 +97,7 @@ def clear_plot(screen: TopicsScreen) -> None:
     screen.plotting.plot.clear()
 
 
-def _topics_action(screen: TopicsScreen) -> bool | None:
+def _shows_table(screen: TopicsScreen) -> bool | None:
     """Not while the plot covers everything."""
     return not screen.plotting.covers_all
 
@@ -108,7 +108,7 @@ def _topics_action(screen: TopicsScreen) -> bool | None:
     N_("Copy"),
     N_("Copy the message as YAML, as `ros2 topic pub` takes it."),
     footer=True,
-    when=_topics_action,
+    when=_shows_table,
     shown=lambda screen: screen.has_message,
 )
 def copy_message(screen: TopicsScreen) -> None:
@@ -151,7 +151,7 @@ def picture_or_tree(screen: TopicsScreen) -> None:
     means="nodes behind it",
     footer=True,
     anywhere=True,
-    when=_topics_action,
+    when=_shows_table,
     label=lambda screen: N_("Message") if screen.detail.as_endpoints else N_("Endpoints"),
 )
 def show_endpoints(screen: TopicsScreen) -> None:
@@ -165,7 +165,7 @@ def show_endpoints(screen: TopicsScreen) -> None:
     N_("Sort by the next column; a click on a title sorts by that one."),
     footer=True,
     anywhere=True,
-    when=_topics_action,
+    when=_shows_table,
 )
 def sort_by_next(screen: TopicsScreen) -> None:
     screen.table.sort_by_next()
@@ -177,7 +177,7 @@ def sort_by_next(screen: TopicsScreen) -> None:
     N_("Reverse"),
     N_("Reverse the order of the topics."),
     anywhere=True,
-    when=_topics_action,
+    when=_shows_table,
 )
 def reverse_order(screen: TopicsScreen) -> None:
     order = screen.table.order
@@ -192,7 +192,7 @@ def reverse_order(screen: TopicsScreen) -> None:
     means="all",
     footer=True,
     anywhere=True,
-    when=_topics_action,
+    when=_shows_table,
 )
 def show_housekeeping(screen: TopicsScreen) -> None:
     screen.toggle_housekeeping()

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 action: Announce[Host] = Announce()
 
 
-def _agent_action(host: Host) -> bool | None:
+def _is_asked(host: Host) -> bool | None:
     """Only while an agent asks."""
     return host.feed.link is not None and host.agents.question is not None
 
@@ -29,7 +29,7 @@ def _agent_action(host: Host) -> bool | None:
     N_("Allow once"),
     N_("Let the agent carry out what it asks for, once."),
     priority=True,
-    when=_agent_action,
+    when=_is_asked,
 )
 def allow_agent(host: Host) -> None:
     host.agents.answer(ConsentAnswer.ONCE)
@@ -41,13 +41,13 @@ def allow_agent(host: Host) -> None:
     N_("Allow for 5 min"),
     N_("Let the agent drive for five minutes without asking, within its limits."),
     priority=True,
-    when=_agent_action,
+    when=_is_asked,
 )
 def allow_agent_for_a_time(host: Host) -> None:
     host.agents.answer(ConsentAnswer.FOR_A_TIME)
 
 
-def _refuse_agent(host: Host) -> bool | None:
+def _may_refuse(host: Host) -> bool | None:
     """Only while an agent asks, or may drive without a question."""
     asked = host.agents.question is not None or host.agents.allowed
     return host.feed.link is not None and asked
@@ -59,7 +59,7 @@ def _refuse_agent(host: Host) -> bool | None:
     N_("Refuse"),
     N_("Refuse what the agent asks for, and end what it was allowed for a time."),
     priority=True,
-    when=_refuse_agent,
+    when=_may_refuse,
 )
 def refuse_agent(host: Host) -> None:
     host.agents.refuse()

@@ -28,7 +28,7 @@ def _do(host: Host, act: Callable[[Replay], object]) -> None:
         host.replay_changed()
 
 
-def _play_pause_label(host: Host) -> str:
+def _play_or_pause(host: Host) -> str:
     """Named after what it would do now."""
     replay = host.feed.replay
     return N_("Play") if replay is not None and replay.state.paused else N_("Pause")
@@ -42,7 +42,7 @@ def _play_pause_label(host: Host) -> str:
     footer=True,
     priority=True,
     when=_in_replay,
-    label=_play_pause_label,
+    label=_play_or_pause,
 )
 def play_pause(host: Host) -> None:
     _do(host, lambda replay: replay.toggle())
