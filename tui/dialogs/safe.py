@@ -47,7 +47,7 @@ def safe_lines(deck: Host) -> list[str]:
     """Return the lines: that a screen failed, what is running, and the keys."""
     session = deck.feed.session
     runs = "" if session is None else session.name
-    states = title.states(deck)
+    _look, alarms = title.alarm(deck)
     keys = [
         _("{keys}: {title}").format(keys=" ".join(deck.keys_of(action)), title=_(action.title))
         for action in (emergency_stop, emergency_release, leave)
@@ -56,7 +56,7 @@ def safe_lines(deck: Host) -> list[str]:
     return [
         _("That screen cannot be drawn. The nodes and the emergency stop keep working."),
         "",
-        "  ".join(filter(None, (runs, states[0] if states else ""))),
+        "  ".join(filter(None, (runs, *(alarms or title.states(deck))[:1]))),
         "",
         *keys,
         "",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from text.i18n import _, localized, ngettext, pick
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 def show(bar: TitleBar, app: Host, front: str) -> None:
     """Show everything on a bar; `front` is the screen in front."""
-    bar.show(tabs(app, front), states(app), look(app), aside(app))
+    look, alarms = alarm(app)
+    bar.show(tabs(app, front), states(app), alarms, look)
 
 
 def tabs(app: Host, front: str) -> Sequence[tuple[str, str, bool]]:
@@ -34,100 +35,51 @@ def tabs(app: Host, front: str) -> Sequence[tuple[str, str, bool]]:
     ]
 
 
-def look(app: Host) -> str:
-    """Return the style of the title.
-
-    `stop` while stopped, `danger` while somebody drives past the gate, `alarm` while the gate
-    holds, what is shown of the graph is old, or the session has lost its guardian.
-    """
-    if app.feed.link is None:
-        return "stop" if app.emergency.state.waits else "state"
-    if app.emergency.state.engaged:
-        return "stop"
-    if _old_since_s(app) is not None:
-        return "alarm"
-    if app.bypass.now:
-        return "danger"
-    return "alarm" if app.emergency.state.blocked or _is_unguarded(app) else "state"
-
-
 def starting(app: Host) -> bool:
     """Return whether a node is not at work yet."""
     return any(node.state.coming for node in app.feed.nodes.values())
 
 
 def states(app: Host) -> Sequence[str]:
-    """Return the texts of the state, from long to short; the first that fits is shown."""
+    """Return what is running or recorded, from long to short."""
     session = app.feed.session
     if session is None:
-        if app.emergency.state.waits:
-            return _stopped(app)
         if app.feed.ended:
             return (localized(app.feed.ended), _("ended"))
         opening = app.sessions.opening
         return (_("opening {name}…").format(name=plain(opening)),) if opening else ()
-    alarm = _alarm(app)
-    if alarm:
-        return _where(session, alarm)
     return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
 
 
-def _alarm(app: Host) -> Sequence[str]:
-    """Return the texts of what `look` is about; none if nothing is amiss."""
-    if app.emergency.state.engaged:
-        return _stopped(app)
-    old_since_s = _old_since_s(app)
-    if old_since_s is not None:
+def alarm(app: Host) -> tuple[str, Sequence[str]]:
+    """Return how an alarm looks, and its texts from long to short; none if nothing is amiss.
+
+    `stop` while stopped, `danger` while somebody drives past the gate, `alarm` while the gate
+    holds, what is shown of the graph is old, or the session has lost its guardian.
+    """
+    return next(_alarms(app), ("", ()))
+
+
+def _alarms(app: Host) -> Iterator[tuple[str, Sequence[str]]]:
+    """Yield what is amiss, the worst first."""
+    emergency, update, link = app.emergency.state, app.feed.update, app.feed.link
+    if emergency.engaged if app.feed.session else emergency.waits:
+        yield "stop", stop_words(emergency, app.keys_of(emergency_release)[0])
+    if update is not None and update.old_since_s is not None:
         # Whatever else there is to say was true then.
-        return _old(old_since_s)
+        words = _("⚠ No word of the ROS graph since {time}: what is shown is from then")
+        yield "alarm", (words.format(time=time_of_day(update.old_since_s)),)
     if app.bypass.now:
-        return app.bypass.words()
-    if app.emergency.state.blocked:
-        return _held(app.emergency.state)
-    return _unguarded() if _is_unguarded(app) else ()
-
-
-def _stopped(app: Host) -> Sequence[str]:
-    return stop_words(app.emergency.state, app.keys_of(emergency_release)[0])
-
-
-def aside(app: Host) -> str:
-    """Return what to show beside an alarm if no tab loses its name for it: the recording."""
-    # Only its size: a longer text would appear only on wide terminals.
-    return "".join(app.recording.words[-1:]) if look(app) != "state" else ""
-
-
-def _where(session: SessionInfo, alarm: Sequence[str]) -> Sequence[str]:
-    """Return the texts of an alarm, and the first one also with the domain if there is room."""
-    return (f"{alarm[0]} · {domain_words(session)}", *alarm)
+        yield "danger", app.bypass.words()
+    if emergency.blocked:
+        yield "alarm", _held(emergency)
+    if link is not None and link.unguarded:
+        yield "alarm", (_("⚠ The guardian process is dead: start the session anew"),)
 
 
 def domain_words(session: SessionInfo) -> str:
     """Return the ROS domain, which is in the title at every size."""
     return _("domain {domain}").format(domain=session.domain)
-
-
-def _old_since_s(app: Host) -> float | None:
-    update = app.feed.update
-    return None if update is None else update.old_since_s
-
-
-def _old(since_s: float) -> Sequence[str]:
-    """Return that nothing is heard of the graph, and since when."""
-    time = time_of_day(since_s)
-    return (
-        _("⚠ No word of the ROS graph since {time}: what is shown is from then").format(time=time),
-        _("⚠ graph of {time}").format(time=time),
-    )
-
-
-def _is_unguarded(app: Host) -> bool:
-    return app.feed.link is not None and app.feed.link.unguarded
-
-
-def _unguarded() -> Sequence[str]:
-    """Return that the guardian is gone, and what brings it back."""
-    return (_("⚠ The guardian process is dead: start the session anew"), _("⚠ guardian dead"))
 
 
 def _held(state: Emergency) -> Sequence[str]:

@@ -1,43 +1,32 @@
-"""The top line: the screens, which one is in front, and what is running or stopped."""
+"""The title: the screens, which one is in front, and what is running or stopped."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar
 
 from rich.cells import cell_len, set_cell_size
 from textual.content import Content
 from textual.style import Style
 from textual.widget import Widget
 
+if TYPE_CHECKING:
+    from textual.geometry import Size
+
 NAME = " Deck "
-URGENT = ("danger", "stop")
-ENOUGH = 16
-"""Cells of an alarm that are enough; its full text would hide the names of the tabs."""
-SHORT, SHORTEST = 3, 2
-"""Letters of a tab's name if there is little room, and if there is less."""
-NAMED = 5
-"""This many of the levels show a part of each name."""
-
-
-class _Level(NamedTuple):
-    """Tabs of (text, action, in front), shortened to a certain degree."""
-
-    tabs: Sequence[tuple[str, str, bool]]
-    gap: int
-    """Blanks between two tabs."""
-    program: str = NAME
-    """The name of the program, or nothing."""
-
-    @property
-    def width(self) -> int:
-        """Cells of all tabs and of what is before them."""
-        tabs = sum(cell_len(text) + self.gap for text, *_more in self.tabs)
-        return cell_len(self.program) + tabs + (self.gap == 1)
+HIGH = 30
+"""A terminal of this many rows has two lines for the title all the time."""
+SHARE = 3
+"""Beside the tabs, the state takes one third of the line at most."""
 
 
 class TitleBar(Widget):
-    """Screens as tabs on the left, which can be clicked; on the right the state in words."""
+    """Screens as tabs, which can be clicked; the state in words; an alarm on a line of its own.
+
+    No name is abbreviated: every tab shows its key, the one in front its name, the others their
+    names as far as there is room. With `HIGH` rows the state has the second line, which an alarm
+    shares with it; with fewer it stands beside the tabs, and an alarm brings the second line.
+    """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "title-bar--name",
@@ -50,7 +39,7 @@ class TitleBar(Widget):
     }
     DEFAULT_CSS = """
     TitleBar {
-        height: 1;
+        height: auto;
         width: 1fr;
         background: $panel;
         color: $foreground;
@@ -78,132 +67,97 @@ class TitleBar(Widget):
         super().__init__()
         self._tabs: tuple[tuple[str, str, bool], ...] = ()
         self._states: tuple[str, ...] = ()
+        self._alarms: tuple[str, ...] = ()
         self._look = "state"
-        self._aside = ""
 
     def show(
-        self, tabs: Sequence[tuple[str, str, bool]], states: Sequence[str], look: str = "state", aside: str = ""
+        self,
+        tabs: Sequence[tuple[str, str, bool]],
+        states: Sequence[str],
+        alarms: Sequence[str] = (),
+        look: str = "alarm",
     ) -> None:
-        """Show tabs of (text, action, in front), and on the right the first of `states` that fits.
+        """Show tabs of (text, action, in front) and the first that fits of `states` and of `alarms`.
 
-        `look` is `state`, `alarm`, `danger` or `stop`; with the last the whole line is red. The
-        texts of the last two take precedence over the tabs. Otherwise, tabs that are not in front
-        are shortened before the state is: to a few letters, then moved together, then to two
-        letters without the name of the program, then to their keys; where room is left, the names
-        that lack the fewest letters are whole again. `aside` follows the state if there is room for
-        it beside tabs with a few letters each, or beside all tabs that the state leaves.
+        Both go from long to short. `look` is how an alarm looks: `alarm`, `danger` or `stop`; with
+        the last all lines are red.
         """
-        shown = (tuple(tabs), tuple(states), look, aside)
-        if shown != (self._tabs, self._states, self._look, self._aside):
-            self._tabs, self._states, self._look, self._aside = shown
-            self.set_class(look == "stop", "-stop")
-            self.refresh()
+        shown = (tuple(tabs), tuple(states), tuple(alarms), look)
+        before = (self._tabs, self._states, self._alarms, self._look)
+        if shown != before:
+            self._tabs, self._states, self._alarms, self._look = shown
+            self.set_class(bool(alarms) and look == "stop", "-stop")
+            self.refresh(layout=bool(shown[0]) != bool(before[0]) or bool(shown[2]) != bool(before[2]))
 
     @property
     def text(self) -> str:
         return self.render().plain
 
+    def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
+        del container, viewport, width
+        return 2 if self._alarms or self._is_high else 1
+
+    @property
+    def _is_high(self) -> bool:
+        return bool(self._tabs) and self.app.size.height >= HIGH
+
     def render(self) -> Content:
-        """Draw the tabs, then as much of the state as fits."""
-        level, state = self._with_aside(*self._fitting())
-        left = self._left(self._completed(level, self._room() - level.width - cell_len(state)))
-        gap = " " * max(0, self.size.width - left.cell_length - cell_len(state) - 2)
-        style = self.get_visual_style(f"title-bar--{self._look}")
-        return left.append(gap).append(Content.styled(f" {state} ", style))
+        """Draw one line or two."""
+        if self._is_high:
+            return self._line(self._left(""), "").append("\n").append(self._second())
+        state = self._state(self._room() // SHARE if self._tabs else self._room())
+        first = self._line(self._left(state), state)
+        return first.append("\n").append(self._line(self._alarm(), "")) if self._alarms else first
 
-    def _fitting(self) -> tuple[_Level, str]:
-        """Return the tabs to show, and the longest state that fits beside them.
+    def _second(self) -> Content:
+        """Return the alarm and what it leaves room for of the state, or the state alone."""
+        if not self._alarms:
+            return self._line(self._said(self._state(self.size.width - 2), "state"), "")
+        alarm = self._alarm()
+        room = self.size.width - alarm.cell_length - 4
+        return self._line(alarm, next((state for state in self._states if cell_len(state) <= room), ""))
 
-        The shortest state is too brief to justify keeping the tabs long: they are shortened first.
-        If the state is urgent, its text comes first, and all tabs may disappear. The text of an
-        alarm comes from a node and may be of any length: it is cut before the tabs lose their
-        names.
-        """
-        alone, levels = self._room(), self._levels()
-        named = levels[NAMED - 1]
+    def _alarm(self) -> Content:
+        room = self.size.width - 2
+        fitting = (words for words in self._alarms if cell_len(words) <= room)
+        return self._said(next(fitting, _cut(self._alarms[-1], room)), self._look)
+
+    def _state(self, room: int) -> str:
         states = self._states or ("",)
-        for state in states if self._look in URGENT else ():
-            for level in (*levels, _Level((), 2)):
-                if cell_len(state) <= alone - level.width:
-                    return level, state
-        for level in levels:
-            spared = states[-1:] if len(states) > 1 and level in levels[:NAMED] else ()
-            for state in states:
-                if state not in spared and cell_len(state) <= alone - level.width:
-                    return level, state
-            room = alone - level.width
-            if self._look == "alarm" and level is named and room >= ENOUGH:
-                return level, _cut(states[-1], room)
-        return levels[-1], _cut(states[-1], alone - levels[-1].width)
+        return next((state for state in states if cell_len(state) <= room), _cut(states[-1], room))
 
-    def _with_aside(self, level: _Level, state: str) -> tuple[_Level, str]:
-        """Return both, with `aside` appended if no tab loses its name or disappears for that."""
-        if not self._aside:
-            return level, state
-        told, named = f"{state} · {self._aside}", self._levels()[:NAMED]
-        for other in named if level in named else [level]:
-            if other.width <= level.width and cell_len(told) <= self._room() - other.width:
-                return other, told
-        return level, state
+    def _line(self, left: Content, state: str) -> Content:
+        if not state:
+            return left
+        gap = " " * max(0, self.size.width - left.cell_length - cell_len(state) - 2)
+        return left.append(gap).append(self._said(state, "state"))
 
-    def _completed(self, level: _Level, spare: int) -> _Level:
-        """Return the tabs with as many whole names as `spare` cells allow: `Deck` for `Dec`."""
-        tabs = list(level.tabs)
-        lacking = [
-            (cell_len(whole[0]) - cell_len(cut[0]), at)
-            for at, (whole, cut) in enumerate(zip(self._tabs, tabs, strict=False))
-            if cut[0] != whole[0] and " " in cut[0]
-        ]
-        for cells, at in sorted(lacking):
-            if cells <= spare:
-                tabs[at] = self._tabs[at]
-                spare -= cells
-        return level._replace(tabs=tabs)
+    def _said(self, words: str, look: str) -> Content:
+        return Content.styled(f" {words} ", self.get_visual_style(f"title-bar--{look}"))
 
     def _room(self) -> int:
-        """Return the cells for tabs and state."""
-        return self.size.width - 3
+        """Return the cells beside the name of the program."""
+        return self.size.width - cell_len(NAME) - 2
 
-    def _levels(self) -> list[_Level]:
-        """Return all tabs, shorter and shorter; the first NAMED levels show a part of each name."""
-        shapes = ((None, "", 2), (SHORT, ".", 2), (SHORT, ".", 1), (SHORT, "", 1))
-        named = [_Level(_shortened(self._tabs, letters, mark), gap) for letters, mark, gap in shapes]
-        # The name of a tab is worth more than that of the program.
-        named.append(_Level(_shortened(self._tabs, SHORTEST), 1, ""))
-        keys = _keys(self._tabs)
-        return [*named, _Level(_shortened(self._tabs, 0), 2), _Level(keys, 2), _Level(keys, 1)]
-
-    def _left(self, level: _Level) -> Content:
-        parts = [Content.styled(level.program, self.get_visual_style("title-bar--name"))]
-        for text, action, front in level.tabs:
+    def _left(self, state: str) -> Content:
+        """Return the name of the program and the tabs, as they fit beside the state."""
+        parts = [Content.styled(NAME, self.get_visual_style("title-bar--name"))]
+        for text, action, front in self._fitting(self._room() - cell_len(state)):
             style = self.get_visual_style("title-bar--front" if front else "title-bar--tab")
-            click = Style.from_meta({"@click": action})
-            said = f" {text} " if level.gap > 1 else text
-            parts += [Content(" " * (2 - level.gap)), Content.styled(said, style + click)]
-        return Content("").join([*parts, Content(" " * (2 - level.gap))])
+            parts.append(Content.styled(f" {text} ", style + Style.from_meta({"@click": action})))
+        return Content("").join(parts)
 
-
-def _shortened(
-    tabs: Sequence[tuple[str, str, bool]], letters: int | None, mark: str = ""
-) -> Sequence[tuple[str, str, bool]]:
-    """Shorten all tabs but the one in front; their keys stay. With None nothing is shortened.
-
-    `mark` follows what was shortened.
-    """
-    if letters is None:
+    def _fitting(self, room: int) -> Sequence[tuple[str, str, bool]]:
+        """Return the tabs; whole names take the room that the keys leave, the one in front first."""
+        tabs = [(text.partition(" ")[0], action, front) for text, action, front in self._tabs]
+        room -= sum(cell_len(key) + 2 for key, *_more in tabs)
+        whole = [(not front, cell_len(text), at) for at, (text, _action, front) in enumerate(self._tabs)]
+        for _behind, cells, at in sorted(whole):
+            room -= cells - cell_len(tabs[at][0])
+            if room < 0:
+                break
+            tabs[at] = self._tabs[at]
         return tabs
-    return [(text if front else _initials(text, letters, mark), action, front) for text, action, front in tabs]
-
-
-def _keys(tabs: Sequence[tuple[str, str, bool]]) -> Sequence[tuple[str, str, bool]]:
-    return [(_initials(text, 0), action, front) for text, action, front in tabs]
-
-
-def _initials(text: str, letters: int, mark: str = "") -> str:
-    key, _blank, word = text.partition(" ")
-    if letters and len(word) > letters + len(mark):
-        word = f"{word[:letters]}{mark}"
-    return f"{key} {word}" if letters else key
 
 
 def _cut(text: str, room: int) -> str:

@@ -254,7 +254,7 @@ async def test_the_title_says_since_when_what_is_shown_is_old() -> None:
         assert f"No word of the ROS graph since {time_of_day(SINCE_S)}" in await shown(SINCE_S)
         await pilot.resize_terminal(120, 24)
         await settle(pilot)
-        assert f"graph of {time_of_day(SINCE_S)}" in bar.text
+        assert f"No word of the ROS graph since {time_of_day(SINCE_S)}" in bar.text
         await pilot.press("space")
         await settle(pilot)
         assert opener.graph.published[-1][2] == {"data": True}

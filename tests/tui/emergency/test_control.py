@@ -195,11 +195,11 @@ async def test_a_release_without_a_stop_publishes_nothing_and_says_so() -> None:
 async def test_the_safety_nodes_words_stand_in_the_title() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
-        assert "0.38 m" not in seen(app).splitlines()[0]
+        assert "0.38 m" not in app.screen.query_one(TitleBar).text
         opener.graph.show(held(b"\x01", "front 0.38 m"))
         await settle(pilot)
-        assert "⚠ Front 0.38 m" in title.states(app)[0]
-        assert "⚠ Front 0.38 m" in seen(app).splitlines()[0], "and is drawn"
+        assert "⚠ Front 0.38 m" in title.alarm(app)[1][0]
+        assert "⚠ Front 0.38 m" in seen(app).splitlines()[1], "and is drawn, on a line of its own"
 
 
 async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held() -> None:
@@ -214,7 +214,13 @@ async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(
         assert f"⚠ Refused: {refused}" in app.screen.query_one(TitleBar).text
 
 
-@pytest.mark.parametrize(("language", "words"), [("en", " ⚠ too rare: mock_sonar "), ("ru", " ⚠ редко: mock_sonar ")])
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("en", "⚠ Forward is blocked: mock_sonar speaks too rarely ahead"),
+        ("ru", "⚠ Вперёд нельзя: mock_sonar: показания спереди слишком редки"),
+    ],
+)
 async def test_who_speaks_too_rarely_is_named_whole_on_a_small_terminal(language: str, words: str) -> None:
     set_language(language)
     told = {"verdict": "blocked_forward", "front": "silent", "front_too_rare": "/mock_sonar"}
