@@ -93,7 +93,8 @@ def read_mistakes(file: Path, lines: Iterable[str]) -> list[Mistake]:
         elif mistakes and line:
             raise UsageError(
                 say(
-                    "{file}:{line}: expected ## STEP/MISTAKE, --- FILE, @@, or a line that begins with a blank, - or +",
+                    "{file}:{line}: expected ## STEP/MISTAKE, --- FILE, @@, or a line that begins"
+                    " with a blank, - or +",
                     file=str(file),
                     line=number,
                 )

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.lessons.mistakes import WRONG
-from course.proof.places import Places
-from course.proof.trial import layered, trial
+from course.proof.trial import Places, layered, trial
 from course.results import LessonResult, State
 from launcher.errors import LauncherError
 from launcher.profile.steps.draw import draw, new_seed
