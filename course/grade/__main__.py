@@ -1,6 +1,6 @@
 """An examiner: `python -m course.grade FD` judges one folder, and ends with everything it started.
 
-FD is a socket for its orders and its findings, see `course.grade.protocol`;
+FD is a socket for its orders and its findings, see `course.grade.examination`;
 no process that it starts has it. It limits itself and its descendants, and confines the nodes. Its
 first process is a guardian: whatever the nodes do to the supervisor or to the judge, the guardian
 ends all that descends from it, and then itself.
@@ -18,9 +18,9 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from course.grade.examination import ExamRequest
 from course.grade.limits import limit_this_process
-from course.grade.protocol import MOST_BYTES, ExamRequest
-from course.protocol import pack_step
+from course.protocol import MOST_BYTES, pack_step
 from launcher.control.protocol import encode
 from launcher.errors import AlreadyRunningError, LauncherError
 from launcher.supervisor.guardian import fork_under_guardian
@@ -76,8 +76,7 @@ class Examiner:
     async def _once(self) -> None:
         from course.judge.functions import preloaded
         from course.lessons.lesson import LessonFolder
-        from course.proof.places import Places
-        from course.proof.trial import trial
+        from course.proof.trial import Places, trial
         from launcher.client.start import StartingSupervisor
 
         request = self._request
@@ -91,7 +90,7 @@ class Examiner:
                 Places(Path(request.place), lesson.name),
                 seed=request.seed,
                 domain=request.domain,
-                confined=request.confined,
+                within=request.cell,
                 language=request.language,
                 functions=functions,
                 supervisor=supervisor,

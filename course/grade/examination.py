@@ -1,30 +1,40 @@
-"""An examination: the process in which one folder is judged, and the end of all that it starts."""
+"""An examination: the process in which one folder is judged, and the end of all that it starts.
+
+The grader and the examiner (`course.grade.__main__`) speak by lines of JSON over a socket: one request; then from
+the examiner `values` once the nodes are started, `step` for each step, `end` at the end. A socket, since the other
+end of a pipe can be opened by every process of the same user.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import os
+import signal
 import socket
 import sys
 import time
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import psutil
+
 import course
-from course.grade.environment import environment_of
-from course.grade.leftovers import end_adopted, end_marked, kill_descendants
-from course.grade.limits import taken
-from course.grade.protocol import MOST_BYTES
-from course.proof.places import Places
+from course.grade.limits import descendants, taken
+from course.proof.trial import Places
+from course.protocol import MOST_BYTES
+from launcher.processes.table import processes, read_marks
 from text.nested import read_json
 from text.packing import unpack_text
+from text.run_path import OWN_RUN_DIR
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, AsyncIterator, Mapping, Sequence
+    from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable, Mapping, Sequence
 
-    from course.grade.protocol import ExamRequest
+    from typing_extensions import Self
 
 EXAMINER = (sys.executable, "-m", "course.grade")
 GRACE_S = 15.0
@@ -32,67 +42,92 @@ GRACE_S = 15.0
 ENDED_WITHIN_S = 15.0
 """The guardian's own time for ending what is left, and a little more."""
 LOOK_EVERY_S = 0.25
+KILLING_ROUNDS, ROUND_S = 100, 0.02
+"""How often to look again: a process may just be starting another one."""
+KEPT = (
+    "HOME", "LANG", "LANGUAGE", "LOGNAME", "PATH", "SHELL", "TERM", "TZ", "USER", "VIRTUAL_ENV",
+    "XDG_DATA_HOME", "XDG_DATA_DIRS",
+)  # fmt: skip
+KEPT_BEGINNINGS = (
+    "AMENT_", "CMAKE_PREFIX_", "COLCON_", "CONDA_", "FASTDDS_", "FASTRTPS_", "LC_", "LD_",
+    "MALLOC_", "OMP_", "OPENBLAS_", "PIXI_", "PYTHON", "RMW_", "ROS_", "SKIP_DEFAULT_XML_FILE",
+)  # fmt: skip
+"""What nodes need to find Python and ROS; the token of a CI job is not among it."""
+LEFT_OUT = ("PYTHONPYCACHEPREFIX", "ROS_DOMAIN_ID", "ROS_STATIC_PEERS")
 
 
-class Examiners:
-    """The examiners at work, all of them children of this process."""
+@dataclass(frozen=True)
+class ExamRequest:
+    """What an examiner is to do."""
 
-    def __init__(self) -> None:
-        self._pids: set[int] = set()
-        self._starting = asyncio.Lock()
-        """Held while there is a child that is not yet known to be an examiner."""
+    lesson: str
+    """The folder of the lesson."""
+    place: str
+    """The folder in which all of it happens, see `course.proof.trial.Places`."""
+    cell: Sequence[str]
+    """The beginning of the command line of the learner's nodes, see `course.grade.walls`; none: not confined."""
+    domain: int
+    seed: int
+    within_s: float
+    """How long all of it may take."""
+    language: str
+    """The one that nodes log in."""
+    bag: str = ""
+    """The folder of a recording, which does not exist yet; empty: none is made."""
 
-    async def start(
-        self, command: Sequence[str], channel: socket.socket, log: Path, environ: Mapping[str, str]
-    ) -> asyncio.subprocess.Process:
-        """Start one by this command; it talks on this channel."""
-        async with self._starting:
-            with log.open("wb") as words:
-                process = await asyncio.create_subprocess_exec(
-                    *(*command, str(channel.fileno())),
-                    # In that folder `course` is this package, whatever the user's contains.
-                    cwd=Path(course.__file__).parent.parent,
-                    stdin=asyncio.subprocess.DEVNULL,
-                    stdout=words,
-                    stderr=words,
-                    env=environ,
-                    pass_fds=(channel.fileno(),),
-                    # Ctrl-C in the terminal is meant for its grader.
-                    start_new_session=True,
-                )
-            self._pids.add(process.pid)
-        return process
+    def to_json(self) -> str:
+        return json.dumps(asdict(self))
 
-    def ended(self, pid: int) -> None:
-        self._pids.discard(pid)
+    @classmethod
+    def from_json(cls, line: bytes) -> Self:
+        """Read the output of `to_json`."""
+        return cls(**read_json(line))
 
-    async def end_adopted(self) -> None:
-        """End all other children of this process."""
-        async with self._starting:
-            await asyncio.to_thread(end_adopted, frozenset(self._pids))
+
+def own_places(place: Path) -> dict[str, Path]:
+    """Return the folders of the judge and of Deck's nodes, by the variables that say so."""
+    own = place / "own"
+    return {"DECK_STATE_DIR": own / "state", "ROS_LOG_DIR": own / "ros", "TMPDIR": own / "tmp"}
+
+
+def environment_of(place: Path, environ: Mapping[str, str]) -> dict[str, str]:
+    """Return the environment for one grading, without secrets, whose files are all in this place.
+
+    The learner's nodes have some of it replaced, see `course.proof.trial.Places`.
+    """
+    kept = {
+        name: value
+        for name, value in environ.items()
+        if name not in LEFT_OUT and (name in KEPT or name.startswith(KEPT_BEGINNINGS))
+    }
+    return {
+        **kept,
+        OWN_RUN_DIR: str(place / "run"),
+        "DECK_LOG_DIR": str(place / "logs"),
+        **{variable: str(folder) for variable, folder in own_places(place).items()},
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "OPENBLAS_THREAD_TIMEOUT": "4",
+    }
 
 
 class Examination:
     """One examiner, from start to end, with all that it leaves behind."""
 
-    def __init__(self, place: Path, request: ExamRequest, examiners: Examiners, command: Sequence[str]) -> None:
-        """`command`: EXAMINER, or what runs it behind walls."""
+    def __init__(self, place: Path, request: ExamRequest, room: Sequence[str]) -> None:
+        """`room`: the beginning of the examiner's command line; none: it is not behind walls."""
         self.reason = ""
         """Why it did not come to its end; empty if it did."""
         self.taken = False
         """Whether somebody else was in the domain."""
         self._place = place
         self._request = request
-        self._examiners = examiners
-        self._command = command
+        self._room = room
         self._ended = False
 
     async def events(self) -> AsyncGenerator[dict[str, Any], None]:
         """Yield what it tells; afterwards nothing of it is left."""
         ours, theirs = socket.socketpair()
-        words = self._place / "examiner.log"
-        environ = environment_of(self._place, os.environ)
-        process = await self._examiners.start(self._command, theirs, words, environ)
+        process = await self._start(theirs)
         theirs.close()
         reader, writer = await asyncio.open_connection(sock=ours, limit=MOST_BYTES)
         watching = asyncio.ensure_future(self._watch(process))
@@ -106,6 +141,21 @@ class Examination:
             await asyncio.shield(asyncio.ensure_future(self._end(process)))
         if not self._ended and not self.reason:
             self.reason = say("the judge was ended before it was done; killed by what it judged, perhaps")
+
+    async def _start(self, channel: socket.socket) -> asyncio.subprocess.Process:
+        with (self._place / "examiner.log").open("wb") as words:
+            return await asyncio.create_subprocess_exec(
+                *(*self._room, *EXAMINER, str(channel.fileno())),
+                # In that folder `course` is this package, whatever the user's contains.
+                cwd=Path(course.__file__).parent.parent,
+                stdin=asyncio.subprocess.DEVNULL,
+                stdout=words,
+                stderr=words,
+                env=environment_of(self._place, os.environ),
+                pass_fds=(channel.fileno(),),
+                # Ctrl-C in the terminal is meant for its grader.
+                start_new_session=True,
+            )
 
     async def _heard(self, reader: asyncio.StreamReader) -> AsyncIterator[dict[str, Any]]:
         while not self._ended:
@@ -132,7 +182,7 @@ class Examination:
                 excess = say("it took longer than {n:g} s", n=self._request.within_s)
             if excess:
                 self.reason = excess
-                await asyncio.to_thread(kill_descendants, process.pid)
+                await asyncio.to_thread(_kill_all, lambda: descendants(process.pid))
                 return
 
     async def _end(self, process: asyncio.subprocess.Process) -> None:
@@ -140,8 +190,31 @@ class Examination:
         with contextlib.suppress(asyncio.TimeoutError):
             await asyncio.wait_for(process.wait(), ENDED_WITHIN_S)
         if process.returncode is None:
-            await asyncio.to_thread(kill_descendants, process.pid)
+            await asyncio.to_thread(_kill_all, lambda: descendants(process.pid))
             process.kill()
             await process.wait()
-        self._examiners.ended(process.pid)
-        await asyncio.to_thread(end_marked, str(self._place / "run"))
+        # What has ended the guardian, without walls.
+        await asyncio.to_thread(_kill_all, lambda: _marked(str(self._place / "run")))
+
+
+def _marked(run_dir: str) -> list[psutil.Process]:
+    """Return all that has this run directory in its environment."""
+    found = []
+    for each in processes():
+        if not each.zombie and (read_marks(each.pid) or {}).get(OWN_RUN_DIR) == run_dir:
+            with contextlib.suppress(psutil.NoSuchProcess):
+                found.append(psutil.Process(each.pid))
+    return found
+
+
+def _kill_all(find: Callable[[], Iterable[psutil.Process]]) -> None:
+    for _round in range(KILLING_ROUNDS):
+        left = list(find())
+        if not left:
+            return
+        # Stopped first, so that none starts another meanwhile.
+        for number in (signal.SIGSTOP, signal.SIGKILL):
+            for each in left:
+                with contextlib.suppress(psutil.Error):
+                    each.send_signal(number)
+        time.sleep(ROUND_S)

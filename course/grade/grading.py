@@ -15,16 +15,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.folder.comments import in_language
-from course.grade.defaults import WITHIN_S
-from course.grade.environment import own_places
-from course.grade.examination import EXAMINER, Examination, Examiners
+from course.grade.examination import Examination, ExamRequest, own_places
 from course.grade.grades import Grade, StepGrade, filled_up
-from course.grade.protocol import ExamRequest
-from course.grade.removal import remove_tree
+from course.grade.limits import remove_tree
 from course.grade.submission import Files, Submission, UnreadableError, check_gradable, files_of
-from course.grade.walls import Walls, within
+from course.grade.walls import cell, room
 from course.proof.domains import unused_domains
-from course.proof.places import Places
+from course.proof.trial import Places
 from course.protocol import unpack_step
 from course.results import State
 from launcher.profile.defaults import FOLDERS_OWN
@@ -38,6 +35,8 @@ if TYPE_CHECKING:
 
     from course.lessons.lesson import LessonFolder
 
+WITHIN_S = 180.0
+"""How long one folder may take."""
 ATTEMPTS = 3
 """In how many domains it is tried, if somebody else is in the first."""
 
@@ -53,13 +52,8 @@ class Terms:
     """Where to keep recordings."""
     within_s: float = WITHIN_S
     language: str = "en"
-    confined: bool = True
-    """Whether to confine the nodes, where the kernel can."""
-    walls: Walls = Walls.NONE
-    """What is around each examiner."""
-    adopting: bool = False
-    """Whether this process does nothing else, and adopts what examiners leave behind: then its
-    other children are ended."""
+    bubblewrap: str = ""
+    """The program that makes walls, see `course.grade.walls`; empty: nothing is confined."""
 
 
 @dataclass
@@ -96,16 +90,14 @@ async def grade_all(
 ) -> AsyncGenerator[tuple[int, Grade], None]:
     """Grade folders, so many at once; yield each grade as it comes, with its folder's number.
 
-    All folders, and the lesson, are read before anything is run: what one learner's nodes do to
-    the files of another is not judged, and is undone.
+    All folders, and the lesson's starter, are read before anything is run: what one learner's nodes do to the files
+    of another, where nothing keeps them from it, is not judged.
     """
     domains = domains or Domains()
     check_gradable(terms.lesson)
-    lesson = await asyncio.to_thread(Files.read, terms.lesson.path)
+    starter = await asyncio.to_thread(Files.read, terms.lesson.starter)
     read = [await asyncio.to_thread(_read, one.folder) for one in chosen]
-    everything = [lesson, *(one for one in read if isinstance(one, Files))]
-    room = asyncio.Semaphore(jobs)
-    examiners = Examiners()
+    space = asyncio.Semaphore(jobs)
     # What comes with the lesson is for every learner to see, and may be run by it.
     within_lesson = terms.lesson.path.resolve()
     folders = [submission.folder for submission in chosen]
@@ -113,17 +105,10 @@ async def grade_all(
 
     async def one(number: int) -> tuple[int, Grade]:
         submission, files = chosen[number], read[number]
-        async with room:
+        async with space:
             if not isinstance(files, Files):
                 return number, _not_graded(terms, submission, files)
-            # With several jobs another one's nodes may be at it just now.
-            before = await asyncio.to_thread(_put_back, everything)
-            grading = _Grading(terms, submission, (lesson, files), domains, on_step, examiners, apart)
-            grade = await grading.grade()
-            after = await asyncio.to_thread(_put_back, everything)
-            if terms.adopting:
-                await examiners.end_adopted()
-            return number, replace(grade, notes=(*grade.notes, *before, *after))
+            return number, await _Grading(terms, submission, (starter, files), domains, on_step, apart).grade()
 
     tasks = [asyncio.ensure_future(one(number)) for number in range(len(chosen))]
     try:
@@ -155,26 +140,6 @@ def _read(folder: Path) -> Files | str:
         return error.words
 
 
-def _put_back(everything: Sequence[Files]) -> list[str]:
-    """Undo what has been changed meanwhile; say what it was."""
-    found = []
-    for files in everything:
-        try:
-            changed = files.put_back()
-        except OSError as error:
-            found.append(str(error))
-            continue
-        if changed:
-            found.append(
-                say(
-                    "{folder} was changed while it was graded, and is as before again: {files}",
-                    folder=str(files.folder),
-                    files=", ".join(changed[:5]),
-                )
-            )
-    return found
-
-
 def _not_graded(terms: Terms, submission: Submission, reason: str) -> Grade:
     steps = filled_up(terms.lesson, (), State.UNJUDGED, reason)
     began = datetime.now(timezone.utc)
@@ -191,19 +156,13 @@ class _Grading:
         files: tuple[Files, Files],
         domains: Domains,
         on_step: Callable[[Submission, StepGrade], object],
-        examiners: Examiners,
         apart: Sequence[Path],
     ) -> None:
-        """`files`: those of the lesson and the learner; `examiners`: the processes of all.
-
-        `apart`: the folders of all learners, of which none is seen, only a copy of one.
-        """
+        """`files`: those of the starter and the learner; `apart`: the folders of all learners, hidden from each."""
         self._apart = apart
         self._terms = terms
         self._submission = submission
-        self._starter = files[0].below(terms.lesson.starter.name)
-        self._files = files[1]
-        self._examiners = examiners
+        self._starter, self._files = files
         self._domains = domains
         self._on_step = on_step
         self._seed = terms.seed or seed_of(self._files)
@@ -262,10 +221,9 @@ class _Grading:
         place = Path(await asyncio.to_thread(tempfile.mkdtemp, prefix="deck-grade-"))
         try:
             request = self._prepared(place, domain)
-            # Found out before: they can be had.
-            terms = self._terms
-            shut_in = within(terms.walls, terms.lesson, place, EXAMINER, apart=self._apart)
-            examination = Examination(place, request, self._examiners, shut_in or EXAMINER)
+            bwrap = self._terms.bubblewrap
+            walls = room(bwrap, self._terms.lesson, place, self._apart) if bwrap else ()
+            examination = Examination(place, request, walls)
             async with aclosing(examination.events()) as events:
                 async for event in events:
                     self._take(event)
@@ -289,7 +247,7 @@ class _Grading:
         return ExamRequest(
             lesson=str(lesson.path),
             place=str(place),
-            confined=self._terms.confined,
+            cell=cell(self._terms.bubblewrap, place, places.writable) if self._terms.bubblewrap else (),
             domain=domain,
             seed=self._seed,
             within_s=self._terms.within_s,

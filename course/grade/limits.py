@@ -7,15 +7,16 @@ import resource
 import stat
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.grade.leftovers import descendants
-from launcher.processes.table import processes
+import psutil
+
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
 FILE_BYTES = 256 << 20
 """Largest file that any of its processes can write, a recording included."""
@@ -51,7 +52,7 @@ def limit_this_process(longest_s: float) -> None:
 
 def _tasks_of_user() -> int:
     """Count the threads of this user, which is what the kernel limits."""
-    return sum(_tasks(process.pid) for process in processes())
+    return sum(map(_tasks, psutil.pids()))
 
 
 def _tasks(pid: int) -> int:
@@ -86,6 +87,22 @@ class Taken:
         if self.unseen:
             return say("it made a folder that cannot be looked into: {folder}", folder=self.unseen[:200])
         return ""
+
+
+def descendants(pid: int) -> list[psutil.Process]:
+    """Return the living processes that descend from one, without that one."""
+    try:
+        found = psutil.Process(pid).children(recursive=True)
+    except psutil.NoSuchProcess:
+        return []
+    return [each for each in found if _lives(each)]
+
+
+def _lives(process: psutil.Process) -> bool:
+    try:
+        return process.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
 
 
 def taken(pid: int, places: Iterable[Path]) -> Taken:
@@ -163,3 +180,41 @@ class _Found:
 
     def _add(self, seen: os.stat_result) -> None:
         self.sizes[seen.st_dev, seen.st_ino] = seen.st_blocks * 512
+
+
+def remove_tree(root: Path) -> None:
+    """Remove a folder and all in it, nested as deep and closed as it may be; nobody may work in it any more.
+
+    `shutil.rmtree` calls itself for each folder, and gives up at those that may not be read. Here, a folder within
+    another is moved up to the root first, so that no path becomes long.
+    """
+    _open_up(str(root))
+    numbers = count()
+    folders = [str(root)]
+    # The list grows meanwhile.
+    for folder in folders:
+        folders += _emptied(folder, root, numbers)
+    for folder in reversed(folders):
+        with suppress(OSError):
+            os.rmdir(folder)  # noqa: PTH106
+
+
+def _emptied(folder: str, root: Path, numbers: Iterator[int]) -> list[str]:
+    """Remove the files of a folder, and move its folders up; return where those are now."""
+    moved = []
+    with suppress(OSError):
+        for entry in list(os.scandir(folder)):
+            with suppress(OSError):
+                if not entry.is_dir(follow_symlinks=False):
+                    os.unlink(entry.path)  # noqa: PTH108
+                    continue
+                _open_up(entry.path)
+                target = f"{root}/.removed-{os.getpid()}-{next(numbers)}"
+                os.rename(entry.path, target)  # noqa: PTH104
+                moved.append(target)
+    return moved
+
+
+def _open_up(folder: str) -> None:
+    with suppress(OSError):
+        os.chmod(folder, 0o700)  # noqa: PTH101

@@ -1,7 +1,7 @@
 """A folder that is to be graded: read once, before anything of it runs, and copied from memory.
 
 Neither links nor pipes nor gigabytes in it hold anybody up. What runs later may have changed the
-folder, or another one: what was read counts, and is put back.
+folder, or another one: what was read counts.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.grade.metadata import Metadata
 from course.lessons.lesson import IGNORED
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
@@ -45,14 +44,11 @@ class Files:
     folder: Path
     contents: dict[Path, bytes] = field(default_factory=dict)
     """By path within the folder."""
-    metadata: dict[Path, Metadata] = field(default_factory=dict)
-    """Of the files and their folders; a folder comes before what is in it."""
 
     @classmethod
     def read(cls, folder: Path) -> Files:
         """Read a folder. Raises UnreadableError."""
         contents: dict[Path, bytes] = {}
-        metadata: dict[Path, Metadata] = {}
         size = 0
         try:
             for path in _files(folder):
@@ -67,11 +63,7 @@ class Files:
                             mb=MOST_BYTES // 1_000_000,
                         )
                     )
-                name = path.relative_to(folder)
-                contents[name] = data
-                for each in (*reversed(name.parents), name):
-                    if each not in metadata:
-                        metadata[each] = Metadata.read(folder / each)
+                contents[path.relative_to(folder)] = data
         except OSError as error:
             raise UnreadableError(
                 say(
@@ -80,16 +72,7 @@ class Files:
                     why=error.strerror or str(error),
                 )
             ) from error
-        return cls(folder, contents, metadata)
-
-    def below(self, name: str) -> Files:
-        """Return those in a folder of it."""
-        inner = {
-            path.relative_to(name): data
-            for path, data in self.contents.items()
-            if path.parts[0] == name and len(path.parts) > 1
-        }
-        return Files(self.folder / name, inner)
+        return cls(folder, contents)
 
     def write(self, folder: Path, without: Iterable[str] = ()) -> None:
         """Write them into another folder, over what is there."""
@@ -100,37 +83,6 @@ class Files:
             target = folder / name
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(data)
-
-    def put_back(self) -> list[str]:
-        """Make those again as they were that have been changed meanwhile; return their names."""
-        changed = [
-            str(name)
-            for name, metadata in self.metadata.items()
-            if name not in self.contents and _again(metadata, self.folder / name)
-        ]
-        for name, data in self.contents.items():
-            path = self.folder / name
-            # First, for it may not be readable any more.
-            other = name in self.metadata and _again(self.metadata[name], path)
-            try:
-                same = stat.S_ISREG(path.lstat().st_mode) and _content(path, len(data)) == data
-            except OSError:
-                same = False
-            if not same:
-                _replace(path, data)
-                if name in self.metadata:
-                    _again(self.metadata[name], path)
-            if other or not same:
-                changed.append(str(name))
-        return changed
-
-
-def _again(metadata: Metadata, path: Path) -> bool:
-    """Put it back as far as can be; a folder that is gone is made with its files."""
-    try:
-        return metadata.put_back(path)
-    except FileNotFoundError:
-        return False
 
 
 def _files(folder: Path) -> Iterator[Path]:
@@ -152,14 +104,6 @@ def _content(path: Path, most: int) -> bytes:
     descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
     with os.fdopen(descriptor, "rb") as file:
         return file.read(most + 1)
-
-
-def _replace(path: Path, data: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if path.is_dir() and not path.is_symlink():
-        return  # Somebody has put a folder in its place; what is in it is not ours to remove.
-    path.unlink(missing_ok=True)
-    path.write_bytes(data)
 
 
 @dataclass(frozen=True)

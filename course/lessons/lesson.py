@@ -5,7 +5,7 @@ text.en.md text.ru.md  `# Title`, an introduction, and a section `## id` for eac
                        with a task: `**Your task**: ...`, `**Задание**: ...`
 starter/               what the learner begins with, lesson.yaml included
 solution/              the files that differ from the starter's
-wrong/STEP/MISTAKE/    files that differ from the solution's, and the step that must fail
+wrong.diff             changes of the solution, and the step that each must fail, see `course.lessons.mistakes`
 checks.py              functions for `python:` checks
 """
 
@@ -17,6 +17,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from course.lessons.mistakes import WRONG, read_mistakes
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
@@ -24,6 +25,7 @@ from text.os_words import os_reason
 from text.sentences import say
 
 if TYPE_CHECKING:
+    from course.lessons.mistakes import Mistake
     from launcher.profile.spec import Profile
     from launcher.profile.steps.model import StepDocument
 
@@ -71,10 +73,9 @@ class LessonFolder:
         return self.path / "solution"
 
     def mistakes(self) -> list[Mistake]:
-        """Return what beginners get wrong, in the order of the steps."""
-        order = {step.id: number for number, step in enumerate(self.steps)}
-        found = [Mistake(step.name, folder) for step in folders(self.path / "wrong") for folder in folders(step)]
-        return sorted(found, key=lambda one: (order.get(one.step, -1), one.folder.name))
+        """Return what beginners get wrong, in the order of the file. Raises UsageError."""
+        file = self.path / WRONG
+        return read_mistakes(file, _read(file).splitlines()) if file.is_file() else []
 
     def texts(self, language: str) -> Texts:
         """Return what there is to read; in English if there is nothing in this language.
@@ -87,15 +88,6 @@ class LessonFolder:
             if file.is_file():
                 return _texts(_read(file))
         raise UsageError(say("{folder} has no text.en.md: write what is to be learnt", folder=str(self.path)))
-
-
-@dataclass(frozen=True)
-class Mistake:
-    """Something that beginners get wrong."""
-
-    step: str
-    """The id of the step at which it must be caught."""
-    folder: Path
 
 
 @dataclass(frozen=True)

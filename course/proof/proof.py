@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.proof.places import Places
-from course.proof.trial import layered, trial
+from course.lessons.mistakes import WRONG
+from course.proof.trial import Places, layered, trial
 from course.results import LessonResult, State
 from launcher.errors import LauncherError
 from launcher.profile.steps.draw import draw, new_seed
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Sequence
 
     from course.lessons.lesson import LessonFolder
+    from course.lessons.mistakes import Mistake
     from course.results import StepResult
 
 NODES_OF_ONE = 6
@@ -33,10 +34,11 @@ class Variant:
 
     lesson: LessonFolder
     name: str
-    """`starter`, `solution`, or `wrong/STEP/MISTAKE`."""
+    """`starter`, `solution`, or `STEP/MISTAKE`."""
     layers: tuple[Path, ...]
     fails_at: str | None
     """The step that must fail, those before it having passed; None: none; empty: any."""
+    mistake: Mistake | None = None
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ def variants(lesson: LessonFolder) -> list[Variant]:
         Variant(lesson, "starter", base[:1], ""),
         Variant(lesson, "solution", base, None),
         *(
-            Variant(lesson, str(mistake.folder.relative_to(lesson.path)), (*base, mistake.folder), mistake.step)
+            Variant(lesson, f"{mistake.step}/{mistake.name}", base, mistake.step, mistake)
             for mistake in lesson.mistakes()
         ),
     ]
@@ -85,12 +87,13 @@ def incomplete(lesson: LessonFolder) -> list[str]:
     for folder in (lesson.starter, lesson.solution):
         if not folder.is_dir():
             missing.append(say("there is no folder {folder}", folder=folder.name))
-    mistakes = lesson.mistakes()
     missing += [
-        say("{folder}: there is no step {step}", folder=f"wrong/{one.step}", step=one.step)
-        for one in mistakes
+        say("{file}: there is no step {step}", file=WRONG, step=one.step)
+        for one in lesson.mistakes()
         if one.step not in ids
     ]
+    if (lesson.path / "wrong").is_dir():
+        missing.append(say("the folder wrong is not read: write its mistakes down in {file}", file=WRONG))
     return missing
 
 
@@ -145,6 +148,8 @@ async def _proven(variant: Variant, domain: int, seed: int) -> ProofVerdict:
         places.make()
         layered(places.files, variant.layers)
         try:
+            if variant.mistake is not None:
+                variant.mistake.make(places.files)
             result = await _until_it_fails(variant, places, domain, seed)
         except (LauncherError, OSError) as error:
             return ProofVerdict(variant, reason_of(error))

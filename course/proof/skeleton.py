@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from course.lessons.mistakes import WRONG
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from text.sentences import say
@@ -108,9 +109,22 @@ def main():
 if __name__ == "__main__":
     main()
 """
-_PUBLISHER = '        self.publisher = self.create_publisher(String, "/chatter", 10)\n'
-_TIMER = "        self.create_timer({period}, self.talk)"
-_SOLUTION = _PUBLISHER + _TIMER.format(period=0.5)
+_SOLUTION = """\
+        self.publisher = self.create_publisher(String, "/chatter", 10)
+        self.create_timer(0.5, self.talk)"""
+_MISTAKES = """\
+What beginners get wrong, as changes of solution/: each must fail at its step, and pass those before it.
+
+## topic/another-name
+--- talker.py
+-        self.publisher = self.create_publisher(String, "/chatter", 10)
++        self.publisher = self.create_publisher(String, "/chater", 10)
+
+## rate/once-in-two-seconds
+--- talker.py
+-        self.create_timer(0.5, self.talk)
++        self.create_timer(2.0, self.talk)
+"""
 _FILES = {
     FOLDERS_OWN: _LESSON,
     "text.en.md": _TEXT["en"],
@@ -120,8 +134,7 @@ _FILES = {
         body="        # Missing: a publisher of String on /chatter, and a timer that calls talk."
     ),
     "solution/talker.py": _NODE.format(body=_SOLUTION),
-    "wrong/topic/another-name/talker.py": _NODE.format(body=_SOLUTION.replace("/chatter", "/chater")),
-    "wrong/rate/once-in-two-seconds/talker.py": _NODE.format(body=_PUBLISHER + _TIMER.format(period=2.0)),
+    WRONG: _MISTAKES,
 }
 
 

@@ -1,11 +1,11 @@
-"""One run of a lesson on a folder of files: what a proof and a grading have in common."""
+"""One run of a lesson on a folder of files, and where its nodes work: what a proof and a grading have in common."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
 import shutil
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from course.judge.judge import judging
@@ -16,13 +16,12 @@ from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable, Iterable, Mapping
+    from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
     from pathlib import Path
     from typing import Any
 
     from course.judge.judge import Judge
     from course.lessons.lesson import LessonFolder
-    from course.proof.places import Places
     from launcher.client.start import StartingSupervisor
     from launcher.profile.spec import NodeSpec, Profile
 
@@ -38,6 +37,41 @@ def layered(folder: Path, layers: Iterable[Path]) -> Path:
     return folder
 
 
+@dataclass(frozen=True)
+class Places:
+    """The folders in which the nodes of one run work and write; not those of Deck: links in them may lead away."""
+
+    root: Path
+    lesson: str
+    """The name of the lesson's folder."""
+
+    @property
+    def files(self) -> Path:
+        """The copy of the learner's files."""
+        return self.root / "files" / self.lesson
+
+    @property
+    def writable(self) -> tuple[Path, ...]:
+        """All of them. Logs are in none: the supervisor writes those, and keeps them small."""
+        return (self.files, *map(self._of_nodes, ("tmp", "ros", "state")))
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """The variables that keep the learner's nodes in them."""
+        return {
+            "TMPDIR": str(self._of_nodes("tmp")),
+            "ROS_LOG_DIR": str(self._of_nodes("ros")),
+            "DECK_STATE_DIR": str(self._of_nodes("state")),
+        }
+
+    def make(self) -> None:
+        for folder in self.writable:
+            folder.mkdir(parents=True, exist_ok=True)
+
+    def _of_nodes(self, name: str) -> Path:
+        return self.root / "nodes" / name
+
+
 @contextlib.asynccontextmanager
 async def trial(
     lesson: LessonFolder,
@@ -45,21 +79,19 @@ async def trial(
     *,
     seed: int,
     domain: int,
-    confined: bool = True,
+    within: Sequence[str] = (),
     language: str = "",
     functions: Mapping[str, Callable[[Any], object]] | None = None,
     supervisor: StartingSupervisor | None = None,
 ) -> AsyncIterator[Judge]:
     """Run the lesson.yaml of `places.files`, with a judge; all of it ends when this is left.
 
-    Nodes of Deck run as always, all others confined to `places`, unless `confined` is false.
+    `within`: the beginning of a command line that confines a program; for all nodes but those of Deck.
 
     Raises what `launch` raises.
     """
     profile = _at_home(load_profile(places.files / FOLDERS_OWN, domain=domain), lesson, places)
-    client = await launch(
-        profile, node_lang=language, supervisor=supervisor, confined_to=map(str, places.writable) if confined else ()
-    )
+    client = await launch(profile, node_lang=language, supervisor=supervisor, within=within)
     async with contextlib.aclosing(client):
         try:
             async with judging(lesson, client, seed, functions) as judge:

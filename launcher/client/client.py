@@ -82,7 +82,7 @@ async def launch(
     foreground: bool = True,
     node_lang: str = "",
     supervisor: StartingSupervisor | None = None,
-    confined_to: Iterable[str] = (),
+    within: Iterable[str] = (),
 ) -> SupervisorClient:
     """Start a profile and connect to its supervisor.
 
@@ -94,8 +94,7 @@ async def launch(
         foreground: whether the nodes end with this process, or with `aclose`
         node_lang: the language the nodes log in, `en` or `ru`; empty: as the environment says
         supervisor: one that was started in advance, for this call only
-        confined_to: the only folders in which nodes other than Deck's may write, see
-            `launcher.processes.confinement`; none: they are not confined
+        within: the beginning of a command line that confines a program, for nodes other than Deck's
 
     Raises:
         ProfileError, DomainError: if the profile or domain cannot be used; nothing was started.
@@ -107,7 +106,7 @@ async def launch(
     try:
         folders = {"run_dir": str(run_dir()), "log_dir": str(log_dir())}
         read = await asyncio.to_thread(_read, profile, hardware, tuple(overrides), domain)
-        plan = plan_of(read, **folders, foreground=foreground, node_lang=node_lang, confined_to=confined_to)
+        plan = plan_of(read, **folders, foreground=foreground, node_lang=node_lang, within=within)
     except BaseException:
         supervisor.give_up()
         raise

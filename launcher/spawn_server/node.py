@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 from launcher import node_program
 from launcher.faults import CHECK_FIELDS
-from launcher.processes.confinement import confine
 from launcher.processes.prctl import die_with_parent, leave_libraries_alone_at_exit
 from launcher.processes.table import NODE_MARK
 from launcher.processes.title import show_mark, show_name, show_title
@@ -49,8 +48,6 @@ class ForkSpec:
     supervisor: int
     shared: SharedModules
     """The project's own modules that have been imported."""
-    confined_to: tuple[str, ...] = ()
-    """The only folders in which it may write; empty: it is not confined."""
 
     @classmethod
     def from_request(cls, request: dict[str, Any], fds: list[int], supervisor: int, preload: Preload) -> ForkSpec:
@@ -68,7 +65,6 @@ class ForkSpec:
             fds=tuple(fds),
             supervisor=supervisor,
             shared=preload.shared,
-            confined_to=tuple(request.get("confined_to", ())),
         )
 
 
@@ -80,7 +76,6 @@ def become(spec: ForkSpec) -> None:
     _reset_signals()
     _take_descriptors(spec.fds)
     _set_environment(spec)
-    _confine(spec)
     try:
         os.chdir(spec.cwd)
     except OSError as problem:
@@ -137,16 +132,6 @@ def _take_descriptors(fds: tuple[int, ...]) -> None:
         if int(entry) > 2:
             with contextlib.suppress(OSError):
                 os.close(int(entry))
-
-
-def _confine(spec: ForkSpec) -> None:
-    if not spec.confined_to:
-        return
-    try:
-        confine(spec.confined_to)
-    except OSError as problem:
-        # Not without: whoever asked for it does not trust this program.
-        _give_up(f"cannot be confined: {problem.strerror}", NOT_EXECUTABLE)
 
 
 def _execute(spec: ForkSpec) -> None:

@@ -43,8 +43,6 @@ class SpawnRequest:
     cwd: str
     env: Mapping[str, str | None] = field(default_factory=dict)
     """Changes to the supervisor's environment; None unsets."""
-    confined_to: tuple[str, ...] = ()
-    """The only folders in which it may write; empty: it is not confined."""
 
 
 @dataclass(frozen=True)

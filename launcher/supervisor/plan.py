@@ -80,8 +80,8 @@ class Plan:
     hardware: str = "mock"
     panels: tuple[str, ...] = ()
     foreground: bool = True
-    confined_to: tuple[str, ...] = ()
-    """The only folders in which nodes other than Deck's may write; empty: they are not confined."""
+    within: tuple[str, ...] = ()
+    """The beginning of a command line that confines a program, for nodes other than Deck's; empty: none is."""
     agents: AgentRules = DEFAULT_RULES
     """What agents may do."""
 
@@ -113,7 +113,7 @@ class Plan:
         fields: dict[str, Any] = read_json(line)
         fields["nodes"] = tuple(_node_from(node) for node in fields["nodes"])
         fields["panels"] = tuple(fields["panels"])
-        fields["confined_to"] = tuple(fields["confined_to"])
+        fields["within"] = tuple(fields["within"])
         fields["agents"] = unpack_rules(fields["agents"])
         if not isinstance(fields["discovery"], str):
             fields["discovery"] = tuple(fields["discovery"])
@@ -130,7 +130,7 @@ def _node_from(fields: dict[str, Any]) -> NodePlan:
 
 
 def plan_of(
-    profile: Profile, *, run_dir: str, log_dir: str, foreground: bool, node_lang: str, confined_to: Iterable[str] = ()
+    profile: Profile, *, run_dir: str, log_dir: str, foreground: bool, node_lang: str, within: Iterable[str] = ()
 ) -> Plan:
     """Make the plan of a profile for this machine, environment and current folder."""
     return Plan(
@@ -147,7 +147,7 @@ def plan_of(
         hardware=profile.hardware,
         panels=tuple(profile.document.panels),
         foreground=foreground,
-        confined_to=tuple(confined_to),
+        within=tuple(within),
         agents=AgentRules(**profile.document.agents.model_dump()),
     )
 

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import time
 from typing import TYPE_CHECKING
 
 from launcher.logs.reader import PipeReader, node_pipe
+from launcher.processes.exit import Exit, signal_name
 from launcher.processes.members import Members
 from launcher.processes.signal import send
 from launcher.spawn_server.spawner import SpawnRequest
 
 if TYPE_CHECKING:
-    import asyncio
     from collections.abc import Mapping, Sequence
 
     from launcher.logs.session_log import SessionLog
-    from launcher.processes.exit import Exit, Reaper
+    from launcher.processes.exit import Reaper
     from launcher.processes.table import Process
     from launcher.spawn_server.spawner import SpawnedProcess, Spawner
     from launcher.supervisor.plan import NodePlan, Plan
@@ -50,13 +51,21 @@ class NodeProcess:
     """One process that was started for a node; a `RunningProcess`."""
 
     def __init__(
-        self, name: str, spawned: SpawnedProcess, launcher: ProcessLauncher, readers: Sequence[PipeReader]
+        self,
+        name: str,
+        spawned: SpawnedProcess,
+        launcher: ProcessLauncher,
+        readers: Sequence[PipeReader],
+        *,
+        confined: bool = False,
     ) -> None:
-        """`readers` read its stdout and stderr."""
+        """`readers` read its stdout and stderr; `confined`: it is the one that confines the node."""
         self.name = name
         self.pid = spawned.pid
         self.started_ticks = spawned.started_ticks
         self.ended: asyncio.Future[Exit] = launcher.reaper.exit_of(spawned.pid, spawned.started_ticks)
+        if confined:
+            self.ended = asyncio.ensure_future(_inner_exit(self.ended))
         self.ended.add_done_callback(self._on_end)
         self._launcher = launcher
         self._readers = readers
@@ -87,6 +96,12 @@ class NodeProcess:
             reader.drain()
 
 
+async def _inner_exit(ended: asyncio.Future[Exit]) -> Exit:
+    """Return how a node ended of which a program with a shell's exit codes tells."""
+    outer = await ended
+    return Exit(None, signal_name(outer.code - 128)) if outer.code is not None and outer.code > 128 else outer
+
+
 class ProcessLauncher:
     """Starts processes for nodes, and reads their output into the log."""
 
@@ -99,14 +114,15 @@ class ProcessLauncher:
 
     async def launch(self, node: NodePlan) -> NodeProcess:
         """Start a node; raises `SpawnError`."""
+        within = () if node.ours else self._plan.within
+        warm = bool(node.module) and not within
         request = SpawnRequest(
-            kind="module" if node.module else "exec",
+            kind="module" if warm else "exec",
             name=node.name,
             title=f"deck: {node.name} ({node.command})",
-            argv=node.module or node.argv,
+            argv=node.module if warm else (*within, *node.argv),
             cwd=node.cwd,
             env={**self._plan.env, **node.env},
-            confined_to=() if node.ours else self._plan.confined_to,
         )
         out, out_write = node_pipe()
         err, err_write = node_pipe()
@@ -123,4 +139,4 @@ class ProcessLauncher:
             os.close(err_write)
         self.scan.members.add(node.name, spawned)
         self.scan.forget()
-        return NodeProcess(node.name, spawned, self, readers)
+        return NodeProcess(node.name, spawned, self, readers, confined=bool(within))

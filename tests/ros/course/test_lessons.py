@@ -20,7 +20,7 @@ from tests.conftest import take
 if TYPE_CHECKING:
     from tests.domains import DomainPool
 
-pytestmark = pytest.mark.nightly
+pytestmark = [pytest.mark.nightly, pytest.mark.machine("bubblewrap")]
 
 PROVEN_AT_ONCE, GRADED_AT_ONCE = 6, 2
 """Together more than the cores of a small machine: most of the time a run waits."""

@@ -51,7 +51,7 @@ def test_the_command_tells_people_and_programs(tmp_path: Path, ros_domain: int) 
     (tmp_path / "class" / "boris" / "talker.py").unlink()
     out = tmp_path / "grades.json"
     folders = [str(tmp_path / "class" / name) for name in ("anna", "boris")]
-    options = ("--domain", str(ros_domain), "--format", "json", "--output", str(out))
+    options = ("--unconfined", "--domain", str(ros_domain), "--format", "json", "--output", str(out))
     deck = DeckProcess("grade", str(lesson.path), *folders, *options)
     assert deck.finish() == 1
     anna, boris = json.loads(out.read_text())["grades"]
@@ -68,7 +68,8 @@ def test_interrupted_it_leaves_nothing(tmp_path: Path, ros_domain: int) -> None:
     mark = f"1000.{uuid.uuid4().int % 10**9}"
     sleeps = f"import os; os.execvp('sleep', ['sleep', '{mark}'])"
     handed_in(lesson, tmp_path / "class", anna=sleeps)
-    deck = DeckProcess("grade", str(lesson.path), str(tmp_path / "class" / "anna"), "--domain", str(ros_domain))
+    options = ("--unconfined", "--domain", str(ros_domain))
+    deck = DeckProcess("grade", str(lesson.path), str(tmp_path / "class" / "anna"), *options)
     wait_until(lambda: _running(mark), "the node runs", 60.0)
     deck.signal(signal.SIGINT)
     assert deck.finish() == 130

@@ -10,13 +10,14 @@ import pytest
 from course.grade import limits
 from course.grade.grades import Grade, GradeState
 from course.grade.grading import Domains, Terms, grade_all
+from course.grade.walls import bubblewrap_for
 from launcher.processes.table import command_line, process_numbers
 from tests.conftest import take
 from tests.domains import DomainPool
 from tests.ros.course.grade.lessons import handed_in, log_lesson
 from text.i18n import localized
 
-pytestmark = [pytest.mark.timeout(400), pytest.mark.nightly]
+pytestmark = [pytest.mark.timeout(400), pytest.mark.nightly, pytest.mark.machine("bubblewrap")]
 
 AT_ONCE = 3
 FEW_PROCESSES = 40
@@ -75,7 +76,7 @@ def graded(domain_pool: DomainPool, tmp_path_factory: pytest.TempPathFactory) ->
     domains = Domains([take(domain_pool) for _ in range(AT_ONCE)])
 
     async def grade() -> dict[str, Grade]:
-        terms = Terms(lesson, within_s=WITHIN_S, confined=True)
+        terms = Terms(lesson, within_s=WITHIN_S, bubblewrap=bubblewrap_for(lesson))
         coming = grade_all(terms, submitted, jobs=AT_ONCE, domains=domains)
         return {grade.student: grade async for _number, grade in coming}
 
