@@ -92,8 +92,6 @@ class ModelSettings(_Section):
     model: Name
     vision_model: Name | None = None
     """Looks at pictures; `model` does where there is none."""
-    compare_with: Name | None = None
-    """A second model, which the Composer asks the same words for comparison."""
     transcription_model: Name = "whisper-1"
     speech_model: Name = "tts-1"
     speech_voice: Name = "alloy"

@@ -93,7 +93,7 @@ async def _failures(domain: int) -> dict[str, str]:
     """Return the nodes that the sessions in a domain say have ended for good, and why."""
     from launcher.client import client
     from launcher.errors import LauncherError
-    from tui.graph.finding_words import failures_of
+    from tui.graph.index import failures_of
 
     found: dict[str, str] = {}
     for session in client.running():

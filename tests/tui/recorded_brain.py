@@ -21,7 +21,7 @@ def brain_state(message: str = "has answered; m-1", level: int = 0, node: str = 
     """Return one report; `values` replaces some of a model's that has answered."""
     given = {"backend": "llm", "fault": "", "model": "m-1", **BUDGET, **USAGE, **values}
     pairs = [{"key": key, "value": value} for key, value in given.items() if value != "-"]
-    status = [{"level": level, "name": node, "message": message, "values": pairs}]
+    status = [{"level": level, "name": node, "hardware_id": "", "message": message, "values": pairs}]
     return sample(BRAIN_STATE, TYPE, {"header": {}, "status": status})
 
 

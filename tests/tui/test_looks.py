@@ -149,12 +149,6 @@ async def teleop(at: At) -> None:
     await at.press("t", "up", "left")
 
 
-async def node_map(at: At) -> None:
-    """safety_stop in a box; what it hears at the left, what it says at the right, with whom."""
-    await graph(at)
-    await at.press("M", "left")
-
-
 async def depth(at: At) -> None:
     await chosen(at, CAMERA, with_camera("sensor_msgs/msg/Image", depth_message()))
     await at.show(with_camera("sensor_msgs/msg/Image", depth_message()))
@@ -219,7 +213,6 @@ SCREENS: dict[str, Scene] = {
 PARTS: dict[str, Scene] = {
     "map": ("deck", with_map, nothing),
     "wall": ("wall", RecordedOpener, nothing),
-    "node_map": ("graph", nodes, node_map),
     "depth": ("topics", RecordedOpener, depth),
     "plot": ("topics", RecordedOpener, plot),
     "publish": ("topics", RecordedOpener, publish),

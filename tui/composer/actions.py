@@ -62,7 +62,7 @@ def send_anyway(screen: ComposerScreen) -> None:
     when=lambda screen: not screen.is_writing,
 )
 def write(screen: ComposerScreen) -> None:
-    screen.write()
+    screen.draft.editor.focus()
 
 
 @action(
@@ -76,7 +76,7 @@ def write(screen: ComposerScreen) -> None:
     when=lambda screen: screen.is_writing and not screen.is_asking,
 )
 def leave(screen: ComposerScreen) -> None:
-    screen.leave()
+    screen.set_focus(None)
 
 
 @action(
@@ -89,7 +89,7 @@ def leave(screen: ComposerScreen) -> None:
     when=_is_not_asking,
 )
 def ask(screen: ComposerScreen) -> None:
-    screen.go_to_line()
+    screen.draft.line.field.focus()
 
 
 @action(
@@ -103,7 +103,7 @@ def ask(screen: ComposerScreen) -> None:
     when=lambda screen: screen.is_asking,
 )
 def stop_asking(screen: ComposerScreen) -> None:
-    screen.stop_asking()
+    screen.draft.cancel()
 
 
 @action(
@@ -114,23 +114,10 @@ def stop_asking(screen: ComposerScreen) -> None:
     footer=True,
     priority=True,
     shown=_is_live,
-    label=lambda screen: N_("Auto off") if screen.is_auto else N_("Auto"),
+    label=lambda screen: N_("Auto off") if screen.draft.auto else N_("Auto"),
 )
 def auto(screen: ComposerScreen) -> None:
-    screen.toggle_auto()
-
-
-@action(
-    "composer.compare",
-    "alt+c",
-    N_("Compare"),
-    N_("Ask two models the same words, and see both answers side by side."),
-    footer=True,
-    priority=True,
-    when=_is_not_asking,
-)
-def compare(screen: ComposerScreen) -> None:
-    screen.compare()
+    screen.draft.toggle_auto()
 
 
 @action(
@@ -170,7 +157,7 @@ def templates(screen: ComposerScreen) -> None:
     when=_is_not_asking,
 )
 def older_sent(screen: ComposerScreen) -> None:
-    screen.recall(older=True)
+    screen.recall(-1)
 
 
 @action(
@@ -182,7 +169,7 @@ def older_sent(screen: ComposerScreen) -> None:
     when=_is_not_asking,
 )
 def newer_sent(screen: ComposerScreen) -> None:
-    screen.recall(older=False)
+    screen.recall(1)
 
 
 @action(
@@ -195,7 +182,7 @@ def newer_sent(screen: ComposerScreen) -> None:
     when=lambda screen: bool(screen.problems),
 )
 def next_problem(screen: ComposerScreen) -> None:
-    screen.go_to_next_problem()
+    screen.draft.go_to_next_problem()
 
 
 COMPOSER_ACTIONS = actions_of(__name__)

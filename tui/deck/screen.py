@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from graph.inner_states import LifecycleRow
     from tui.actions import Action
     from tui.emergency.messages import EmergencyChanged
-    from tui.log_view.filter import LogFilter
+    from tui.log_view.index import LogFilter
     from tui.panels.panel import Panel
     from tui.session.messages import GraphChanged, LanguageChanged, LogArrived, StatusChanged
     from tui.widgets.rows import Rows

@@ -16,9 +16,7 @@ from text.sentences import reason_of
 from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
 from tui.graph.ask import AskPane
-from tui.graph.links import heading, link, node_links
 from tui.graph.pane import LONGEST
-from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.rows import Cell, Column, Row
 
 if TYPE_CHECKING:
@@ -27,7 +25,7 @@ if TYPE_CHECKING:
 
     from textual.binding import BindingType
 
-    from graph.data import ActionRow, SeenGoal
+    from tui.graph.ask import Answer
 
 action: Announce[CancelGoalScreen] = Announce()
 
@@ -50,70 +48,40 @@ SHORT_ID = 8
 class ActionPane(AskPane):
     """Sends goals; feedback and result arrive with the updates of the graph."""
 
-    submit_title: ClassVar[str] = N_("Send goal")
-
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
-        self._sent_newest: int | None = None
-        """To be chosen once an update of the graph contains it."""
+    submit_title = N_("Send goal")
+    calls_it = N_("sends it goals")
+    _sent_newest: int | None = None
+    """To be chosen once an update of the graph contains it."""
 
     @property
-    def goals(self) -> Sequence[Goal]:
-        """Deck's goals of the action that is shown, the newest first."""
+    def goals(self) -> list[Goal | SeenGoal]:
+        """The goals of the action that is shown: Deck's own, then those that others have sent; the newest first."""
         update = self.graph_now
-        goals = () if update is None else update.goals
-        return [goal for goal in reversed(goals) if goal.action == self.name_shown]
-
-    @property
-    def of_others(self) -> Sequence[SeenGoal]:
-        """The goals that others have sent, the newest first."""
-        update = self.graph_now
-        goals = () if update is None else update.seen_goals
-        return [goal for goal in reversed(goals) if goal.action == self.name_shown]
+        if update is None:
+            return []
+        goals: tuple[Goal | SeenGoal, ...] = (*reversed(update.goals), *reversed(update.seen_goals))
+        return [goal for goal in goals if goal.action == self.name_shown]
 
     @property
     def chosen(self) -> Goal | SeenGoal | None:
         wanted = self.asked_rows.chosen
-        goals: list[Goal | SeenGoal] = [*self.goals, *self.of_others]
-        return next((goal for goal in goals if _key(goal) == wanted), None)
+        return next((goal for goal in self.goals if _key(goal) == wanted), None)
 
-    @property
-    def row(self) -> ActionRow | None:
-        """The current row of the action in the graph."""
+    def ends(self) -> tuple[Sequence[str], Sequence[str], Sequence[str]] | None:
         update = self.graph_now
-        actions = () if update is None else update.actions
-        return next((row for row in actions if row.name == self.name_shown), None)
-
-    def type_names(self) -> tuple[str, ...]:
-        return () if self.row is None else self.row.type_names
-
-    def links(self) -> Sequence[Row]:
-        """Return its type, its servers, and the nodes that send it goals."""
-        row = self.row
-        if row is None:
-            return [heading(_("It has left the graph."))]
-        return [
-            *(link(GraphPlace(GraphKind.TYPE, name), "type", _("type")) for name in row.type_names),
-            *node_links(row.servers, "serves", _("serves it")),
-            *node_links(row.clients, "calls", _("sends it goals")),
-        ]
+        rows = () if update is None else update.actions
+        found = ((row.type_names, row.servers, row.clients) for row in rows if row.name == self.name_shown)
+        return next(found, None)
 
     def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
-        """Return the goals: Deck's own, and below them those of others."""
-        return (
-            (Column("", 8), Column("", 13), Column("", 8), Column("")),
-            [*map(_own_row, self.goals), *map(_other_row, self.of_others)],
-        )
+        return (Column("", 8), Column("", 13), Column("", 8), Column("")), [_row(goal) for goal in self.goals]
 
-    def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
+    def answer(self) -> Answer:
         """Return the result of the chosen goal, or its newest feedback."""
         goal = self.chosen
         if goal is None:
-            return (
-                _("Feedback and result"),
-                self.name_shown,
-                (_("no goal has been sent yet"), _("{key} sends what is filled in.").format(key=self.submit_key)),
-            )
+            way_out = _("{key} sends what is filled in.").format(key=self.submit_key)
+            return _("Feedback and result"), self.name_shown, (_("no goal has been sent yet"), way_out)
         name = f"{self.name_shown} {_key(goal)}"
         state = f"{_name(goal)} {_words(goal)}"
         if isinstance(goal, SeenGoal):
@@ -128,32 +96,30 @@ class ActionPane(AskPane):
         return state, name, (_("no feedback yet"), "")
 
     def ros2_line(self, type_name: str, value: Mapping[str, Any]) -> str:
-        """Return what sends the goal."""
         return ros2_words.send_goal(self.name_shown, type_name, value)
 
     def ros2_info(self) -> str:
         """Return what tells who serves it."""
         return ros2_words.action_info(self.name_shown)
 
-    def ask(self, value: Mapping[str, Any]) -> None:
+    def ask(self, type_name: str, value: Mapping[str, Any]) -> None:
         graph = self.deck.feed.graph
         if graph is not None:
-            future = graph.send_goal(self.name_shown, self.type_names()[0], value)
+            future = graph.send_goal(self.name_shown, type_name, value)
             self.run_worker(self._sent(future), exit_on_error=False)
 
     async def _sent(self, future: Future[int]) -> None:
         try:
-            number = await asyncio.wrap_future(future)
+            self._sent_newest = await asyncio.wrap_future(future)
         except Exception as error:  # noqa: BLE001 - any failure is reported
             self.warn(_("Not sent: {reason}").format(reason=localized(reason_of(error))))
             return
-        self._sent_newest = number
         self.redraw()
 
     def redraw(self) -> None:
         """Show the goals, and choose the one that was just sent."""
         super().redraw()
-        if self._sent_newest in [goal.number for goal in self.goals]:
+        if self._sent_newest in [goal.number for goal in self.goals if isinstance(goal, Goal)]:
             self.asked_rows.choose(str(self._sent_newest))
             self._sent_newest = None
 
@@ -165,19 +131,13 @@ class ActionPane(AskPane):
     @property
     def _to_cancel(self) -> Goal | SeenGoal | None:
         """The chosen goal; if that one has ended, the newest active one, preferring Deck's own."""
-        goals: list[Goal | SeenGoal | None] = [self.chosen, *self.goals, *self.of_others]
-        return next((goal for goal in goals if goal is not None and not goal.ended), None)
-
-    @property
-    def is_waiting(self) -> bool:
-        """Never: updates of the graph already refresh the elapsed times."""
-        return False
+        return next((goal for goal in (self.chosen, *self.goals) if goal is not None and not goal.ended), None)
 
     def cancel(self) -> None:
         """Cancel a goal; one of another client only after confirmation."""
         graph, goal = self.deck.feed.graph, self._to_cancel
         if isinstance(goal, SeenGoal):
-            self.app.push_screen(CancelGoalScreen(goal, _words(goal)), self._cancel_of_others)
+            self.app.push_screen(CancelGoalScreen(goal), self._cancel_of_others)
         elif graph is not None and goal is not None:
             graph.cancel_goal(goal.number)
 
@@ -192,7 +152,6 @@ class ActionPane(AskPane):
         return isinstance(self.chosen, Goal)
 
     def forget(self) -> None:
-        """Remove the chosen goal from the list."""
         graph, goal = self.deck.feed.graph, self.chosen
         if graph is not None and isinstance(goal, Goal):
             graph.forget_goal(goal.number)
@@ -212,26 +171,14 @@ def _words(goal: Goal | SeenGoal) -> str:
     return f"{sign} {_(word)}"
 
 
-def _own_row(goal: Goal) -> Row:
-    return _row(goal, goal.elapsed_s, _("own"))
-
-
-def _other_row(goal: SeenGoal) -> Row:
-    return _row(goal, goal.age_s, _("other"))
-
-
-def _row(goal: Goal | SeenGoal, age_s: float | None, whose: str) -> Row:
+def _row(goal: Goal | SeenGoal) -> Row:
     told = _("feedback {n}").format(n=goal.feedback_count)
     if goal.error:
         told = plain(localized(goal.error), LONGEST)
+    age_s, whose = (goal.elapsed_s, _("own")) if isinstance(goal, Goal) else (goal.age_s, _("other"))
     age = "" if age_s is None else _("{n} s").format(n=figure(age_s, 1))
-    cells = (
-        Cell(_name(goal)),
-        Cell(_words(goal), STATES[goal.status][2]),
-        Cell(age, "dim"),
-        Cell(f"{whose} · {told}", "dim"),
-    )
-    return Row(_key(goal), cells)
+    state = Cell(_words(goal), STATES[goal.status][2])
+    return Row(_key(goal), (Cell(_name(goal)), state, Cell(age, "dim"), Cell(f"{whose} · {told}", "dim")))
 
 
 @action(
@@ -258,11 +205,10 @@ class CancelGoalScreen(Dialog["SeenGoal | None"]):
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(cancel_goal, leave_goal)
 
-    def __init__(self, goal: SeenGoal, state: str) -> None:
-        """Ask about `goal`, whose state in the list is `state`."""
+    def __init__(self, goal: SeenGoal) -> None:
         super().__init__()
         self.goal = goal
-        self._state = state
+        self._state = _words(goal)
 
     def title_words(self) -> str:
         return _("Cancel a goal of another client?")

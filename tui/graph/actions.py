@@ -31,7 +31,7 @@ def fill_in(screen: GraphScreen) -> None:
 def _may_change_state(screen: GraphScreen) -> bool | None:
     """Only for a node that can change now."""
     pane = screen.node_pane
-    return pane is not None and pane.can_change and screen.shows_pane
+    return pane is not None and bool(pane.transitions) and screen.shows_pane
 
 
 @action(
@@ -62,19 +62,6 @@ def filter_names(screen: GraphScreen) -> None:
     screen.focus_filter()
 
 
-@action(
-    "graph.map",
-    "M",
-    N_("Map"),
-    N_("Draw the selected node with those that it talks to; the arrow keys move, Enter opens."),
-    footer=True,
-    anywhere=True,
-    label=lambda screen: N_("List") if screen.draws else N_("Map"),
-)
-def show_map(screen: GraphScreen) -> None:
-    screen.toggle_map()
-
-
 def _shows_live_node(screen: GraphScreen) -> bool | None:
     """Only for a node, and not in a recording."""
     if screen.feed.replay is not None:
@@ -96,11 +83,6 @@ def show_parameters(screen: GraphScreen) -> None:
         screen.node_pane.toggle_parameters()
 
 
-def _shows_parameters(screen: GraphScreen) -> bool | None:
-    """Only while they are shown."""
-    return screen.shows_parameters
-
-
 @action(
     "graph.save",
     "W",
@@ -108,7 +90,7 @@ def _shows_parameters(screen: GraphScreen) -> bool | None:
     N_("Save the node's parameters as YAML."),
     means="write to a file",
     footer=True,
-    when=_shows_parameters,
+    when=lambda screen: screen.shows_parameters,
 )
 def save_parameters(screen: GraphScreen) -> None:
     if screen.node_pane is not None:
@@ -121,7 +103,7 @@ def save_parameters(screen: GraphScreen) -> None:
     N_("Load"),
     N_("Set the node's parameters from a YAML file."),
     footer=True,
-    when=_shows_parameters,
+    when=lambda screen: screen.shows_parameters,
 )
 def load_parameters(screen: GraphScreen) -> None:
     if screen.node_pane is not None:

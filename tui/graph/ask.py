@@ -8,10 +8,9 @@ from textual.containers import Container, Vertical
 from textual.widgets import Static
 
 from text.i18n import _
-from tui import clock
 from tui.echo.tree import EchoTree
-from tui.graph.links import GraphLinks
-from tui.graph.pane import GraphPane
+from tui.graph.pane import GraphLinks, GraphPane, heading, link, node_links
+from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Rows
 from tui.yaml_form.actions import submit_form
@@ -21,24 +20,23 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from textual.app import ComposeResult
-    from textual.timer import Timer
     from textual.widget import Widget
 
     from tui.widgets.rows import Column, Row
 
-SETTLED_S = 0.12
-"""How long a choice must stand before its form is created: that imports its package."""
-TICK_S = 0.5
+    Answer = tuple[str, str, "Mapping[str, Any] | tuple[str, str]"]
 
 
 class AskPane(GraphPane):
     """Form beside the answers, or above them on a narrow screen.
 
-    A subclass supplies the nodes involved (`links`), the earlier requests (`asked`), and the
-    outcome of the chosen one (`answer`).
+    A subclass supplies the nodes involved (`ends`), the earlier requests (`asked`), and the outcome
+    of the chosen one (`answer`).
     """
 
     submit_title: ClassVar[str] = ""
+    calls_it: ClassVar[str] = ""
+    """What is said of its clients, marked by `N_`."""
     DEFAULT_CSS: ClassVar[str] = """
     AskPane {
         .ask-body { height: 1fr; width: 1fr; layout: vertical; }
@@ -51,13 +49,12 @@ class AskPane(GraphPane):
     }
     """
 
-    def __init__(self, *, id: str | None = None) -> None:
+    def __init__(self, *, id: str) -> None:
         super().__init__(id=id)
         self._texts: dict[str, str] = {}
         """Maps a name to the text that was in its form."""
         self._could_cancel = False
         self._form_for = ""
-        self._settling: Timer | None = None
 
     def compose(self) -> ComposeResult:
         """Head, nodes, form; answer, and the earlier requests."""
@@ -76,17 +73,9 @@ class AskPane(GraphPane):
         """Yield further widgets below the form."""
         yield from ()
 
-    def on_mount(self) -> None:
-        """Keep the waiting time up to date."""
-        self.set_interval(TICK_S, self.tick)
-
     @property
     def form(self) -> YamlForm:
         return self.query_one(YamlForm)
-
-    @property
-    def echo(self) -> EchoTree:
-        return self.query_one(EchoTree)
 
     @property
     def asked_rows(self) -> Rows:
@@ -97,23 +86,19 @@ class AskPane(GraphPane):
     def submit_key(self) -> str:
         return self.deck.keys_of(submit_form)[0]
 
-    def type_names(self) -> tuple[str, ...]:
-        """Return the types of what is shown; empty if it has left the graph."""
-        raise NotImplementedError
-
-    def links(self) -> Sequence[Row]:
-        """Return rows that link to its type and its nodes."""
+    def ends(self) -> tuple[Sequence[str], Sequence[str], Sequence[str]] | None:
+        """Return the types, the servers and the clients of what is shown; None if it has left the graph."""
         raise NotImplementedError
 
     def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
         """Return the requests, the newest first."""
         raise NotImplementedError
 
-    def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
+    def answer(self) -> Answer:
         """Return a title, what the tree belongs to, and the tree or the words in its place."""
         raise NotImplementedError
 
-    def ask(self, value: Mapping[str, Any]) -> None:
+    def ask(self, type_name: str, value: Mapping[str, Any]) -> None:
         raise NotImplementedError
 
     @property
@@ -132,28 +117,6 @@ class AskPane(GraphPane):
     def forget(self) -> None:
         """Remove the chosen request from the list."""
 
-    @property
-    def is_waiting(self) -> bool:
-        return self.can_cancel
-
-    def tick(self) -> None:
-        """Update the waiting time while a request is in progress."""
-        if self.is_waiting:
-            self.redraw()
-
-    @property
-    def is_settling(self) -> bool:
-        """Whether its form is still to be loaded."""
-        return self._settling is not None
-
-    def show_name(self, name: str) -> None:
-        """Show another name, and load its form once the choice stands."""
-        if name != self.name_shown:
-            if self._settling is not None:
-                self._settling.stop()
-            self._settling = self.set_timer(SETTLED_S, self.load_form)
-        super().show_name(name)
-
     def ros2_line(self, type_name: str, value: Mapping[str, Any]) -> str:
         """Return what sends this request, as a command line of `ros2`."""
         raise NotImplementedError
@@ -162,35 +125,44 @@ class AskPane(GraphPane):
         """Return what tells of the name, while the form cannot be sent."""
         raise NotImplementedError
 
+    @property
+    def _type(self) -> str:
+        """The type that is used, empty if what is shown has left the graph."""
+        ends = self.ends()
+        return ends[0][0] if ends is not None and ends[0] else ""
+
     def ros2_command(self) -> str:
         """Return what sends the form, or tells of the name while there is nothing to be sent."""
-        types, value = self.type_names(), self.form.value
-        if types and value is not None and self._form_for == self.name_shown:
-            return self.ros2_line(types[0], value)
+        type_name, value = self._type, self.form.value
+        if type_name and value is not None and self._form_for == self.name_shown:
+            return self.ros2_line(type_name, value)
         return self.ros2_info() if self.name_shown else ""
 
-    def load_form(self) -> None:
+    def load(self) -> None:
         """Replace the previous form with that of the current name."""
-        self._settling = None
         if self._form_for:
             self._texts[self._form_for] = self.form.text
-        types = self.type_names()
-        if types and self.name_shown != self._form_for:
+        if self._type and self.name_shown != self._form_for:
             self._form_for = self.name_shown
-            self.form.load(types[0], self._texts.get(self.name_shown))
+            self.form.load(self._type, self._texts.get(self.name_shown))
 
     def redraw(self) -> None:
         if not self.name_shown or not self.is_mounted:
             return
-        types = self.type_names()
-        told = [] if types else [_("nobody serves it any more")]
-        if len(types) > 1:
-            told = [_("Nodes use different types for it; Deck uses {type}.").format(type=types[0])]
+        ends, rows = self.ends(), [heading(_("It has left the graph."))]
+        told = [] if self._type else [_("nobody serves it any more")]
+        if ends is not None:
+            types, servers, clients = ends
+            if len(types) > 1:
+                told = [_("Nodes use different types for it; Deck uses {type}.").format(type=types[0])]
+            rows = [link(GraphPlace(GraphKind.TYPE, name), "type", _("type")) for name in types]
+            rows += node_links(servers, "serves", _("serves it"))
+            rows += node_links(clients, "calls", _(self.calls_it))
         self.query_one(NameHead).show(self.name_shown, *told)
-        self.query_one(GraphLinks).show_links(self.links())
-        columns, rows = self.asked()
-        self.asked_rows.display = bool(rows)
-        self.asked_rows.show(columns, rows)
+        self.query_one(GraphLinks).show_links(rows)
+        columns, asked = self.asked()
+        self.asked_rows.display = bool(asked)
+        self.asked_rows.show(columns, asked)
         self._show_answer()
         if self.can_cancel != self._could_cancel:
             self._could_cancel = self.can_cancel
@@ -215,10 +187,10 @@ class AskPane(GraphPane):
         event.stop()
         if self.deck.feed.graph is None:
             self.warn(_("no lesson is running"))
-        elif self._form_for != self.name_shown or not self.type_names():
+        elif self._form_for != self.name_shown or not self._type:
             self.warn(_("nobody serves it any more"))
         else:
-            self.ask(event.value)
+            self.ask(self._type, event.value)
         self.redraw()
 
     def _show_answer(self) -> None:
@@ -226,12 +198,8 @@ class AskPane(GraphPane):
         bar = self.query_one(".ask-title", Static)
         if bar.content != title:
             bar.update(title)
+        echo = self.query_one(EchoTree)
         if isinstance(tree, tuple):
-            self.echo.show_words(name, *tree)
+            echo.show_words(name, *tree)
         else:
-            self.echo.show(name, tree)
-
-
-def now_s() -> float:
-    """Return the clock for waiting times, in seconds."""
-    return clock.now()
+            echo.show(name, tree)

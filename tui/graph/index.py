@@ -1,25 +1,58 @@
-"""The graph by kind: what is listed, how it is searched, and why a list is empty."""
+"""The graph by kind: what is listed, what is wrong with it, how it is searched, and why a list is empty."""
 
 from __future__ import annotations
 
 import asyncio
-from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
+from graph.findings.finding import FindingLevel, GraphFinding
+from graph.findings.lasting import LastingFindings
 from graph.housekeeping import is_housekeeping
-from text.i18n import _, localized
-from tui.graph.finding_words import LOOKS, FindingsBook, checked_words, title
+from launcher.status import NodeState
+from text.i18n import N_, _, localized
+from tui import clock
 from tui.graph.places import LISTED, GraphKind
+from tui.session.norms import NORMS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
+    from launcher.status import NodeStatus
     from tui.graph.places import GraphPlace
+    from tui.session.feed import Feed
 
     Typed = TopicRow | ServiceRow | ActionRow
 
-    from tui.session.feed import Feed
+LOOKS = {FindingLevel.ERROR: ("✗", N_("error"), "bad"), FindingLevel.WARNING: ("▲", N_("warning"), "warn")}
+"""Sign, word and meaning (`tui.widgets.rows.Cell`) of a level."""
+_TITLES = {
+    "clock": N_("another clock"),
+    "failed": N_("has failed"),
+    "clock-mix": N_("two kinds of time"),
+    "fight": N_("publishers that fight"),
+    "lost": N_("messages are lost"),
+    "namesakes": N_("nodes with one name"),
+    "near-name": N_("name nearly matches"),
+    "no-clock": N_("no simulated time"),
+    "qos": N_("incompatible QoS"),
+    "silent": N_("has fallen silent"),
+    "two-types": N_("types do not agree"),
+    "unfed": N_("nobody publishes"),
+    "unknown-type": N_("unknown type"),
+    "unserved": N_("nobody serves"),
+}
+
+
+def failures_of(nodes: Iterable[NodeStatus]) -> dict[str, str]:
+    """Return the nodes that have ended for good, by full name, and why."""
+    return {f"/{node.name}": node.detail for node in nodes if node.state is NodeState.FAILED}
+
+
+def head_words(finding: GraphFinding) -> str:
+    """Return how bad it is and what it is: `✗ error · nobody serves`."""
+    sign, word, _meaning = LOOKS[finding.level]
+    return f"{sign} {_(word)} · {_(_TITLES[finding.rule])}"
 
 
 class GraphEntry(NamedTuple):
@@ -43,25 +76,35 @@ class GraphIndex:
     def __init__(self) -> None:
         self.everything = False
         """Whether what belongs to ROS itself is listed."""
-        self.listed: dict[GraphKind, list[GraphEntry]] = {}
+        self.listed: dict[GraphKind, list[GraphEntry]] = {kind: [] for kind in LISTED}
         """Everything of each kind."""
-        self.findings = FindingsBook()
-        """What is wrong with the graph."""
+        self.findings: tuple[GraphFinding, ...] = ()
+        """What is wrong with the graph, once it has held for long enough; the worst first."""
+        self._lasting = LastingFindings(NORMS)
         self._installed: tuple[str, ...] = ()
         """Every type installed on this computer, once it has been requested."""
 
-    def take(self, update: GraphUpdate | None, failures: Mapping[str, str] = MappingProxyType({})) -> None:
-        """Use this graph from now on; `failures`: nodes that have ended for good, and why."""
-        self.listed = {kind: entries(update, kind, self._installed) for kind in LISTED}
-        self.findings.take(update, failures)
-        self.listed[GraphKind.FINDING] = _findings(self.findings)
+    def take(self, update: GraphUpdate | None, failures: Mapping[str, str]) -> None:
+        """Use this graph from now on; None if the session has ended.
+
+        `failures`: nodes that have ended for good, and why.
+        """
+        self.listed |= {kind: [] for kind in LISTED} if update is None else entries(update, self._installed)
+        if update is None:
+            self._lasting.forget()
+        else:
+            self._lasting.take(update, clock.steady(), failures)
+        self.settle()
 
     def settle(self) -> bool:
         """List findings that have held for long enough by now; return whether that changed any."""
-        if not self.findings.settle():
-            return False
-        self.listed[GraphKind.FINDING] = _findings(self.findings)
-        return True
+        before, self.findings = self.findings, self._lasting.told(clock.steady())
+        self.listed[GraphKind.FINDING] = [_finding(one) for one in self.findings]
+        return before != self.findings
+
+    def finding(self, key: str) -> GraphFinding | None:
+        """Return the finding with this key, if it still holds."""
+        return next((one for one in self.findings if one.key == key), None)
 
     async def find_installed(self) -> None:
         """Find installed types that nobody uses, for the next `take`."""
@@ -69,41 +112,47 @@ class GraphIndex:
 
         self._installed = await asyncio.to_thread(interfaces)
 
-    def all_of(self, kind: GraphKind) -> list[GraphEntry]:
-        return self.listed.get(kind, [])
-
     def fitting(self, kind: GraphKind, words: str = "") -> list[GraphEntry]:
         """Return what is listed of a kind for a filter with these words."""
-        return chosen_of(self.all_of(kind), words, everything=self.everything)
+        return chosen_of(self.listed[kind], words, everything=self.everything)
 
     def reveal(self, place: GraphPlace, words: str) -> bool:
         """Make sure that a place is listed; return whether it also matches these words."""
-        entry = next((one for one in self.all_of(place.kind) if one.name == place.name), None)
+        entry = next((one for one in self.listed[place.kind] if one.name == place.name), None)
         if entry is None:
             return False
-        if entry.housekeeping:
-            self.everything = True
+        self.everything |= entry.housekeeping
         return bool(chosen_of([entry], words, everything=True))
 
 
-def entries(update: GraphUpdate | None, kind: GraphKind, installed: Iterable[str] = ()) -> list[GraphEntry]:
-    """Return everything of a kind, sorted by name; types that nobody uses count as ROS's own.
+def entries(update: GraphUpdate, installed: Iterable[str]) -> dict[GraphKind, list[GraphEntry]]:
+    """Return everything of each kind, sorted by name; types that nobody uses count as ROS's own."""
 
-    Findings take time to be sure of: they are not made here.
-    """
-    if update is None:
-        return []
-    if kind is GraphKind.NODE:
-        found = [GraphEntry(row.name, "", is_housekeeping(row.name)) for row in update.nodes]
-    elif kind is GraphKind.SERVICE:
-        found = [_typed(row.name, row.type_names) for row in update.services]
-    elif kind is GraphKind.ACTION:
-        found = [_typed(row.name, row.type_names) for row in update.actions]
-    elif kind is GraphKind.TYPE:
-        found = _types(update, installed)
-    else:
-        return []
-    return sorted(set(found))
+    def typed(rows: Iterable[Typed]) -> list[GraphEntry]:
+        return [GraphEntry(row.name, ", ".join(row.type_names), is_housekeeping(row.name)) for row in rows]
+
+    found = {
+        GraphKind.NODE: [GraphEntry(row.name, "", is_housekeeping(row.name)) for row in update.nodes],
+        GraphKind.SERVICE: typed(update.services),
+        GraphKind.ACTION: typed(update.actions),
+        GraphKind.TYPE: _types(update, installed),
+    }
+    return {kind: sorted(set(of_kind)) for kind, of_kind in found.items()}
+
+
+def _types(update: GraphUpdate, installed: Iterable[str]) -> list[GraphEntry]:
+    used = dict.fromkeys(installed, True)
+    rows: tuple[Typed, ...] = (*update.topics, *update.services, *update.actions)
+    for row in rows:
+        for type_name in row.type_names:
+            used[type_name] = used.get(type_name, True) and is_housekeeping(row.name)
+    return [GraphEntry(name, "", hidden) for name, hidden in used.items()]
+
+
+def _finding(finding: GraphFinding) -> GraphEntry:
+    (sign, _word, meaning), title, name = LOOKS[finding.level], _(_TITLES[finding.rule]), finding.place.name
+    detail = f"{name} {title} {localized(finding.what)}"
+    return GraphEntry(finding.key, detail, label=f"{sign} {name}", remark=title, meaning=meaning)
 
 
 def chosen_of(listed: Iterable[GraphEntry], words: str, *, everything: bool) -> list[GraphEntry]:
@@ -115,46 +164,6 @@ def chosen_of(listed: Iterable[GraphEntry], words: str, *, everything: bool) -> 
         if (everything or not entry.housekeeping)
         and all(part in f"{entry.name} {entry.detail}".casefold() for part in parts)
     ]
-
-
-def users_of(update: GraphUpdate | None, type_name: str) -> dict[GraphKind, list[str]]:
-    """Return the names of everything that uses this type, by kind."""
-    if update is None:
-        return {}
-    rows: dict[GraphKind, Sequence[Typed]] = {
-        GraphKind.TOPIC: update.topics,
-        GraphKind.SERVICE: update.services,
-        GraphKind.ACTION: update.actions,
-    }
-    found = {kind: [row.name for row in of_kind if type_name in row.type_names] for kind, of_kind in rows.items()}
-    return {kind: names for kind, names in found.items() if names}
-
-
-def _findings(book: FindingsBook) -> list[GraphEntry]:
-    return [
-        GraphEntry(
-            finding.key,
-            f"{finding.place.name} {title(finding)} {localized(finding.what)}",
-            label=f"{LOOKS[finding.level][0]} {finding.place.name}",
-            remark=title(finding),
-            meaning=LOOKS[finding.level][2],
-        )
-        for finding in book.told
-    ]
-
-
-def _typed(name: str, type_names: tuple[str, ...]) -> GraphEntry:
-    return GraphEntry(name, ", ".join(type_names), is_housekeeping(name))
-
-
-def _types(update: GraphUpdate, installed: Iterable[str]) -> list[GraphEntry]:
-    used = dict.fromkeys(installed, True)
-    rows: tuple[Typed, ...] = (*update.topics, *update.services, *update.actions)
-    for row in rows:
-        hidden = is_housekeeping(row.name)
-        for type_name in row.type_names:
-            used[type_name] = used.get(type_name, True) and hidden
-    return [GraphEntry(name, "", hidden) for name, hidden in used.items()]
 
 
 def why_empty(feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str) -> tuple[str, str]:
@@ -170,18 +179,20 @@ def why_empty(feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_
         return _("nothing matches the filter"), _("Escape in the filter shows all again.")
     if listed:
         return _("only what ROS itself needs is here"), _("{key} shows it.").format(key=all_key)
-    return _none(kind)
-
-
-def _none(kind: GraphKind) -> tuple[str, str]:
-    if kind is GraphKind.NODE:
-        return _("no node in this domain"), _(
-            "Nodes of another domain number, or of another computer while discovery is localhost, are not seen."
-        )
-    if kind is GraphKind.SERVICE:
-        return _("nobody serves a service"), _("Start a node that does: head_controller is one.")
-    if kind is GraphKind.ACTION:
-        return _("nobody serves an action"), _("Start a node that does: drive_to_point is one.")
-    if kind is GraphKind.FINDING:
-        return _("no findings"), checked_words()
-    return _("no type is in use"), _("Types are those of topics, services and actions.")
+    return {
+        GraphKind.NODE: (
+            _("no node in this domain"),
+            _("Nodes of another domain number, or of another computer while discovery is localhost, are not seen."),
+        ),
+        GraphKind.SERVICE: (_("nobody serves a service"), _("Start a node that does: head_controller is one.")),
+        GraphKind.ACTION: (_("nobody serves an action"), _("Start a node that does: drive_to_point is one.")),
+        GraphKind.TYPE: (_("no type is in use"), _("Types are those of topics, services and actions.")),
+        GraphKind.FINDING: (
+            _("no findings"),
+            _(
+                "Checked: publishers that fight, types that do not agree, QoS, topics and services without "
+                "a source, names that nearly match, nodes with one name, clocks. While this list is open, "
+                "every topic is measured: lost messages, foreign stamps and silence show up, too."
+            ),
+        ),
+    }[kind]

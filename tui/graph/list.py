@@ -38,28 +38,23 @@ class GraphList(Rows):
             # A type does not disappear when nobody uses it.
             listed.append((GraphEntry(chosen), kind is GraphKind.TYPE))
         self._kind, self._listed = kind, tuple(listed)
-        self._lay()
+        self.on_resize()
         if chosen:
             self.choose(f"{kind.value}|{chosen}")
 
     def on_resize(self) -> None:
         """Shorten the names for the new width."""
-        self._lay()
+        self.show([Column("")], [self._row(entry, there=there) for entry, there in self._listed])
 
-    def _lay(self) -> None:
-        rows = [self._row(self._kind, entry, there=there) for entry, there in self._listed]
-        self.show([Column("")], rows)
-
-    def _row(self, kind: GraphKind, entry: GraphEntry, *, there: bool) -> Row:
+    def _row(self, entry: GraphEntry, *, there: bool) -> Row:
         room = max(4, self.size.width - 4) if self.size.width else LONGEST
         words = plain(entry.label or entry.name, LONGEST)
         if not there:
-            gone = _("gone")
-            words = f"✗ {words} ({gone})"
+            words = f"✗ {words} (" + _("gone") + ")"
         if entry.remark and len(words) + len(entry.remark) + 2 <= room:
             words = f"{words}  {entry.remark}"
         cell = Cell(ended(words, room), entry.meaning if there else "dim")
-        return Row(f"{kind.value}|{entry.name}", (cell,))
+        return Row(f"{self._kind.value}|{entry.name}", (cell,))
 
 
 def ended(words: str, room: int) -> str:

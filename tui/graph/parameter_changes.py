@@ -8,18 +8,22 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from rich.cells import cell_len
 from textual import on
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Input, Static
 
+from text import ros2_words
 from text.i18n import _, localized, ngettext
 from text.os_words import os_reason
 from text.plain import plain
+from tui.actions import bindings
 from tui.dialogs.dialog import Dialog
+from tui.dialogs.ros2 import copy_dialog_as_ros2
 from tui.frame.host import host_of
-from tui.graph.parameter_dialog import ParameterDialog
+from tui.graph.parameters import allowed_words, meant, typed
 from tui.widgets.field import Field
 
 if TYPE_CHECKING:
@@ -30,93 +34,159 @@ if TYPE_CHECKING:
     from graph.data import ParameterRow, Value
     from tui.graph.parameters import GraphParameters
 
-LONGEST_REMARK = 1000
+LONGEST = 400
+LONGEST_TITLE = 64
+"""Cells that fit into the frame on a terminal with 80 columns; a longer title is shown below it."""
+TEXTS = frozenset({"string", "not_set"})
+"""Types whose value is the typed text itself."""
+SHOWN = 3
+"""Number of refusals that are reported individually."""
 
 Take = Callable[[str], Awaitable[str]]
-"""Does the work with the file; returns what went wrong, empty if nothing did."""
+"""Does the work with what was typed; returns what went wrong, empty if nothing did."""
 
 
-class PathDialog(Dialog[str]):
-    """Returns the path, empty if none was given; stays open while the file is refused."""
+class FieldDialog(Dialog[None]):
+    """Asks for a line of text; stays open, with the reason, while it is refused."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False)]
     DEFAULT_CSS: ClassVar[str] = """
-    PathDialog Input { width: 1fr; margin: 0 1; }
-    PathDialog #path-remark { height: auto; padding: 1 1 0 1; color: $text-warning; }
-    PathDialog #path-keys { height: auto; padding: 1 1; color: $text-muted; }
+    FieldDialog Input { width: 1fr; margin: 0 1; }
+    FieldDialog #field-remark { height: auto; padding: 1 1 0 1; color: $text-warning; }
+    FieldDialog #field-keys { height: auto; padding: 1 1; color: $text-muted; }
     """
+    may_change: bool = True
+    typing_replaces: ClassVar[bool] = False
 
-    def __init__(self, title: str, words: str, path: str, take: Take) -> None:
-        """Ask for a path, with `path` as the default."""
+    def __init__(self, text: str, take: Take) -> None:
+        """Ask for a text, with `text` as the default."""
         super().__init__()
-        self._title, self._words, self._path, self._take = title, words, path, take
+        self._text, self._take = text, take
         self._busy = False
-
-    def title_words(self) -> str:
-        """Return what is about to be done."""
-        return self._title
-
-    def words(self) -> Content:
-        """Return what the file contains."""
-        return Content(self._words)
 
     def compose(self) -> ComposeResult:
         """Words, field, remark, keys."""
         with Vertical(id="dialog"):
             yield Static(id="dialog-text", markup=False)
-            yield Field(self._path, compact=True, select_on_focus=False)
-            yield Static(id="path-remark", markup=False)
-            yield Static(id="path-keys", markup=False)
+            yield Field(self._text, compact=True, select_on_focus=self.typing_replaces, disabled=not self.may_change)
+            yield Static(id="field-remark", markup=False)
+            yield Static(id="field-keys", markup=False)
 
     def on_mount(self) -> None:
         self.query_one(Input).focus()
-        self._remark("")
+        self.remark("" if self.may_change else _("It can only be read: the node sets it when it starts."))
 
     def redraw(self) -> None:
         super().redraw()
-        self.query_one("#path-keys", Static).update(_("Enter continues, Escape cancels"))
+        self.query_one("#field-keys", Static).update(self.keys())
+
+    def keys(self) -> str:
+        """Return what Enter and Escape do."""
+        return _("Enter continues, Escape cancels")
 
     def action_leave(self) -> None:
-        """Close without doing anything."""
-        self.dismiss("")
+        self.dismiss(None)
 
     @on(Input.Changed)
     def _changed(self) -> None:
-        if not self._busy:
-            self._remark("")
+        if not self._busy and self.may_change:
+            self.remark("")
 
     @on(Input.Submitted)
     def _submitted(self, event: Input.Submitted) -> None:
-        path = event.value.strip()
-        if path and not self._busy:
-            self._busy = True
-            self.run_worker(self._try(path), exit_on_error=False)
+        if not self._busy:
+            self.run_worker(self._try(event.value), exit_on_error=False)
 
-    async def _try(self, path: str) -> None:
-        wrong = await self._take(path)
+    async def _try(self, text: str) -> None:
+        self._busy = True
+        refusal = await self.take(text)
         self._busy = False
-        if wrong:
-            self._remark(wrong)
+        if refusal:
+            self.remark(refusal)
         elif self.is_current:
-            self.dismiss(path)
+            self.dismiss(None)
 
-    def _remark(self, words: str) -> None:
-        remark = self.query_one("#path-remark", Static)
-        remark.update(plain(words, LONGEST_REMARK))
+    async def take(self, text: str) -> str:
+        """Use what was typed; return why it is refused, empty if it is not."""
+        return await self._take(text)
+
+    def remark(self, words: str) -> None:
+        remark = self.query_one("#field-remark", Static)
+        remark.update(plain(words, LONGEST))
         remark.display = bool(words)
 
 
-LONGEST = 400
-SHOWN = 3
-"""Number of refusals that are reported individually."""
+class PathDialog(FieldDialog):
+    """Asks for the path of a file."""
+
+    def __init__(self, title: str, words: str, node: str, take: Take) -> None:
+        """Propose a file called as the node is."""
+        super().__init__(f"{node.strip('/').replace('/', '__')}.yaml", take)
+        self._title, self._words = title, words
+
+    def title_words(self) -> str:
+        return self._title
+
+    def words(self) -> Content:
+        return Content(self._words)
+
+    async def take(self, text: str) -> str:
+        path = text.strip()
+        return await super().take(path) if path else _("Enter a file name.")
+
+
+class ParameterDialog(FieldDialog):
+    """Asks for the value of a parameter."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(copy_dialog_as_ros2)
+    typing_replaces = True
+
+    def __init__(self, node: str, row: ParameterRow, apply: Callable[[Value], Awaitable[str]]) -> None:
+        """`apply` sets the value; it returns why it was refused, or nothing."""
+        super().__init__(typed(row.value), lambda text: apply(self._value(text)))
+        self._node, self._row = node, row
+        self.may_change = not row.read_only
+
+    def title_words(self) -> str:
+        return f"{plain(self._node, LONGEST)} · {plain(self._row.name, LONGEST)}"
+
+    def words(self) -> Content:
+        """Say what it is, and which values are allowed."""
+        row, title = self._row, self.title_words()
+        lines = [Content.styled(title, "bold")] if cell_len(title) > LONGEST_TITLE else []
+        lines += [Content(plain(_(row.description), LONGEST))] if row.description else []
+        lines.append(Content.styled(plain(row.type_name), "$text-muted"))
+        if allowed := allowed_words(row):
+            lines.append(Content(_("Allowed: {words}").format(words=allowed)))
+        return Content("\n").join(lines)
+
+    def keys(self) -> str:
+        return _("Enter sets it, Escape leaves") if self.may_change else _("Escape leaves")
+
+    async def take(self, text: str) -> str:
+        self.remark(_("The node is being asked…"))
+        refusal = await super().take(text)
+        return _("Refused: {reason}").format(reason=refusal) if refusal else ""
+
+    async def ros2_command(self) -> str:
+        """Return what sets the parameter to what is typed."""
+        value = self._value(self.query_one(Input).value)
+        is_yaml = isinstance(value, str) and self._row.type_name not in TEXTS
+        text = str(value) if is_yaml else ros2_words.flow(value)
+        return ros2_words.set_parameter(self._node, self._row.name, text)
+
+    def _value(self, text: str) -> Value:
+        """Return the value of the text; the original value as long as the text is unchanged."""
+        if self._row.value is not None and text == self._text:
+            return self._row.value
+        return meant(text) if self._row.type_name in TEXTS else text
 
 
 def edit(app: App[Any], table: GraphParameters) -> None:
     """Ask for a new value of the chosen parameter."""
     row = table.chosen
     if row is not None:
-        apply = partial(_apply, app, table, row)
-        app.push_screen(ParameterDialog(table.node, row, apply))
+        app.push_screen(ParameterDialog(table.node, row, lambda value: _set(app, table, {row.name: value})))
 
 
 def save(app: App[Any], table: GraphParameters) -> None:
@@ -124,32 +194,16 @@ def save(app: App[Any], table: GraphParameters) -> None:
     if not table.rows:
         app.notify(_("There are no parameters to save."), severity="warning", markup=False)
         return
-
-    def tell(path: str | None) -> None:
-        if path:
-            words = _("Saved: {path}").format(path=plain(path, LONGEST))
-            app.notify(words, markup=False)
-
     words = _("As `ros2 param dump` writes it, and `ros2 run --params-file` reads it.")
-    take = _Saving(table.node, table.rows)
-    path = f"{table.node.strip('/').replace('/', '__')}.yaml"
-    app.push_screen(PathDialog(_("Save parameters"), words, path, take), tell)
+    app.push_screen(PathDialog(_("Save parameters"), words, table.node, partial(_save, app, table, [])))
 
 
 def load(app: App[Any], table: GraphParameters) -> None:
     """Ask for a file, and set the parameters that it has for this node."""
     if not table.node:
         return
-    words = _("A file of `ros2 param dump`. What it has for {node} is set.")
-    path = f"{table.node.strip('/').replace('/', '__')}.yaml"
-    dialog = PathDialog(
-        _("Load parameters"), words.format(node=plain(table.node, LONGEST)), path, partial(_load, app, table)
-    )
-    app.push_screen(dialog)
-
-
-async def _apply(app: App[Any], table: GraphParameters, row: ParameterRow, value: Value) -> str:
-    return await _set(app, table, {row.name: value})
+    words = _("A file of `ros2 param dump`. What it has for {node} is set.").format(node=plain(table.node, LONGEST))
+    app.push_screen(PathDialog(_("Load parameters"), words, table.node, partial(_load, app, table)))
 
 
 async def _set(app: App[Any], table: GraphParameters, values: Mapping[str, Value]) -> str:
@@ -169,25 +223,21 @@ async def _set(app: App[Any], table: GraphParameters, values: Mapping[str, Value
     return "; ".join(reasons[:SHOWN]) + (_(" and {n} more").format(n=more) if more > 0 else "")
 
 
-class _Saving:
-    """Saves to a file, and overwrites an existing one only if its name is entered twice."""
+async def _save(app: App[Any], table: GraphParameters, refused: list[str], path: str) -> str:
+    """Save them; overwrite an existing file only if its name was `refused` and is entered again."""
+    from graph.calls.parameters_file import save_file
 
-    def __init__(self, node: str, rows: tuple[ParameterRow, ...]) -> None:
-        self._node, self._rows = node, rows
-        self._refused = ""
-
-    async def __call__(self, path: str) -> str:
-        from graph.calls.parameters_file import save_file
-
-        replace = path == self._refused
-        try:
-            await asyncio.to_thread(save_file, _full(path), self._node, self._rows, replace=replace)
-        except FileExistsError:
-            self._refused = path
-            return _("The file already exists: press Enter again to overwrite it.")
-        except OSError as error:
-            return _not_opened(path, error)
-        return ""
+    replace = path in refused
+    refused.clear()
+    try:
+        await asyncio.to_thread(save_file, _full(path), table.node, table.rows, replace=replace)
+    except FileExistsError:
+        refused.append(path)
+        return _("The file already exists: press Enter again to overwrite it.")
+    except OSError as error:
+        return f"{path}: {localized(os_reason(error))}"
+    app.notify(_("Saved: {path}").format(path=plain(path, LONGEST)), markup=False)
+    return ""
 
 
 async def _load(app: App[Any], table: GraphParameters, path: str) -> str:
@@ -197,7 +247,7 @@ async def _load(app: App[Any], table: GraphParameters, path: str) -> str:
     try:
         values = await asyncio.to_thread(load_file, _full(path), table.node)
     except OSError as error:
-        return _not_opened(path, error)
+        return f"{path}: {localized(os_reason(error))}"
     except YamlError as error:
         return f"{path}:{error.line}:{error.column}: {localized(error.message)}"
     if not values:
@@ -215,7 +265,3 @@ async def _load(app: App[Any], table: GraphParameters, path: str) -> str:
 
 def _full(path: str) -> Path:
     return Path(path).expanduser()
-
-
-def _not_opened(path: str, error: OSError) -> str:
-    return f"{path}: {localized(os_reason(error))}"

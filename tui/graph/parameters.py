@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.containers import Vertical
 from textual.widgets import Static
 
-from text.i18n import _, localized, ngettext
-from text.plain import plain
+from text.i18n import N_, _, localized, ngettext
+from text.plain import is_plain, plain
+from text.yaml_scalars import in_quotes, unquoted
 from tui import clock
 from tui.frame.host import host_of
 from tui.graph.pane import LONGEST, EmptyNotice
-from tui.graph.parameter_words import allowed_words, value_text
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 
@@ -23,13 +24,71 @@ if TYPE_CHECKING:
 
     from textual.app import ComposeResult
 
-    from graph.data import ParameterRow, ParametersResult, Sample
+    from graph.data import ParameterRow, ParametersResult, Sample, Value
 
 ROOMY = 70
 """Cells from which on there are columns for type and limits."""
 TICK_S = 0.5
 PARAMETER_EVENTS = "/parameter_events"
 """The topic on which every node reports changes of its parameters, whoever made them."""
+UNITS = (
+    N_("m"), N_("s"), N_("ms"), N_("Hz"), N_("V"), N_("rad"), N_("deg"), N_("m/s"), N_("rad/s"),
+    N_("deg/s"),
+)  # fmt: skip
+MEASURE = re.compile(r"(?P<least>\S+) \.\. (?P<greatest>\S+)(?: (?P<unit>\S+))?")
+"""The notation of Deck's own nodes for a range in their constraints."""
+
+
+def typed(value: Value | None) -> str:
+    """Return a value as one would type it: a text unchanged, a list with commas in brackets.
+
+    A text with invisible parts is in double quotes, with escapes; `meant` reverses that.
+    """
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return value if is_plain(value) and unquoted(value) is None else in_quotes(value)
+    if isinstance(value, (int, float)):
+        return repr(value)
+    items: Any = value.tolist() if hasattr(value, "tolist") else value
+    # Quotes keep a text in a list from being taken for a number.
+    return "[" + ", ".join(in_quotes(item) if isinstance(item, str) else typed(item) for item in items) + "]"
+
+
+def meant(text: str) -> str:
+    """Return the text that was meant: what is between double quotes, otherwise all of it."""
+    between = unquoted(text)
+    return text if between is None else between
+
+
+def allowed_words(row: ParameterRow) -> str:
+    """Return the range, the step, and whether it can be changed at all."""
+    parts, constraints = [], row.constraints
+    if row.read_only:
+        parts.append(_("read-only"))
+    if row.least is not None and row.greatest is not None:
+        words = f"{row.least:g}…{row.greatest:g}"
+        told = MEASURE.fullmatch(constraints)
+        if told and _same(told["least"], row.least) and _same(told["greatest"], row.greatest):
+            # The constraints only repeat the range, with all its digits and its unit.
+            unit, constraints = told["unit"] or "", ""
+            words = plain(f"{told['least']}…{told['greatest']}", LONGEST)
+            words = f"{words} {_(unit) if unit in UNITS else plain(unit, LONGEST)}".rstrip()
+        parts.append(words)
+    if row.step:
+        parts.append(_("step {n}").format(n=f"{row.step:g}"))
+    if constraints:
+        parts.append(plain(_(constraints), LONGEST))
+    return ", ".join(parts)
+
+
+def _same(told: str, number: float) -> bool:
+    try:
+        return f"{float(told):g}" == f"{number:g}"
+    except ValueError:
+        return False
 
 
 class GraphParameters(Vertical, Working):
@@ -45,7 +104,7 @@ class GraphParameters(Vertical, Working):
 
     def __init__(self) -> None:
         super().__init__()
-        self._node = ""
+        self.node = ""
         self._result: ParametersResult | None = None
         self._asked_s: float | None = None
         self._question = 0
@@ -61,15 +120,11 @@ class GraphParameters(Vertical, Working):
 
     def on_mount(self) -> None:
         """Keep the waiting time up to date."""
-        self.set_interval(TICK_S, self._tick)
+        self.set_interval(TICK_S, self._label)
 
     @property
     def table(self) -> Rows:
         return self.query_one(Rows)
-
-    @property
-    def node(self) -> str:
-        return self._node
 
     @property
     def rows(self) -> tuple[ParameterRow, ...]:
@@ -81,15 +136,15 @@ class GraphParameters(Vertical, Working):
 
     def forget(self) -> None:
         self._question += 1
-        self._node, self._result, self._asked_s, self._processes = "", None, None, None
+        self.node, self._result, self._asked_s, self._processes = "", None, None, None
         self.redraw()
 
     def read(self, node: str) -> None:
         """Ask the node for its parameters; the previous ones stay until it answers."""
         graph = host_of(self).feed.graph
-        if node != self._node:
+        if node != self.node:
             self.forget()
-        self._node = node
+        self.node = node
         if graph is not None and node:
             self._question += 1
             self._changed = False
@@ -99,9 +154,8 @@ class GraphParameters(Vertical, Working):
 
     def hear(self, events: Iterable[Sample]) -> None:
         """Read them again if these messages of /parameter_events are about this node."""
-        if not any(event.value.get("node") == self._node for event in events):
-            return
-        self._read_anew()
+        if any(event.value.get("node") == self.node for event in events):
+            self._read_anew()
 
     def see(self, processes: tuple[int, ...]) -> None:
         """Read them again if the node has a new process: a restarted node has its initial values.
@@ -116,7 +170,7 @@ class GraphParameters(Vertical, Working):
 
     def _read_anew(self) -> None:
         if self._asked_s is None:
-            self.read(self._node)
+            self.read(self.node)
         else:
             # The pending answer may be outdated, but asking again every time might never finish.
             self._changed = True
@@ -126,12 +180,8 @@ class GraphParameters(Vertical, Working):
         if question == self._question:
             self._result, self._asked_s = result, None
             if self._changed:
-                self.read(self._node)
+                self.read(self.node)
             self.redraw()
-
-    def _tick(self) -> None:
-        if self._asked_s is not None:
-            self._label()
 
     def on_resize(self) -> None:
         """Show the columns that fit."""
@@ -148,11 +198,10 @@ class GraphParameters(Vertical, Working):
         table.display = not words.display
         width = self.size.width
         name = max((len(row.name) for row in self.rows), default=0)
-        columns = [Column(_("Parameter"), min(name, max(8, int(width * 0.45))) or 8)]
-        columns.append(Column(_("Value")))
+        columns = [Column(_("Parameter"), min(name, max(8, int(width * 0.45))) or 8), Column(_("Value"))]
         if width >= ROOMY:
             columns += [Column(_("Type"), 13), Column(_("Allowed"), 20)]
-        table.show(columns, [_row(row, roomy=width >= ROOMY) for row in self.rows])
+        table.show(columns, [Row(row.name, _cells(row)[: len(columns)]) for row in self.rows])
 
     def _label(self) -> None:
         title = self.query_one(".parameters-title", Static)
@@ -177,9 +226,7 @@ class GraphParameters(Vertical, Working):
         return ("", "") if self.rows else (_("this node has no parameters"), "")
 
 
-def _row(row: ParameterRow, *, roomy: bool) -> Row:
-    lock = "⊘ " if row.read_only else ""
-    cells = [Cell(plain(row.name, LONGEST)), Cell(lock + value_text(row.value))]
-    if roomy:
-        cells += [Cell(row.type_name, "dim"), Cell(allowed_words(row), "dim")]
-    return Row(row.name, tuple(cells))
+def _cells(row: ParameterRow) -> tuple[Cell, ...]:
+    value = _("not set") if row.value is None else plain(typed(row.value), LONGEST)
+    said = Cell(plain(row.name, LONGEST)), Cell(f"⊘ {value}" if row.read_only else value)
+    return (*said, Cell(row.type_name, "dim"), Cell(allowed_words(row), "dim"))

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from text.i18n import N_
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 
 class GraphKind(str, Enum):
@@ -22,9 +19,6 @@ class GraphKind(str, Enum):
     FINDING = "finding"
 
 
-LISTED = (*(GraphKind.NODE, GraphKind.SERVICE, GraphKind.ACTION, GraphKind.TYPE), GraphKind.FINDING)
-"""The kinds that the Graph screen itself lists; topics have their own screen."""
-
 TITLES = {
     GraphKind.NODE: N_("Nodes"),
     GraphKind.SERVICE: N_("Services"),
@@ -32,7 +26,8 @@ TITLES = {
     GraphKind.TYPE: N_("Types"),
     GraphKind.FINDING: N_("Findings"),
 }
-"""The titles of the tabs."""
+"""The kinds that the Graph screen itself lists, and the titles of their tabs; topics have their own screen."""
+LISTED = (*TITLES,)
 
 
 class GraphPlace(NamedTuple):
@@ -62,40 +57,33 @@ class PlaceHistory:
     def __init__(self) -> None:
         self.kind = GraphKind.NODE
         """The kind that is listed."""
-        self._chosen: dict[GraphKind, str] = {}
+        self.chosen: dict[GraphKind, str] = {}
         self._been: list[GraphPlace] = []
 
     @property
     def here(self) -> GraphPlace | None:
-        name = self._chosen.get(self.kind, "")
+        name = self.chosen.get(self.kind, "")
         return GraphPlace(self.kind, name) if name else None
-
-    @property
-    def chosen(self) -> Mapping[GraphKind, str]:
-        return self._chosen
 
     def choose(self, name: str) -> None:
         """Choose another place of the same kind, without adding to the history."""
-        self._chosen[self.kind] = name
+        self.chosen[self.kind] = name
 
     def go(self, place: GraphPlace) -> None:
         """Follow a link; `back` returns from it."""
         here = self.here
         if here is not None and here != place:
             self._been = [*self._been, here][-LONGEST:]
-        self._set(place)
+        self.kind, self.chosen[place.kind] = place
 
     def back(self) -> bool:
         """Return to where the last link was followed; False if there is none."""
-        if self._been:
-            self._set(self._been.pop())
-            return True
-        return False
+        if not self._been:
+            return False
+        place = self._been.pop()
+        self.kind, self.chosen[place.kind] = place
+        return True
 
     def forget(self) -> None:
-        self._chosen.clear()
+        self.chosen.clear()
         self._been.clear()
-
-    def _set(self, place: GraphPlace) -> None:
-        self.kind = place.kind
-        self._chosen[place.kind] = place.name

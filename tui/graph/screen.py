@@ -2,39 +2,36 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Protocol, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from textual import on
 from textual.binding import Binding
 from textual.containers import Horizontal
-from textual.widgets import Input, Static, TextArea
+from textual.widgets import ContentSwitcher, Input, Static, TextArea
 
 from text.i18n import N_, _
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
+from tui.graph.action import ActionPane
 from tui.graph.actions import GRAPH_ACTIONS, show_everything
 from tui.graph.ask import AskPane
-from tui.graph.detail import GraphDetail
-from tui.graph.finding import place_meant
-from tui.graph.finding_words import failures_of
-from tui.graph.index import GraphIndex, why_empty
+from tui.graph.finding import FindingPane, goal_of
+from tui.graph.index import LOOKS, GraphIndex, failures_of, why_empty
 from tui.graph.list import GraphList
-from tui.graph.map import GraphMap, middle_of
 from tui.graph.node import NodePane
+from tui.graph.pane import EmptyNotice, GraphPane
 from tui.graph.parameters import PARAMETER_EVENTS
-from tui.graph.places import LISTED, GraphKind, GraphPlace, PlaceHistory
-from tui.graph.tabs import tab_entries
-from tui.graph.type import GraphTypeTree
+from tui.graph.places import LISTED, TITLES, GraphKind, GraphPlace, PlaceHistory
+from tui.graph.service import ServicePane
+from tui.graph.type import GraphTypeTree, TypePane
 from tui.widgets.field import Field
 from tui.widgets.rows import Rows
-from tui.widgets.tab_line import TabLine
+from tui.widgets.tab_line import TabEntry, TabLine
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
-    from tui.graph.index import GraphEntry
-    from tui.graph.pane import GraphPane
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
 
@@ -42,15 +39,11 @@ SETTLE_S = 1.0
 """How often findings are looked at, whether or not anything arrives."""
 
 
-class ShowsTopic(Protocol):
-    """The part of the Topics screen that the graph uses."""
-
-    def show_topic(self, topic: str) -> None:
-        """Choose a topic, even if a filter or an option hides it."""
+WORDS = "graph-words"
 
 
 class GraphScreen(DeckScreen):
-    """Kinds and filter above a list and the detail of the chosen entry, or above the map."""
+    """Kinds and filter above a list and the detail of the chosen entry."""
 
     tab: ClassVar[str] = "graph"
     AUTO_FOCUS: ClassVar[str] = "GraphList"
@@ -58,8 +51,7 @@ class GraphScreen(DeckScreen):
     about: ClassVar[str] = N_(
         "Nodes with what they publish, hear, serve and call; services to be called, actions to "
         "be sent goals, types down to their fields; findings are what is wrong, with what to do "
-        "about it. Enter on a name goes there. The map draws a node with those that it talks to: "
-        "() marks a service, ⚑ an action."
+        "about it. Enter on a name goes there."
     )
     BINDINGS: ClassVar = [
         *bindings(*GRAPH_ACTIONS),
@@ -76,11 +68,6 @@ class GraphScreen(DeckScreen):
         #graph-detail { width: 1fr; height: 1fr; border-left: solid $panel; }
         #graph-detail.-maximized { border-left: none; }
         GraphList { width: 26; height: 1fr; }
-        GraphMap { display: none; }
-    }
-    GraphScreen.-map {
-        #graph-body { display: none; }
-        GraphMap { display: block; }
     }
     GraphScreen.-tall, GraphScreen.-high {
         AskPane GraphLinks { max-height: 8; }
@@ -99,7 +86,15 @@ class GraphScreen(DeckScreen):
         super().__init__()
         self.history = PlaceHistory()
         self.index = GraphIndex()
-        self._detail = GraphDetail()
+        self._panes: dict[GraphKind, GraphPane] = {
+            GraphKind.NODE: NodePane(id="graph-node"),
+            GraphKind.SERVICE: ServicePane(id="graph-service"),
+            GraphKind.ACTION: ActionPane(id="graph-action"),
+            GraphKind.TYPE: TypePane(id="graph-type"),
+            GraphKind.FINDING: FindingPane(self.index, id="graph-finding"),
+        }
+        """They keep what was entered in them."""
+        self._detail = ContentSwitcher(EmptyNotice(id=WORDS), *self._panes.values(), id="graph-detail", initial=WORDS)
         self._goals_of: set[str] = set()  # Actions whose goals were requested.
         self._failures: dict[str, str] = {}
 
@@ -112,7 +107,6 @@ class GraphScreen(DeckScreen):
         with Horizontal(id="graph-body"):
             yield GraphList()
             yield self._detail
-        yield GraphMap()
 
     # State
 
@@ -130,32 +124,26 @@ class GraphScreen(DeckScreen):
         return self.query_one("#graph-filter", Input)
 
     @property
-    def map(self) -> GraphMap:
-        return self.query_one(GraphMap)
-
-    @property
-    def draws(self) -> bool:
-        return self.has_class("-map")
-
-    @property
     def pane(self) -> GraphPane | None:
-        return self._detail.pane_of(self.history.here)
-
-    @property
-    def _place(self) -> GraphPlace | None:
-        """The chosen place; of a finding, where it is."""
-        return place_meant(self.history.here, self.index.findings, self.feed.update)
+        """The current detail, None if it does not exist yet."""
+        here = self.history.here
+        pane = None if here is None else self._panes.get(here.kind)
+        return pane if pane is not None and pane.is_mounted else None
 
     @property
     def shows_pane(self) -> bool:
-        """Whether the detail is visible, rather than the map or an empty list."""
-        return self.pane is not None and self.pane.display and not self.draws
+        """Whether the detail is visible, rather than an empty list."""
+        return self.pane is not None and self.pane.display
 
     @property
     def node_pane(self) -> NodePane | None:
         """The current detail, if it is that of a node."""
-        pane = self.pane
-        return pane if isinstance(pane, NodePane) else None
+        return pane if isinstance(pane := self.pane, NodePane) else None
+
+    @property
+    def ask_pane(self) -> AskPane | None:
+        """The current detail, if it has a form."""
+        return pane if isinstance(pane := self.pane, AskPane) else None
 
     @property
     def is_settling(self) -> bool:
@@ -170,12 +158,6 @@ class GraphScreen(DeckScreen):
     @property
     def is_in_list(self) -> bool:
         return self.focused is self.names
-
-    @property
-    def ask_pane(self) -> AskPane | None:
-        """The current detail, if it has a form."""
-        pane = self.pane
-        return pane if isinstance(pane, AskPane) else None
 
     def watch_goals(self) -> set[str]:
         """Return the action that is shown."""
@@ -199,38 +181,43 @@ class GraphScreen(DeckScreen):
             return
         kind, words = self.history.kind, self.filter.value
         self.filter.placeholder = _("filter: words of a name or a type")
-        counts = {each: len(self.index.fitting(each)) for each in self.index.listed}
-        worst = self.index.findings.worst
-        self.query_one(TabLine).show_tabs(kind.value, tab_entries(counts, worst))
-        shown = self.index.fitting(kind, words)
-        self._count(len(shown), len(self.index.all_of(kind)))
+        worst = LOOKS[self.index.findings[0].level][2] if self.index.findings else ""
+        tabs = [
+            TabEntry(
+                each.value, f"{_(title)} {len(self.index.fitting(each))}", worst if each is GraphKind.FINDING else ""
+            )
+            for each, title in TITLES.items()
+        ]
+        self.query_one(TabLine).show_tabs(kind.value, tabs)
+        shown, listed = self.index.fitting(kind, words), self.index.listed[kind]
+        told, count = (
+            _("{shown} of {n}").format(shown=len(shown), n=len(listed)),
+            self.query_one("#graph-count", Static),
+        )
+        if told != count.content:
+            count.update(told)
         self.names.show_entries(kind, shown, self.history.chosen.get(kind, ""), words)
         if self.names.chosen_name and not self.history.chosen.get(kind):
             self.history.choose(self.names.chosen_name)
-        self._show_detail(shown)
+        pane, here = self.pane, self.history.here
+        if pane is not None and here is not None and self.names.chosen_name:
+            self._bring(pane.id)
+            pane.everything = self.index.everything
+            pane.show_name(here.name)
+        else:
+            self._bring(WORDS)
+            why = why_empty(self.feed, kind, listed, all_key=self.deck.keys_of(show_everything)[0])
+            self.query_one(f"#{WORDS}", EmptyNotice).show(*(why if not shown else ("", "")))
         # What only messages show is found while somebody looks at findings: it costs more.
         wants = (self.watch_goals(), kind is GraphKind.FINDING)
         if wants != (self._goals_of, self.measure_all):
             self._goals_of, self.measure_all = wants
             self.topics_changed()
-        if self.draws:
-            update = self.feed.update
-            middle = middle_of(update, self._place)
-            self.map.show_node(update, middle, everything=self.index.everything)
 
-    def _show_detail(self, shown: list[GraphEntry]) -> None:
-        pane, here = self.pane, self.history.here
-        if pane is not None and here is not None and self.names.chosen_name:
-            self._detail.show_place(pane, here.name, everything=self.index.everything)
-            return
-        key, kind = self.deck.keys_of(show_everything)[0], self.history.kind
-        words = why_empty(self.feed, kind, self.index.all_of(kind), all_key=key)
-        self._detail.show_words(*(words if not shown else ("", "")))
-
-    def _count(self, shown: int, everything: int) -> None:
-        words, count = _("{shown} of {n}"), self.query_one("#graph-count", Static)
-        if (told := words.format(shown=shown, n=everything)) != count.content:
-            count.update(told)
+    def _bring(self, shown: str | None) -> None:
+        if self._detail.current != shown:
+            self._detail.current = shown
+            self.refresh_bindings()
 
     # Message handlers
 
@@ -261,7 +248,8 @@ class GraphScreen(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        self._detail.relabel()
+        for pane in self._panes.values():
+            pane.relabel()
         self.redraw()
 
     @on(Rows.Highlighted, "GraphList")
@@ -279,11 +267,12 @@ class GraphScreen(DeckScreen):
 
     @on(Rows.Opened, "GraphList")
     async def _opened(self) -> None:
-        first = None if self.pane is None else self.pane.first()
-        if self.history.kind is GraphKind.FINDING and self._place is not None:
-            await self.go(self._place)
-        elif first is not None:
-            first.focus()
+        here = self.history.here
+        finding = self.index.finding(here.name) if here is not None and here.kind is GraphKind.FINDING else None
+        if finding is not None:
+            await self.go(goal_of(finding, self.feed.update))
+        elif self.pane is not None:
+            self.pane.first().focus()
 
     @on(Rows.Opened, ".graph-links")
     async def _followed(self, message: Rows.Opened) -> None:
@@ -294,12 +283,6 @@ class GraphScreen(DeckScreen):
     @on(GraphTypeTree.TypeWanted)
     async def _type_wanted(self, message: GraphTypeTree.TypeWanted) -> None:
         await self.go(GraphPlace(GraphKind.TYPE, message.type_name))
-
-    @on(GraphMap.PlaceWanted)
-    async def _place_wanted(self, message: GraphMap.PlaceWanted) -> None:
-        if message.place.kind is not GraphKind.NODE:
-            self.remove_class("-map")
-        await self.go(message.place)
 
     @on(TabLine.Selected)
     def _selected(self, message: TabLine.Selected) -> None:
@@ -318,14 +301,11 @@ class GraphScreen(DeckScreen):
     async def go(self, place: GraphPlace) -> None:
         """Follow a link: here, or to the Topics screen."""
         if place.kind is GraphKind.TOPIC:
-            await self._go_to_topic(place.name)
+            await self.deck.show_screen("topics")
+            cast("Any", self.app.get_screen("topics")).show_topic(place.name)
             return
         self.history.go(place)
         self._arrive()
-
-    async def _go_to_topic(self, topic: str) -> None:
-        await self.deck.show_screen("topics")
-        cast("ShowsTopic", self.app.get_screen("topics")).show_topic(topic)
 
     def go_back(self) -> None:
         """Go back to where the last link was followed, otherwise to the list."""
@@ -333,11 +313,6 @@ class GraphScreen(DeckScreen):
         if self.focused is self.filter or (in_list and self.filter.value):
             self.filter.value = ""
             self.names.focus()
-        elif self.draws:
-            if not self.history.back():
-                self.toggle_map()
-            else:
-                self._arrive()
         elif not in_list:
             self.names.focus()
         elif self.history.back():
@@ -349,18 +324,10 @@ class GraphScreen(DeckScreen):
         if here is not None and not self.index.reveal(here, self.filter.value):
             self.filter.value = ""
         self.redraw()
-        (self.map if self.draws else self.names).focus()
+        self.names.focus()
         self.refresh_bindings()
 
-    def toggle_map(self) -> None:
-        """Show the map around the chosen node, or the list."""
-        self.toggle_class("-map")
-        if self.draws and (middle := middle_of(self.feed.update, self._place)):
-            self.history.go(GraphPlace(GraphKind.NODE, middle))
-        self._arrive()
-
     def list_kind(self, kind: GraphKind) -> None:
-        self.remove_class("-map")
         self.history.kind = kind
         self.redraw()
         self.names.focus()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from textual import on
 from textual.containers import Horizontal
@@ -18,13 +18,11 @@ from text.figures import figure
 from text.i18n import N_, _, decimal, localized
 from text.plain import plain
 from text.sentences import reason_of
-from tui.clock import time_of_day
+from tui import clock
 from tui.graph.actions import cancel_request
-from tui.graph.ask import AskPane, now_s
-from tui.graph.links import heading, link, node_links
+from tui.graph.ask import AskPane
 from tui.graph.pane import LONGEST
-from tui.graph.parameter_words import typed
-from tui.graph.places import GraphKind, GraphPlace
+from tui.graph.parameters import typed
 from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row
 
@@ -34,10 +32,14 @@ if TYPE_CHECKING:
 
     from textual.app import ComposeResult
 
-    from graph.data import ServiceRow
+    from tui.graph.ask import Answer
 
 USUAL_S = f"{ANSWER_WITHIN_S:g}"
 LEAST_S, MOST_S = 0.1, 3600.0
+MOST_CALLS = 50
+"""Calls of one service that are kept."""
+TICK_S = 0.5
+"""How often the waiting time is updated."""
 
 
 class CallTimeout(Horizontal):
@@ -88,10 +90,6 @@ class CallTimeout(Horizontal):
         self.relabel()
 
 
-MOST_CALLS = 50
-"""Calls of one service that are kept."""
-
-
 @dataclass
 class ServiceCall:
     """One call of this session."""
@@ -110,15 +108,38 @@ class ServiceCall:
         """Whether its answer is still pending."""
         return self.result is None and not self.given_up
 
+    @property
+    def sign(self) -> Cell:
+        if self.result is None:
+            return Cell("◔", "warn") if self.waits else Cell("○", "dim")
+        return Cell("✓", "good") if self.result.ok else Cell("✗", "bad")
+
+    @property
+    def summary(self) -> str:
+        """The request and the answer in one line."""
+        asked, result = _flat(self.request), self.result
+        if result is None:
+            return asked
+        if not result.ok or result.response is None:
+            return f"{asked} → {plain(localized(result.error), LONGEST)}"
+        return f"{asked} → {_flat(result.response)}"
+
+
+def _flat(tree: Mapping[str, Any]) -> str:
+    parts = (f"{name} " + ("{…}" if hasattr(value, "items") else typed(value)[:40]) for name, value in tree.items())
+    return plain(", ".join(parts), 120)
+
 
 class ServicePane(AskPane):
     """Calls a service; the screen stays usable while it waits."""
 
-    submit_title: ClassVar[str] = N_("Call")
+    submit_title = N_("Call")
+    calls_it = N_("calls it")
 
-    def __init__(self, *, id: str | None = None) -> None:
+    def __init__(self, *, id: str) -> None:
         super().__init__(id=id)
         self._calls: dict[str, list[ServiceCall]] = {}
+        """Those of each service, the newest first."""
         self._number = 0
         self._timeouts: dict[str, str] = {}
         """Maps a service to the text in its time-out field."""
@@ -127,9 +148,20 @@ class ServicePane(AskPane):
         """Below the form: how long to wait for an answer."""
         yield CallTimeout()
 
+    def on_mount(self) -> None:
+        self.set_interval(TICK_S, self._tick)
+
+    def _tick(self) -> None:
+        if self.can_cancel:
+            self.redraw()
+
     @property
     def timeout(self) -> CallTimeout:
         return self.query_one(CallTimeout)
+
+    @property
+    def calls(self) -> list[ServiceCall]:
+        return self._calls.setdefault(self.name_shown, [])
 
     def show_name(self, name: str) -> None:
         if name != self.name_shown:
@@ -142,80 +174,48 @@ class ServicePane(AskPane):
         super().relabel()
         self.timeout.relabel()
 
-    @property
-    def calls(self) -> Sequence[ServiceCall]:
-        """The calls of the service that is shown, the newest first."""
-        return self._calls.get(self.name_shown, [])
-
-    @property
-    def chosen(self) -> ServiceCall | None:
-        wanted = self.asked_rows.chosen
-        return next((call for call in self.calls if str(call.number) == wanted), None)
-
-    @property
-    def row(self) -> ServiceRow | None:
-        """The current row of the service in the graph."""
+    def ends(self) -> tuple[Sequence[str], Sequence[str], Sequence[str]] | None:
         update = self.graph_now
-        services = () if update is None else update.services
-        return next((row for row in services if row.name == self.name_shown), None)
-
-    def type_names(self) -> tuple[str, ...]:
-        return () if self.row is None else self.row.type_names
-
-    def links(self) -> Sequence[Row]:
-        """Return its type, its servers and its clients."""
-        row, update = self.row, self.graph_now
-        if row is None or update is None:
-            return [heading(_("It has left the graph."))]
-        callers = [node.name for node in update.nodes if row.name in node.clients]
-        return [
-            *(link(GraphPlace(GraphKind.TYPE, name), "type", _("type")) for name in row.type_names),
-            *node_links(row.nodes, "serves", _("serves it")),
-            *node_links(callers, "calls", _("calls it")),
-        ]
+        for row in () if update is None else update.services:
+            if row.name == self.name_shown and update is not None:
+                callers = [node.name for node in update.nodes if row.name in node.clients]
+                return row.type_names, row.nodes, callers
+        return None
 
     def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
         """Return the calls of this session."""
-        return (
-            (Column("", 8), Column("", 3), Column("")),
-            [
-                Row(str(call.number), (Cell(_at(call), "dim"), _sign(call), Cell(_summary(call))))
-                for call in self.calls
-            ],
-        )
+        return (Column("", 8), Column("", 3), Column("")), [
+            Row(str(call.number), (Cell(clock.time_of_day(call.asked_s), "dim"), call.sign, Cell(call.summary)))
+            for call in self.calls
+        ]
 
-    def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
+    def answer(self) -> Answer:
         """Return the answer to the chosen call."""
-        call = self.chosen
+        call = next((call for call in self.calls if str(call.number) == self.asked_rows.chosen), None)
         if call is None:
-            key = self.submit_key
-            return (
-                _("Response"),
-                self.name_shown,
-                (_("not called yet"), _("{key} calls it with what is filled in.").format(key=key)),
-            )
-        name = f"{self.name_shown} {call.number}"
-        if call.result is None:
-            return self._waiting(call, name)
-        if call.result.ok and call.result.response is not None:
-            return _answer_title(call, call.result), name, call.result.response
-        words = plain(localized(call.result.error), LONGEST)
-        if call.result.late is not None:
-            title = _("No response within {n} s").format(n=decimal(f"{call.timeout_s:g}"))
-            listens = _("A late response will be shown here; set a longer time-out below the form.")
-            return title, name, (_("no response yet"), listens)
-        told = _("{n} ms").format(n=decimal(f"{call.result.elapsed_s * 1000:.1f}"))
-        return _("No response · {time}").format(time=told), name, (_("the call failed"), words)
-
-    def _waiting(self, call: ServiceCall, name: str) -> tuple[str, str, tuple[str, str]]:
-        if call.given_up:
+            way_out = _("{key} calls it with what is filled in.").format(key=self.submit_key)
+            return _("Response"), self.name_shown, (_("not called yet"), way_out)
+        name, result, most = f"{self.name_shown} {call.number}", call.result, decimal(f"{call.timeout_s:g}")
+        if result is None and call.given_up:
             words = _("The node may still do what it was asked for; a late response will be shown here.")
             return _("No response"), name, (_("given up"), words)
-        waited = int(now_s() - call.asked_s)
-        title = _("Still waiting: {n} s of {most} s").format(n=waited, most=decimal(f"{call.timeout_s:g}"))
-        key = self.deck.keys_of(cancel_request)[0]
-        way_out = _("{key} stops waiting for it.").format(key=key)
-        return title, name, (_("the call is under way"), way_out)
+        if result is None:
+            waited = int(clock.now() - call.asked_s)
+            title = _("Still waiting: {n} s of {most} s").format(n=waited, most=most)
+            way_out = _("{key} stops waiting for it.").format(key=self.deck.keys_of(cancel_request)[0])
+            return title, name, (_("the call is under way"), way_out)
+        took = _("{n} ms").format(n=decimal(f"{result.elapsed_s * 1000:.1f}"))
+        if result.ok and result.response is not None:
+            title = _("Response in {time}").format(time=took)
+            if call.late:
+                words = _("Late response after {n} s (time-out {most} s)")
+                title = words.format(n=figure(result.elapsed_s, 1), most=most)
+            return title, name, result.response
+        if result.late is not None:
+            listens = _("A late response will be shown here; set a longer time-out below the form.")
+            return _("No response within {n} s").format(n=most), name, (_("no response yet"), listens)
+        words = plain(localized(result.error), LONGEST)
+        return _("No response · {time}").format(time=took), name, (_("the call failed"), words)
 
     def ros2_line(self, type_name: str, value: Mapping[str, Any]) -> str:
         return ros2_words.call(self.name_shown, type_name, value)
@@ -224,7 +224,7 @@ class ServicePane(AskPane):
         """Return what tells its type."""
         return ros2_words.service_type(self.name_shown)
 
-    def ask(self, value: Mapping[str, Any]) -> None:
+    def ask(self, type_name: str, value: Mapping[str, Any]) -> None:
         graph, timeout_s = self.deck.feed.graph, self.timeout.seconds
         if timeout_s is None:
             self.warn(_("Not called: correct the time-out below the form."))
@@ -233,22 +233,20 @@ class ServicePane(AskPane):
         if graph is None:
             return
         self._number += 1
-        call = ServiceCall(self._number, value, now_s(), timeout_s)
-        calls = self._calls.setdefault(self.name_shown, [])
-        calls.insert(0, call)
-        del calls[MOST_CALLS:]
-        future = graph.call(self.name_shown, self.type_names()[0], value, timeout_s)
+        call = ServiceCall(self._number, value, clock.now(), timeout_s)
+        self.calls.insert(0, call)
+        del self.calls[MOST_CALLS:]
+        future = graph.call(self.name_shown, type_name, value, timeout_s)
         self.run_worker(self._take(call, self.name_shown, future), exit_on_error=False)
         self.redraw()
         self.asked_rows.choose(str(call.number))
 
     async def _take(self, call: ServiceCall, name: str, future: Future[CallResult]) -> None:
         result = await _outcome(call, name, future)
+        if result.late is None or not call.given_up:
+            self._show(call, result)
         if result.late is None:
-            self._show(call, result)
             return
-        if not call.given_up:
-            self._show(call, result)
         result = await _outcome(call, name, result.late)
         call.late = result.ok
         self._show(call, result)
@@ -279,43 +277,4 @@ async def _outcome(call: ServiceCall, name: str, future: Future[CallResult]) -> 
     try:
         return await asyncio.wrap_future(future)
     except Exception as error:  # noqa: BLE001 - any failure is reported
-        return CallResult(name, False, None, reason_of(error), now_s() - call.asked_s)
-
-
-def _answer_title(call: ServiceCall, result: CallResult) -> str:
-    if call.late:
-        words = _("Late response after {n} s (time-out {most} s)")
-        return words.format(n=figure(result.elapsed_s, 1), most=decimal(f"{call.timeout_s:g}"))
-    told = _("{n} ms").format(n=decimal(f"{result.elapsed_s * 1000:.1f}"))
-    return _("Response in {time}").format(time=told)
-
-
-def _at(call: ServiceCall) -> str:
-    return time_of_day(call.asked_s)
-
-
-def _sign(call: ServiceCall) -> Cell:
-    if call.waits:
-        return Cell("◔", "warn")
-    if call.result is None:
-        return Cell("○", "dim")
-    return Cell("✓", "good") if call.result.ok else Cell("✗", "bad")
-
-
-def _summary(call: ServiceCall) -> str:
-    """Return the request and the answer in one line."""
-    asked = _flat(call.request)
-    result = call.result
-    if result is None:
-        return asked
-    if not result.ok or result.response is None:
-        return f"{asked} → {plain(localized(result.error), LONGEST)}"
-    return f"{asked} → {_flat(result.response)}"
-
-
-def _flat(tree: Mapping[str, Any]) -> str:
-    parts = []
-    for name, value in tree.items():
-        nested = hasattr(value, "items")
-        parts.append(f"{name} " + ("{…}" if nested else typed(value)[:40]))
-    return plain(", ".join(parts), 120)
+        return CallResult(name, False, None, reason_of(error), clock.now() - call.asked_s)

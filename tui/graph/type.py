@@ -15,17 +15,14 @@ from graph.messages.types import UnknownTypeError
 from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
-from tui.graph.index import users_of
-from tui.graph.links import GraphLinks, heading, link
-from tui.graph.pane import EmptyNotice, GraphPane
-from tui.graph.parameter_words import typed
-from tui.graph.places import GraphPlace
+from tui.graph.pane import EmptyNotice, GraphLinks, GraphPane, heading, link
+from tui.graph.parameters import typed
+from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-    from textual.timer import Timer
     from textual.widget import Widget
     from textual.widgets.tree import TreeNode
 
@@ -150,20 +147,11 @@ def _told(field: MessageField) -> list[Any]:
     """Return type, default, and the bounds that the name of the type does not include."""
     parts: list[Any] = [(plain(field.type_name), "cyan")]
     if not field.message:
-        parts.append(f" = {plain(_default(field.default), LONGEST)}")
+        default = f'"{field.default}"' if isinstance(field.default, str) else typed(field.default)
+        parts.append(f" = {plain(default, LONGEST)}")
     if field.least is not None and field.greatest is not None and field.greatest < WIDEST:
         parts.append((f"  {field.least}…{field.greatest}", "dim"))
     return parts
-
-
-def _default(value: Any) -> str:  # noqa: ANN401 - whatever a field may hold
-    if isinstance(value, str):
-        return f'"{value}"'
-    return typed(value)
-
-
-SETTLED_S = 0.12
-"""How long a choice must stand before its package is imported."""
 
 
 class TypePane(GraphPane):
@@ -174,16 +162,8 @@ class TypePane(GraphPane):
         GraphLinks { height: auto; max-height: 25%; min-height: 1; }
     }
     """
-
-    def ros2_command(self) -> str:
-        """Return what shows its definition."""
-        return ros2_words.interface(self.name_shown) if self.name_shown else ""
-
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
-        self._settling: Timer | None = None
-        self._definition: Definition | None = None
-        self._failure = ""
+    _definition: Definition | None = None
+    _failure = ""
 
     def compose(self) -> ComposeResult:
         yield NameHead()
@@ -195,18 +175,13 @@ class TypePane(GraphPane):
     def fields(self) -> GraphTypeTree:
         return self.query_one(GraphTypeTree)
 
-    @property
-    def is_settling(self) -> bool:
-        """Whether its package is still to be loaded."""
-        return self._settling is not None
+    def ros2_command(self) -> str:
+        """Return what shows its definition."""
+        return ros2_words.interface(self.name_shown) if self.name_shown else ""
 
     def show_name(self, name: str) -> None:
-        """Show another type once the choice stands."""
         if name != self.name_shown:
             self._definition, self._failure = None, ""
-            if self._settling is not None:
-                self._settling.stop()
-            self._settling = self.set_timer(SETTLED_S, self._load_soon)
         super().show_name(name)
 
     def redraw(self) -> None:
@@ -214,8 +189,7 @@ class TypePane(GraphPane):
         if not self.name_shown or not self.is_mounted:
             return
         self.query_one(NameHead).show(self.name_shown)
-        rows = self._users()
-        links = self.query_one(GraphLinks)
+        rows, links = self._users(), self.query_one(GraphLinks)
         links.show_links(rows)
         links.display = bool(rows)
         words = self.query_one(EmptyNotice)
@@ -231,17 +205,14 @@ class TypePane(GraphPane):
         self.redraw()
 
     def first(self) -> Widget:
-        return self.fields if self.fields.display else self.query_one(GraphLinks)
+        return self.fields if self.fields.display else super().first()
 
-    def _load_soon(self) -> None:
-        self._settling = None
+    def load(self) -> None:
         self.run_worker(self._load(self.name_shown), group="load", exclusive=True)
 
     async def _load(self, name: str) -> None:
-        # Reading a type imports its package, which takes time.
-        from graph.messages.browse import definition
-
         try:
+            # Reading a type imports its package, which takes time.
             found = await asyncio.to_thread(definition, name)
         except UnknownTypeError as error:
             if name == self.name_shown:
@@ -253,7 +224,18 @@ class TypePane(GraphPane):
             self.fields.show_definition(found)
 
     def _users(self) -> list[Row]:
-        rows: list[Row] = []
-        for kind, names in users_of(self.graph_now, self.name_shown).items():
-            rows += [link(GraphPlace(kind, name), "used") for name in sorted(names)]
-        return [heading(_("Used by")), *rows] if rows else []
+        """Return everything that uses the type, as links."""
+        update = self.graph_now
+        if update is None:
+            return []
+        rows = (
+            (GraphKind.TOPIC, update.topics),
+            (GraphKind.SERVICE, update.services),
+            (GraphKind.ACTION, update.actions),
+        )
+        found = [
+            link(GraphPlace(kind, name), "used")
+            for kind, of_kind in rows
+            for name in sorted(row.name for row in of_kind if self.name_shown in row.type_names)
+        ]
+        return [heading(_("Used by")), *found] if found else []

@@ -11,16 +11,14 @@ from textual.widget import Widget
 from launcher.status import Severity
 from text.i18n import _, ngettext
 from text.plain import plain
+from tui.log_view.rows import grouped
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from tui.log_view.view import LogView
 
 LONGEST_NAME = 24
-
-
-def grouped(count: int) -> str:
-    """A number with blanks between thousands."""
-    return f"{count:,}".replace(",", "\N{NO-BREAK SPACE}")
 
 
 class LogBar(Widget):
@@ -69,64 +67,47 @@ class LogBar(Widget):
 
 def state_parts(view: LogView) -> list[tuple[str, str]]:
     """(text, style) of each part: following, long name, search, lines, nodes, severity, counts."""
-    return [*_tail_parts(view), *_search_parts(view), *_filter_parts(view), *_count_parts(view)]
-
-
-def _tail_parts(view: LogView) -> list[tuple[str, str]]:
-    if view.following:
-        return [(_("▶ following"), "")]
-    words = ngettext("‖ paused, {count} new", "‖ paused, {count} new", view.fresh)
-    paused = (words.format(count=grouped(view.fresh)), "paused")
-    return [paused, *_node_parts(view), (_("End follows"), "")]
-
-
-def _node_parts(view: LogView) -> list[tuple[str, str]]:
-    """The node of the line at the cursor, if its column has no room for the name."""
-    node = view.choice.node
-    return [(plain(node), "chosen")] if node is not None and view.cuts(node) else []
-
-
-def _search_parts(view: LogView) -> list[tuple[str, str]]:
-    chosen = view.log_filter
-    if not chosen.search:
-        return []
-    found = len(view.index.found)
-    text = plain(chosen.search, LONGEST_NAME)
-    if not found:
-        return [(_("“{text}” not found").format(text=text), "chosen")]
-    number = view.choice.found_number
-    count = f"{grouped(number)}/{grouped(found)}" if number else grouped(found)
-    words = _("“{text}” {count}") if not chosen.only_found else _("only “{text}” {count}")
-    return [(words.format(text=text, count=count), "chosen")]
-
-
-def _filter_parts(view: LogView) -> list[tuple[str, str]]:
-    chosen = view.log_filter
-    parts: list[tuple[str, str]] = []
-    if chosen.only is not None:
-        name = plain(chosen.only, LONGEST_NAME)
-        parts.append((_("only {node}").format(node=name), "chosen"))
-    elif chosen.muted:
-        count = len(chosen.muted)
-        words = ngettext("{count} node muted", "{count} nodes muted", count)
-        parts.append((words.format(count=count), "chosen"))
-    if chosen.minimum is not Severity.DEBUG:
-        words = view.minimum_words or _("{severity} and worse")
-        parts.append((words.format(severity=chosen.minimum.name), "chosen"))
-    return parts
-
-
-def _count_parts(view: LogView) -> list[tuple[str, str]]:
-    parts: list[tuple[str, str]] = []
+    parts = [(_("▶ following"), "")]
+    if not view.following:
+        words = ngettext("‖ paused, {count} new", "‖ paused, {count} new", view.fresh)
+        parts = [(words.format(count=grouped(view.fresh)), "paused")]
+        node = view.choice.node
+        # The column of nodes may have no room for the name.
+        parts += [(plain(node), "chosen")] if node is not None and view.cuts(node) else []
+        parts.append((_("End follows"), ""))
+    chosen = [*_search_words(view), *_filter_words(view)]
     lines = len(view.choice.entries)
     if lines > 1:
         words = ngettext("{count} line selected", "{count} lines selected", lines)
-        parts.append((words.format(count=grouped(lines)), "chosen"))
+        chosen.append(words.format(count=grouped(lines)))
+    parts += [(words, "chosen") for words in chosen]
     shown, total = len(view.index.shown), len(view.ring.entries)
     words = ngettext("{count} line", "{count} lines", total)
     if shown != total:
         words = ngettext("{shown} of {count} line", "{shown} of {count} lines", total)
     parts.append((words.format(shown=grouped(shown), count=grouped(total)), ""))
-    if not view.fold:
-        parts.append((_("lines not wrapped"), ""))
-    return parts
+    return parts if view.fold else [*parts, (_("lines not wrapped"), "")]
+
+
+def _search_words(view: LogView) -> Iterator[str]:
+    chosen, found = view.log_filter, len(view.index.found)
+    text = plain(chosen.search, LONGEST_NAME)
+    if text and not found:
+        yield _("“{text}” not found").format(text=text)
+    elif text:
+        number = view.choice.found_number
+        count = f"{grouped(number)}/{grouped(found)}" if number else grouped(found)
+        words = _("“{text}” {count}") if not chosen.only_found else _("only “{text}” {count}")
+        yield words.format(text=text, count=count)
+
+
+def _filter_words(view: LogView) -> Iterator[str]:
+    chosen = view.log_filter
+    if chosen.only is not None:
+        yield _("only {node}").format(node=plain(chosen.only, LONGEST_NAME))
+    elif chosen.muted:
+        count = len(chosen.muted)
+        yield ngettext("{count} node muted", "{count} nodes muted", count).format(count=count)
+    if chosen.minimum is not Severity.DEBUG:
+        words = view.minimum_words or _("{severity} and worse")
+        yield words.format(severity=chosen.minimum.name)

@@ -1,4 +1,4 @@
-"""Which lines of the ring are shown, and on which rows: updated line by line.
+"""Which lines of the ring are shown, on which rows, and which of them are chosen: updated line by line.
 
 Rows are counted from the first shown line. A line takes one row, or as many as its text needs when
 it is wrapped.
@@ -9,12 +9,12 @@ from __future__ import annotations
 import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
-from itertools import accumulate, chain, pairwise
+from dataclasses import dataclass, replace
 from operator import attrgetter
 
 from rich.cells import cell_len, chop_cells, get_character_cell_size
 
-from tui.log_view.filter import LogFilter
+from launcher.status import Severity
 from tui.log_view.ring import LogEntry
 
 _id_of = attrgetter("id")
@@ -75,6 +75,48 @@ def folded_rows(text: str, width: int) -> int:
     return len(folded(text, width))
 
 
+@dataclass(frozen=True)
+class LogFilter:
+    """Selects lines. It is immutable: every change returns a new one."""
+
+    muted: frozenset[str] = frozenset()
+    """Nodes whose lines are hidden, unless only one node is shown."""
+    only: str | None = None
+    """The only node that is shown; all others are muted."""
+    minimum: Severity = Severity.DEBUG
+    search: str = ""
+    """Text to search for, ignoring case; if empty, there are no matches."""
+    only_found: bool = False
+    """Whether lines without that text are hidden."""
+
+    def shows_node(self, node: str) -> bool:
+        """Whether lines of this node are shown at all."""
+        if self.only is not None:
+            return node == self.only
+        return node not in self.muted
+
+    @property
+    def pattern(self) -> re.Pattern[str] | None:
+        """The pattern for the search text; None if there is none."""
+        return re.compile(re.escape(self.search), re.IGNORECASE) if self.search else None
+
+    def toggled(self, node: str) -> LogFilter:
+        """Mute this node, or unmute it; this also ends showing a single node."""
+        return replace(self, muted=self.muted ^ {node}, only=None)
+
+    def alone(self, node: str) -> LogFilter:
+        """Show only this node; if called again for it, restore the previous state."""
+        return replace(self, only=None if self.only == node else node)
+
+    def all_nodes(self) -> LogFilter:
+        return replace(self, muted=frozenset(), only=None)
+
+    def next_minimum(self) -> LogFilter:
+        """Raise the lowest severity shown by one level; after the highest comes the lowest."""
+        levels = list(Severity)
+        return replace(self, minimum=levels[(self.minimum.rank + 1) % len(levels)])
+
+
 class LogIndex:
     """The shown lines in order, the rows that they take, and the matches of a search."""
 
@@ -133,23 +175,6 @@ class LogIndex:
         self.shown, self.found, self._ends, self.longest = [], [], [], 0
         self.extend(entries)
 
-    def prune(self, marks: Sequence[LogEntry] = ()) -> None:
-        """Remove the entries that the ring has dropped, and insert its marks for them."""
-        shown = [entry for entry in self.shown if not entry.dropped]
-        heights = [end - start for start, end in pairwise(chain((0,), self._ends))]
-        kept = [height for entry, height in zip(self.shown, heights, strict=False) if not entry.dropped]
-        gone = {entry.id for entry in self.shown if entry.dropped}
-        self.found = [entry_id for entry_id in self.found if entry_id not in gone]
-        self.shown = shown
-        only_found = self.filter.only_found and bool(self.filter.search)
-        for mark in () if only_found else marks:
-            if self.filter.shows_node(mark.node):
-                place = self.place_of(mark.id)
-                shown.insert(place, mark)
-                if self.fold_width is not None:
-                    kept.insert(place, folded_rows(self.text_of(mark), self.fold_width))
-        self._ends = list(accumulate(kept))
-
     def fold(self, width: int | None) -> None:
         """Wrap the lines to this width, or not at all."""
         self.fold_width, self._ends, self.longest = width, [], 0
@@ -181,9 +206,48 @@ class LogIndex:
             return self.found[at % len(self.found)]
         return self.found[bisect_left(self.found, entry_id) - 1]
 
-    def found_number(self, entry_id: int | None) -> int:
-        """Number of this line among the matches, from 1; 0 if it is not one of them."""
-        if entry_id is None:
-            return 0
-        at = bisect_left(self.found, entry_id)
-        return at + 1 if at < len(self.found) and self.found[at] == entry_id else 0
+
+class LineChoice:
+    """A range of the lines in an index, by id; empty until one is chosen."""
+
+    def __init__(self, index: LogIndex) -> None:
+        self.cursor: int | None = None
+        self._anchor: int | None = None
+        """Where the choice began."""
+        self._index = index
+
+    def move(self, entry_id: int, *, extend: bool) -> None:
+        """Choose a line; with `extend`, all lines from where the choice began to it."""
+        if not extend or self._anchor is None:
+            self._anchor = self.cursor if extend and self.cursor is not None else entry_id
+        self.cursor = entry_id
+
+    def clear(self) -> None:
+        self.cursor = self._anchor = None
+
+    @property
+    def _span(self) -> tuple[int, int]:
+        """Lowest and highest chosen id."""
+        if self.cursor is None or self._anchor is None:
+            return 0, -1
+        return min(self.cursor, self._anchor), max(self.cursor, self._anchor)
+
+    def __contains__(self, entry_id: int) -> bool:
+        first, last = self._span
+        return first <= entry_id <= last
+
+    @property
+    def entries(self) -> Sequence[LogEntry]:
+        first, last = self._span
+        return self._index.shown[self._index.place_of(first) : self._index.place_of(last + 1)]
+
+    @property
+    def node(self) -> str | None:
+        """Node of the line at the cursor, None without a cursor."""
+        return next((entry.node for entry in self.entries if entry.id == self.cursor), None)
+
+    @property
+    def found_number(self) -> int:
+        """Number of the match at the cursor, from 1; 0 if there is none."""
+        found, cursor = self._index.found, self.cursor
+        return found.index(cursor) + 1 if cursor in found else 0

@@ -6,21 +6,26 @@ It knows nothing about keys: a screen's actions call `search`, `find`, `copy`, `
 from __future__ import annotations
 
 import asyncio
+import os
 from collections.abc import Sequence
 from dataclasses import replace
+from datetime import datetime, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
-from textual.containers import Vertical
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.widgets import Input, Static
 
-from text.i18n import _, ngettext
+from text.i18n import _, localized, ngettext
+from text.os_words import os_reason
 from text.plain import plain
 from tui import clock
-from tui.log_view.bar import LogBar, grouped
-from tui.log_view.prompt import LogPrompt
-from tui.log_view.save import default_path, home_path, reason, save_lines
+from tui.log_view.bar import LogBar
+from tui.log_view.rows import grouped
 from tui.log_view.view import LogView
+from tui.widgets.field import Field
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:
@@ -30,14 +35,58 @@ CLIPBOARD_LIMIT = 100_000
 """Bytes; many terminals silently drop a longer OSC 52 sequence."""
 
 
+class LogPrompt(Horizontal):
+    """A label, a text field and room for a remark; hidden until `ask` is called."""
+
+    DEFAULT_CSS = """
+    LogPrompt {
+        display: none;
+        height: 1;
+        background: $boost;
+        &.-asking { display: block; }
+        #label { width: auto; padding: 0 1; text-style: bold; }
+        #remark { width: auto; max-width: 50%; padding: 0 1; color: $text-warning; }
+        Input { width: 1fr; }
+    }
+    """
+    kind = ""
+    """What is asked: `search` or `save`; empty if nothing is."""
+
+    def compose(self) -> ComposeResult:
+        yield Static(id="label", markup=False)
+        yield Field(compact=True, select_on_focus=False)
+        yield Static(id="remark", markup=False)
+
+    def ask(self, kind: str, label: str, text: str) -> None:
+        """Ask, with `text` as the default answer."""
+        self.kind = kind
+        self.add_class("-asking")
+        self.query_one("#label", Static).update(label)
+        self.remark("")
+        field = self.query_one(Input)
+        with self.prevent(Input.Changed):
+            field.value = text
+        field.cursor_position = len(text)
+        self.screen.set_focus(field)
+
+    def remark(self, words: str) -> None:
+        """Show a remark about the answer."""
+        self.query_one("#remark", Static).update(words)
+
+    def close(self) -> None:
+        self.kind = ""
+        self.remove_class("-asking")
+
+
 class LogPane(Vertical, Working):
     """A `LogView` with all operations on it."""
 
     DEFAULT_CSS = "LogPane { height: 1fr; width: 1fr; }"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "give_up", show=False)]
 
-    def __init__(self, view: LogView, *, id: str | None = None) -> None:
+    def __init__(self, view: LogView) -> None:
         """Put the status line below `view`, with the line for questions between them."""
-        super().__init__(id=id)
+        super().__init__()
         self.view = view
         self.save_folder = ""
         """Where files are saved unless the user gives another folder."""
@@ -45,7 +94,6 @@ class LogPane(Vertical, Working):
         self._refused: Path | None = None
 
     def compose(self) -> ComposeResult:
-        """The lines, the question, the status."""
         yield self.view
         yield LogPrompt()
         yield LogBar()
@@ -55,13 +103,13 @@ class LogPane(Vertical, Working):
         return self.query_one(LogPrompt)
 
     @on(LogView.StateChanged)
-    def _show_state(self, _event: LogView.StateChanged) -> None:
+    def _show_state(self) -> None:
         self.query_one(LogBar).show(self.view)
 
     def words_changed(self) -> None:
         """Redraw in the current language."""
         self.view.lay_out()
-        self.query_one(LogBar).show(self.view)
+        self._show_state()
 
     def search(self) -> None:
         """Ask what to search for; the search runs as the text is typed."""
@@ -100,31 +148,37 @@ class LogPane(Vertical, Working):
         self._lines = chosen if len(chosen) > 1 else self.view.shown_lines()
         self._refused = None
         count = ngettext("write {count} line to:", "write {count} lines to:", len(self._lines))
-        path = default_path(self.save_folder, clock.now())
+        when = datetime.fromtimestamp(clock.now(), timezone.utc).astimezone()
+        path = Path(self.save_folder or ".") / f"deck-{when:%Y%m%d-%H%M%S}.log"
         self.prompt.ask("save", count.format(count=grouped(len(self._lines))), str(path))
 
-    @on(LogPrompt.Edited)
-    def _search_edited(self, event: LogPrompt.Edited) -> None:
-        if event.kind == "search":
-            self._search_for(event.text)
+    @on(Input.Changed)
+    def _typed(self, event: Input.Changed) -> None:
+        event.stop()
+        self.prompt.remark("")
+        if self.prompt.kind == "search":
+            self._search_for(event.value)
 
-    @on(LogPrompt.Answered)
-    def _answered(self, event: LogPrompt.Answered) -> None:
-        if event.kind == "search":
+    @on(Input.Submitted)
+    def _answered(self, event: Input.Submitted) -> None:
+        event.stop()
+        if self.prompt.kind == "search":
             self._close_prompt()
             self.view.find(-1)
-        elif event.kind == "save":
-            path = event.text.strip()
-            if path:
-                self.run_worker(self._save(home_path(path)), exclusive=True, group="save")
-            else:
-                self.prompt.remark(_("Enter a file name."))
+        elif path := event.value.strip():
+            self.run_worker(self._save(path), exclusive=True, group="save")
+        else:
+            self.prompt.remark(_("Enter a file name."))
 
-    @on(LogPrompt.Cancelled)
-    def _given_up(self, event: LogPrompt.Cancelled) -> None:
-        if event.kind == "search":
+    def action_give_up(self) -> None:
+        """Ask no more; a search ends."""
+        if self.prompt.kind == "search":
             self._search_for("")
         self._close_prompt()
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave Escape to the screen unless a question is open."""
+        return bool(self.prompt.kind) if action == "give_up" else super().check_action(action, parameters)
 
     def _search_for(self, text: str) -> None:
         chosen = self.view.log_filter
@@ -135,15 +189,34 @@ class LogPane(Vertical, Working):
         self.prompt.close()
         self.view.focus()
 
-    async def _save(self, path: Path) -> None:
+    async def _save(self, typed: str) -> None:
+        path = Path(typed)
         try:
+            path = _full(path)
             size = await asyncio.to_thread(save_lines, path, self._lines, replace=path == self._refused)
         except FileExistsError:
             self._refused = path
             self.prompt.remark(_("The file already exists: press Enter again to overwrite it."))
-        except (OSError, ValueError) as error:
-            self.prompt.remark(plain(reason(error)))
+        except (OSError, RuntimeError, ValueError) as error:
+            self.prompt.remark(plain(localized(os_reason(error))))
         else:
             self._close_prompt()
             words = ngettext("{size} byte saved to {path}", "{size} bytes saved to {path}", size)
             self.notify(words.format(size=grouped(size), path=plain(str(path))), markup=False)
+
+
+def _full(path: Path) -> Path:
+    return path.expanduser()
+
+
+def save_lines(path: Path, lines: Sequence[str], *, replace: bool) -> int:
+    """Write the lines, each with a line end, as UTF-8; return the number of bytes written.
+
+    Creates missing folders. Raises FileExistsError unless `replace`, and any other OSError of the
+    file system.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    flags = os.O_WRONLY | os.O_CREAT | (os.O_TRUNC if replace else os.O_EXCL)
+    data = "".join(f"{line}\n" for line in lines).encode("utf-8", "replace")
+    with os.fdopen(os.open(path, flags, 0o644), "wb") as file:
+        return file.write(data)

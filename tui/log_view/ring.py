@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from launcher.status import LogLine, Severity
@@ -41,7 +41,6 @@ class LogEntry:
     """The text without control characters."""
     skipped: int = 0
     """Number of missing lines for a mark; 0 for a line."""
-    dropped: bool = False
 
     @property
     def size(self) -> int:
@@ -82,11 +81,9 @@ class LineRing:
             if missing > 0:
                 if node in self._last_seq:
                     self._last_seq[node] += missing
-                self._add(node, self._now(), skipped=missing)
+                now_s = self.entries[-1].time_s if self.entries else 0.0
+                self._add(node, now_s, skipped=missing)
         return self.entries[start:]
-
-    def _now(self) -> float:
-        return self.entries[-1].time_s if self.entries else 0.0
 
     def _add(self, node: str, time_s: float, rank: int = 0, text: str = "", skipped: int = 0) -> None:
         if len(text) > LONGEST_TEXT:
@@ -118,18 +115,16 @@ class LineRing:
         loose = len(self.entries) - self._held
         return loose > self.max_lines * SLACK or self._bytes > self.max_bytes * SLACK
 
-    def trim(self) -> list[LogEntry]:
-        """Drop lines of the nodes that wrote most until the limits hold; return new marks."""
+    def trim(self) -> None:
+        """Drop lines of the nodes that wrote most until the limits hold; marks stand for what is held up."""
         loose = self.entries[self._held :]
-        lines = Counter(entry.node for entry in loose)
-        over_lines = _surplus(lines, self.max_lines)
         sizes: Counter[str] = Counter()
         for entry in loose:
             sizes[entry.node] += entry.size
+        over_lines = _surplus(Counter(entry.node for entry in loose), self.max_lines)
         over_bytes = _surplus(sizes, self.max_bytes)
         gaps: Counter[str] = Counter()
         kept: list[LogEntry] = []
-        marks: list[LogEntry] = []
         for entry in loose:
             node = entry.node
             if over_lines[node] <= 0 and over_bytes[node] <= 0:
@@ -137,28 +132,20 @@ class LineRing:
                 continue
             over_lines[node] -= 1
             over_bytes[node] -= entry.size
-            entry.dropped = True
             gaps[node] += entry.skipped or 1
             if self._held and over_lines[node] <= 0 and over_bytes[node] <= 0:
-                marks.append(LogEntry(entry.id, node, 0, entry.time_s, "", gaps[node]))
-                kept.append(marks[-1])
+                kept.append(LogEntry(entry.id, node, 0, entry.time_s, "", gaps[node]))
         self.entries[self._held :] = kept
         self._bytes = sum(entry.size for entry in kept)
-        return marks
 
 
 def _surplus(amounts: Mapping[str, int], budget: int) -> Counter[str]:
-    """How much each exceeds its share, if all have the same maximum."""
-    level = _level(amounts.values(), budget)
-    return Counter({name: amount - level for name, amount in amounts.items() if amount > level})
-
-
-def _level(amounts: Iterable[int], budget: int) -> int:
-    """The highest level for which the sum of min(amount, level) stays within the budget."""
-    rest = sorted(amounts)
+    """How much each exceeds its share: the highest level whose sum of min(amount, level) stays within the budget."""
+    level, rest = sys.maxsize, sorted(amounts.values())
     while rest:
         share = budget // len(rest)
         if rest[0] > share:
-            return share
+            level = share
+            break
         budget -= rest.pop(0)
-    return sys.maxsize
+    return Counter({name: amount - level for name, amount in amounts.items() if amount > level})

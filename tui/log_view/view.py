@@ -8,21 +8,30 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
+from rich.cells import cell_len
 from rich.segment import Segment
 from textual.binding import Binding, BindingType
+from textual.cache import LRUCache
 from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from text.i18n import _
-from tui.log_view.choice import LineChoice, exported
-from tui.log_view.drawing import ColumnsFor, DrawnRows
-from tui.log_view.index import LogIndex
-from tui.log_view.palette import PALETTE_CLASSES, PALETTE_CSS
+from text.plain import plain
+from tui.log_view.index import LineChoice, LogIndex
 from tui.log_view.ring import LineRing
-from tui.log_view.rows import columns_for, text_of
+from tui.log_view.rows import (
+    PALETTE_CLASSES,
+    PALETTE_CSS,
+    LogColumns,
+    RowPainter,
+    columns_for,
+    exported,
+    gutter_texts,
+    text_of,
+)
 from tui.log_view.tail import Tail
 from tui.session.history import KEPT_LINES
 from tui.widgets.one_style import OneStyle
@@ -33,10 +42,15 @@ if TYPE_CHECKING:
     from textual.widget import Widget
 
     from launcher.status import LogLine
-    from tui.log_view.filter import LogFilter
+    from tui.log_view.index import LogFilter
     from tui.log_view.ring import LogEntry
 
+ColumnsFor: TypeAlias = "Callable[[int, int], LogColumns]"
+"""Returns the columns in front of the text, for the given widths of a row and the longest node."""
 SHIFT_CELLS = 16
+LEAST_TEXT = 8
+PAGES_KEPT = 2
+"""Drawn rows that are kept, in heights of the view: a row takes two kilobytes."""
 
 
 class LogView(OneStyle, ScrollView, can_focus=True):
@@ -92,14 +106,12 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         period_s: float = 0.1,
         columns_for: ColumnsFor = columns_for,
         file_of: Callable[[str], str] = lambda _node: "",
-        id: str | None = None,
-        classes: str | None = None,
     ) -> None:
         """Keep this many lines; draw at most every `period_s`.
 
         `file_of` returns the path of the file with all lines of a node, "" if it is not known.
         """
-        super().__init__(id=id, classes=classes)
+        super().__init__()
         self.ring = LineRing(max_lines)
         self.index = LogIndex(lambda entry: text_of(entry, file_of(entry.node)) if entry.skipped else entry.text)
         self.fresh = 0
@@ -110,7 +122,15 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         """How the bar describes the lowest severity shown, in place of "WARN and worse"."""
         self.choice = LineChoice(self.index)
         self._tail = Tail(self, lambda: self.index.rows, self._tell, period_s)
-        self._drawn = DrawnRows(self, self.index, columns_for, fold=fold)
+        self.fold = fold
+        """Whether long lines are wrapped; set it by `set_fold`."""
+        self._shifted = 0
+        """Cells by which unwrapped lines are shifted to the left."""
+        self._columns_for, self._columns = columns_for, LogColumns(0, 0, 0)
+        self._node_places: dict[str, int] = {}
+        self._longest_node = 4
+        self._painter: RowPainter | None = None
+        self._strips: LRUCache[tuple[int, int], Strip] = LRUCache(1)
 
     # Display
 
@@ -121,12 +141,17 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         shown = self.index.extend(entries)
         self.fresh += 0 if self.following else shown
         if self.ring.full:
-            self.index.prune(self.ring.trim())
+            self.ring.trim()
+            self.index.rebuild(self.ring.entries)
         self._tail.rows_came()
 
     def know_nodes(self, names: Iterable[str]) -> None:
         """Assign colours to these nodes, in this order."""
-        if self._drawn.know_nodes(names):
+        for name in names:
+            self._node_places.setdefault(name, len(self._node_places))
+        longest = max(map(len, self._node_places), default=0)
+        if longest > self._longest_node:
+            self._longest_node = longest
             self.lay_out()
 
     def clear(self) -> None:
@@ -154,24 +179,15 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self.index.rebuild(self.ring.entries)
             self._settle(top)
 
-    @property
-    def fold(self) -> bool:
-        """Whether long lines are wrapped."""
-        return self._drawn.fold
-
     def set_fold(self, fold: bool) -> None:
         """Wrap long lines, or show one row of each and shift it sideways."""
         if fold != self.fold:
-            self._drawn.set_fold(fold)
+            self.fold, self._shifted = fold, 0
             self.lay_out()
 
     def cuts(self, node: str) -> bool:
         """Whether the column has no room for the name of this node."""
-        return self._drawn.cuts(node)
-
-    def row_text(self, entry: LogEntry) -> str:
-        """Columns and text of a line as they are drawn, but unwrapped."""
-        return self._drawn.text(entry)
+        return cell_len(plain(node)) > self._columns.node
 
     # Following
 
@@ -298,7 +314,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         for entry in self.index.shown[start:end]:
             span = selection.get_span(entry.id)
             if span is not None:
-                text = self.row_text(entry)
+                text = "".join(gutter_texts(entry, self._columns)) + self.index.text_of(entry)
                 lines.append(text[span[0] : len(text) if span[1] < 0 else span[1]])
         return ("\n".join(lines), "\n") if lines else None
 
@@ -326,7 +342,10 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._tell()
 
     def _shift(self, cells: int) -> None:
-        if self._drawn.shift(cells):
+        most = 0 if self.fold else max(0, self.index.longest - self._text_width)
+        shift = max(0, min(self._shifted + cells, most))
+        if shift != self._shifted:
+            self._shifted = shift
             self._repaint()
 
     def _tell(self) -> None:
@@ -345,8 +364,15 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         width = self.container_size.width - self.scrollbar_size_vertical
         if width >= 1:
             top = self.top_id
-            self._drawn.lay_out(width, self.container_size.height)
+            self._strips.maxsize = max(1, PAGES_KEPT * self.container_size.height)
+            self._columns = self._columns_for(width, self._longest_node)
+            self.index.fold(self._text_width if self.fold else None)
             self._settle(top)
+
+    @property
+    def _text_width(self) -> int:
+        width = self.container_size.width - self.scrollbar_size_vertical
+        return max(LEAST_TEXT, width - self._columns.gutter)
 
     def _on_resize(self, _event: Resize) -> None:
         self.lay_out()
@@ -354,7 +380,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
     def notify_style_update(self) -> None:
         """Use the colours of the new theme."""
         super().notify_style_update()
-        self._drawn.forget()
+        self._forget()
 
     def _settle(self, top: int | None) -> None:
         """After rows have changed, keep the same line at the top, or follow the end."""
@@ -363,8 +389,13 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self._tail.steer(self.index.row_of(self.index.place_of(top)))
         self._tail.redraw()
 
+    def _forget(self) -> None:
+        """Discard all drawn rows, since they look different now."""
+        self._painter = None
+        self._strips.clear()
+
     def _repaint(self) -> None:
-        self._drawn.forget()
+        self._forget()
         self.refresh()
 
     def render_line(self, y: int) -> Strip:
@@ -372,11 +403,24 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         row = int(self.scroll_y) + y
         if row < self.index.rows:
             place, part = self.index.locate(row)
-            entry = self.index.shown[place]
-            chosen = entry.id in self.choice
-            return self._drawn.strip(entry, part, self.text_selection, chosen=chosen)
+            return self._row(self.index.shown[place], part)
         strip = Strip([]) if self.index.rows else self._words_line(y)
         return strip.adjust_cell_length(self.size.width, self.rich_style)
+
+    def _row(self, entry: LogEntry, part: int) -> Strip:
+        """Row number `part` of a line."""
+        selection = self.text_selection
+        strip = None if selection else self._strips.get((entry.id, part))
+        if strip is not None:
+            return strip
+        if self._painter is None:
+            self._painter = RowPainter(self, self.index, self._columns, self._text_width, self._shifted)
+        place, chosen = self._node_places[entry.node], entry.id in self.choice
+        strip = self._painter.row(entry, part, place, selection, chosen=chosen)
+        strip = strip.adjust_cell_length(self.size.width, self.rich_style)
+        if selection is None:
+            self._strips[entry.id, part] = strip
+        return strip
 
     def _words_line(self, y: int) -> Strip:
         words = self.empty_words or _("no lines yet")

@@ -12,22 +12,75 @@ from textual.containers import Horizontal
 
 from launcher.status import Severity
 from text import ros2_words
-from text.i18n import N_
+from text.i18n import N_, _, decimal
+from text.plain import plain
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
 from tui.log_level import change_log_level, full_name
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
 from tui.logs.actions import LOGS_ACTIONS
-from tui.logs.node_list import LogNodes
+from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
     from textual.app import ComposeResult
 
-    from tui.log_view.filter import LogFilter
+    from tui.log_view.index import LogFilter
     from tui.session.messages import LanguageChanged, LogArrived, SessionChanged, StatusChanged
 
 COUNTS_EVERY_S = 0.5
+HEARD, MUTE, ALONE = "●", "○", "★"
+
+
+class LogNodes(Rows):
+    """One row for each node: its mark, name, number of lines, warnings and errors.
+
+    `Opened` means that the chosen node is to be muted or unmuted.
+    """
+
+    DEFAULT_CSS = """
+    LogNodes { background: $surface; }
+    """
+
+    def show_nodes(self, names: Iterable[str], counts: Mapping[str, Sequence[int]], chosen: LogFilter) -> None:
+        """Show these nodes; `counts` has the lines of each by rank of the severity."""
+        columns = (
+            Column("", 1),
+            Column(_("node")),
+            Column(_("lines"), 6, right=True),
+            Column(_("alarms"), 7, right=True),
+        )
+        self.show(columns, [_row(name, counts.get(name, ()), chosen) for name in names])
+
+
+def _row(name: str, counts: Sequence[int], chosen: LogFilter) -> Row:
+    heard = chosen.shows_node(name)
+    mark = (ALONE if chosen.only == name else HEARD) if heard else MUTE
+    meaning = "" if heard else "dim"
+    errors = sum(counts[Severity.ERROR.rank :])
+    warnings = sum(counts[Severity.WARN.rank : Severity.ERROR.rank])
+    alarms = " ".join(f"{letter}{short_count(count)}" for letter, count in (("W", warnings), ("E", errors)) if count)
+    alarm_meaning = ("bad" if errors else "warn") if alarms and heard else meaning
+    return Row(
+        name,
+        (
+            Cell(mark, meaning),
+            Cell(plain(name), meaning),
+            Cell(short_count(sum(counts)), meaning),
+            Cell(alarms, alarm_meaning),
+        ),
+    )
+
+
+def short_count(count: int) -> str:
+    """A count in at most four characters: 999, 1.2k, 12k, 1.2M."""
+    for size, letter in ((1_000_000, "M"), (1_000, "k")):
+        if count >= size:
+            value = count / size
+            return decimal(f"{value:.1f}{letter}") if value < 10 else f"{int(value)}{letter}"
+    return str(count)
 
 
 class LogsScreen(DeckScreen):

@@ -12,7 +12,6 @@ from text.i18n import _, ngettext
 from text.plain import plain
 from tui.emergency.state import blocked_reason
 from tui.outcome import words
-from tui.outcome.problem_words import reported_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -130,7 +129,7 @@ class OutcomeTrail:
             problems = event.get("problems")
             for problem in problems if isinstance(problems, list) else ():
                 if isinstance(problem, dict):
-                    self._add("✗", LLM_RESULT, reported_words(problem), delay_s)
+                    self._add("✗", LLM_RESULT, words.reported_words(problem), delay_s)
         elif kind == "head":
             done, text = words.service_words(event)
             self._add("✓" if done else "✗", SERVICE, text, delay_s)

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from rich.segment import Segment
+from rich.console import Group
 from rich.style import Style
+from rich.table import Table
 from rich.text import Text
-from textual.geometry import Size
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
+from textual.containers import VerticalScroll
+from textual.widgets import Static
 
 from text.figures import whole
 from text.i18n import _
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from textual.app import ComposeResult
 
     from tui.outcome.trail import OutcomeEntry
 
@@ -27,7 +29,7 @@ KINDS = {"✓": "good", "✗": "bad", "!": "held", "→": "passed", "·": "await
 SECOND_MS = 1000
 
 
-class Outcome(ScrollView, can_focus=True):
+class Outcome(VerticalScroll, can_focus=True):
     """Shows a headline and below it the entries, with long ones wrapped."""
 
     ALLOW_SELECT = False
@@ -43,83 +45,45 @@ class Outcome(ScrollView, can_focus=True):
     }
     """
 
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
-        self._headline = ""
-        self._entries: tuple[OutcomeEntry, ...] = ()
-        self._strips: list[Strip] = []
-        self._off_colour = False
-        """Whether the strips still have the colours of the previous theme."""
+    def __init__(self) -> None:
+        super().__init__()
+        self.headline = ""
+        """The line above the entries."""
+        self.entries: tuple[OutcomeEntry, ...] = ()
+
+    def compose(self) -> ComposeResult:
+        yield Static(markup=False)
 
     def show(self, headline: str, entries: Sequence[OutcomeEntry]) -> None:
         """Show these entries; redraws only if something has changed."""
         shown = (headline, tuple(entries))
-        if shown != (self._headline, self._entries):
-            self._headline, self._entries = shown
+        if shown != (self.headline, self.entries):
+            self.headline, self.entries = shown
             self._draw()
 
-    @property
-    def headline(self) -> str:
-        """The line above the entries."""
-        return self._headline
-
-    @property
-    def entries(self) -> tuple[OutcomeEntry, ...]:
-        return self._entries
-
-    def render_line(self, y: int) -> Strip:
-        if self._off_colour:
-            self._lay()
-        index, width = y + self.scroll_offset.y, self.size.width
-        if index >= len(self._strips):
-            return Strip.blank(width, self.rich_style)
-        return self._strips[index].adjust_cell_length(width, self.rich_style)
-
     def on_resize(self) -> None:
-        """Wrap to the new width."""
+        """Give the text a column of its own if there is room."""
         self._draw()
 
     def notify_style_update(self) -> None:
         """Redraw in the colours of the new theme; component styles change after this call."""
         super().notify_style_update()
-        self._off_colour = True
-        self.refresh()
-
-    def watch_show_vertical_scrollbar(self) -> None:
-        """Wrap to the width that the scroll bar leaves."""
-        self._draw()
+        self.call_after_refresh(self._draw)
 
     def _draw(self) -> None:
-        self._lay()
-        self.virtual_size = Size(0, len(self._strips))
-        self.refresh()
-
-    def _lay(self) -> None:
-        self._off_colour = False
-        base, width = self.rich_style, max(1, self.scrollable_size.width)
-        self._strips = []
-        if self._headline:
-            self._wrap([], 0, self._headline, base + Style(bold=True), width)
-        for entry in self._entries:
-            self._entry(entry, width)
-
-    def _entry(self, entry: OutcomeEntry, width: int) -> None:
-        base = self.rich_style
-        dim = base + Style(dim=True)
-        kind = base + self.get_component_rich_style(f"outcome--{KINDS[entry.mark]}", partial=True)
-        before = [Segment(delay_text(entry.delay_s).rjust(DELAY), dim), Segment(f" {entry.mark} ", kind)]
-        if width < ROOMY:
-            self._wrap(before, DELAY + MARK, f"{entry.topic}: {entry.text}", kind, width)
-            return
-        before.append(Segment(entry.topic.ljust(TOPIC), dim))
-        self._wrap(before, DELAY + MARK + TOPIC, entry.text, kind, width)
-
-    def _wrap(self, before: list[Segment], indent: int, text: str, style: Style, width: int) -> None:
-        """Append the text to `before`, with its further lines indented."""
-        lines = Text(text).wrap(self.app.console, max(8, width - indent))
-        for number, line in enumerate(lines or [Text("")]):
-            margin = before if number == 0 else [Segment(" " * indent, self.rich_style)]
-            self._strips.append(Strip([*margin, Segment(line.plain, style)]))
+        dim, roomy = Style(dim=True), self.scrollable_size.width >= ROOMY
+        lines = Table.grid()
+        for width in (DELAY, MARK, TOPIC) if roomy else (DELAY, MARK):
+            lines.add_column(width=width)
+        lines.add_column(ratio=1)
+        for entry in self.entries:
+            kind = self.get_component_rich_style(f"outcome--{KINDS[entry.mark]}", partial=True)
+            before = [Text(delay_text(entry.delay_s).rjust(DELAY), dim), Text(f" {entry.mark} ", kind)]
+            if roomy:
+                lines.add_row(*before, Text(entry.topic, dim), Text(entry.text, kind))
+            else:
+                lines.add_row(*before, Text(f"{entry.topic}: {entry.text}", kind))
+        self.query_one(Static).update(Group(Text(self.headline, Style(bold=True)), lines))
 
 
 def delay_text(delay_s: float | None) -> str:

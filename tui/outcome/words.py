@@ -1,14 +1,16 @@
-"""The messages that follow a command, as short sentences."""
+"""The messages that follow a command, and what is wrong with the LLM's JSON, as short sentences."""
 
 from __future__ import annotations
 
+import contextlib
 import math
 from typing import TYPE_CHECKING, Any
 
+from robot.commands.problems import Problem
 from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL
 from robot.kinematics import WHEEL_RADIUS_M
 from text.figures import figure, whole
-from text.i18n import _
+from text.i18n import _, language
 from text.nested import read_json
 from text.plain import plain
 
@@ -18,6 +20,26 @@ if TYPE_CHECKING:
     from graph.data import Value
 
 LONGEST = 400
+LONGEST_PROBLEM = 300
+
+
+def problem_words(problem: Problem) -> str:
+    """The place, the field and the fix: `line 3, column 12: commands[1].speed: must be …`."""
+    place = _("line {line}, column {column}").format(line=problem.line, column=problem.column)
+    message = problem.message
+    if language() == "ru":
+        # One that llm_parser reports may be of any make.
+        with contextlib.suppress(KeyError, ValueError, IndexError, TypeError):
+            message = problem.in_language("ru")
+    return plain(": ".join(part for part in (place, problem.field, message) if part), LONGEST_PROBLEM)
+
+
+def reported_words(report: Mapping[str, Any]) -> str:
+    """The same for a problem reported by llm_parser; accepts any report."""
+    field, message, code = (str(report.get(name, "")) for name in ("field", "message", "code"))
+    args = report.get("args")
+    place = report.get("line", 1), report.get("column", 1)
+    return problem_words(Problem(field, *place, message, code, args if isinstance(args, dict) else {}))
 
 
 def setpoint(value: Mapping[str, Value]) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from graph.data import ParameterRow
 from graph.messages.types import UnknownTypeError, load_message
 from tests.unit.scripts_of_setup import load
 from text.i18n import detect, localized, ngettext, set_language
-from tui.graph.parameter_words import allowed_words
+from tui.graph.parameters import allowed_words
 from tui.yaml_form.words import reason_words
 
 catalogues = load("catalogues")

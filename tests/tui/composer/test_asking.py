@@ -23,10 +23,8 @@ from tests.tui.screen_stage import on_stage
 from tests.tui.snapshots import Look, seen
 from tests.waiting import until
 from tui import clock
-from tui.composer.compare import ComparedAnswer, CompareDialog
-from tui.composer.json_editor import JsonEditor
-from tui.composer.prompt_dialog import PromptDialog
-from tui.composer.senses import RobotSenses
+from tui.composer.dialogs import PromptDialog
+from tui.composer.question import RobotSenses
 
 if TYPE_CHECKING:
     from tests.model_server import Script
@@ -42,19 +40,6 @@ def _closes(exchange: Exchange) -> None:
     exchange.begins()
     exchange.piece({"content": GOOD[:30]})
     raise OSError
-
-
-async def opened_comparison(stage: ComposerStage) -> CompareDialog:
-    await stage.pilot.press("alt+q")
-    stage.screen.line.field.value = WORDS
-    await stage.pilot.press("alt+c")
-    await stage.pilot.pause()
-    dialog = stage.app.screen
-    assert isinstance(dialog, CompareDialog)
-    both = dialog.query(ComparedAnswer)
-    await until(lambda: all(one.state.whole for one in both), "both answers")
-    await stage.pilot.pause()
-    return dialog
 
 
 class Answers:
@@ -121,7 +106,7 @@ def composer(size: tuple[int, int] = (120, 40)) -> AbstractAsyncContextManager[C
 async def ask(stage: ComposerStage, words: str = WORDS) -> None:
     """Say it in the line, and press Enter."""
     await stage.pilot.press("alt+q")
-    stage.screen.line.field.value = words
+    stage.screen.draft.line.field.value = words
     await stage.pilot.press("enter")
     await stage.pilot.pause()
 
@@ -134,7 +119,7 @@ async def answered(stage: ComposerStage) -> None:
 
 def verdict(stage: ComposerStage) -> str:
     """The line that says how the JSON stands."""
-    return str(stage.screen.verdict.query_one(Static).content)
+    return str(stage.screen.draft.verdict.query_one(Static).content)
 
 
 def status(stage: ComposerStage) -> str:
@@ -174,23 +159,23 @@ FAULTS: dict[str, tuple[Script, str, str]] = {
 async def test_an_answer_waits_in_the_editor_to_be_sent(server: ModelServer) -> None:
     set_up(server.url)
     async with composer() as stage:
-        example = stage.screen.editor.text
+        example = stage.screen.draft.editor.text
         await stage.pilot.press("x")
-        before = stage.screen.editor.text
+        before = stage.screen.draft.editor.text
         await ask(stage)
         await answered(stage)
-        assert stage.screen.editor.text == GOOD
+        assert stage.screen.draft.editor.text == GOOD
         assert verdict(stage) == "✓ valid: 1 command"
-        assert stage.screen.editor.has_focus
+        assert stage.screen.draft.editor.has_focus
         assert sent(stage) == []
         await stage.pilot.press("ctrl+s")
         await stage.pilot.pause()
         assert sent(stage) == [GOOD]
-        assert stage.screen.line.note == ""
+        assert stage.screen.draft.line.note == ""
         await stage.pilot.press("ctrl+z")
-        assert stage.screen.editor.text == before
+        assert stage.screen.draft.editor.text == before
         await stage.pilot.press("ctrl+z")
-        assert stage.screen.editor.text == example
+        assert stage.screen.draft.editor.text == example
 
 
 async def test_the_answer_grows_and_is_checked_while_it_comes(server: ModelServer) -> None:
@@ -203,18 +188,18 @@ async def test_the_answer_grows_and_is_checked_while_it_comes(server: ModelServe
         await ask(stage)
         await until(lambda: "asking m-1" in verdict(stage), "that it is asked")
         answer.give()
-        await until(lambda: stage.screen.editor.text == FAST[:19], "the first piece")
+        await until(lambda: stage.screen.draft.editor.text == FAST[:19], "the first piece")
         assert verdict(stage) == "… m-1 answers: 0 commands so far"
-        stage.screen.editor.focus()
+        stage.screen.draft.editor.focus()
         await stage.pilot.press("x", "ctrl+s")
-        assert stage.screen.editor.text == FAST[:19]
+        assert stage.screen.draft.editor.text == FAST[:19]
         answer.give()
         await until(lambda: verdict(stage) == "✗ m-1 answers: 1 problem so far", "what is wrong")
-        listed = stage.screen.verdict.query_one(OptionList)
+        listed = stage.screen.draft.verdict.query_one(OptionList)
         assert "must be from -0.5 to 0.5 m/s" in str(listed.get_option_at_index(0).prompt)
         answer.give()
         await answered(stage)
-        assert stage.screen.editor.text == GOOD
+        assert stage.screen.draft.editor.text == GOOD
         assert sent(stage) == []
 
 
@@ -224,13 +209,13 @@ async def test_a_refused_answer_is_repaired_in_sight(server: ModelServer) -> Non
     set_up(server.url)
     async with composer() as stage:
         await ask(stage)
-        await until(lambda: "is asked once more" in stage.screen.line.note, "the second question")
-        assert "commands[0].speed: must be from -0.5 to 0.5 m/s, not 5" in stage.screen.line.note
+        await until(lambda: "is asked once more" in stage.screen.draft.line.note, "the second question")
+        assert "commands[0].speed: must be from -0.5 to 0.5 m/s, not 5" in stage.screen.draft.line.note
         second.give()
         second.give()
         await answered(stage)
-        assert stage.screen.editor.text == GOOD
-        assert "the second is" in stage.screen.line.note
+        assert stage.screen.draft.editor.text == GOOD
+        assert "the second is" in stage.screen.draft.line.note
         assert status(stage).startswith("m-1: 824 + 172 tokens")
 
 
@@ -240,7 +225,7 @@ async def test_each_failure_has_its_own_words_that_stay(kind: str, server: Model
     script, words, mend = FAULTS[kind]
     set_up(server.url)
     async with composer() as stage:
-        before = stage.screen.editor.text
+        before = stage.screen.draft.editor.text
         await ask(stage)
         await answered(stage)
         await stage.write(before)
@@ -248,14 +233,14 @@ async def test_each_failure_has_its_own_words_that_stay(kind: str, server: Model
         await stage.pilot.press("alt+a")
         await ask(stage)
         await answered(stage)
-        assert words in stage.screen.line.note
-        assert mend in stage.screen.line.note
-        assert stage.screen.editor.text == before
-        assert not stage.screen.editor.read_only
-        assert not stage.screen.is_auto
+        assert words in stage.screen.draft.line.note
+        assert mend in stage.screen.draft.line.note
+        assert stage.screen.draft.editor.text == before
+        assert not stage.screen.draft.editor.read_only
+        assert not stage.screen.draft.auto
         assert sent(stage) == []
         await stage.hear()
-        assert words in stage.screen.line.note
+        assert words in stage.screen.draft.line.note
 
 
 async def test_escape_hangs_up_and_brings_the_text_back(server: ModelServer) -> None:
@@ -263,15 +248,15 @@ async def test_escape_hangs_up_and_brings_the_text_back(server: ModelServer) -> 
     server.script = Answers(answer)
     set_up(server.url)
     async with composer() as stage:
-        before = stage.screen.editor.text
+        before = stage.screen.draft.editor.text
         await ask(stage)
         await until(lambda: len(server.exchanges) == 2, "the question")
         answer.give()
-        await until(lambda: stage.screen.editor.text == GOOD[:19], "the first piece")
+        await until(lambda: stage.screen.draft.editor.text == GOOD[:19], "the first piece")
         await stage.pilot.press("escape")
         await stage.pilot.pause()
         assert not stage.screen.is_asking
-        assert stage.screen.editor.text == before
+        assert stage.screen.draft.editor.text == before
         await until(answer.hung_up.is_set, "the end of the connection")
 
 
@@ -285,7 +270,7 @@ async def test_auto_sends_a_valid_answer_by_itself(server: ModelServer) -> None:
         await ask(stage)
         await answered(stage)
         assert sent(stage) == [GOOD]
-        assert stage.screen.is_auto
+        assert stage.screen.draft.auto
         await stage.pilot.press("alt+a")
         await ask(stage)
         await answered(stage)
@@ -301,19 +286,19 @@ async def test_the_emergency_stop_ends_auto_while_the_answer_comes(server: Model
         await stage.pilot.press("alt+a")
         await ask(stage)
         answer.give()
-        await until(lambda: stage.screen.editor.text == GOOD[:19], "the first piece")
+        await until(lambda: stage.screen.draft.editor.text == GOOD[:19], "the first piece")
         await stage.pilot.press("ctrl+x")
         await stage.pilot.pause()
-        assert not stage.screen.is_auto
-        assert "the emergency stop has ended it" in stage.screen.line.note
+        assert not stage.screen.draft.auto
+        assert "the emergency stop has ended it" in stage.screen.draft.line.note
         await stage.pilot.press("alt+a")
-        assert not stage.screen.is_auto
+        assert not stage.screen.draft.auto
         await stage.pilot.press("ctrl+r")
         answer.give()
         await answered(stage)
-        assert stage.screen.editor.text == GOOD
+        assert stage.screen.draft.editor.text == GOOD
         assert sent(stage) == []
-        assert not stage.screen.is_auto
+        assert not stage.screen.draft.auto
 
 
 async def test_the_prompt_that_went_out_can_be_looked_at(server: ModelServer) -> None:
@@ -345,31 +330,14 @@ async def test_the_prompt_that_went_out_can_be_looked_at(server: ModelServer) ->
 async def test_no_model_is_set_up() -> None:
     """The line says so and where to read on; the rest of the Composer works."""
     async with composer() as stage:
-        assert "docs/models.md" in stage.screen.line.field.placeholder
+        assert "docs/models.md" in stage.screen.draft.line.field.placeholder
         await ask(stage)
-        assert "no language model is set up — docs/models.md" in stage.screen.line.note
+        assert "no language model is set up — docs/models.md" in stage.screen.draft.line.note
         assert not stage.screen.is_asking
         await stage.write(GOOD)
         await stage.pilot.press("ctrl+s")
         await stage.pilot.pause()
         assert sent(stage) == [GOOD]
-
-
-async def test_two_models_are_compared_and_one_answer_is_taken(server: ModelServer) -> None:
-    other = GOOD.replace("closer", "nearer")
-
-    def by_model(exchange: Exchange) -> None:
-        exchange.says(other if exchange.request["model"] == "m-2" else GOOD, usage=(412, 86))
-
-    server.script = Answers(by_model)
-    set_up(server.url, compare_with="m-2")
-    async with composer() as stage:
-        dialog = await opened_comparison(stage)
-        assert [one.text for one in dialog.query(JsonEditor)] == [GOOD, other]
-        await stage.pilot.press("tab", "enter")
-        await stage.pilot.pause()
-        assert stage.screen.editor.text == other
-        assert sent(stage) == []
 
 
 def test_the_model_is_told_what_the_screen_sees() -> None:

@@ -16,9 +16,10 @@ from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.screen_stage import ScreenStage, on_stage
 from tests.tui.snapshots import settle
 from tui import clock
+from tui.composer.dialogs import TEMPLATES
 from tui.composer.screen import ComposerScreen
 from tui.composer.sent import Sent, sent_path
-from tui.composer.templates import TEMPLATES, TemplatesDialog
+from tui.dialogs.choice import ChoiceScreen
 from tui.outcome.trail import FOLLOWED
 
 VALID = '{"thought": "go", "commands": [{"action": "drive", "speed": 0.1, "steering": 0.0}]}'
@@ -35,8 +36,8 @@ class ComposerStage(ScreenStage[ComposerScreen]):
 
     async def write(self, text: str) -> None:
         """Put a text into the editor and wait until it is checked."""
-        self.screen.editor.replace_all(text)
-        self.screen.check()
+        self.screen.draft.editor.replace_all(text)
+        self.screen.draft.check()
         await self.pilot.pause()
 
     async def hear(self, *samples: Sample, after_s: float = 0.02) -> None:
@@ -62,7 +63,7 @@ async def stage() -> AsyncIterator[ComposerStage]:
 
 
 async def test_it_opens_with_a_valid_example_and_says_who_listens(stage: ComposerStage) -> None:
-    assert stage.screen.editor.text == TEMPLATES[0].text()
+    assert stage.screen.draft.editor.text == TEMPLATES[0].text()
     assert stage.screen.problems == ()
     to = str(stage.screen.query_one("#composer-to", Static).content)
     assert to == "/llm_raw_json → llm_parser"
@@ -92,15 +93,15 @@ async def test_the_trail_is_followed_also_while_another_screen_is_in_front(stage
 
 async def test_what_is_wrong_is_marked_listed_and_not_sent(stage: ComposerStage) -> None:
     await stage.write(TOO_FAST)
-    assert stage.screen.editor.render_line(0).text.startswith("1✗")
-    listed = stage.screen.verdict.query_one(OptionList)
+    assert stage.screen.draft.editor.render_line(0).text.startswith("1✗")
+    listed = stage.screen.draft.verdict.query_one(OptionList)
     assert str(listed.get_option_at_index(0).prompt) == (
         "line 1, column 61: commands[0].speed: must be from -0.5 to 0.5 m/s, not 9"
     )
     await stage.pilot.press("ctrl+s")
     await stage.pilot.pause()
     assert stage.graph.published == []
-    assert stage.screen.editor.cursor_location == (0, 60)
+    assert stage.screen.draft.editor.cursor_location == (0, 60)
 
 
 async def test_what_is_wrong_is_sent_by_a_key_of_its_own(stage: ComposerStage) -> None:
@@ -120,26 +121,26 @@ async def test_a_key_walks_from_problem_to_problem(stage: ComposerStage) -> None
     seen = []
     for _press in range(3):
         await stage.pilot.press("ctrl+n")
-        seen.append(stage.screen.editor.cursor_location)
+        seen.append(stage.screen.draft.editor.cursor_location)
     assert seen == [(0, 12), (2, 12), (0, 12)]
 
 
 async def test_a_template_takes_the_place_of_the_text(stage: ComposerStage) -> None:
     await stage.pilot.press("ctrl+t")
     await stage.pilot.pause()
-    assert isinstance(stage.app.screen, TemplatesDialog)
+    assert isinstance(stage.app.screen, ChoiceScreen)
     await stage.pilot.press("down", "enter")
     await stage.pilot.pause()
-    assert stage.screen.editor.text == TEMPLATES[1].text()
+    assert stage.screen.draft.editor.text == TEMPLATES[1].text()
     await stage.pilot.press("ctrl+t", "escape")
     await stage.pilot.pause()
-    assert stage.screen.editor.text == TEMPLATES[1].text()
+    assert stage.screen.draft.editor.text == TEMPLATES[1].text()
 
 
 def recalled(sent: Sent) -> list[str]:
     """Walk back through all of it; return it from the oldest to the newest."""
     texts: list[str] = []
-    while (text := sent.older("")) is not None:
+    while (text := sent.step(-1, "")) is not None:
         texts.append(text)
     return texts[::-1]
 
@@ -152,7 +153,7 @@ async def test_what_was_sent_is_recalled_and_the_draft_comes_back(stage: Compose
     seen = []
     for key in ("alt+up", "alt+up", "alt+up", "alt+down", "alt+down", "alt+down"):
         await stage.pilot.press(key)
-        seen.append(stage.screen.editor.text)
+        seen.append(stage.screen.draft.editor.text)
     assert seen == [TOO_FAST, VALID, VALID, TOO_FAST, "draft", "draft"]
     assert recalled(Sent(sent_path())) == [VALID, TOO_FAST]
 
@@ -165,16 +166,16 @@ async def test_without_a_lesson_nothing_is_sent(stage: ComposerStage) -> None:
 
 
 async def test_a_megabyte_is_not_pasted(stage: ComposerStage) -> None:
-    stage.screen.editor.focus()
+    stage.screen.draft.editor.focus()
     await stage.write("")
     for pasted, text in (("x" * 1_000_000, ""), ("[1]", "[1]")):
         stage.app.post_message(Paste(pasted))
         await stage.pilot.pause()
-        assert stage.screen.editor.text == text
+        assert stage.screen.draft.editor.text == text
 
 
 async def test_escape_gives_the_keys_back_that_enter_has_given_to_the_editor(stage: ComposerStage) -> None:
     await stage.write("")
     await stage.press("7", "3", "enter", "4", "5", "escape", "4")
-    assert stage.screen.editor.text == "45", "typed only after Enter"
+    assert stage.screen.draft.editor.text == "45", "typed only after Enter"
     assert getattr(stage.app.screen, "tab", "") == "logs"

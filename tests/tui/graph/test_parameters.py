@@ -19,9 +19,8 @@ from tests.hostile_text import EVIL
 from tests.tui.graph_stage import GraphStage, opened
 from text.plain import is_plain, plain
 from text.yaml_scalars import in_quotes, unquoted
-from tui.graph.parameter_words import meant
-from tui.graph.parameter_words import typed as as_typed
-from tui.graph.parameters import PARAMETER_EVENTS
+from tui.graph.parameters import PARAMETER_EVENTS, meant
+from tui.graph.parameters import typed as as_typed
 from tui.widgets.field import Field
 
 NODE = "/sonar_front"

@@ -15,9 +15,8 @@ from textual.pilot import Pilot
 from launcher.status import LogLine, Severity
 from tests.tui.logs.bare_log import LogApp, line, lines, rows, shown, texts
 from tui.log_view.bar import LogBar
-from tui.log_view.filter import LogFilter
-from tui.log_view.index import folded, folded_rows
-from tui.log_view.prompt import LogPrompt
+from tui.log_view.index import LogFilter, folded, folded_rows
+from tui.log_view.pane import LogPrompt
 from tui.log_view.ring import LineRing
 
 

@@ -34,7 +34,7 @@ async def test_an_answer_is_shown_with_all_that_it_took() -> None:
 
 async def test_a_brain_without_a_model_follows_its_rules() -> None:
     values = [{"key": "backend", "value": "rules"}, {"key": "fault", "value": ""}]
-    status = {"name": "ai_brain", "level": 1, "message": "follows its rules", "values": values}
+    status = {"name": "ai_brain", "hardware_id": "", "level": 1, "message": "follows its rules", "values": values}
     assert await shown(sample(BRAIN_STATE, TYPE, {"status": [status]})) == ["follows its rules"]
 
 
