@@ -26,7 +26,6 @@ DOMAIN = 76
 WIDTH_PX = 1320
 SPOKEN = {"en": "wheel slower", "ru": "колесо медленнее"}
 """Text that the deck shows while the robot turns."""
-ANGLES = {"en": ("from the side", "perspective"), "ru": ("вид сбоку", "перспектива")}
 TURN_LEFT = "налево"
 PAUSE_S = 0.1
 
@@ -90,30 +89,15 @@ def lesson(language: str) -> None:
         keep(terminal, f"deck.{language}.png")
 
 
-def scale(terminal: Terminal) -> str:
-    """Return the scale bar of the Space screen."""
-    return next(line for line in terminal.text().splitlines() if "├" in line)[:12]
-
-
 def space(language: str) -> None:
-    """Run the robot in its simulated room, and look at both in perspective, from near."""
+    """Run the robot in its simulated room, and look at both from above."""
     with deck("robot", language) as terminal:
         terminal.wait_for("16/16", within_s=60)
         terminal.press("9")
         terminal.wait_for("sonar_front_link", within_s=60)
-        for angle in ANGLES[language]:
-            terminal.press("alt+v")
-            terminal.wait_for(angle)
-        terminal.press("alt+t")
-        terminal.wait_for("▶ (")
-        terminal.press("down")
-        terminal.wait_for("▶ base_link")
-        terminal.press("enter")
-        terminal.wait_gone("▶ base_link")
-        far = scale(terminal)
-        terminal.press(*["+"] * 6)
-        terminal.wait_until(lambda _text: scale(terminal) != far, "a larger picture")
         terminal.press("m")
+        terminal.wait_for("○")
+        wait_for_whole_frame(terminal)
         keep(terminal, f"space.{language}.png")
 
 

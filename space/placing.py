@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from space.buffer import NoTransformError
-from space.drawing.shapes import Speckles, moved
-from space.drawing.thinning import FEW, thinned
-from space.reading.fields import FARTHEST_FRAME_M, Drawable
+from space.drawing.shapes import Sign, axes, moved
+from space.reading.fields import FARTHEST_FRAME_M
+from text.plain import plain
 from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from space.buffer import TransformBuffer
-    from space.drawing.camera import SpaceCamera
     from space.drawing.shapes import Shape
+    from space.reading.fields import Drawable
     from space.transform import Transform
 
 ROOTS = ("map", "odom", "base_link")
 """Frames of REP-105: the tree that has the first of them is the robot's."""
-SMALLEST_CUBE_M = 0.004
 
 
 def robot_root(buffer: TransformBuffer, others: Iterable[str] = ()) -> str:
@@ -37,31 +35,12 @@ def robot_root(buffer: TransformBuffer, others: Iterable[str] = ()) -> str:
     return next(iter(others), "")
 
 
-def cube_of(camera: SpaceCamera) -> float:
-    """Return the size to which clouds are thinned: about a dot, in steps of two."""
-    return max(SMALLEST_CUBE_M, 2.0 ** math.floor(math.log2(1.0 / camera.dots_per_m)))
-
-
-class Located(NamedTuple):
-    """A drawable, and where it is in the fixed frame."""
-
-    drawable: Drawable
-    at: Transform
-
-    def looks_like(self, other: Located, metres: float) -> bool:
-        """Return whether it is the same drawable in the same place."""
-        return self.drawable is other.drawable and self.at.is_near(other.at, metres)
-
-
 class Placer:
-    """Turns drawables into shapes of the fixed frame, and remembers thinned clouds."""
+    """Turns drawables into shapes of the fixed frame."""
 
     def __init__(self, mounts: Mapping[str, tuple[str, Transform]] | None = None) -> None:
         """`mounts` says where frames are that nobody publishes: frame to (parent, place)."""
         self._mounts = dict(mounts or {})
-        self._marks: dict[str, Drawable] = {}
-        """What stands for each frame itself."""
-        self._thinned: dict[int, tuple[Speckles, float, Speckles]] = {}
 
     def root(self, buffer: TransformBuffer, others: Iterable[str]) -> str:
         """Return the root of the robot's tree; without frames, of that of the first of `others`."""
@@ -89,46 +68,57 @@ class Placer:
                 return buffer.find(fixed, frame, stamp_s)
             except NoTransformError:
                 # Transforms come a little later than what was measured, or its clock differs.
-                pass
+                return buffer.find(fixed, frame)
         return buffer.find(fixed, frame)
 
-    def find(self, buffer: TransformBuffer, fixed: str, drawables: Iterable[Drawable]) -> tuple[list[Located], str]:
-        """Return where each drawable is, and why others are not found; empty if all are."""
-        found: list[Located] = []
+    def place(self, buffer: TransformBuffer, fixed: str, drawables: Iterable[Drawable]) -> tuple[list[Shape], str]:
+        """Return shapes in the fixed frame, and why others are not found; empty if all are."""
+        found: list[Shape] = []
         why = ""
         for one in drawables:
             if not one.shapes:
                 continue
             try:
-                found.append(Located(one, self.where(buffer, fixed, one.frame, one.stamp_s)))
+                at = self.where(buffer, fixed, one.frame, one.stamp_s)
+                found += [moved(shape, at) for shape in one.shapes]
             except NoTransformError as error:
                 why = why or say("not joined to {fixed}: {reason}", fixed=fixed, reason=reason_of(error))
         return found, why
 
-    def frames(self, buffer: TransformBuffer, fixed: str) -> tuple[list[Located], list[str]]:
+    def frames(self, buffer: TransformBuffer, fixed: str) -> tuple[dict[str, Transform], list[str]]:
         """Return where all frames are, parents first, and those not joined to the fixed one."""
-        found: list[Located] = []
+        found: dict[str, Transform] = {}
         apart: list[str] = []
         for frame in sorted(buffer.frames, key=lambda one: (len(buffer.way_up(one)), one)):
-            mark = self._marks.setdefault(frame, Drawable(frame, ()))
             try:
-                found.append(Located(mark, self.where(buffer, fixed, frame)))
-            except NoTransformError:
+                found[frame] = self.where(buffer, fixed, frame)
+            except NoTransformError:  # noqa: PERF203
                 apart.append(frame)
         return found, sorted(apart)
 
-    def place(self, found: Iterable[Located], cube_m: float) -> list[Shape]:
-        """Return the shapes of drawables in the fixed frame."""
-        return [moved(self._thin(shape, cube_m), one.at) for one in found for shape in one.drawable.shapes]
 
-    def _thin(self, shape: Shape, cube_m: float) -> Shape:
-        if not isinstance(shape, Speckles) or len(shape.places) <= FEW:
-            return shape
-        known = self._thinned.get(id(shape))
-        if known is not None and known[0] is shape and known[1] == cube_m:
-            return known[2]
-        if len(self._thinned) > 16:
-            self._thinned.clear()
-        fewer = thinned(shape, cube_m)
-        self._thinned[id(shape)] = shape, cube_m, fewer
-        return fewer
+AXIS_M, LEAST_AXIS_DOTS, MOST_AXIS_DOTS = 0.15, 5.0, 30.0
+LONGEST_NAME = 40
+TOGETHER_DOTS = 4.0
+"""Frames that come as close in the picture share a line for their names."""
+NAMED_TOGETHER = 2
+"""In a line; of more frames it has the first one, and how many others there are."""
+
+
+def frame_shapes(frames: Mapping[str, Transform], dots_per_m: float, first: Sequence[str] = ()) -> list[Shape]:
+    """Return what is drawn of frames; the names of `first` come first, then in the order given.
+
+    Axes are 0.15 m long, but never too small or too large to be seen.
+    """
+    size = min(max(AXIS_M * dots_per_m, LEAST_AXIS_DOTS), MOST_AXIS_DOTS)
+    shapes: list[Shape] = [axis for at in frames.values() for axis in axes(at, size / dots_per_m)]
+    lines: dict[tuple[int, int], list[str]] = {}
+    for frame in dict.fromkeys((*(one for one in first if one in frames), *frames)):
+        x, y, _z = frames[frame].translation
+        square = round(x * dots_per_m / TOGETHER_DOTS), round(y * dots_per_m / TOGETHER_DOTS)
+        lines.setdefault(square, []).append(frame)
+    for line in lines.values():
+        names = [plain(frame, LONGEST_NAME) for frame in line]
+        text = ", ".join(names) if len(names) <= NAMED_TOGETHER else f"{names[0]} +{len(names) - 1}"
+        shapes.append(Sign(frames[line[0]].translation, text))
+    return shapes

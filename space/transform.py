@@ -69,13 +69,6 @@ class Transform:
         moved = (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, a[2] + (b[2] - a[2]) * share)
         return Transform(moved, slerp(self.rotation, other.rotation, share))
 
-    def is_near(self, other: Transform, metres: float) -> bool:
-        """Return whether a point a metre away is within about so many metres in both."""
-        if math.dist(self.translation, other.translation) > metres:
-            return False
-        cosine = abs(sum(a * b for a, b in zip(self.rotation, other.rotation, strict=True)))
-        return 2 * math.acos(min(1.0, cosine)) <= metres
-
     def point(self, point: Vector) -> Vector:
         """Return a point of the child in the parent."""
         x, y, z = rotated(self.rotation, point)

@@ -6,7 +6,8 @@ import sys
 from typing import TYPE_CHECKING
 
 from cli.commands import command
-from cli.doctor import Level, examine
+from cli.doctor.checks import examine
+from cli.doctor.finding import Level
 from cli.options import add_graph, add_json
 from launcher.errors import UsageError
 from text.i18n import N_, _
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from cli.commands import Parser
-    from cli.doctor import Finding
+    from cli.doctor.finding import Finding
 
 LOOKS = {Level.OK: (N_("ok"), GREEN), Level.WARN: (N_("warn"), YELLOW), Level.FAIL: (N_("FAIL"), RED)}
 

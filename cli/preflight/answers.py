@@ -11,7 +11,7 @@ import time
 from typing import TYPE_CHECKING
 
 from cli.doctor.finding import Level
-from cli.preflight.open_port import DeviceAnswer, OpenPort
+from cli.preflight.open_port import DeviceAnswer, OpenPort, bad, good
 from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder
 from robot.wire.lsc16 import encode as encode_servos
 from robot.wire.pico import PROTOCOL, Hello, PicoDecoder, Telemetry, Welcome
@@ -41,7 +41,7 @@ def ask(kind: str, line: OpenPort) -> DeviceAnswer:
         return _servos(line)
     if kind in ("tf_luna", "tfmini_s"):
         return _sonar(kind, line)
-    return DeviceAnswer(Level.OK, _("it can be opened; how it should answer is not known"))
+    return good(_("it can be opened; how it should answer is not known"))
 
 
 def recognised(heard: bytes) -> str:
@@ -74,14 +74,14 @@ def _pico(line: OpenPort) -> DeviceAnswer:
     # One line may have been cut when the port was opened.
     garbled = decoder.errors > 1
     if welcome is None and garbled:
-        return DeviceAnswer(Level.FAIL, _("some lines arrive garbled"), _better_cable())
+        return bad(_("some lines arrive garbled"), _better_cable())
     if welcome is None:
         text = _("telemetry arrives, but no answer: what is sent gets lost")
-        return DeviceAnswer(Level.FAIL, text, _("check the cable; unplug the Pico and plug it in again"))
+        return bad(text, _("check the cable; unplug the Pico and plug it in again"))
     if welcome.protocol != PROTOCOL:
         text = _("the firmware speaks protocol {theirs}, this program {ours}")
         text = text.format(theirs=welcome.protocol, ours=PROTOCOL)
-        return DeviceAnswer(Level.FAIL, text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
+        return bad(text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
     return _well_pico(welcome, telemetry, garbled=garbled)
 
 
@@ -111,7 +111,7 @@ def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) 
     if garbled:
         found.append((_("some lines arrive garbled"), _better_cable()))
     if not found:
-        return DeviceAnswer(Level.OK, text)
+        return good(text)
     text = ", ".join([text, *(words for words, _fix in found)])
     return DeviceAnswer(Level.WARN, text, "; ".join(dict.fromkeys(fix for _words, fix in found)))
 
@@ -120,7 +120,7 @@ def _python_prompt(heard: bytes) -> DeviceAnswer | None:
     if b">>>" not in heard and b"MicroPython" not in heard and b"Traceback" not in heard:
         return None
     text = _("a Pico answers, but not with Deck's firmware")
-    return DeviceAnswer(Level.FAIL, text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
+    return bad(text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
 
 
 def _sonar(kind: str, line: OpenPort) -> DeviceAnswer:
@@ -145,7 +145,7 @@ def _sonar(kind: str, line: OpenPort) -> DeviceAnswer:
     if decoder.errors > before:
         garbled = _("{text}, many of them garbled").format(text=text)
         return DeviceAnswer(Level.WARN, garbled, _better_cable())
-    return DeviceAnswer(Level.OK, text)
+    return good(text)
 
 
 def _far(metres: float) -> str:
@@ -175,13 +175,12 @@ def _servos(line: OpenPort) -> DeviceAnswer:
     heard += line.hear(ANSWER_S, take)
     if not told:
         return _nothing("lsc16", heard, line.baud)
-    return DeviceAnswer(Level.OK, _("battery {volts:.1f} V").format(volts=LocalizedFloat(told[0].millivolts / 1000)))
+    return good(_("battery {volts:.1f} V").format(volts=LocalizedFloat(told[0].millivolts / 1000)))
 
 
 def _another(kind: str, heard: bytes) -> DeviceAnswer:
     text = _("{found} answers here, not the {wanted}")
-    return DeviceAnswer(
-        Level.FAIL,
+    return bad(
         text.format(found=recognised(heard), wanted=NAMES[kind]),
         _("give each device its own port; ls -l /dev/serial/by-id shows which is which"),
     )
@@ -193,10 +192,10 @@ def _nothing(kind: str, heard: bytes, baud: int) -> DeviceAnswer:
     if heard:
         text = _("{count} bytes arrived, but no {name} sends such data").format(count=len(heard), name=name)
         fix = _("wrong baud (this is {baud}), another device, or a bad cable")
-        return DeviceAnswer(Level.FAIL, text, fix.format(baud=baud))
+        return bad(text, fix.format(baud=baud))
     fixes = {
         "pico": _("flash firmware/pico2 (docs/pico-firmware.md), or try another cable"),
         "lsc16": _("switch the board on; cross TX and RX, connect the grounds; baud 9600"),
     }
     sonar = _("check its power supply (5 V), wiring and mode: serial, not I2C; baud 115200")
-    return DeviceAnswer(Level.FAIL, _("the port is silent: no {name}").format(name=name), fixes.get(kind, sonar))
+    return bad(_("the port is silent: no {name}").format(name=name), fixes.get(kind, sonar))

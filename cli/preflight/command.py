@@ -35,7 +35,7 @@ def preflight_command(options: Namespace) -> int:
     profile = load_profile(
         find_profile(options.profile), hardware=options.hardware, overrides=options.overrides, domain=options.domain
     )
-    from cli.preflight import examine
+    from cli.preflight.devices import examine
 
     findings = examine(profile)
     bad = sum(finding.level is Level.FAIL for finding in findings)

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import serial
 
+from cli.doctor.checks import permission_fix
 from cli.doctor.finding import Level
-from cli.doctor.serial_ports import permission_fix
 from launcher.profile.serial_choice import how_to_choose
-from launcher.serial_ports import lasting_names
 from text.i18n import _, localized
 from text.sentences import reason_of
 
@@ -34,6 +33,16 @@ class DeviceAnswer(NamedTuple):
     level: Level
     text: str
     fix: str = ""
+
+
+def good(text: str) -> DeviceAnswer:
+    """Return the answer of a device that is as it should be."""
+    return DeviceAnswer(Level.OK, text)
+
+
+def bad(text: str, fix: str) -> DeviceAnswer:
+    """Return what is wrong with a device, and what mends it."""
+    return DeviceAnswer(Level.FAIL, text, fix)
 
 
 class Holder(NamedTuple):
@@ -163,26 +172,19 @@ def opened(
     return line
 
 
-def advice(path: str) -> str:
-    """Return the permanent name to use instead of one that may change, if there is one."""
-    if path.startswith("/dev/tty"):
-        return lasting_names().get(os.path.realpath(path), "")
-    return ""
-
-
 def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPort]) -> DeviceAnswer:
     number = _number(error)
     if number in TAKEN:
         return _taken(path, holders(path))
     if number in DENIED:
-        return DeviceAnswer(Level.FAIL, _("no permission"), permission_fix(path))
+        return bad(_("no permission"), permission_fix(path))
     if number in GONE:
         return _missing(device, path, ports)
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
-        return DeviceAnswer(Level.FAIL, _("it is not a serial port"), str(localized(how_to_choose(device))))
+        return bad(_("it is not a serial port"), str(localized(how_to_choose(device))))
     words = reason_of(error).splitlines()[0]
     fix = _("unplug the device, plug it in again, and look at: dmesg | tail")
-    return DeviceAnswer(Level.FAIL, _("cannot be opened: {reason}").format(reason=words), fix)
+    return bad(_("cannot be opened: {reason}").format(reason=words), fix)
 
 
 def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswer:
@@ -191,16 +193,20 @@ def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswe
     there = "; ".join(map(str, ports)) or _("none")
     text = _("{text}; ports: {ports}").format(text=text, ports=there)
     fix = _("plug it in, try another cable; or {choose}")
-    return DeviceAnswer(Level.FAIL, text, fix.format(choose=localized(how_to_choose(device))))
+    return bad(text, fix.format(choose=localized(how_to_choose(device))))
 
 
 def _taken(path: str, others: Sequence[Holder]) -> DeviceAnswer:
     if not others:
         fix = _("close that program; sudo fuser -v {path} shows which it is").format(path=path)
-        return DeviceAnswer(Level.FAIL, _("another program is using it"), fix)
-    names = ", ".join(map(str, others))
+        return bad(_("another program is using it"), fix)
+    return held(others)
+
+
+def held(others: Sequence[Holder]) -> DeviceAnswer:
+    """Return that other programs have a device open."""
     fix = _("close it; if it is a running robot: deck down")
-    return DeviceAnswer(Level.FAIL, _("{names} has it open").format(names=names), fix)
+    return bad(_("{names} has it open").format(names=", ".join(map(str, others))), fix)
 
 
 def _number(error: Exception) -> int | None:

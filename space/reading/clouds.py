@@ -24,6 +24,8 @@ KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 """sensor_msgs/PointField.datatype to numpy's."""
 FLOATS = {"f4", "f8"}
 MOST_POINTS = 20_000_000
+MOST_DRAWN = 50_000
+"""Of a larger cloud: a terminal has some ten thousand dots."""
 COLOURS = ("rgb", "rgba")
 STRENGTHS = ("intensity", "intensities", "i", "reflectivity")
 SPREAD = (2, 98)
@@ -52,7 +54,7 @@ def read_cloud(tree: Mapping[str, Any]) -> Drawable:
 
     Raises NotDrawnError.
     """
-    found, count = cloud_points(tree), _count(tree)
+    found, count = cloud_points(tree, MOST_DRAWN), _count(tree)
     paint = ramp(found.shares, 0.0, 1.0) if found.rgb is None else cube(found.rgb)
     remark = None
     if count and not len(found.places):

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 from space.reading.clouds import read_cloud
 from space.reading.grids import read_grid
 from space.reading.markers import MarkerBook
-from space.reading.poses import DrivenTrail, SteadyGoal, read_path
-from space.reading.scans import SteadyRay, read_scan
+from space.reading.poses import DrivenTrail, read_goal, read_path
+from space.reading.scans import read_range, read_scan
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -75,10 +75,10 @@ class LayerKind:
 KINDS: Mapping[str, LayerKind] = {
     "nav_msgs/msg/OccupancyGrid": LayerKind(lambda: NewestReader(read_grid)),
     "sensor_msgs/msg/LaserScan": LayerKind(lambda: NewestReader(read_scan)),
-    "sensor_msgs/msg/Range": LayerKind(lambda: NewestReader(SteadyRay().read_range)),
+    "sensor_msgs/msg/Range": LayerKind(lambda: NewestReader(read_range)),
     "sensor_msgs/msg/PointCloud2": LayerKind(lambda: NewestReader(read_cloud)),
     "nav_msgs/msg/Path": LayerKind(lambda: NewestReader(read_path)),
-    "geometry_msgs/msg/PoseStamped": LayerKind(lambda: NewestReader(SteadyGoal().read)),
+    "geometry_msgs/msg/PoseStamped": LayerKind(lambda: NewestReader(read_goal)),
     "nav_msgs/msg/Odometry": LayerKind(lambda: NewestReader(DrivenTrail().read), grows=True),
     "visualization_msgs/msg/Marker": LayerKind(MarkerBook, every=True),
     "visualization_msgs/msg/MarkerArray": LayerKind(MarkerBook, every=True),

@@ -16,11 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from space.drawing.shapes import Shape
-    from space.transform import Transform, Vector
+    from space.transform import Vector
 
 ARROW_M, DART_M = 0.4, 0.36
-STANDING_M = 0.002
-"""Closer poses are drawn as one: the robot stands."""
 LEAST_M = 0.02
 """Shorter ways are not added to a trail."""
 TORN_M = 1.0
@@ -28,29 +26,11 @@ TORN_M = 1.0
 MOST_PLACES = 4000
 
 
-def read_pose(tree: Mapping[str, Any], paint: int = Tint.SECOND) -> Drawable:
-    """Return an arrow. Raises NotDrawnError."""
-    return Drawable(frame(tree), (arrow(pose(tree, "pose"), ARROW_M, paint),), stamp_s(tree))
-
-
-class SteadyGoal:
-    """The arrow of a pose, which stays as it is while the pose hardly moves."""
-
-    def __init__(self) -> None:
-        """Begin without a pose."""
-        self._held: tuple[Drawable, Transform] | None = None
-
-    def read(self, tree: Mapping[str, Any]) -> Drawable:
-        """Return an arrow, or nothing: a goal without a frame says that there is none.
-
-        Raises NotDrawnError.
-        """
-        if not str(field(tree, "header.frame_id")):
-            return Drawable("", (), None, say("there is no goal now"))
-        drawable, at, held = read_pose(tree, Tint.GOOD), pose(tree, "pose"), self._held
-        if held is None or held[0].frame != drawable.frame or not held[1].is_near(at, STANDING_M):
-            held = self._held = drawable, at
-        return held[0]
+def read_goal(tree: Mapping[str, Any]) -> Drawable:
+    """Return an arrow, or nothing: a goal without a frame says that there is none. Raises NotDrawnError."""
+    if not str(field(tree, "header.frame_id")):
+        return Drawable("", (), None, say("there is no goal now"))
+    return Drawable(frame(tree), (arrow(pose(tree, "pose"), ARROW_M, Tint.GOOD),), stamp_s(tree))
 
 
 def read_path(tree: Mapping[str, Any]) -> Drawable:
@@ -87,24 +67,18 @@ class DrivenTrail:
         self._frame = ""
         self._places: list[Vector] = []
         self._least_m = LEAST_M
-        self._held: tuple[Drawable, Transform] | None = None
 
     def read(self, tree: Mapping[str, Any]) -> Drawable:
         """Return an arrow, and the trail up to it. Raises NotDrawnError."""
         frame_id, at = frame(tree), pose(tree, "pose.pose")
-        held = self._held
-        if held is not None and held[0].frame == frame_id and held[1].is_near(at, STANDING_M):
-            return held[0]
         self.add(frame_id, at.translation)
         shapes: list[Shape] = [dart(at, DART_M, Tint.SECOND)]
         if len(self._places) > 1:
             shapes.append(self.line())
-        drawable = Drawable(frame_id, tuple(shapes), stamp_s(tree))
-        self._held = drawable, at
-        return drawable
+        return Drawable(frame_id, tuple(shapes), stamp_s(tree))
 
     def clear(self) -> None:
-        self._places, self._least_m, self._held = [], LEAST_M, None
+        self._places, self._least_m = [], LEAST_M
 
     def add(self, frame_id: str, place: Vector) -> bool:
         """Go on to a place, in another frame anew; return whether the trail has grown."""

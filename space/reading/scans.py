@@ -22,8 +22,6 @@ CONE_SIDES = 12
 """Corners of the far end of a cone."""
 WIDEST_RAD = math.pi / 2
 NARROWEST_RAD = 0.03
-STEADY_M = 0.03
-"""A smaller change of a distance is noise."""
 BLIND_M = 0.6
 """Length of the ray of a sonar that measures nothing valid."""
 CLEAR_M = 4.0
@@ -59,28 +57,16 @@ def _farthest(tree: Mapping[str, Any], path: str) -> float:
     return math.inf if field(tree, path) == math.inf else number(tree, path)
 
 
-class SteadyRay:
-    """The cone of a distance, which stays as it is while the distance only fluctuates."""
+def read_range(tree: Mapping[str, Any]) -> Drawable:
+    """Return the cone of a sensor_msgs/Range along x, as long as the distance. Raises NotDrawnError."""
+    opening = abs(number(tree, "field_of_view"))
+    half = min(max(opening / 2, NARROWEST_RAD), WIDEST_RAD * 0.95)
+    return Drawable(frame(tree), ray(_distance(tree, "range"), half, _farthest(tree, "max_range")))
 
-    def __init__(self) -> None:
-        """Begin without a distance."""
-        self._held: tuple[float, Drawable] | None = None
 
-    def read_range(self, tree: Mapping[str, Any]) -> Drawable:
-        """Return a cone along x, as long as the distance. Raises NotDrawnError."""
-        opening = abs(number(tree, "field_of_view"))
-        half = min(max(opening / 2, NARROWEST_RAD), WIDEST_RAD * 0.95)
-        return self._cone(_distance(tree, "range"), half, _farthest(tree, "max_range"), frame(tree))
-
-    def read_sonar(self, tree: Mapping[str, Any], frame_id: str) -> Drawable:
-        """Return the ray of a std_msgs/Float32 in metres (REP-117). Raises NotDrawnError."""
-        return self._cone(_distance(tree, "data"), NARROWEST_RAD, CLEAR_M, frame_id)
-
-    def _cone(self, metres: float, half: float, most: float, frame_id: str) -> Drawable:
-        held = self._held
-        if held is None or held[1].frame != frame_id or not abs(metres - held[0]) < STEADY_M:
-            held = self._held = metres, Drawable(frame_id, ray(metres, half, most))
-        return held[1]
+def read_sonar(tree: Mapping[str, Any], frame_id: str) -> Drawable:
+    """Return the ray of a std_msgs/Float32 in metres (REP-117). Raises NotDrawnError."""
+    return Drawable(frame_id, ray(_distance(tree, "data"), NARROWEST_RAD, CLEAR_M))
 
 
 def _distance(tree: Mapping[str, Any], path: str) -> float:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from text.i18n import N_
 from tui.actions.action import Announce, actions_of
 from tui.frame.actions.view import open_view
+from tui.space.aiming import AimKind
 
 if TYPE_CHECKING:
     from tui.space.screen import SpaceScreen
@@ -28,8 +29,8 @@ def _is_armed(screen: SpaceScreen) -> bool | None:
     palette=False,
     when=_is_armed,
 )
-async def publish_aim(screen: SpaceScreen) -> None:
-    await screen.publish_aim()
+def publish_aim(screen: SpaceScreen) -> None:
+    screen.publish_aim()
 
 
 @action(
@@ -43,18 +44,6 @@ async def publish_aim(screen: SpaceScreen) -> None:
 )
 def disarm(screen: SpaceScreen) -> None:
     screen.disarm()
-
-
-@action(
-    "space.angle",
-    "alt+v",
-    N_("Angle"),
-    N_("Look from above, from the side, or in perspective, which Ctrl+arrows turn."),
-    footer=True,
-    anywhere=True,
-)
-def next_angle(screen: SpaceScreen) -> None:
-    screen.next_angle()
 
 
 @action(
@@ -115,7 +104,7 @@ def toggle_layer(screen: SpaceScreen) -> None:
     footer=True,
 )
 def arm_goal(screen: SpaceScreen) -> None:
-    screen.arm_goal()
+    screen.arm(AimKind.GOAL)
 
 
 @action(
@@ -152,7 +141,7 @@ def fixed_frame(screen: SpaceScreen) -> None:
     N_("Aim where the robot is now, for localization on a map, as a goal is aimed."),
 )
 def arm_initial_pose(screen: SpaceScreen) -> None:
-    screen.arm_initial_pose()
+    screen.arm(AimKind.INITIAL)
 
 
 SPACE_ACTIONS = actions_of(__name__)

@@ -1,146 +1,118 @@
-"""Goals and initial poses: armed by a key, aimed in the picture, published once.
-
-A goal may move a robot. Nothing is published that was not armed, nothing while the emergency stop
-is engaged or a recording is played, and nothing that the user does not see: whatever happens, it
-is disarmed rather than kept.
-"""
+"""A goal or an initial pose that is about to be published: where, with what heading, in words."""
 
 from __future__ import annotations
 
-import asyncio
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Protocol
+import math
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import TYPE_CHECKING
 
-from space.drawing.camera import Angle
+from robot.topics import GOAL_POSE, INITIAL_POSE
+from space.drawing.paints import Tint
+from space.drawing.shapes import Strokes, arrow, places
+from space.transform import Transform, quaternion_from_rpy
 from text.i18n import _, decimal
-from tui.space import words
-from tui.space.aim import Aim, AimKind
-from tui.widgets.trouble import names
-from tui.yaml_form.words import reason_words
+from text.plain import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Coroutine
-    from concurrent.futures import Future
+    from collections.abc import Mapping, Sequence
 
-    from textual.notifications import SeverityLevel
+    from graph.data import Value
+    from space.drawing.shapes import Shape
 
-    from tui.frame.host import Host
-    from tui.session.feed import Feed
-    from tui.space.stage import Stage
-    from tui.space.view import SpaceView
+LONGEST = 40
+COVARIANCE = {0: 0.25, 7: 0.25, 35: (math.pi / 12) ** 2}
+"""What RViz sends: half a metre and 15 degrees, as variances in a 6x6 matrix."""
+ARROW_DOTS, CROSS_DOTS = 26.0, 7.0
+HEADING_STEP_RAD = math.radians(15)
 
-SENT_WITHIN_S = 3.0
 
+class AimKind(Enum):
+    """What can be aimed: topic and type."""
 
-class AimingTarget(Protocol):
-    """The part of the Space screen in which is aimed."""
-
-    stage: Stage
-
-    @property
-    def view(self) -> SpaceView:
-        """The picture."""
+    GOAL = (GOAL_POSE, "geometry_msgs/msg/PoseStamped")
+    INITIAL = (INITIAL_POSE, "geometry_msgs/msg/PoseWithCovarianceStamped")
 
     @property
-    def feed(self) -> Feed:
-        """The session and its graph."""
+    def topic(self) -> str:
+        return self.value[0]
 
     @property
-    def deck(self) -> Host:
-        """The app."""
-
-    @property
-    def armed(self) -> bool:
-        """Whether something is aimed."""
-
-    def aim_changed(self) -> None:
-        """Show what is aimed now."""
-
-    def notify(self, message: str, *, severity: SeverityLevel = "information", markup: bool = True) -> None:
-        """Show a notification."""
-
-    def run_worker(self, work: Coroutine[Any, Any, None], *, group: str) -> object:
-        """Do something that takes a while."""
+    def type_name(self) -> str:
+        return self.value[1]
 
 
-class Aiming:
-    """What the Space screen does about goals."""
+@dataclass(frozen=True)
+class Aim:
+    """Something to be published, in the fixed frame."""
 
-    def __init__(self, screen: AimingTarget) -> None:
-        self._screen = screen
+    kind: AimKind
+    x_m: float
+    y_m: float
+    heading_rad: float = 0.0
 
-    @property
-    def refusal(self) -> str:
-        """Why nothing can be aimed or published now; empty if it can."""
-        screen = self._screen
-        return words.refusal(
-            recorded=screen.feed.replay is not None,
-            engaged=screen.deck.emergency.state.engaged,
-            fixed=screen.stage.fixed,
+    def shifted(self, right_m: float, up_m: float) -> Aim:
+        """Return it at another place."""
+        return replace(self, x_m=self.x_m + right_m, y_m=self.y_m + up_m)
+
+    def turned(self, steps: int) -> Aim:
+        """Return it with the heading this many steps to the left."""
+        heading = math.remainder(self.heading_rad + steps * HEADING_STEP_RAD, math.tau)
+        return replace(self, heading_rad=heading)
+
+    def towards(self, x_m: float, y_m: float) -> Aim:
+        """Return it with the heading to another place."""
+        return replace(self, heading_rad=math.atan2(y_m - self.y_m, x_m - self.x_m))
+
+    def shapes(self, dots_per_m: float) -> list[Shape]:
+        """Return an arrow with a cross-hair, of a size that is seen whatever the scale."""
+        at = Transform.from_rpy((self.x_m, self.y_m, 0.0), (0.0, 0.0, self.heading_rad))
+        arm = CROSS_DOTS / dots_per_m
+        x, y = self.x_m, self.y_m
+        cross = Strokes(
+            places((x - arm, y, 0.0), (x, y - arm, 0.0)), places((x + arm, y, 0.0), (x, y + arm, 0.0)), Tint.WARN
         )
+        return [cross, arrow(at, ARROW_DOTS / dots_per_m, Tint.WARN)]
 
-    def arm(self, kind: AimKind) -> None:
-        """Begin to aim in the middle of the picture, or say why that cannot be."""
-        screen = self._screen
-        if reason := self.refusal:
-            screen.notify(reason, severity="warning", markup=False)
-            return
-        view = screen.view
-        if view.camera.angle is Angle.SIDE:
-            # From the side there is no place on the floor to point at.
-            view.camera = replace(view.camera, angle=Angle.ABOVE)
-        x_m, y_m, _z_m = view.camera.target
-        view.aim = Aim(kind, x_m, y_m)
-        if screen.feed.graph is not None:
-            prepared = screen.feed.graph.prepare_publisher(kind.topic, kind.type_name)
-            # If it cannot be created, publishing reports that.
-            prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
-        view.focus()
-        screen.aim_changed()
+    def message(self, frame: str) -> Mapping[str, Value]:
+        """Return the message, with the stamp 0: the newest transform is meant, by any clock."""
+        x, y, z, w = quaternion_from_rpy(0.0, 0.0, self.heading_rad)
+        pose: dict[str, Value] = {
+            "position": {"x": self.x_m, "y": self.y_m, "z": 0.0},
+            "orientation": {"x": x, "y": y, "z": z, "w": w},
+        }
+        header: dict[str, Value] = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
+        if self.kind is AimKind.GOAL:
+            return {"header": header, "pose": pose}
+        covariance = [COVARIANCE.get(place, 0.0) for place in range(36)]
+        return {"header": header, "pose": {"pose": pose, "covariance": covariance}}
 
-    def disarm(self) -> None:
-        if self._screen.armed:
-            self._screen.view.aim = None
-            self._screen.aim_changed()
 
-    def publish(self) -> None:
-        """Publish what is aimed, unless that is not allowed any more; disarm in any case."""
-        screen = self._screen
-        aim, graph, fixed = screen.view.aim, screen.feed.graph, screen.stage.fixed
-        reason = self.refusal
-        self.disarm()
-        if aim is None or graph is None:
-            return
-        if reason:
-            screen.notify(reason, severity="warning", markup=False)
-            return
-        sent = graph.publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed))
-        if aim.kind is AimKind.GOAL:
-            screen.stage.sent = fixed, aim
-        screen.aim_changed()
-        screen.run_worker(self._confirm(sent, aim, fixed), group="sent")
+def armed_words(aim: Aim, frame: str, listeners: Sequence[str], keys: tuple[str, str]) -> str:
+    """Return what is armed, where it is, who would hear it, and what to do."""
+    what = _("GOAL") if aim.kind is AimKind.GOAL else _("INITIAL POSE")
+    where = place_words(aim, frame)
+    heard = ", ".join(listeners) if listeners else _("nobody listens")
+    how = _("Press, drag, let go: published. Or arrows, Ctrl+arrows, {enter}. {escape} leaves.").format(
+        enter=keys[0], escape=keys[1]
+    )
+    return f"{what} → {aim.kind.topic} ({heard}) · {where}\n{how}"
 
-    def listeners(self, kind: AimKind) -> list[str]:
-        """Return who hears what is published, all in one text; nothing if nobody does."""
-        update = self._screen.feed.update
-        rows = () if update is None else update.topics
-        row = next((one for one in rows if one.name == kind.topic), None)
-        if row is None or not row.subscribers:
-            return []
-        return [names(row.subscribed_by) or str(row.subscribers)]
 
-    async def _confirm(self, sent: Future[int], aim: Aim, fixed: str) -> None:
-        screen = self._screen
-        try:
-            await asyncio.wait_for(asyncio.wrap_future(sent), SENT_WITHIN_S)
-        except asyncio.TimeoutError:
-            seconds = decimal(f"{SENT_WITHIN_S:g}")
-            failure = _("ROS did not accept it within {n} s").format(n=seconds)
-        except Exception as error:  # noqa: BLE001 - any failure is reported
-            failure = reason_words(error)
-        else:
-            told = words.sent(aim, fixed, len(self.listeners(aim.kind)))
-            screen.notify(told, markup=False)
-            return
-        screen.stage.sent = None
-        screen.notify(failure, severity="error", markup=False)
+def place_words(aim: Aim, frame: str) -> str:
+    """Return place and heading."""
+    return _("x {x}  y {y} m, heading {degrees}° in {frame}").format(
+        x=decimal(f"{aim.x_m:.2f}"),
+        y=decimal(f"{aim.y_m:.2f}"),
+        degrees=round(math.degrees(aim.heading_rad)),
+        frame=plain(frame, LONGEST),
+    )
+
+
+def sent_words(aim: Aim, frame: str, listeners: int) -> str:
+    """Return what was published, and how many heard it."""
+    where = place_words(aim, frame)
+    if listeners:
+        return _("Published on {topic}: {where}.").format(topic=aim.kind.topic, where=where)
+    words = _("Published on {topic}, where nobody listens: {where}. Navigation (Nav2) would.")
+    return words.format(topic=aim.kind.topic, where=where)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ from robot.topics import ROBOT_DESCRIPTION, SONAR_FRAMES
 from space.reading.fields import NotDrawnError
 from space.reading.kinds import KINDS, LayerKind, NewestReader
 from space.reading.robot import ModelReader
-from space.reading.scans import SteadyRay
+from space.reading.scans import read_sonar
 from text.sentences import reason_of
 
 if TYPE_CHECKING:
@@ -109,7 +110,8 @@ class SpaceLayers:
         for topic, layer in before.items():
             if layer.heard and topic not in found:
                 # Its publisher has gone, and with it the topic.
-                layer.row = None if layer.row is None else _deserted(layer.row)
+                if layer.row is not None:
+                    layer.row = replace(layer.row, publishers=0, trouble=Trouble.NO_PUBLISHER, hz=None)
                 found[topic] = layer
         self._layers = dict(sorted(found.items()))
         return self._layers.keys() != before.keys()
@@ -126,10 +128,6 @@ class SpaceLayers:
         return {layer.topic for layer in self if layer.on and layer.every}
 
 
-def _sonar_reader(frame_id: str) -> LayerReader:
-    return NewestReader(partial(SteadyRay().read_sonar, frame_id=frame_id))
-
-
 def _kind_of(topic: str, type_names: Iterable[str]) -> tuple[str, LayerKind] | None:
     for name in type_names:
         if name in KINDS:
@@ -137,11 +135,5 @@ def _kind_of(topic: str, type_names: Iterable[str]) -> tuple[str, LayerKind] | N
         if name == TEXT and topic == ROBOT_DESCRIPTION:
             return name, LayerKind(ModelReader)
         if name == FLOAT and topic in SONAR_FRAMES:
-            return name, LayerKind(partial(_sonar_reader, SONAR_FRAMES[topic]))
+            return name, LayerKind(partial(NewestReader, partial(read_sonar, frame_id=SONAR_FRAMES[topic])))
     return None
-
-
-def _deserted(row: TopicRow) -> TopicRow:
-    from dataclasses import replace
-
-    return replace(row, publishers=0, trouble=Trouble.NO_PUBLISHER, hz=None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import asyncio
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
@@ -10,33 +10,34 @@ from textual.containers import Horizontal, Vertical
 from textual.content import Content
 from textual.widgets import Static
 
-from space.drawing.camera import Angle
 from text import ros2_words
-from text.i18n import N_, _
+from text.i18n import N_, _, decimal
 from text.plain import plain
 from tui import clock
 from tui.actions import bindings
 from tui.dialogs.choice import ChoiceScreen
 from tui.frame.screen import DeckScreen
-from tui.space import words
 from tui.space.actions import SPACE_ACTIONS, disarm, publish_aim
-from tui.space.aim import AimKind
-from tui.space.aiming import Aiming
+from tui.space.aiming import LONGEST, Aim, AimKind, armed_words, sent_words
 from tui.space.layers import CLOUD
 from tui.space.rows import FRAMES, LayerRows
 from tui.space.stage import Stage
 from tui.space.view import SpaceView
+from tui.widgets.scale_bar import scale_bar
+from tui.widgets.trouble import names
+from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
+    from concurrent.futures import Future
 
     from textual.app import ComposeResult
 
-    from space.drawing.camera import SpaceCamera
-    from space.drawing.raster import CellPicture
+    from space.drawing.picture import CellPicture, SpaceCamera
     from tui.emergency.messages import EmergencyChanged
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
+SENT_WITHIN_S = 3.0
 PERIOD_S, CLOUD_PERIOD_S = 0.1, 0.06
 """Clouds come ten times a second: looking as often as that would miss some of them."""
 NO_FRAME = " "
@@ -49,9 +50,8 @@ class SpaceScreen(DeckScreen):
     tab: ClassVar[str] = "space"
     about: ClassVar[str] = N_(
         "What is where: frames with their axes (x red, y green, z blue), the map, scans, clouds, "
-        "paths and markers, each placed by /tf. Arrows or a drag move the picture, + and - or the "
-        "wheel zoom, Ctrl+arrows or a drag with Shift turn the perspective. Tab goes to the "
-        "layers and back; below each layer is what is wrong with it."
+        "paths and markers, from above, each placed by /tf. Arrows or a drag move the picture, + and - or the "
+        "wheel zoom. Tab goes to the layers and back; below each layer is what is wrong with it."
     )
     parts: ClassVar[tuple[str, ...]] = ("#space-picture", "LayerRows")
     period_s = PERIOD_S
@@ -73,7 +73,6 @@ class SpaceScreen(DeckScreen):
     def __init__(self) -> None:
         super().__init__()
         self.stage = Stage()
-        self.aiming = Aiming(self)
 
     def compose_body(self) -> ComposeResult:
         """The picture with its lines, and the layers."""
@@ -138,7 +137,7 @@ class SpaceScreen(DeckScreen):
         """Disarm once the emergency stop is engaged."""
         if message.emergency.engaged and self.armed:
             self.disarm()
-            self.notify(self.aiming.refusal, severity="warning", markup=False)
+            self.notify(self.refusal, severity="warning", markup=False)
 
     def on_graph_changed(self, message: GraphChanged) -> None:
         update = message.update
@@ -168,7 +167,7 @@ class SpaceScreen(DeckScreen):
         self.view.renew(by_user=True)
         self._show_armed()
         if message.done:
-            self.aiming.publish()
+            self.publish_aim()
 
     @on(LayerRows.Opened)
     def _layer_opened(self) -> None:
@@ -181,16 +180,9 @@ class SpaceScreen(DeckScreen):
         layer = self.stage.layers.get(self.layer_rows.chosen)
         return "" if layer is None else ros2_words.echo(layer.topic)
 
-    def next_angle(self) -> None:
-        angles = list(Angle)
-        view = self.view
-        angle = angles[(angles.index(view.camera.angle) + 1) % len(angles)]
-        view.camera = replace(view.camera, angle=angle)
-        self.fit() if view.fits else self._show(by_user=True)
-
     def fit(self) -> None:
         self.stage.follow_frame("")
-        self._place()
+        self.stage.place(clock.now())
         self.view.fit(self.stage.extent(), anew=True)
         self._show(by_user=True)
 
@@ -265,22 +257,80 @@ class SpaceScreen(DeckScreen):
         self.topics_changed()
         self._show(by_user=True)
 
-    # Goals
+    # Goals. One may move a robot: nothing is published that was not armed, nothing while the emergency stop
+    # is engaged or a recording is played, and nothing that the user does not see. Whatever happens, it is
+    # disarmed rather than kept.
 
-    def arm_goal(self) -> None:
-        self.aiming.arm(AimKind.GOAL)
+    @property
+    def refusal(self) -> str:
+        """Why nothing can be aimed or published now; empty if it can."""
+        if self.feed.replay is not None:
+            return _("This is a recording: there is nobody to send to.")
+        if self.deck.emergency.state.engaged:
+            return _("The emergency stop is engaged: release it first, then aim.")
+        if not self.stage.fixed:
+            return _("No frame is known yet, in which a place could be given.")
+        return ""
 
-    def arm_initial_pose(self) -> None:
-        self.aiming.arm(AimKind.INITIAL)
+    def arm(self, kind: AimKind) -> None:
+        """Begin to aim in the middle of the picture, or say why that cannot be."""
+        if reason := self.refusal:
+            self.notify(reason, severity="warning", markup=False)
+            return
+        view = self.view
+        view.aim = Aim(kind, view.camera.x_m, view.camera.y_m)
+        if self.feed.graph is not None:
+            prepared = self.feed.graph.prepare_publisher(kind.topic, kind.type_name)
+            # If it cannot be created, publishing reports that.
+            prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
+        view.focus()
+        self._aim_changed()
 
     def disarm(self) -> None:
         """Aim at nothing any more."""
-        self.aiming.disarm()
+        if self.armed:
+            self.view.aim = None
+            self._aim_changed()
 
-    async def publish_aim(self) -> None:
-        self.aiming.publish()
+    def publish_aim(self) -> None:
+        """Publish what is aimed, unless that is not allowed any more; disarm in any case."""
+        aim, graph, fixed, reason = self.view.aim, self.feed.graph, self.stage.fixed, self.refusal
+        self.disarm()
+        if aim is None or graph is None:
+            return
+        if reason:
+            self.notify(reason, severity="warning", markup=False)
+            return
+        sent = graph.publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed))
+        if aim.kind is AimKind.GOAL:
+            self.stage.sent = fixed, aim
+        self._aim_changed()
+        self.run_worker(self._confirm(sent, aim, fixed), group="sent")
 
-    def aim_changed(self) -> None:
+    async def _confirm(self, sent: Future[int], aim: Aim, fixed: str) -> None:
+        try:
+            await asyncio.wait_for(asyncio.wrap_future(sent), SENT_WITHIN_S)
+        except asyncio.TimeoutError:
+            seconds = decimal(f"{SENT_WITHIN_S:g}")
+            failure = _("ROS did not accept it within {n} s").format(n=seconds)
+        except Exception as error:  # noqa: BLE001 - any failure is reported
+            failure = reason_words(error)
+        else:
+            self.notify(sent_words(aim, fixed, len(self._listeners(aim.kind))), markup=False)
+            return
+        self.stage.sent = None
+        self.notify(failure, severity="error", markup=False)
+
+    def _listeners(self, kind: AimKind) -> list[str]:
+        """Return who hears what is published, all in one text; nothing if nobody does."""
+        update = self.feed.update
+        rows = () if update is None else update.topics
+        row = next((one for one in rows if one.name == kind.topic), None)
+        if row is None or not row.subscribers:
+            return []
+        return [names(row.subscribed_by) or str(row.subscribers)]
+
+    def _aim_changed(self) -> None:
         self._show(by_user=True)
         self.refresh_bindings()
 
@@ -289,21 +339,16 @@ class SpaceScreen(DeckScreen):
     def _compose_picture(self, camera: SpaceCamera, columns: int, rows: int) -> CellPicture:
         return self.stage.picture(camera, columns, rows, self.view.aim)
 
-    def _place(self) -> bool:
-        return self.stage.place(self.view.camera, clock.now())
-
     def _show(self, *, by_user: bool = False) -> None:
         if not self.is_mounted:
             return
         view = self.view
         if self.stage.follow:
             view.camera = self.stage.followed(view.camera)
-        if self._place() or by_user:
-            if not self.stage.follow and view.aim is None:
-                view.fit(self.stage.extent())
-                # Axes and clouds are as fine as the camera shows them.
-                self._place()
-            view.renew(by_user=by_user)
+        self.stage.place(clock.now())
+        if not self.stage.follow and view.aim is None:
+            view.fit(self.stage.extent())
+        view.renew(by_user=by_user)
         view.show_words(*self._why_empty())
         self.layer_rows.show_stage(self.stage)
         self._show_lines()
@@ -328,12 +373,22 @@ class SpaceScreen(DeckScreen):
         line.display = aim is not None
         if aim is not None:
             keys = self.deck.keys_of(publish_aim)[0], self.deck.keys_of(disarm)[0]
-            line.update(words.armed(aim, self.stage.fixed, self.aiming.listeners(aim.kind), keys))
+            line.update(armed_words(aim, self.stage.fixed, self._listeners(aim.kind), keys))
 
     def _show_status(self) -> None:
-        room = self.view.size.width - 2
         kept: list[str] = []
-        for piece in words.status(self.stage, self.view):
-            if Content("  ".join([*kept, piece])).cell_length <= room:
+        for piece in self._status():
+            if Content("  ".join([*kept, piece])).cell_length <= self.view.size.width - 2:
                 kept.append(piece)
         self.query_one("#space-status", Static).update("  ".join(kept))
+
+    def _status(self) -> Iterator[str]:
+        """Return the pieces of the line below the picture, the most important first."""
+        if (place := self.view.pointer_place) is not None:
+            x, y = (decimal(f"{value:.2f}") for value in place)
+            yield _("x {x}  y {y} m").format(x=x, y=y)
+        yield "".join(ink.text for ink in scale_bar(self.view.camera.dots_per_m))
+        if self.stage.follow:
+            yield _("follows {frame}").format(frame=plain(self.stage.follow, LONGEST))
+        fixed = plain(self.stage.fixed, LONGEST)
+        yield _("in {frame}").format(frame=fixed) if fixed else _("no frame yet")

@@ -6,18 +6,12 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from robot.topics import SONAR_FRAMES
 from robot.world.world import Body
 from space.buffer import NoTransformError, TransformBuffer
-from space.drawing.extent import SpaceBox, extent_of
-from space.drawing.paints import Tint
-from space.drawing.raster import Raster
-from space.drawing.scene import draw
-from space.drawing.shapes import Strokes
-from space.frame_names import FrameNames
-from space.placing import Located, Placer, cube_of
+from space.drawing.picture import extent_of, picture
+from space.drawing.shapes import Speckles, places
+from space.placing import Placer, frame_shapes
 from space.transform import Transform
 from text.sentences import say
 from tui.space.layers import SpaceLayers
@@ -26,11 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from graph.data import FrameRow, GraphUpdate
-    from space.drawing.camera import SpaceCamera
-    from space.drawing.raster import CellPicture
+    from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera
     from space.drawing.shapes import Shape
     from space.transform import Vector
-    from tui.space.aim import Aim
+    from tui.space.aiming import Aim
 
 BODY = Body()
 BASE = "base_link"
@@ -38,11 +31,6 @@ AROUND = 0.05
 """Share of the picture that is left free around everything when it is fitted."""
 LEAST_M = 2.0
 """Less than this is never made to fill the picture."""
-MESH_DOTS = 16.0
-"""The least width of the meshes of the floor."""
-MOST_MESHES = 20
-SEEN_M = 0.002
-"""A smaller move is not drawn."""
 
 
 def _mounts() -> dict[str, tuple[str, Transform]]:
@@ -74,12 +62,7 @@ class Stage:
         """The goal published last, and its frame, until the graph shows it."""
         self._placer = Placer(_mounts())
         self._shapes: list[Shape] = []
-        self._placed_for: SpaceCamera | None = None
-        self._found: list[Located] = []
-        self._frames: list[Located] = []
-        self._names = FrameNames()
-        self._signs: dict[str, int | None] = {}
-        """In which rows names were in the last picture."""
+        self._frames: dict[str, Transform] = {}
 
     @property
     def fixed(self) -> str:
@@ -107,42 +90,27 @@ class Stage:
             self.buffer.clear()
             self.buffer.add(newest)
 
-    def place(self, camera: SpaceCamera, now_s: float) -> bool:
-        """Place all layers, and note at each what cannot be placed.
-
-        Return whether anything is to be seen elsewhere than before.
-        """
-        found: list[Located] = []
+    def place(self, now_s: float) -> None:
+        """Place all layers, and note at each what cannot be placed."""
         shown = {layer: layer.reader.shown(now_s) if layer.is_drawn else () for layer in self.layers}
         for layer, drawables in shown.items():
             layer.frame = next((one.frame for one in drawables if one.frame), layer.frame)
         # Without /tf the frames of the layers say what the fixed frame is.
         fixed = self.fixed
+        self._shapes, self._frames, self.frames_why = [], {}, ""
         for layer, drawables in shown.items():
-            located, layer.apart = self._placer.find(self.buffer, fixed, drawables)
-            found += located
-        frames: list[Located] = []
-        self.frames_why = ""
+            shapes, layer.apart = self._placer.place(self.buffer, fixed, drawables)
+            self._shapes += shapes
         if self.show_frames and fixed in self.buffer.frames:
-            frames, apart = self._placer.frames(self.buffer, fixed)
+            self._frames, apart = self._placer.frames(self.buffer, fixed)
             if apart:
                 names = ", ".join(apart[:3]) + (", …" if len(apart) > 3 else "")
                 self.frames_why = say("not joined to {fixed}: {frames}", fixed=fixed, frames=names)
-        if camera == self._placed_for and _look_alike(found, self._found) and _look_alike(frames, self._frames):
-            return False
-        self._placed_for, self._found, self._frames = camera, found, frames
-        self._shapes = self._placer.place(found, cube_of(camera))
-        self._shapes += self._names.shapes(frames, camera, self._named_first)
-        return True
-
-    @property
-    def _named_first(self) -> tuple[str, ...]:
-        """The frames whose names matter most: what the user has chosen, then what has data."""
-        return (self.follow, self.fixed, *(one.frame for one in self.layers if one.on))
 
     def extent(self) -> SpaceBox | None:
         """Return the box that holds everything placed, with a margin."""
-        found = extent_of(self._shapes)
+        origins = places(*(at.translation for at in self._frames.values()))
+        found = extent_of([*self._shapes, Speckles(origins)])
         return None if found is None else found.widened(AROUND, LEAST_M)
 
     def follow_frame(self, frame: str) -> None:
@@ -158,45 +126,18 @@ class Stage:
             at = self.buffer.find(self.fixed, self.follow).translation
         except NoTransformError:
             return camera
-        before, self._followed = self._followed, at
-        if before is None:
-            return replace(camera, target=at)
-        x, y, z = (middle + now - then for middle, now, then in zip(camera.target, at, before, strict=True))
-        return replace(camera, target=(x, y, z))
+        before, self._followed = self._followed or (camera.x_m, camera.y_m, 0.0), at
+        return replace(camera, x_m=camera.x_m + at[0] - before[0], y_m=camera.y_m + at[1] - before[1])
 
     def picture(self, camera: SpaceCamera, columns: int, rows: int, aim: Aim | None) -> CellPicture:
-        """Return the picture of what was placed last."""
-        raster = Raster(columns, rows, self._signs)
-        shapes = [*_ground(camera, raster), *self._shapes]
+        """Return the picture of what was placed last.
+
+        The names of frames that matter most come first: what the user has chosen, then what has data.
+        """
+        first = (self.follow, self.fixed, *(one.frame for one in self.layers if one.on))
+        shapes = [*self._shapes, *frame_shapes(self._frames, camera.dots_per_m, first)]
         if self.sent is not None and self.sent[0] == self.fixed:
             shapes += self.sent[1].shapes(camera.dots_per_m)
         if aim is not None:
             shapes += aim.shapes(camera.dots_per_m)
-        draw(raster, camera, shapes)
-        self._signs = raster.signs.moved
-        return raster.cells()
-
-
-def _look_alike(now: list[Located], before: list[Located]) -> bool:
-    return len(now) == len(before) and all(
-        one.looks_like(other, SEEN_M) for one, other in zip(now, before, strict=True)
-    )
-
-
-def _ground(camera: SpaceCamera, raster: Raster) -> list[Shape]:
-    """The meshes of the floor about the target: without them a perspective has no depth."""
-    if not camera.turns:
-        return []
-    step = 1.0
-    while step * camera.dots_per_m < MESH_DOTS:
-        step *= 2
-    reach = min(raster.width / 2 / camera.dots_per_m / step, MOST_MESHES)
-    lines = np.arange(-math.ceil(reach), math.ceil(reach) + 1)
-    middle = [round(value / step) for value in camera.target[:2]]
-    ends = []
-    for side in (lines[0], lines[-1]):
-        along = np.full_like(lines, side)
-        one = np.stack([lines + middle[0], along + middle[1], 0 * lines], axis=1)
-        other = np.stack([along + middle[0], lines + middle[1], 0 * lines], axis=1)
-        ends.append((np.concatenate([one, other]) * step).astype(np.float32))
-    return [Strokes(ends[0], ends[1], Tint.MUTED)]
+        return picture(camera, shapes, columns, rows)

@@ -15,8 +15,8 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
-from space.drawing.camera import Angle, SpaceCamera
 from space.drawing.paints import Tint, rgb_of
+from space.drawing.picture import SpaceCamera
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import word_strips
 
@@ -26,30 +26,24 @@ if TYPE_CHECKING:
     from textual.events import MouseDown, MouseMove, MouseScrollDown, MouseScrollUp, MouseUp, Resize
     from textual.timer import Timer
 
-    from space.drawing.extent import SpaceBox
-    from space.drawing.raster import CellPicture
-    from tui.space.aim import Aim
+    from space.drawing.picture import CellPicture, SpaceBox
+    from tui.space.aiming import Aim
     from tui.terminal.bandwidth import HasBandwidth
 
 PAINTED = ("text", "muted", "accent", "second", "good", "warn", "bad", "free", "wall", "maybe")
 ZOOM = 1.25
 """The factor of one step."""
 PAN_CELLS = 4
-TURN_RAD = math.radians(7.5)
-DRAG_RAD = math.radians(2.0)
-"""By a drag of one dot."""
 LEAST_DRAG_DOTS = 6.0
 """A shorter way of the mouse is a click, and gives no heading."""
 JUMP = 3
 """A run of unchanged cells this short is cheaper to redraw than to skip."""
-RIGHT_BUTTON = 3
 
 
 class _Drag(NamedTuple):
     x: float
     y: float
     begun: tuple[float, float]
-    turns: bool
     aims: bool
 
 
@@ -75,10 +69,8 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         Binding("right", "pan(1, 0)", show=False),
         Binding("up", "pan(0, -1)", show=False),
         Binding("down", "pan(0, 1)", show=False),
-        Binding("ctrl+left", "turn(1, 0)", show=False),
-        Binding("ctrl+right", "turn(-1, 0)", show=False),
-        Binding("ctrl+up", "turn(0, 1)", show=False),
-        Binding("ctrl+down", "turn(0, -1)", show=False),
+        Binding("ctrl+left", "turn(1)", show=False),
+        Binding("ctrl+right", "turn(-1)", show=False),
         Binding("plus,equals_sign", "closer(1)", show=False),
         Binding("minus,underscore", "closer(-1)", show=False),
         Binding("pageup", "zoom(1)", show=False),
@@ -131,17 +123,9 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         return 2 * self.size.width, 4 * self.size.height
 
     @property
-    def pointer_place(self) -> tuple[float, float, float] | None:
+    def pointer_place(self) -> tuple[float, float] | None:
         """Where the mouse points, in the fixed frame; None if it is elsewhere."""
-        if self._pointer is None:
-            return None
-        width, height = self.dots
-        if self.camera.angle is Angle.SIDE:
-            x, y = (np.array([value]) for value in self._pointer)
-            begins, _ways = self.camera.rays(x, y, width, height)
-            return float(begins[0, 0]), self.camera.target[1], float(begins[0, 2])
-        place = self.camera.floor_at(*self._pointer, width, height)
-        return None if place is None else (*place, 0.0)
+        return None if self._pointer is None else self.camera.floor_at(*self._pointer, *self.dots)
 
     def show_words(self, headline: str, detail: str = "") -> None:
         """Show why there is nothing to see, in place of the picture; empty to show it again."""
@@ -159,7 +143,7 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         if self._fitted is None or not self._fitted.holds(box):
             self._fitted = box if self._fitted is None else box.widened(0.08, 0.0)
             box = self._fitted
-            self.camera = self.camera.fitting(box.least, box.most, width, height)
+            self.camera = self.camera.fitting(box, width, height)
 
     def renew(self, *, by_user: bool = False) -> None:
         """Draw the picture anew; one that the user has not asked for waits for the terminal."""
@@ -174,8 +158,6 @@ class SpaceView(OneStyle, Widget, can_focus=True):
             self._picture = now
             self.refresh()
             return
-        if not by_user:
-            now = now.steadied(had)
         self._picture = now
         if not self._words[0] and (regions := _regions(now.changed(had))):
             self.refresh(*regions)
@@ -258,17 +240,12 @@ class SpaceView(OneStyle, Widget, can_focus=True):
             self._move(self.camera.panned(-step_x, -step_y))
             return
         metres = 2 / self.camera.dots_per_m
-        yaw = self.camera.yaw_rad - math.pi / 2 if self.camera.turns else 0.0
-        along, up = right * metres, -down * metres
-        cos, sin = math.cos(yaw), math.sin(yaw)
-        self.aim = self.aim.shifted(along * cos - up * sin, along * sin + up * cos)
+        self.aim = self.aim.shifted(right * metres, -down * metres)
         self.post_message(self.Aimed(done=False))
 
-    def action_turn(self, left: int, up: int) -> None:
-        """Turn the camera about what is in the middle, or what is aimed."""
-        if self.aim is None:
-            self._move(self.camera.turned(-left * TURN_RAD, up * TURN_RAD))
-        else:
+    def action_turn(self, left: int) -> None:
+        """Turn what is aimed."""
+        if self.aim is not None:
             self.aim = self.aim.turned(left)
             self.post_message(self.Aimed(done=False))
 
@@ -301,19 +278,18 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self._move(self.camera.zoomed(factor, spot[0] - width / 2, spot[1] - height / 2))
 
     def on_mouse_down(self, event: MouseDown) -> None:
-        """Begin to pan, to turn, or to aim."""
+        """Begin to pan, or to aim."""
         self.focus()
         spot = _middle_of(event.x, event.y)
-        turns = event.button == RIGHT_BUTTON or event.shift or event.ctrl
-        aims = self.aim is not None and not turns
-        if aims and (place := self.camera.floor_at(*spot, *self.dots)) and self.aim is not None:
-            self.aim = self.aim.shifted(place[0] - self.aim.x_m, place[1] - self.aim.y_m)
+        if self.aim is not None:
+            x_m, y_m = self.camera.floor_at(*spot, *self.dots)
+            self.aim = self.aim.shifted(x_m - self.aim.x_m, y_m - self.aim.y_m)
             self.post_message(self.Aimed(done=False))
-        self._drag = _Drag(*spot, spot, turns, aims)
+        self._drag = _Drag(*spot, spot, aims=self.aim is not None)
         self.capture_mouse()
 
     def on_mouse_move(self, event: MouseMove) -> None:
-        """Pan, turn or aim while a button is held, and say where the pointer is."""
+        """Pan or aim while a button is held, and say where the pointer is."""
         spot = _middle_of(event.x, event.y)
         drag = self._drag
         if spot != self._pointer:
@@ -327,15 +303,12 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self._drag = drag._replace(x=spot[0], y=spot[1])
         if drag.aims:
             self._aim_at(spot, drag)
-        elif drag.turns:
-            self._move(self.camera.turned(-right * DRAG_RAD, down * DRAG_RAD))
         else:
             self._move(self.camera.panned(right, down))
 
     def _aim_at(self, spot: tuple[float, float], drag: _Drag) -> None:
-        place = self.camera.floor_at(*spot, *self.dots)
-        if self.aim is not None and place is not None and math.dist(spot, drag.begun) > 0:
-            self.aim = self.aim.towards(*place)
+        if self.aim is not None and math.dist(spot, drag.begun) > 0:
+            self.aim = self.aim.towards(*self.camera.floor_at(*spot, *self.dots))
             self.post_message(self.Aimed(done=False))
 
     def on_mouse_up(self, event: MouseUp) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from space.reading.fields import NotDrawnError, listed, whole
-from space.reading.figures import MarkerAction, MarkerKind, kind_name, marker_action, marker_key, read_figure
+from space.reading.markers import MarkerAction, MarkerKind, kind_name, marker_action, marker_key, read_figure
 from text.plain import plain
 from text.sentences import say
 from view.scene.drawn import Drawn, each, frame_name, topic_path
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from space.reading.figures import MarkerFigure
+    from space.reading.markers import MarkerFigure
     from view.scene.drawn import Message
 
 MARKERS = "markers"

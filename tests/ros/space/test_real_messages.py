@@ -16,9 +16,7 @@ from graph.messages.decoding import decoder
 from graph.messages.making import to_message
 from graph.messages.types import load_message
 from graph.messages.values import to_tree
-from space.drawing.camera import SpaceCamera
-from space.drawing.raster import Raster
-from space.drawing.scene import draw
+from space.drawing.picture import SpaceCamera, picture
 from space.drawing.shapes import Speckles
 from space.reading.fields import Drawable, NotDrawnError
 from space.reading.kinds import KINDS
@@ -64,4 +62,4 @@ def test_whatever_is_in_a_message_is_drawn_or_a_sentence(type_name: str, data: s
     with contextlib.suppress(NotDrawnError):
         reader.read(tree, 0.0)
     shapes = [shape for drawable in reader.shown(0.0) for shape in drawable.shapes]
-    draw(Raster(20, 10), SpaceCamera(), shapes)
+    picture(SpaceCamera(), shapes, 20, 10)

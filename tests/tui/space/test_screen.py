@@ -94,8 +94,8 @@ async def test_arrows_zoom_and_fit_move_the_camera() -> None:
         fitted = screen.view.camera
         await pilot.press("right", "up", "plus")
         camera = screen.view.camera
-        assert camera.target[0] > fitted.target[0]
-        assert camera.target[1] > fitted.target[1]
+        assert camera.x_m > fitted.x_m
+        assert camera.y_m > fitted.y_m
         assert camera.dots_per_m > fitted.dots_per_m
         await pilot.press("home")
         await pilot.pause()
@@ -121,9 +121,7 @@ def goals(opener: RecordedOpener) -> list[tuple[str, str, Any]]:
 def place_at(screen: SpaceScreen, cell: tuple[int, int]) -> tuple[float, float]:
     """The place on the floor below the middle of a cell."""
     view = screen.view
-    found = view.camera.floor_at(2 * cell[0] + 1, 4 * cell[1] + 2, *view.dots)
-    assert found is not None
-    return found
+    return view.camera.floor_at(2 * cell[0] + 1, 4 * cell[1] + 2, *view.dots)
 
 
 def heading_of(pose: Any) -> float:
@@ -174,7 +172,7 @@ async def test_an_initial_pose_is_published_with_the_covariance_of_rviz() -> Non
 async def test_a_goal_is_published_by_keys_alone() -> None:
     opener = robot_in_a_room()
     async with at_work(opener) as (screen, pilot):
-        x, y, _z = screen.view.camera.target
+        x, y = screen.view.camera.x_m, screen.view.camera.y_m
         await pilot.press("alt+g")
         await pilot.pause()
         step = 2 / screen.view.camera.dots_per_m

@@ -13,9 +13,10 @@ from typing import Any, cast
 
 import pytest
 
-from cli.doctor import Level
-from cli.preflight import examine, media
+from cli.doctor.finding import Level
+from cli.preflight import devices
 from cli.preflight.answers import ask
+from cli.preflight.devices import examine
 from cli.preflight.open_port import DeviceAnswer, OpenPort, opened
 from launcher.profile.load import Profile
 from launcher.profile.model import ProfileDocument
@@ -226,7 +227,7 @@ CARDS = '[["USB Microphone, Audio"], ["HDMI", "MAX98357A"]]'
 def test_microphones_and_loudspeakers(
     cards: str, settings: dict[str, object], level: Level, words: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(media, "_run", lambda *_: cards)
+    monkeypatch.setattr(devices, "_run", lambda *_: cards)
     (found,) = examine(robot(sound={"kind": "sound", **settings}), list)
     assert found.level is level
     assert words in found.text

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from space.buffer import NoTransformError, Stamped, TransformBuffer
-from space.drawing.shapes import Faces, Shape, Sign, Speckles, Strokes, places
+from space.drawing.shapes import Shape, Sign, Speckles, Strokes, places
 from space.placing import Placer, robot_root
 from space.reading.fields import Drawable
 from space.reading.markers import MarkerBook
@@ -15,12 +15,9 @@ from tests.unit.space.trees import marker
 NOW_S = 10.0
 
 
-def placed(
-    placer: Placer, known: TransformBuffer, drawables: list[Drawable], cube_m: float = 0.1
-) -> tuple[list[Shape], str]:
+def placed(placer: Placer, known: TransformBuffer, drawables: list[Drawable]) -> tuple[list[Shape], str]:
     """The shapes in the map, and why some are missing."""
-    found, why = placer.find(known, "map", drawables)
-    return placer.place(found, cube_m), why
+    return placer.place(known, "map", drawables)
 
 
 def buffer(*edges: tuple[str, str, float], stamp_s: float = NOW_S) -> TransformBuffer:
@@ -85,13 +82,13 @@ def test_a_mount_is_used_until_somebody_publishes_it() -> None:
 
 KINDS: dict[int, type] = {
     0: Strokes,
-    1: Faces,
-    2: Faces,
-    3: Faces,
+    1: Strokes,
+    2: Strokes,
+    3: Strokes,
     4: Strokes,
     5: Strokes,
-    6: Faces,
-    7: Faces,
+    6: Strokes,
+    7: Strokes,
     8: Speckles,
     9: Sign,
 }

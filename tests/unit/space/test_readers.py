@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from space.drawing.paints import RAMP_FROM, RAMP_STEPS, Tint
-from space.drawing.shapes import Faces, Floor, Sign, Speckles, Strokes
+from space.drawing.shapes import Floor, Sign, Speckles, Strokes
 from space.reading.clouds import read_cloud
 from space.reading.fields import Drawable, NotDrawnError
 from space.reading.grids import read_grid
-from space.reading.poses import DrivenTrail, read_path, read_pose
+from space.reading.poses import DrivenTrail, read_goal, read_path
 from space.reading.robot import ModelReader
-from space.reading.scans import SteadyRay, read_scan
+from space.reading.scans import read_range, read_scan, read_sonar
 from space.transform import Transform
 from tests.unit.space.trees import cloud_tree, header, pose_tree
 
@@ -74,7 +74,7 @@ def test_ranges_that_are_not_valid_are_left_out() -> None:
 
 @pytest.mark.parametrize(("metres", "paint"), [(1.0, Tint.WARN), (math.inf, Tint.MUTED), (math.nan, Tint.MUTED)])
 def test_a_bare_sonar_shows_what_rep_117_says(metres: float, paint: Tint) -> None:
-    drawable = SteadyRay().read_sonar({"data": metres}, "sonar_front_link")
+    drawable = read_sonar({"data": metres}, "sonar_front_link")
     first = drawable.shapes[0]
     assert isinstance(first, Strokes)
     assert first.paint == paint
@@ -96,7 +96,7 @@ def odometry(x: float, frame: str = "odom") -> Tree:
 
 def trail_of(drawable: Drawable) -> Strokes:
     dart, line = drawable.shapes
-    assert isinstance(dart, Faces)
+    assert isinstance(dart, Strokes)
     assert isinstance(line, Strokes)
     return line
 
@@ -145,9 +145,9 @@ def path_with_a_bad_pose() -> Tree:
          "the cloud has no field x, y, z"),
         (read_path, path_with_a_bad_pose(),
          "pose 0 of the path: pose.position.x is not a finite number"),
-        (read_pose, {"header": header("map"), "pose": pose_tree(Transform((1e9, 0.0, 0.0)))},
+        (read_goal, {"header": header("map"), "pose": pose_tree(Transform((1e9, 0.0, 0.0)))},
          "pose.position is farther away than 1000 km"),
-        (SteadyRay().read_range, {"header": header("s"), "field_of_view": "wide"},
+        (read_range, {"header": header("s"), "field_of_view": "wide"},
          "field_of_view is not a number"),
     ],
 )  # fmt: skip
@@ -180,12 +180,12 @@ def test_a_robot_is_the_shapes_of_its_links_in_their_frames() -> None:
     base, head = reader.shown(0.0)
     assert (base.frame, head.frame) == ("base_link", "head")
     block, wheel = base.shapes
-    assert isinstance(block, Faces)
-    assert isinstance(wheel, Faces)
-    assert block.corners[..., 0].min() == pytest.approx(0.0)
-    assert block.corners[..., 0].max() == pytest.approx(2.0)
-    assert np.abs(wheel.corners[..., 2]).max() == pytest.approx(1.0)
+    assert isinstance(block, Strokes)
+    assert isinstance(wheel, Strokes)
+    assert block.starts[..., 0].min() == pytest.approx(0.0)
+    assert block.starts[..., 0].max() == pytest.approx(2.0)
+    assert np.abs(wheel.starts[..., 2]).max() == pytest.approx(1.0)
     (ball,) = head.shapes
-    assert isinstance(ball, Faces)
-    assert np.linalg.norm(ball.corners, axis=2).max() == pytest.approx(0.25)
+    assert isinstance(ball, Strokes)
+    assert np.linalg.norm(ball.starts, axis=1).max() == pytest.approx(0.25)
     assert reader.remark == "shapes in files (mesh) are not drawn: 1"

@@ -165,7 +165,7 @@ async def show_frames(host: Host) -> None:
     "screen.space",
     "9",
     N_("Space"),
-    N_("The robot, its map and what its sensors see, from above or in perspective."),
+    N_("The robot, its map and what its sensors see, from above."),
     when=_has_session,
 )
 async def show_space(host: Host) -> None:
