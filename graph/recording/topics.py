@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from graph.bag.metadata import BagTopic, qos_offer
-from graph.bag.types import definition, hash_of
 from graph.data import EndpointInfo
 from graph.housekeeping import is_hidden
+from graph.messages.definitions import definition, hash_of
 from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.qos import to_hear
 from graph.recording.tap import RecordingTap

@@ -6,13 +6,12 @@ from collections import deque
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from graph.bag.decoding import bag_decoder, begins_with_header
-from graph.bag.errors import BagError
 from graph.data import EndpointInfo, NodeRow, Sample, TopicRow, Trouble
 from graph.frames.book import FRAME_TOPICS, FrameBook
 from graph.frames.reading import TF_MESSAGE
+from graph.messages.definitions import bag_decoder, begins_with_header
 from graph.messages.stamps import frame_id
-from graph.messages.types import not_decoded
+from graph.messages.types import UnknownTypeError, not_decoded
 from graph.observer.rates import QUIET_S, RateMeter
 from graph.observer.timing import Arrival
 from graph.observer.troubles import quiet
@@ -141,8 +140,8 @@ class ReplayTopic:
     def _sample(self, message: Newest, wall_s: float, now_ns: int) -> Sample | None:
         try:
             value = bag_decoder(self._shown.kind)(message.raw)
-        except BagError as error:
-            self._broken = error.words
+        except UnknownTypeError as error:
+            self._broken = error.reason
             return None
         except Exception as error:  # noqa: BLE001 - no content of a bag must end the replay
             self._broken = not_decoded(self._shown.kind.name, error)
