@@ -14,8 +14,7 @@ from graph.heavy_types import HEAVY_TYPES
 from graph.housekeeping import is_hidden
 from graph.pictures.source import THINNED
 from graph.qos import TRANSIENT_LOCAL
-from graph.recording.relay import Relay
-from graph.recording.topics import TopicChoice
+from graph.recording.topics import Relay, TopicChoice
 from text.sentences import reason_of, say
 from view.faults import ViewError
 from view.installed import need_foxglove
@@ -26,8 +25,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
-    from graph.bag.metadata import BagTopic
-    from graph.recording.writer import Message
+    from graph.recording.writer import BagTopic, Message
 
 NAME = "Deck"
 LOOK_S = 0.1

@@ -38,17 +38,6 @@ def not_written(file: Path, error: OSError) -> Words:
     )
 
 
-def no_bag(path: Path, reason: Words) -> BagError:
-    """Return the error for a path that holds no bag."""
-    return BagError(
-        say(
-            "{path} is not a bag: {reason}. Give the folder that holds metadata.yaml, or an .mcap file",
-            path=path,
-            reason=reason,
-        )
-    )
-
-
 def nothing_to_publish(path: Path, messages: int) -> BagError:
     """Return the error for a bag of which no topic can be published, each for its own reason."""
     if not messages:

@@ -8,22 +8,24 @@ from __future__ import annotations
 
 import atexit
 import logging
+import os
 import threading
 import time
+from collections import deque
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.recording.disk_room import RESERVE_BYTES, DiskRoom, free_bytes
-from graph.recording.topics import RecordingTopics, TopicChoice
+from graph.bag.errors import BagError
 from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from collections.abc import Set as AbstractSet
 
-    from graph.recording.file import BagFile
-    from graph.recording.writer import RecordingWriter
+    from graph.recording.topics import RecordingTopics
+    from graph.recording.writer import BagFile, RecordingWriter
+    from text.sentences import Words
 
 logger = logging.getLogger(__name__)
 
@@ -33,6 +35,11 @@ LOOK_S = 0.25
 FINISH_WITHIN_S = 30.0
 SLOW_BYTES = 64_000_000
 """With this much waiting, the disk is reported as slow."""
+RESERVE_BYTES = 500_000_000
+"""Kept free: what waits in memory must still fit, and a system with a full disk fails elsewhere."""
+WINDOW_S = 5.0
+"""Time over which the rate is measured."""
+MEGA = 1e6
 
 
 @dataclass(frozen=True)
@@ -89,6 +96,76 @@ def room_bytes(folder: Path) -> int | None:
         return None
 
 
+def free_bytes(folder: Path) -> int:
+    """Return how many bytes an ordinary user may still write where this folder is, or will be."""
+    while not folder.exists() and folder != folder.parent:
+        folder = folder.parent
+    found = os.statvfs(folder)
+    return found.f_bavail * found.f_frsize
+
+
+class DiskRoom:
+    """Watches a folder's disk during a recording."""
+
+    def __init__(
+        self, folder: Path, reserve_bytes: int = RESERVE_BYTES, free: Callable[[Path], int] | None = None
+    ) -> None:
+        """`free` returns how many bytes are free at a folder; by default it asks the system.
+
+        It may raise OSError.
+        """
+        self.bytes_per_s = 0.0
+        """How fast the recording grows, over the last seconds."""
+        self.left_s: float | None = None
+        """How long it may still continue at this rate; None if unknown."""
+        self.end: Words | None = None
+        """Why the recording must stop now."""
+        self._folder = folder
+        self._reserve_bytes = reserve_bytes
+        self._free = free or free_bytes
+        self._seen: deque[tuple[float, int]] = deque()
+
+    def check(self) -> None:
+        """Raise BagError if there is no room to begin with."""
+        try:
+            free = self._free(self._folder)
+        except OSError:
+            return  # Creating the folder will give a better error.
+        if free <= self._reserve_bytes:
+            raise BagError(
+                say(
+                    "{path}: {free} MB are free on this disk, and {reserve} MB must stay free: "
+                    "free some space, or record into a folder on another disk",
+                    path=self._folder,
+                    free=round(free / MEGA),
+                    reserve=round(self._reserve_bytes / MEGA),
+                )
+            )
+
+    def look(self, now_s: float, written_bytes: int) -> None:
+        """Note how much has been recorded by now, and how much is free."""
+        self._seen.append((now_s, written_bytes))
+        while len(self._seen) > 2 and self._seen[1][0] <= now_s - WINDOW_S:
+            self._seen.popleft()
+        then_s, then_bytes = self._seen[0]
+        if now_s > then_s:
+            self.bytes_per_s = (written_bytes - then_bytes) / (now_s - then_s)
+        try:
+            free = self._free(self._folder)
+        except OSError:
+            self.left_s = None
+            return
+        spare = free - self._reserve_bytes
+        self.left_s = max(0.0, spare / self.bytes_per_s) if self.bytes_per_s > 0 else None
+        if spare <= 0:
+            self.end = say(
+                "recording has stopped: {free} MB are free on the disk of {path}. Everything "
+                "recorded so far is intact. Free some space and record again",
+                free=round(free / MEGA),
+                path=self._folder,
+            )
+
+
 class Recorder:
     """Records topics of one domain from `start` to `stop`. `status` may be read at any time."""
 
@@ -114,8 +191,7 @@ class Recorder:
         self._domain = domain
         self._discovery = discovery
         self._folder = folder
-        named = None if topics is None else frozenset(topics)
-        self._choice = TopicChoice(named, hidden, without, wanted)
+        self._choice = None if topics is None else frozenset(topics), hidden, without, wanted
         self._room = DiskRoom(folder, reserve_bytes)
         self._error = ""
         self._since_s = time.time()
@@ -128,7 +204,7 @@ class Recorder:
 
     def start(self) -> None:
         """Create the folder and begin. Raises BagError if that fails or the disk is full."""
-        from graph.recording.file import BagFile
+        from graph.recording.writer import BagFile
 
         self._room.check()
         file = BagFile(self._folder)
@@ -196,11 +272,12 @@ class Recorder:
 
     def _record(self, writer: RecordingWriter) -> None:
         # This imports rclpy; the caller need not wait for it.
+        from graph.recording.topics import RecordingTopics, TopicChoice
         from graph.ros import open_ros
 
         ros = open_ros(self._domain, self._discovery, "recorder")
         try:
-            topics = RecordingTopics(ros.node, self._choice, writer)
+            topics = RecordingTopics(ros.node, TopicChoice(*self._choice), writer)
             self._topics, self._writer = topics, writer
             self._take_turns(topics, writer)
             topics.close()

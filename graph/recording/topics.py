@@ -1,26 +1,44 @@
-"""The topics of a recording: existing ones, new ones, and those that cannot be recorded."""
+"""The topics of a recording, raw: existing ones, new ones, and those that cannot be recorded.
+
+Queues are drained in turn and nothing is decoded. The relay hands all that on to a program that reads ROS messages
+itself.
+"""
 
 from __future__ import annotations
 
+import atexit
+import logging
+import threading
+import time
+from collections.abc import Callable, Sequence
+from collections.abc import Set as AbstractSet
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from graph.bag.metadata import BagTopic, qos_offer
-from graph.bag.types import definition, hash_of
 from graph.data import EndpointInfo
 from graph.housekeeping import is_hidden
-from graph.messages.types import UnknownTypeError, not_subscribed
-from graph.qos import to_hear
-from graph.recording.tap import RecordingTap
+from graph.messages.definitions import definition, hash_of
+from graph.messages.types import UnknownTypeError, load_message, not_subscribed
+from graph.observer.tap import LARGE_TYPES
+from graph.qos import Qos, profile, to_hear
+from graph.recording.writer import NANOSECONDS, BagTopic, Message, qos_offer
 from graph.scan.endpoints import full_name
+from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from collections.abc import Set as AbstractSet
-
     from rclpy.node import Node
+    from rclpy.subscription import Subscription
     from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-    from graph.recording.writer import Message
+logger = logging.getLogger(__name__)
+
+DEEP = 2000
+"""Queue between two drains, for the rate of a fast driver and a pause of a second."""
+DEEP_OF_LARGE = 60
+RELAY_TURN_S = 0.02
+LOOK_S = 0.25
+"""How often to look for new topics."""
+STOP_WITHIN_S = 5.0
 
 
 class TopicChoice(NamedTuple):
@@ -55,15 +73,121 @@ class Sink(Protocol):
         """Take messages in the order of their arrival, without waiting."""
 
 
-class RecordingTopics:
-    """All subscriptions of a recording; used by the recorder's thread alone."""
+class Sequences:
+    """Finds gaps in the sequence numbers that publishers give their messages.
 
-    def __init__(self, node: Node, choice: TopicChoice, writer: Sink) -> None:
+    The middleware does not say which publisher a number belongs to: each is assigned to the
+    publisher whose last number it follows, and if there is none, to the nearest one below.
+    """
+
+    def __init__(self) -> None:
+        self._last: list[int] = []
+
+    def missing(self, number: int, publishers: Callable[[], int]) -> int:
+        """Add the next number; return how many are missing before it.
+
+        `publishers` is how many there have ever been: those that have gone are included, as nobody
+        knows which numbers were theirs.
+        """
+        if number - 1 in self._last:
+            self._last[self._last.index(number - 1)] = number
+            return 0
+        below = [last for last in self._last if last < number]
+        if len(self._last) < publishers() or not below:
+            self._last.append(number)
+            return 0
+        nearest = max(below)
+        self._last[self._last.index(nearest)] = number
+        return number - nearest - 1
+
+
+class RecordingTap:
+    """A subscription; create it, drain it, close it."""
+
+    def __init__(self, node: Node, topic: BagTopic, qos: Qos) -> None:
+        """Prepare to `listen`. Raises UnknownTypeError."""
+        self.topic = topic
+        self.qos = qos
+        self.lost = 0
+        """Messages that were published but never arrived."""
+        self._sequences = Sequences()
+        self._ever: set[tuple[int, ...]] = set()
+        """Every publisher so far, by its identifier in the middleware."""
+        self._node = node
+        self._cls = load_message(topic.type_name)
+        self._depth = DEEP_OF_LARGE if topic.type_name in LARGE_TYPES else DEEP
+        self._subscription: Subscription | None = None
+
+    def reopen(self, qos: Qos) -> None:
+        """Request another quality of service, because publishers have changed."""
+        listens = self._subscription is not None
+        self.close()
+        self.qos = qos
+        self.listen(wanted=listens)
+
+    def listen(self, *, wanted: bool) -> None:
+        """Subscribe, or end the subscription until it is wanted again. Raises what rclpy raises."""
+        from rclpy.event_handler import SubscriptionEventCallbacks
+
+        if not wanted:
+            self.close()
+        elif self._subscription is None:
+            self._subscription = self._node.create_subscription(
+                self._cls,
+                self.topic.name,
+                # rclpy insists on a callback, and no executor ever spins the node.
+                lambda _message: None,
+                profile(self.qos, self._depth),
+                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+                raw=True,
+            )
+
+    def drain(self) -> list[Message]:
+        if self._subscription is None:
+            return []
+        taken: list[Message] = []
+        numbers: list[int] = []
+        handle = self._subscription.handle
+        with handle:
+            # A publisher faster than this loop must not keep it busy for ever.
+            for _ in range(2 * self._depth):
+                found = handle.take_message(self._cls, True)
+                if found is None:
+                    break
+                raw, info = found
+                stamp_ns = info["received_timestamp"] or int(time.time() * NANOSECONDS)
+                number = info["publication_sequence_number"]
+                if number is not None:
+                    numbers.append(number)
+                sent_ns = info["source_timestamp"] or stamp_ns
+                taken.append(Message(stamp_ns, self.topic, raw, sent_ns))
+        # Asked after the messages were taken: by then their senders are known.
+        publishers = lru_cache(self._publishers_so_far)
+        self.lost += sum(self._sequences.missing(number, publishers) for number in numbers)
+        return taken
+
+    def know(self, publishers: Sequence[TopicEndpointInfo]) -> None:
+        self._ever.update(tuple(info.endpoint_gid) for info in publishers)
+
+    def _publishers_so_far(self) -> int:
+        self.know(self._node.get_publishers_info_by_topic(self.topic.name))
+        return len(self._ever)
+
+    def close(self) -> None:
+        if self._subscription is not None:
+            self._node.destroy_subscription(self._subscription)
+            self._subscription = None
+
+
+class RecordingTopics:
+    """All subscriptions of a recording; used by one thread alone."""
+
+    def __init__(self, node: Node, choice: TopicChoice, sink: Sink) -> None:
         self.skipped: dict[str, str] = {}
         """Topic to why it cannot be recorded."""
         self._node = node
         self._choice = choice
-        self._writer = writer
+        self._sink = sink
         self._taps: dict[str, RecordingTap] = {}
         self._publishers: dict[str, int] = {}
 
@@ -105,20 +229,21 @@ class RecordingTopics:
         qos = to_hear([_end(info) for info in found])
         tap = self._taps.get(name)
         if tap is None:
-            tap = self._open(name, types, found)
+            tap = self._open(name, types, found, qos)
         elif tap.qos != qos:
-            self._writer.put(tap.drain())
+            self._sink.put(tap.drain())
             tap.reopen(qos)
         if tap is not None:
             tap.know(found)
 
-    def _open(self, name: str, types: Sequence[str], found: Sequence[TopicEndpointInfo]) -> RecordingTap | None:
-        """Subscribe, and add the topic to the bag; None if that is impossible."""
+    def _open(
+        self, name: str, types: Sequence[str], found: Sequence[TopicEndpointInfo], qos: Qos
+    ) -> RecordingTap | None:
+        """Subscribe, and hand the topic on; None if that is impossible."""
         named = [info.topic_type for info in found]
         # The type that most publishers have.
         type_name = max(types, key=named.count)
-        qos = to_hear([_end(info) for info in found])
-        digest = next((str(i.topic_type_hash) for i in found if i.topic_type == type_name), "")
+        digest = next((str(info.topic_type_hash) for info in found if info.topic_type == type_name), "")
         digest = digest if digest.startswith("RIHS") else ""
         topic = BagTopic(
             len(self._taps) + 1,
@@ -130,7 +255,8 @@ class RecordingTopics:
         )
         try:
             text = definition(type_name, digest)
-            tap = RecordingTap(self._node, topic, qos, listens=self._choice.asked_for(topic))
+            tap = RecordingTap(self._node, topic, qos)
+            tap.listen(wanted=self._choice.asked_for(topic))
         except UnknownTypeError as error:
             self.skipped[name] = error.reason
             return None
@@ -138,7 +264,7 @@ class RecordingTopics:
             self.skipped[name] = not_subscribed(name, type_name, error)
             return None
         self.skipped.pop(name, None)
-        self._writer.add_topic(topic, text)
+        self._sink.add_topic(topic, text)
         self._taps[name] = tap
         return tap
 
@@ -151,3 +277,53 @@ def _end(info: TopicEndpointInfo) -> EndpointInfo:
         qos.reliability.name.lower(),
         qos.durability.name.lower(),
     )
+
+
+class Relay:
+    """Hands on the topics of one domain from `start` to `stop`; it only listens."""
+
+    def __init__(self, domain: int, discovery: str | tuple[str, ...], sink: Sink, choice: TopicChoice) -> None:
+        """`sink` and what `choice` asks are called by the relay's own thread."""
+        self.error = ""
+        """Why nothing is handed on any more, as translatable words."""
+        self._place = domain, discovery
+        self._sink = sink
+        self._choice = choice
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="deck-relay", daemon=True)
+
+    def start(self) -> None:
+        # DDS threads must end before the interpreter does.
+        atexit.register(self.stop)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Leave the graph; returns within a few seconds."""
+        self._stopping.set()
+        atexit.unregister(self.stop)
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join(STOP_WITHIN_S)
+
+    def _run(self) -> None:
+        try:
+            # This imports rclpy; the caller need not wait for it.
+            from graph.ros import open_ros
+
+            ros = open_ros(*self._place, "view")
+            try:
+                self._take_turns(RecordingTopics(ros.node, self._choice, self._sink))
+            finally:
+                ros.close()
+        except Exception as error:
+            logger.exception("the relay failed")
+            self.error = say("ROS cannot be used: {reason}", reason=error)
+
+    def _take_turns(self, topics: RecordingTopics) -> None:
+        look_at_s = 0.0
+        while not self._stopping.wait(RELAY_TURN_S):
+            if time.monotonic() >= look_at_s:
+                topics.look()
+                look_at_s = time.monotonic() + LOOK_S
+            if found := topics.drain():
+                self._sink.put(found)
+        topics.close()

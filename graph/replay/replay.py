@@ -21,9 +21,7 @@ from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult
 from graph.inner_states import LevelResult, TransitionResult
 from graph.observer.interest import Interest
 from graph.observer.requests import ObserverError
-from graph.replay.player import Player
-from graph.replay.state import RATES, ReplayState, next_rate
-from graph.replay.topics import NANOSECONDS
+from graph.replay.player import NANOSECONDS, RATES, Player, ReplayState, next_rate
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -265,7 +263,7 @@ class Replay:
             if not self._state.paused:
                 self._advance(player, now_s - before_s)
             before_s = now_s
-            self._set(position_s=player.position_s, ended=player.ended, damage=player.damage or "")
+            self._set(position_s=player.position_s, ended=player.ended, damage=self.bag.damage or "")
             update = self._update(player)
             news = (update.topics, update.frames)
             if update.samples or ordered or news != told:

@@ -8,10 +8,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import yaml
+from mcap.records import Chunk
+from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, IndexType, Writer
 
-from graph.bag.kinds import MCAP_MAGIC
-from graph.bag.mcap_records import CHUNK, RECORD_HEAD, records
 from tests.unit.bags import BEGIN_NS
 
 TENTH_NS = 100_000_000
@@ -72,11 +72,17 @@ def write_mcap(
 
 def damage_chunk(file: Path, which: int, begin: int = 40) -> None:
     """Write wrong bytes into one of the chunks, from `begin` on."""
-    raw = bytearray(file.read_bytes())
-    inner = records(bytes(raw[len(MCAP_MAGIC) : -len(MCAP_MAGIC)]))
-    chunks = [(at - RECORD_HEAD.size, end) for code, at, end in inner if code == CHUNK]
+    chunks = []
+    with file.open("rb") as stream:
+        reader = StreamReader(stream, emit_chunks=True).records
+        at = stream.tell()
+        for record in reader:
+            if isinstance(record, Chunk):
+                chunks.append((at, stream.tell()))
+            at = stream.tell()
     assert len(chunks) > 2
-    at, end = (place + len(MCAP_MAGIC) for place in chunks[which])
+    at, end = chunks[which]
+    raw = bytearray(file.read_bytes())
     raw[at + begin : end] = b"\xff" * (end - at - begin)
     file.write_bytes(raw)
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from textual.events import Click, MouseMove
 
+    from graph.replay.player import ReplayState
     from graph.replay.replay import Replay
-    from graph.replay.state import ReplayState
 
 LOOK_S = 0.25
 """How often the bar checks the position in the recording."""

@@ -58,7 +58,7 @@ def _is_event(topic: TopicInBag) -> bool:
 
 
 def _all_of(bag: Bag, topics: list[TopicInBag]) -> str:
-    from graph.bag.kinds import storage_of_name
+    from graph.bag.files import storage_of_name
 
     start_ns = bag.start_ns if bag.messages_count else 0
     end_ns = bag.end_ns if bag.messages_count else 0

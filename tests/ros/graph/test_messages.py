@@ -26,14 +26,13 @@ from std_msgs.msg import ByteMultiArray, Char, ColorRGBA, Empty, Int8MultiArray
 from std_msgs.msg import String as Text
 from tf2_msgs.msg import TFMessage
 
-from graph.bag.decoding import TypeText, bag_decoder
-from graph.bag.types import definition as bag_definition
-from graph.bag.types import jazzy
 from graph.calls.parameters_file import dump
 from graph.data import ParameterRow
 from graph.messages.browse import Constant, definition, interfaces
 from graph.messages.dated import draft
 from graph.messages.decoding import read_image
+from graph.messages.definitions import TypeText, bag_decoder, jazzy
+from graph.messages.definitions import definition as bag_definition
 from graph.messages.making import FieldError, to_message
 from graph.messages.types import UnknownTypeError, load_message, load_service
 from graph.messages.values import to_tree

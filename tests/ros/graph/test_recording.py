@@ -15,7 +15,7 @@ from std_msgs.msg import Bool, Float32, String
 from tf2_msgs.msg import TFMessage
 
 from graph.bag.reading import open_bag
-from graph.recording import tap as recording_tap
+from graph.recording import topics as recording_topics
 from graph.recording.recorder import Recorder
 from tests.ros.observing import Watcher, let_updates_come
 from tests.ros.peer import LATCHED, Peer
@@ -127,7 +127,7 @@ def test_a_recorder_does_not_pass_for_somebody_who_obeys(ros_domain: int, tmp_pa
 
 def test_lost_messages_are_counted(ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # A publisher on a busy machine may be too slow to fill the whole queue between two turns.
-    monkeypatch.setattr(recording_tap, "DEEP", 5)
+    monkeypatch.setattr(recording_topics, "DEEP", 5)
     recorder = Recorder(ros_domain, "localhost", tmp_path / "bag")
     shallow = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     with Peer(ros_domain) as peer:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+import resource
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
 from mcap.reader import make_reader
 
 from graph.bag.errors import BagError
-from graph.bag.metadata import BagTopic
 from graph.bag.reading import open_bag
-from graph.recording.disk_room import DiskRoom
-from graph.recording.file import BagFile
-from graph.recording.tap import Sequences
-from graph.recording.writer import Message, RecordingWriter
+from graph.recording.recorder import DiskRoom
+from graph.recording.topics import Sequences
+from graph.recording.writer import BagFile, BagTopic, Message, RecordingWriter
 
 TEXT = "uint8[] data\n"
 
@@ -52,34 +52,27 @@ def test_what_finds_the_buffer_full_is_dropped_and_counted(tmp_path: Path) -> No
         assert not bag.is_cut
 
 
-class FullDisk:
-    """A file in which there is room for so many bytes."""
-
-    def __init__(self, file: Any, room: int) -> None:
-        self._file = file
-        self._room = room
-
-    def write(self, data: Any) -> int:
-        if self._file.tell() + len(data) > self._room:
-            self._file.write(bytes(data)[: max(0, self._room - self._file.tell())])
-            self._file.flush()
-            raise OSError(28, "No space left on device")
-        return int(self._file.write(data))
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._file, name)
+@contextmanager
+def full_disk(room: int) -> Iterator[None]:
+    """Let no file grow beyond so many bytes."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 @pytest.mark.parametrize("room", [1_100_000, 2_500_000, 3_150_000, 4_000_001])
 def test_a_disk_that_fills_up_leaves_a_whole_bag(tmp_path: Path, room: int) -> None:
     file, big = BagFile(tmp_path / "bag"), topic()
-    file._storage.bio = FullDisk(file._storage.bio, room)  # type: ignore[assignment]
-    writer = RecordingWriter(file)
-    writer.add_topic(big, TEXT)
-    for number in range(100):
-        writer.put([Message(1 + number, big, bytes([number]) * 100_000, 1)])
-    assert writer.finish(30)
-    assert "No space left on device" in str(writer.error)
+    with full_disk(room):
+        writer = RecordingWriter(file)
+        writer.add_topic(big, TEXT)
+        for number in range(100):
+            writer.put([Message(1 + number, big, bytes([number]) * 100_000, 1)])
+        assert writer.finish(30)
+    assert "File too large" in str(writer.error)
     with file.path.open("rb") as stream:
         kept = [message.data[0] for _s, _c, message in make_reader(stream).iter_messages()]
     assert kept == list(range(len(kept)))
