@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from course.judge.evidence import MET, Observation
 from course.results import CheckResult, State
 from graph.data import PROCESS_NUMBERS
+from graph.observer.requests import CallService
 from launcher.faults.stuck import held_by
 from launcher.processes.table import read_process
 from launcher.status import STUCK, NodeState
@@ -154,7 +155,7 @@ async def _answers(name: str, node: str, evidence: Evidence) -> bool:
     deadline_s = time.monotonic() + ANSWERS_WITHIN_S
     while (left_s := deadline_s - time.monotonic()) > 0 and not gone():
         once_s = min(left_s, ASKED_AGAIN_S)
-        call = evidence.observer.call(service, TYPE, {"names": []}, once_s)
+        call = evidence.observer.ask(CallService(service, TYPE, {"names": []}, once_s))
         answer = asyncio.ensure_future(asyncio.wrap_future(call))
         try:
             seen = await evidence.until(lambda it=answer: _in(it, gone()), once_s + 1)  # type: ignore[misc]

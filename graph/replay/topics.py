@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from graph.bag.reading import TopicInBag
-    from graph.data import FrameRow, Value
-    from graph.observer.interest import Interest
+    from graph.data import FrameRow, Interest, Value
 
 NODE = "/bag"
 """The node that publishes everything in a replay."""

@@ -10,6 +10,7 @@ from textual.containers import Horizontal, Vertical
 from textual.events import Unmount
 from textual.widgets import Static, TextArea
 
+from graph.observer.requests import PreparePublisher, Publish
 from robot.commands.schema import MAX_BYTES, CommandError, parse_llm
 from robot.topics import LLM_RAW_JSON
 from text import ros2_words
@@ -179,7 +180,7 @@ class ComposerScreen(DeckScreen):
         """Prepare the publisher, so that the first message goes out at once."""
         self.asking.read_settings()
         if self.feed.graph is not None:
-            self.feed.graph.prepare_publisher(LLM_RAW_JSON, TYPE)
+            self.feed.graph.ask(PreparePublisher(LLM_RAW_JSON, TYPE))
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget everything of the previous session."""
@@ -189,7 +190,7 @@ class ComposerScreen(DeckScreen):
         self.senses = RobotSenses()
         self.asking.session_changed()
         if self.is_current and self.feed.graph is not None:
-            self.feed.graph.prepare_publisher(LLM_RAW_JSON, TYPE)
+            self.feed.graph.ask(PreparePublisher(LLM_RAW_JSON, TYPE))
         self._say()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
@@ -279,7 +280,7 @@ class ComposerScreen(DeckScreen):
         self._sent.add(text)
         self._trail = OutcomeTrail(clock.now(), self._listeners(), self._response, self._newest)
         self.topics_changed()
-        future = graph.publish(LLM_RAW_JSON, TYPE, {"data": text})
+        future = graph.ask(Publish(LLM_RAW_JSON, TYPE, {"data": text}))
         # Not awaited here: further keys wait until the action of a key has finished.
         self.run_worker(self._confirm(self._trail, future), group="send")
         self.asking.note_sent(text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any
 
+from graph.observer.requests import ChangeState
 from text.i18n import N_, _, localized
 from text.plain import plain
 from tui.dialogs.choice import ChoiceScreen
@@ -61,7 +62,7 @@ async def _change(app: App[Any], node: str, transition: str) -> None:
     graph = host_of(app).feed.graph
     if graph is None:
         return
-    result = await asyncio.wrap_future(graph.inner.change_state(node, transition))
+    result = await asyncio.wrap_future(graph.ask(ChangeState(node, transition)))
     if result.error:
         words, severity = localized(result.error), "warning"
     else:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual.containers import Vertical
 from textual.widgets import Static
 
+from graph.observer.requests import ReadParameters
 from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui import clock
@@ -94,7 +95,7 @@ class GraphParameters(Vertical, Working):
             self._question += 1
             self._changed = False
             self._asked_s = clock.now()
-            self.run_worker(self._take(graph.parameters(node), self._question), exit_on_error=False)
+            self.run_worker(self._take(graph.ask(ReadParameters(node)), self._question), exit_on_error=False)
         self.redraw()
 
     def hear(self, events: Iterable[Sample]) -> None:

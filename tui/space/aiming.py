@@ -11,6 +11,7 @@ import asyncio
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
+from graph.observer.requests import PreparePublisher, Publish
 from space.drawing.camera import Angle
 from text.i18n import _, decimal
 from tui.space import words
@@ -92,7 +93,7 @@ class Aiming:
         x_m, y_m, _z_m = view.camera.target
         view.aim = Aim(kind, x_m, y_m)
         if screen.feed.graph is not None:
-            prepared = screen.feed.graph.prepare_publisher(kind.topic, kind.type_name)
+            prepared = screen.feed.graph.ask(PreparePublisher(kind.topic, kind.type_name))
             # If it cannot be created, publishing reports that.
             prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
         view.focus()
@@ -114,7 +115,7 @@ class Aiming:
         if reason:
             screen.notify(reason, severity="warning", markup=False)
             return
-        sent = graph.publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed))
+        sent = graph.ask(Publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed)))
         if aim.kind is AimKind.GOAL:
             screen.stage.sent = fixed, aim
         screen.aim_changed()
