@@ -12,6 +12,7 @@ from agents.raw_access import check_call, check_publish
 from agents.refusal import refused
 from agents.session import BOOL
 from graph.messages.yaml_text import to_yaml
+from graph.observer.requests import CallService, Publish
 from launcher.errors import LauncherError
 from robot.topics import EMERGENCY_STOP, SPEAKER
 from robot.words import parse_word
@@ -32,7 +33,7 @@ WORD = re.compile(r"[^\W\d_]+")
 
 async def stop(session: RobotSession) -> dict[str, object]:
     """Engage the emergency stop; where no node obeys it, stop the nodes."""
-    sending = session.observer.publish(EMERGENCY_STOP, BOOL, {"data": True}, latched=True)
+    sending = session.observer.ask(Publish(EMERGENCY_STOP, BOOL, {"data": True}, latched=True))
     session.has_stopped = True
     view, emergency = session.view, session.emergency
     heard = _is_heard(view)
@@ -74,7 +75,7 @@ async def say_aloud(session: RobotSession, text: str) -> dict[str, object]:
     row = session.view.topic(SPEAKER)
     if row is None or not row.subscribers:
         raise refused("nobody hears {topic}: the robot has no voice", topic=SPEAKER)
-    sending = session.observer.publish(SPEAKER, SOUND, {"data": text.encode()})
+    sending = session.observer.ask(Publish(SPEAKER, SOUND, {"data": text.encode()}))
     await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S)
     return {"said": text}
 
@@ -88,7 +89,7 @@ async def publish(session: RobotSession, asked: PublishArguments) -> dict[str, o
         check_publish(asked.topic, type_name, listed)
     if len(types) != 1:
         raise refused("the type of {topic} is not known: nobody uses it", topic=asked.topic)
-    sending = session.observer.publish(asked.topic, types[0], asked.message)
+    sending = session.observer.ask(Publish(asked.topic, types[0], asked.message))
     try:
         count = await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S + 2)
     except asyncio.TimeoutError:
@@ -107,7 +108,7 @@ async def call(session: RobotSession, asked: CallArguments) -> dict[str, object]
         check_call(asked.service, type_name, listed)
     if len(types) != 1:
         raise refused("nobody serves {service}", service=asked.service)
-    calling = session.observer.call(asked.service, types[0], asked.request, CALLED_WITHIN_S)
+    calling = session.observer.ask(CallService(asked.service, types[0], asked.request, CALLED_WITHIN_S))
     result = await asyncio.wrap_future(calling)
     if not result.ok or result.response is None:
         raise refused("the call has failed: {why}", why=plain(result.error, 300))

@@ -16,6 +16,7 @@ from agents.proposals import EXECUTED_WITHIN_S, ProposalBook
 from agents.refusal import RefusedError, refused
 from agents.road import road_of
 from agents.unasked_way import UnaskedWay
+from graph.observer.requests import PreparePublisher, Publish
 from launcher.consent import Approval, ConsentVerdict
 from launcher.errors import LauncherError
 from launcher.status import Severity
@@ -173,7 +174,7 @@ class AgentDriving:
         """Return what is allowed, checked again after the answer."""
         checked = await self._free_to_go(session, proposal.motion)
         # Matched with the parser by the time of the answer, after which nothing is to wait.
-        prepared = session.observer.prepare_publisher(LLM_RAW_JSON, STRING)
+        prepared = session.observer.ask(PreparePublisher(LLM_RAW_JSON, STRING))
         prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
         rules = session.info.agents
         fits = self._unasked.has_room(checked.distance_m, rules.max_total_m)
@@ -206,7 +207,7 @@ class AgentDriving:
         try:
             with session.view.hearing(LLM_RESULT, answers.hear):
                 _unless_stopped(session)
-                sending = session.observer.publish(LLM_RAW_JSON, STRING, {"data": _thought(proposal, thought)})
+                sending = session.observer.ask(Publish(LLM_RAW_JSON, STRING, {"data": _thought(proposal, thought)}))
                 sent = True
                 await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S)
                 await session.view.until(lambda: answers.heard, HEARD_WITHIN_S)
@@ -294,7 +295,7 @@ def _thought(proposal: Proposal, thought: str) -> str:
 def _end_drive(session: RobotSession) -> None:
     """Have the robot stand: whoever has moved it does not look any more."""
     stop = {"thought": "", "commands": [{"action": "drive", "speed": 0.0, "steering": 0.0}]}
-    session.last_words = session.observer.publish(LLM_RAW_JSON, STRING, {"data": json.dumps(stop)})
+    session.last_words = session.observer.ask(Publish(LLM_RAW_JSON, STRING, {"data": json.dumps(stop)}))
 
 
 def _place(session: RobotSession) -> tuple[float, float] | None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from agents.looking import fresh_gate
 from agents.refusal import refused
+from graph.observer.requests import ReadParameters
 from robot.topics import DRIVE, DRIVE_SAFE, LLM_RAW_JSON
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ async def _gate_of(session: RobotSession) -> Gate:
 
 
 async def _repeats_for_s(session: RobotSession, node: str) -> float:
-    asked = session.observer.parameters(node, ANSWER_WITHIN_S)
+    asked = session.observer.ask(ReadParameters(node, ANSWER_WITHIN_S))
     result = await asyncio.wrap_future(asked)
     if result.error:
         raise refused("{node} does not say how long it drives: {why}", node=node, why=result.error)

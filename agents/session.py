@@ -11,6 +11,7 @@ from agents.emergency import EmergencyWatch, StopPassing
 from agents.refusal import refused
 from agents.view import GraphView
 from graph.observer.observer import Observer
+from graph.observer.requests import PreparePublisher, TakeBack
 from launcher.client import client
 from launcher.errors import LauncherError, SessionError, SeveralRunningError, UsageError
 from launcher.events import ClosedEvent
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from text.sentences import Words
 
 LOOK_EVERY_S = 0.5
-PERIOD_S = 0.1
 SAID_WITHIN_S = 1.0
 BOOL = "std_msgs/msg/Bool"
 
@@ -43,7 +43,7 @@ class RobotSession:
         self.link = link
         self.audit = Audit(link.session.log_dir)
         self.emergency, self._passing = EmergencyWatch(), StopPassing(link)
-        self.observer = Observer(link.session.domain, discovery or link.session.discovery, PERIOD_S, role="agents")
+        self.observer = Observer(link.session.domain, discovery or link.session.discovery, role="agents")
         self.view = GraphView(self.observer)
         self.last_words: Future[int] | None = None
         """A stop of the wheels that has to be sent before the observer ends."""
@@ -55,7 +55,7 @@ class RobotSession:
         self._loop = asyncio.get_running_loop()
         self.observer.start(self._hand_over)
         # So that the first stop goes out at once.
-        prepared = self.observer.prepare_publisher(EMERGENCY_STOP, BOOL, latched=True)
+        prepared = self.observer.ask(PreparePublisher(EMERGENCY_STOP, BOOL, latched=True))
         prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
 
     @property
@@ -94,7 +94,7 @@ class RobotSession:
         if self.has_stopped and self._was_stopped and not stopped:
             # Somebody has released it: a node that starts later must not hear of it from here.
             self.has_stopped = False
-            self.observer.take_back(EMERGENCY_STOP, BOOL)
+            self.observer.ask(TakeBack(EMERGENCY_STOP, BOOL))
         self._was_stopped = stopped
         self.view.take(update)
 

@@ -9,6 +9,7 @@ from collections import Counter
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from graph.data import Interest
 from robot.topics import (
     BATTERY,
     EMERGENCY_STATE,
@@ -154,5 +155,6 @@ class GraphView:
         return True
 
     def _ask(self) -> None:
-        self._observer.watch(topic for topic, count in self._watched.items() if count > 0)
-        self._observer.follow(topic for topic, count in self._followed.items() if count > 0)
+        watched = frozenset(topic for topic, count in self._watched.items() if count > 0)
+        followed = frozenset(topic for topic, count in self._followed.items() if count > 0)
+        self._observer.want(Interest(watched, followed))

@@ -86,7 +86,7 @@ def first_frame(folder: Path) -> tuple[float, float, float]:
 
 def screen_processes(terminal: Terminal) -> list[int]:
     """Return the pids of the screen, its observer, guardian and supervisor, without server and nodes."""
-    marks = ("observer/process", "launcher.supervisor")
+    marks = ("observer.process", "launcher.supervisor")
     screen, *others = descendants(terminal.process.pid)
     return [screen, *(pid for pid in others if any(mark in command(pid) for mark in marks))]
 

@@ -72,7 +72,7 @@ def frames_command(options: Namespace) -> int:
 
 def _listen(domain: int, discovery: str | tuple[str, ...], seconds: float) -> GraphUpdate:
     """Return the last update; raises UsageError if ROS cannot be used."""
-    from graph.data import GraphUpdate
+    from graph.data import GraphUpdate, Interest
     from graph.observer.observer import Observer
 
     newest = [GraphUpdate(0.0)]
@@ -81,8 +81,7 @@ def _listen(domain: int, discovery: str | tuple[str, ...], seconds: float) -> Gr
         newest[0] = update
 
     observer = Observer(domain, discovery)
-    observer.watch_frames(True)
-    observer.measure(all_topics=True, images=False)
+    observer.want(Interest(frames=True, all_topics=True, all_images=False))
     observer.start(take)
     try:
         _wait(newest, seconds)

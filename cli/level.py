@@ -39,12 +39,12 @@ def _level_options(parser: Parser) -> None:
 @command("level", _level_options)
 def level_command(options: Namespace) -> int:
     """Print the level that the node has now."""
+    from graph.observer.requests import LogLevel
+
     node = f"/{options.node.removeprefix('/')}"
     with domain_view(options.domain, options.discovery) as view:
         found = view.finds(node)
-        inner = view.observer.inner
-        asked = inner.logger_level(node) if options.level is None else inner.set_logger_level(node, options.level)
-        result = asked.result()
+        result = view.observer.ask(LogLevel(node, options.level)).result()
     if result.error:
         say_error(f"deck: {plain(localized(result.error))}")
         if not found and (hint := beyond_this_machine(view.discovery)):

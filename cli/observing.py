@@ -124,14 +124,14 @@ def domain_view(
     Raises:
         UsageError: if robots run in several domains.
     """
+    from graph.data import Interest
     from graph.observer.observer import Observer
 
     _name, domain, discovery = running_domain(asked, wanted)
     keep_stdout_to_ourselves()
     updates: queue.SimpleQueue[GraphUpdate] = queue.SimpleQueue()
-    observer = Observer(domain, discovery, period_s=LOOK_S)
-    observer.follow(follow)
-    observer.measure(all_topics)
+    observer = Observer(domain, discovery)
+    observer.want(Interest(followed=frozenset(follow), all_topics=all_topics, period_s=LOOK_S))
     observer.start(updates.put)
     try:
         yield DomainView(domain, discovery, observer, updates)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, TypeAlias, Union
 
+from text.ros_names import TF, TF_STATIC
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -29,6 +30,9 @@ Value: TypeAlias = Union[
 """A message as a tree: messages are mappings in field order, `byte[]` and `uint8[]` are bytes,
 other arrays of numbers are numpy arrays of shape (n,), arrays of anything else are lists.
 A single `byte` is an int, 0..255."""
+
+ANSWER_WITHIN_S = 5.0
+"""Default time-out of a service call, and of each step of a goal: found, accepted, agreed to cancel, result."""
 
 
 class Trouble(str, Enum):
@@ -424,3 +428,37 @@ class GraphUpdate:
     old_since_s: float | None = None
     """Unix time from which on nothing has been heard of the graph: the observer does not answer, or
     is being made anew. The rest is what was known then. None as a rule."""
+
+
+@dataclass(frozen=True)
+class Interest:
+    """What somebody wants to see of the graph."""
+
+    watched: frozenset[str] = frozenset()
+    """Topics whose newest message each update has."""
+    followed: frozenset[str] = frozenset()
+    """Topics of which it has every message, up to 200 of each."""
+    all_topics: bool = False
+    """Whether the rates of all topics are measured, or only of those watched and followed."""
+    actions: frozenset[str] = frozenset()
+    """Actions whose goals are wanted, including other clients' goals."""
+    inner_states: bool = False
+    """Whether nodes are asked for their lifecycle, and containers for their components."""
+    frames: bool = False
+    """Whether the frames of /tf and /tf_static are wanted."""
+    pictures: frozenset[str] = frozenset()
+    """Topics of which the newest picture is wanted, from the topic that carries it cheapest: where the same pictures
+    are offered compressed, samples are those of the topic asked for, and of another type."""
+    all_images: bool = True
+    """Whether `all_topics` includes those with pictures, as far as they come from this machine."""
+    all_fast: bool = True
+    """Whether it includes those that cost much to follow: fast ones, and large ones. Not while nobody looks: the rate
+    of a fast one is known in a moment, that of a slow one is not."""
+    period_s: float = 0.1
+    """Seconds between two updates."""
+
+    @property
+    def named(self) -> frozenset[str]:
+        """Topics that are wanted whether they exist or not."""
+        named = self.watched | self.followed
+        return named | {TF, TF_STATIC} if self.frames else named

@@ -35,9 +35,11 @@ class Words(str):
         words.values = values
         return words
 
-    def __getnewargs__(self) -> tuple[str, dict[str, object]]:  # type: ignore[override]
-        """Make copying and pickling keep the template."""
-        return self.template, self.values
+    def __reduce__(self) -> tuple[type[Words], tuple[str, Mapping[str, object]]]:
+        """Make copying and pickling keep the template; values may be what has no pickle, such as an error."""
+        simple = (str, int, float)
+        values = {name: value if isinstance(value, simple) else str(value) for name, value in self.values.items()}
+        return type(self), (self.template, values)
 
 
 class InLanguages(str):

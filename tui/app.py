@@ -13,6 +13,7 @@ from textual.binding import Binding, BindingType
 from textual.events import InputEvent, Key, Paste
 from textual.keys import key_to_character
 
+from graph.observer.requests import StopCommanding
 from text.i18n import LANGUAGES, _, language, set_language
 from text.plain import plain, plain_lines
 from text.program import typable
@@ -223,7 +224,7 @@ class DeckApp(App[int], Acting):
         """Command nothing any more, and begin to end; on any thread."""
         graph = self.feed.graph
         if graph is not None:
-            graph.stop_commanding()
+            graph.ask(StopCommanding())
         if self._environment is not None:
             self._soon(self._environment.desert)
 

@@ -6,6 +6,7 @@ import asyncio
 from typing import TYPE_CHECKING, Any
 
 from graph.inner_states import LOG_LEVELS
+from graph.observer.requests import LogLevel
 from text.i18n import N_, _, localized
 from text.plain import plain
 from tui.dialogs.choice import ChoiceScreen
@@ -31,7 +32,7 @@ async def change_log_level(app: App[Any], node: str) -> None:
     graph = host_of(app).feed.graph
     if graph is None:
         return
-    found = await asyncio.wrap_future(graph.inner.logger_level(node))
+    found = await asyncio.wrap_future(graph.ask(LogLevel(node)))
     if found.error:
         _tell(app, localized(found.error), severity="warning")
         return
@@ -47,7 +48,7 @@ async def _set(app: App[Any], node: str, level: str) -> None:
     graph = host_of(app).feed.graph
     if graph is None:
         return
-    changed = await asyncio.wrap_future(graph.inner.set_logger_level(node, level))
+    changed = await asyncio.wrap_future(graph.ask(LogLevel(node, level)))
     if changed.error:
         _tell(app, localized(changed.error), severity="warning")
     else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
+from graph.data import Interest
 from graph.observer.observer import Observer
 from view.arranged import arranged
 from view.faults import ViewError
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate
 
 ROLE = "view"
-PERIOD_S = 0.1
-"""Seconds between two looks at the queues: enough for an eye, and for the queue of a camera."""
 LOOK_S = 0.1
 TRIES = 3
 
@@ -67,7 +66,7 @@ class Showing:
             self._stream = Stream(self.place.source)
             opening.callback(self._stream.close)
             self._stream.arrange(arranged(self._pictures))
-            self._observer = Observer(domain, discovery, PERIOD_S, role=ROLE)
+            self._observer = Observer(domain, discovery, role=ROLE)
             opening.callback(self._observer.stop)
             self._observer.start(self._take)
             self._open = opening.pop_all()
@@ -106,9 +105,8 @@ class Showing:
         wanted = self._scene.wanted(update.topics)
         small = wanted & self._scene.seen_small(update.topics)
         followed = wanted & self._scene.every_one_of(update.topics) - small
-        self._observer.follow(followed)
-        self._observer.watch(wanted - followed - small)
-        self._observer.watch_pictures(small)
+        watched = frozenset(wanted - followed - small)
+        self._observer.want(Interest(watched, frozenset(followed), pictures=frozenset(small)))
         pictures = frozenset(
             row.name for row in update.topics if row.name in wanted and not PICTURE_TYPES.isdisjoint(row.type_names)
         )

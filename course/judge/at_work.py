@@ -156,7 +156,7 @@ async def _answers(name: str, node: str, evidence: Evidence) -> bool:
     deadline_s = time.monotonic() + ANSWERS_WITHIN_S
     while (left_s := deadline_s - time.monotonic()) > 0 and not gone():
         once_s = min(left_s, ASKED_AGAIN_S)
-        call = evidence.observer.call(service, TYPE, {"names": []}, once_s)
+        call = evidence.observer.ask(CallService(service, TYPE, {"names": []}, once_s))
         answer = asyncio.ensure_future(asyncio.wrap_future(call))
         try:
             seen = await evidence.until(lambda it=answer: _in(it, gone()), once_s + 1)  # type: ignore[misc]

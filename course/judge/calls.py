@@ -10,6 +10,7 @@ from course.judge.evidence import MET, Observation
 from course.judge.fields import FieldMissingError, differs, field_at, shown
 from course.judge.missing import dead_nodes
 from graph.data import GoalStatus
+from graph.observer.requests import CallService, CancelGoal, ForgetGoal, ReadParameters, SendGoal, SetParameters
 from text.sentences import reason_of, say
 from text.suggestions import nearest
 
@@ -27,7 +28,7 @@ async def service(check: ServiceCheck, evidence: Evidence) -> Observation:
     there = await evidence.until(lambda: _served(check.service, check.type, evidence), NOTICED_S)
     if not there.met:
         return there
-    call = evidence.observer.call(check.service, check.type, check.request, check.within)
+    call = evidence.observer.ask(CallService(check.service, check.type, check.request, check.within))
     result = await asyncio.wrap_future(call)
     if not result.ok or result.response is None:
         return Observation(
@@ -80,13 +81,13 @@ async def action(check: ActionCheck, evidence: Evidence) -> Observation:
     if not there.met:
         return there
     try:
-        number = await asyncio.wrap_future(evidence.observer.send_goal(name, check.type, check.goal))
+        number = await asyncio.wrap_future(evidence.observer.ask(SendGoal(name, check.type, check.goal)))
     except Exception as error:  # noqa: BLE001 - a goal that cannot be sent
         return Observation(met=False, seen=reason_of(error))
     try:
         return await _pursued(check, number, evidence)
     finally:
-        evidence.observer.forget_goal(number)
+        evidence.observer.ask(ForgetGoal(number))
 
 
 async def _pursued(check: ActionCheck, number: int, evidence: Evidence) -> Observation:
@@ -101,7 +102,7 @@ async def _pursued(check: ActionCheck, number: int, evidence: Evidence) -> Obser
         if goal.ended:
             return _ended(check, goal)
         if check.cancel and goal.feedback_count and not asked_to_cancel:
-            evidence.observer.cancel_goal(number)
+            evidence.observer.ask(CancelGoal(number))
             asked_to_cancel = True
     where = goal.status.value if goal is not None else GoalStatus.SENDING.value
     return Observation(
@@ -197,7 +198,7 @@ async def _declared(name: str, node: str, within_s: float, evidence: Evidence) -
     if not there.met:
         seen = say("there is no node {node}", node=node)
         return Observation(met=False, seen=seen, look=dead_nodes(evidence))
-    result = await asyncio.wrap_future(evidence.observer.parameters(node, within_s))
+    result = await asyncio.wrap_future(evidence.observer.ask(ReadParameters(node, within_s)))
     row = next((row for row in result.parameters if row.name == name), None)
     if row is not None:
         return row
@@ -211,7 +212,7 @@ async def _declared(name: str, node: str, within_s: float, evidence: Evidence) -
 
 
 async def _takes(check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence) -> Observation:
-    result = await asyncio.wrap_future(evidence.observer.set_parameters(node, {check.parameter: check.set}))
+    result = await asyncio.wrap_future(evidence.observer.ask(SetParameters(node, {check.parameter: check.set})))
     why = result.error or result.refused.get(check.parameter, "")
     if why:
         return Observation(
@@ -223,7 +224,7 @@ async def _takes(check: ParameterCheck, node: str, row: ParameterRow, evidence: 
                 why=why,
             ),
         )
-    read = await asyncio.wrap_future(evidence.observer.parameters(node))
+    read = await asyncio.wrap_future(evidence.observer.ask(ReadParameters(node)))
     now = next((each for each in read.parameters if each.name == check.parameter), row)
     await _put_back(check, node, row, evidence)
     if differs(check.set, now.value, None):
@@ -234,7 +235,7 @@ async def _takes(check: ParameterCheck, node: str, row: ParameterRow, evidence: 
 
 
 async def _refuses(check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence) -> Observation:
-    result = await asyncio.wrap_future(evidence.observer.set_parameters(node, {check.parameter: check.refuses}))
+    result = await asyncio.wrap_future(evidence.observer.ask(SetParameters(node, {check.parameter: check.refuses})))
     if result.error:
         return Observation(met=False, seen=result.error)
     if check.parameter in result.refused:
@@ -250,4 +251,4 @@ async def _refuses(check: ParameterCheck, node: str, row: ParameterRow, evidence
 async def _put_back(check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence) -> None:
     if row.value is not None:
         values = {check.parameter: row.value}
-        await asyncio.wrap_future(evidence.observer.set_parameters(node, values))
+        await asyncio.wrap_future(evidence.observer.ask(SetParameters(node, values)))

@@ -16,6 +16,7 @@ from course.judge.kinds import expected, judged, topics_of
 from course.judge.missing import dead_nodes
 from course.judge.unasked import UnaskedFailures, start_anew
 from course.results import CheckResult, LessonResult, State, StepResult
+from graph.data import Interest
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.observer import Observer
@@ -285,7 +286,8 @@ class Judge:
 
     def follow(self, steps: Iterable[StepDocument] | None = None) -> None:
         """Subscribe to what these steps need, or all steps, and to nothing else."""
-        self.evidence.observer.follow(_topics_of(self.steps.values() if steps is None else steps))
+        followed = _topics_of(self.steps.values() if steps is None else steps)
+        self.evidence.observer.want(Interest(followed=frozenset(followed), period_s=PERIOD_S))
 
 
 def _concluded(step: StepDocument, found: list[CheckResult], done: int, idle: CheckResult | None) -> StepResult:
@@ -325,7 +327,7 @@ async def judging(
 
     `functions`: those of the lesson's checks, if they are not to be read when their turn comes.
     """
-    observer = Observer(client.session.domain, client.session.discovery, PERIOD_S, graph_s=PERIOD_S)
+    observer = Observer(client.session.domain, client.session.discovery, graph_s=PERIOD_S)
     values = draw(lesson.profile.document.values, seed)
     evidence = Evidence(observer, client, lesson.path, values, functions or {})
     loop = asyncio.get_running_loop()

@@ -13,6 +13,7 @@ from course.judge.functions import python
 from course.judge.missing import nobody_subscribes
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
+from graph.observer.requests import Publish
 from launcher.profile.steps.checks import (
     KINDS,
     ActionCheck,
@@ -125,7 +126,7 @@ async def _followed(check: PublishCheck, evidence: Evidence, began_s: float) -> 
 async def _sent(check: PublishCheck, evidence: Evidence) -> Observation:
     import asyncio
 
-    sending = evidence.observer.publish(check.publish, check.type, check.message)
+    sending = evidence.observer.ask(Publish(check.publish, check.type, check.message))
     try:
         heard = await asyncio.wrap_future(sending)
     except (FieldError, UnknownTypeError):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from graph.calls.exchanges import NodeRequest, ServiceSet
-from graph.calls.timeouts import ANSWER_WITHIN_S
+from graph.data import ANSWER_WITHIN_S
 from graph.inner_states import ComponentRow, ContainerRow
 from text.i18n import N_
 

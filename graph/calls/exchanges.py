@@ -134,7 +134,6 @@ class Exchanges:
             self._service(name),
             running.answer,
             patience_s,
-            time.monotonic(),
         )
 
     def _missing(self, running: _RunningExchange) -> str | None:

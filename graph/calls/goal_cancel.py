@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from graph.calls.action_client import PolledActionClient
 from graph.calls.goal_life import NO_WORD_OF_CANCEL, REFUSED
-from graph.calls.timeouts import ANSWER_WITHIN_S
-from graph.data import GoalStatus
+from graph.data import ANSWER_WITHIN_S, GoalStatus
 from text.sentences import say
 
 if TYPE_CHECKING:

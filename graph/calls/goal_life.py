@@ -6,8 +6,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from graph.calls.timeouts import ANSWER_WITHIN_S
-from graph.data import Goal, GoalStatus
+from graph.data import ANSWER_WITHIN_S, Goal, GoalStatus
 from graph.messages.values import to_tree
 from text.i18n import N_
 from text.sentences import say

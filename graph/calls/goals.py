@@ -17,7 +17,6 @@ from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from concurrent.futures import Future
 
     from rclpy.node import Node
 
@@ -40,9 +39,9 @@ class GoalError(Exception):
 class Goals:
     """All goals that have been sent, until they are forgotten."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, first_number: int = 1) -> None:
         self._node = node
-        self._numbers = itertools.count(1)
+        self._numbers = itertools.count(first_number)
         self._lives: dict[int, GoalLife] = {}
         self._clients: dict[tuple[str, str], PolledActionClient] = {}
         self._sent: set[bytes] = set()
@@ -53,14 +52,8 @@ class Goals:
         """Whether any goal has not ended."""
         return any(not life.told.ended for life in self._lives.values())
 
-    def number_from(self, first: int) -> None:
-        """Count those to come from this number on."""
-        self._numbers = itertools.count(first)
-
-    def send(
-        self, action: str, type_name: str, goal: Mapping[str, Value], known: ActionRow | None, future: Future[int]
-    ) -> None:
-        """Send a goal as soon as there is a server; the future gets its number at once.
+    def send(self, action: str, type_name: str, goal: Mapping[str, Value], known: ActionRow | None) -> int:
+        """Send a goal as soon as there is a server; return its number.
 
         `known` is what the graph knows of the action. Raises GoalError, UnknownTypeError or
         FieldError.
@@ -79,7 +72,7 @@ class Goals:
         told = Goal(number, action, type_name, GoalStatus.SENDING, fields, goal_id=goal_id.hex)
         self._lives[number] = GoalLife(told, goal_id.bytes, message, client)
         self._sent.add(goal_id.bytes)
-        future.set_result(number)
+        return number
 
     def has_sent(self, goal_id: bytes) -> bool:
         """Whether this goal is one of Deck's own."""

@@ -180,15 +180,14 @@ class SeenGoals:
             row for _name, action in sorted(self._actions.items()) for row in action.rows(self._is_own, self._errors)
         )
 
-    def cancel(self, action: str, goal_id: str) -> None:
-        """Ask for a goal that has not ended to be cancelled, if its action is watched."""
-        seen = self._actions.get(action)
-        status = None if seen is None else seen.status_of(goal_id)
-        if seen is not None and status is not None and not status.ended:
-            self.cancel_lost(action, seen.type_name, goal_id)
-
-    def cancel_lost(self, action: str, type_name: str, goal_id: str) -> None:
-        """Ask for a goal to be cancelled, whether anything is known of it or not."""
+    def cancel(self, action: str, goal_id: str, type_name: str = "") -> None:
+        """Ask for a goal to be cancelled; without a type only if its action is watched and it has not ended."""
+        if not type_name:
+            seen = self._actions.get(action)
+            status = None if seen is None else seen.status_of(goal_id)
+            if seen is None or status is None or status.ended:
+                return
+            type_name = seen.type_name
         if goal_id in self._cancelling:
             return
         self._errors.pop(goal_id, None)

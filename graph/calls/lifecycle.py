@@ -22,7 +22,7 @@ from graph.calls.lifecycle_exchange import (
     read,
     why_not,
 )
-from graph.calls.timeouts import ANSWER_WITHIN_S
+from graph.data import ANSWER_WITHIN_S
 from graph.inner_states import LifecycleRow, TransitionResult
 from graph.messages.types import load_message
 

@@ -38,22 +38,13 @@ class LoggerLevels:
         """Ask through `exchanges`, which reports every failure in words."""
         self._exchanges = exchanges
 
-    def read(self, node: str, timeout_s: float, future: Future[LevelResult]) -> None:
-        """Read the level of a node's own logger."""
+    def ask(self, node: str, level: str | None, timeout_s: float, future: Future[LevelResult]) -> None:
+        """Read the level of a node's own logger, once it was set to one of `LOG_LEVELS` if one is given."""
         node = full_name(node)
         found: list[str] = []
-        self._begin(node, read(logger_of(node), found), found, timeout_s, future)
+        logger = logger_of(node)
+        exchange = read(logger, found) if level is None else write(logger, LOG_LEVELS[level], found)
 
-    def write(self, node: str, level: str, timeout_s: float, future: Future[LevelResult]) -> None:
-        """Set the level of a node's own logger to one of `LOG_LEVELS`, and read it back."""
-        node = full_name(node)
-        found: list[str] = []
-        exchange = write(logger_of(node), LOG_LEVELS[level], found)
-        self._begin(node, exchange, found, timeout_s, future)
-
-    def _begin(
-        self, node: str, exchange: Exchange, found: list[str], timeout_s: float, future: Future[LevelResult]
-    ) -> None:
         def end(error: str) -> None:
             refused = error or (found[1] if len(found) > 1 else "")
             future.set_result(LevelResult(node, found[0] if found else "", refused))

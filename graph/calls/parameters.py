@@ -24,9 +24,9 @@ class ParameterCalls:
         """Ask through `exchanges`, which reports every failure in words."""
         self._exchanges = exchanges
 
-    def read(self, node: str, timeout_s: float, started_s: float, future: Future[ParametersResult]) -> None:
+    def read(self, node: str, timeout_s: float, future: Future[ParametersResult]) -> None:
         """Read all parameters of a node, with their descriptors; failures are reported in words."""
-        node = full_name(node)
+        node, started_s = full_name(node), time.monotonic()
         rows: list[ParameterRow] = []
 
         def end(error: str) -> None:
@@ -35,11 +35,9 @@ class ParameterCalls:
 
         self._exchanges.begin(node, read(rows), SERVICES, timeout_s, end)
 
-    def write(
-        self, node: str, values: Mapping[str, Value], timeout_s: float, started_s: float, future: Future[SetResult]
-    ) -> None:
+    def write(self, node: str, values: Mapping[str, Value], timeout_s: float, future: Future[SetResult]) -> None:
         """Set parameters of a node, each independently; failures are reported in words."""
-        node = full_name(node)
+        node, started_s = full_name(node), time.monotonic()
         refused: dict[str, str] = {}
 
         def end(error: str) -> None:

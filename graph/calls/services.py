@@ -64,13 +64,13 @@ class Calls:
         known: ServiceRow | None,
         future: Future[CallResult],
         timeout_s: float,
-        started_s: float,
     ) -> None:
         """Begin a call; the future's result reports every failure in words, it never raises.
 
-        `known` is what the graph knows of the service, `started_s` when the call was asked for. A
-        call without an answer within `timeout_s` is reported as failed, but still listened for.
+        `known` is what the graph knows of the service. A call without an answer within `timeout_s` is reported as
+        failed, but still listened for.
         """
+        started_s = time.monotonic()
         if known and type_name not in known.type_names:
             types = ", ".join(known.type_names)
             words = say("{name} is a {types}, not a {type}", name=service, types=types, type=type_name)

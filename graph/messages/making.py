@@ -36,6 +36,10 @@ class FieldError(ValueError):
         """Place of the value in a text, counted from 1, if there is a text, as is the next."""
         self.column: int | None = None
 
+    def __reduce__(self) -> tuple[type[FieldError], tuple[str, str], dict[str, object]]:
+        """Make pickling keep all of it: what is raised in the observer's process is told here."""
+        return type(self), (self.field, self.message), vars(self)
+
 
 class NoSuchFieldError(FieldError):
     """There is no field with this name."""

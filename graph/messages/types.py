@@ -37,6 +37,10 @@ class UnknownTypeError(Exception):
         self.package = package
         self.reason = reason
 
+    def __reduce__(self) -> tuple[type[UnknownTypeError], tuple[object, ...]]:
+        """Make pickling keep all of it: what is raised in the observer's process is told here."""
+        return type(self), (self.type_name, self.package, self.reason, dict(self.install))
+
 
 @lru_cache(maxsize=512)
 def load_message(type_name: str) -> type[Any]:

@@ -13,13 +13,10 @@ from graph.calls.lifecycle import Lifecycles
 from graph.calls.logger_levels import LoggerLevels
 from graph.calls.parameters import ParameterCalls
 from graph.calls.services import Calls
-from graph.data import GraphUpdate
+from graph.data import GraphUpdate, Interest
 from graph.frames.book import FRAME_TOPICS, FrameBook
 from graph.frames.reading import TF_MESSAGE
 from graph.messages.decoding import decoder
-from graph.observer.census import Census, census
-from graph.observer.interest import Interest
-from graph.observer.settings import LOOK_AT_GRAPH_S
 from graph.observer.taps import Taps
 from graph.publishing.dead_man_switch import DeadManSwitch
 from graph.publishing.outbox import Outbox
@@ -42,14 +39,14 @@ RESCAN_S = 3.0
 class ObserverNode:
     """One open node at work; no method blocks."""
 
-    def __init__(self, ros: Ros, graph_s: float = LOOK_AT_GRAPH_S) -> None:
-        """Take a node; it looks at the graph every `graph_s` seconds."""
+    def __init__(self, ros: Ros, graph_s: float, first_number: int = 1) -> None:
+        """Take a node; it looks at the graph every `graph_s` seconds, and its first goal has that number."""
         self.graph_s = graph_s
         self.calls = Calls(ros.node)
         self.outbox = Outbox(ros.node)
-        self.goals = Goals(ros.node)
+        self.goals = Goals(ros.node, first_number)
         self.seen_goals = SeenGoals(ros.node, self.goals.has_sent)
-        self.publications = RepeatedPublications(ros.node)
+        self.publications = RepeatedPublications(ros.node, first_number)
         self.dead_man_switch = DeadManSwitch(ros.node)
         self.exchanges = Exchanges(self.calls, self._known_node, self._known_service)
         self.parameters = ParameterCalls(self.exchanges)
@@ -87,14 +84,6 @@ class ObserverNode:
         """Return what is known of an action now."""
         self._look_at_graph()
         return next((row for row in self._scan.actions if row.name == name), None)
-
-    def number_from(self, first: int) -> None:
-        """Count goals and publications to come from this number on."""
-        self.goals.number_from(first)
-        self.publications.number_from(first)
-
-    def census(self, domain: int, is_networked: bool) -> Census:
-        return census(self._ros.node, self._ros.name, domain, is_networked)
 
     def look(self, interest: Interest) -> GraphUpdate | None:
         """Look at the graph and at the queues; return what is new, None if nothing is."""

@@ -1,61 +1,335 @@
 """The observer: it watches the graph for the screen, by a process of its own.
 
-That process polls the graph and its queues a few times a second and hands over plain data. Messages
-do not wake it. No method of the observer waits for anything, whatever the middleware does.
+rclpy can hang with Python's lock held, and the screen must still stop the wheels. So no method of the observer waits
+for that process, whatever it does. When it has died, or hangs, another takes its place: it gets what is wanted, what
+was prepared, and the latched messages that were not confirmed, such as a stop; everything else that was under way
+fails in words. Meanwhile updates say since when they are old.
 """
 
 from __future__ import annotations
 
 import atexit
+import contextlib
+import itertools
+import logging
 import os
+import pickle
+import queue
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import threading
 import time
-from typing import TYPE_CHECKING
+from concurrent.futures import Future, InvalidStateError
+from dataclasses import dataclass, field, replace
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from graph.calls.timeouts import ANSWER_WITHIN_S
-from graph.data import CallResult, ParametersResult, SetResult
-from graph.observer.client import ObserverClient
-from graph.observer.inner import InnerStates
-from graph.observer.settings import LOOK_AT_GRAPH_S, ObserverSettings
-from text.sentences import reason_of
+from graph.data import GoalStatus, GraphUpdate, Interest
+from graph.memory import keep_room_for_large_messages
+from graph.observer.requests import (
+    Answer,
+    CancelSeenGoal,
+    ForgetGoal,
+    ObserverError,
+    Opening,
+    Order,
+    PrepareHold,
+    PreparePublisher,
+    Request,
+    StopPublishing,
+    StopPublishingAll,
+    refuse,
+)
+from graph.observer.updates import renewed
+from text.i18n import N_
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-    from concurrent.futures import Future
+    from collections.abc import Callable
 
-    from graph.data import GraphUpdate, Value
-    from graph.publishing.dead_man_switch import HeldCommand
+    from graph.data import CallResult, Goal, Publication
+
+logger = logging.getLogger(__name__)
+
+T = TypeVar("T")
+PROGRAM = (
+    "import sys; sys.path[:] = sys.argv[3:]; "
+    "from graph.observer.process import main; main(int(sys.argv[1]), int(sys.argv[2]))"
+)
+OLD_AFTER_S = 3.0
+"""Without a sign for so long, what is known of the graph is old; one is due each second."""
+HUNG_AFTER_S = 8.0
+"""A process that could run and has given no sign for so long hangs."""
+GIVEN_UP_AFTER_S = 60.0
+"""No machine is so busy that a process does not get to it within this, or does not start."""
+LOOK_S = 0.5
+"""How often to look."""
+LEAVES_WITHIN_S = 5.0
+"""How long a process may take to leave the graph before it is killed."""
+SETTLED_AFTER_S = 2.0
+"""A process that was made anew has found most of what there is by then."""
+AGAIN_S = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0)
+"""How long to wait before another is started, the more of them have died one after the other."""
+LASTED_S = 20.0
+"""One that has lived so long has not died of its start."""
+HUNG = N_("the process that watches the graph has hung")
+_READ_BYTES = 1 << 16
+_ahead: list[ObserverProcess] = []
+
+
+class ObserverProcess:
+    """One that was started here. It dies with the thread that has started it."""
+
+    def __init__(self) -> None:
+        """Start it; it imports rclpy, and waits. Raises OSError if that is impossible."""
+        ours, theirs = socket.socketpair()
+        # Whoever stops in the middle of a word hangs: it is not waited for any longer.
+        ours.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, struct.pack("@ll", int(HUNG_AFTER_S), 0))
+        with theirs, contextlib.ExitStack() as opening:
+            streams: dict[int, int] = {}
+            ends = []
+            for number in (1, 2):
+                reading, writing = os.pipe2(os.O_CLOEXEC | os.O_NONBLOCK)
+                opening.callback(os.close, writing)
+                streams[reading] = number
+                ends.append(writing)
+            self._process = subprocess.Popen(
+                [sys.executable, "-c", PROGRAM, str(theirs.fileno()), str(os.getpid()), *sys.path],
+                stdin=subprocess.DEVNULL,
+                stdout=ends[0],
+                stderr=ends[1],
+                pass_fds=(theirs.fileno(),),
+                start_new_session=True,
+            )
+        self._begin(Connection(ours.detach()), streams)
+
+    def _begin(self, end: Connection, streams: dict[int, int]) -> None:
+        self._end = end
+        self._streams = streams
+        """What it prints, by a descriptor here, goes to which."""
+        self._unsent: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
+        threading.Thread(target=self._send, name="deck-observer-orders", daemon=True).start()
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
+    def is_alive(self) -> bool:
+        return self._process.poll() is None
+
+    @property
+    def is_ready_to_run(self) -> bool:
+        """Whether it only waits for a processor, or for the disk: it does not hang."""
+        with contextlib.suppress(OSError):
+            stat = Path(f"/proc/{self.pid}/stat").read_text(errors="replace")
+            return stat.rpartition(")")[2].split()[0] in "RD"
+        return False
+
+    def send(self, words: object) -> None:
+        """Send something, without waiting for it; raises what pickling raises."""
+        self._unsent.put(pickle.dumps(words))
+
+    def hear(self, within_s: float) -> list[Any]:
+        """Wait, so long at most, and return what it has said.
+
+        Raises EOFError if it has ended, BlockingIOError if it has stopped in the middle of a word.
+        """
+        said: list[Any] = []
+        for ready in wait([self._end, *self._streams], within_s):
+            if isinstance(ready, int):
+                self._pass_on(ready)
+        try:
+            while self._end.poll():
+                said.append(self._end.recv())
+        except (EOFError, ConnectionError) as error:
+            if not said:
+                raise EOFError from error
+        return said
+
+    def end(self, within_s: float) -> None:
+        """Wait for its end, so long at most, and kill it then."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(within_s)
+        self.kill()
+
+    def kill(self) -> None:
+        if self._process.poll() is None:
+            self._process.send_signal(signal.SIGKILL)
+            self._process.wait()
+        self._unsent.put(None)
+        for descriptor in tuple(self._streams):
+            self._pass_on(descriptor)
+            if self._streams.pop(descriptor, None):
+                os.close(descriptor)
+
+    def _send(self) -> None:
+        """Send on a thread of its own: a process that hangs reads nothing."""
+        with self._end:
+            while (raw := self._unsent.get()) is not None:
+                # Whoever listens finds out that nobody is there.
+                with contextlib.suppress(OSError):
+                    self._end.send_bytes(raw)
+
+    def _pass_on(self, descriptor: int) -> None:
+        """Print what it has printed: where that goes may have changed since it was started."""
+        try:
+            printed = os.read(descriptor, _READ_BYTES)
+        except BlockingIOError:
+            return
+        if not printed:
+            del self._streams[descriptor]
+            os.close(descriptor)
+            return
+        with contextlib.suppress(OSError):
+            os.write(self._streams[descriptor], printed)
+
+
+def start_ahead() -> None:
+    """Start one for the next observer, by the main thread, which lives as long as this process."""
+    if threading.current_thread() is threading.main_thread() and not _ahead:
+        with contextlib.suppress(OSError):
+            _ahead.append(ObserverProcess())
+            atexit.register(give_up_ahead)
+
+
+def take_ahead() -> ObserverProcess | None:
+    """Return the one that was started ahead, if there is one at work."""
+    with contextlib.suppress(IndexError):
+        process = _ahead.pop()
+        if process.is_alive:
+            return process
+        process.kill()
+    return None
+
+
+def give_up_ahead() -> None:
+    """End the one that was started ahead, if nobody has taken it."""
+    process = take_ahead()
+    if process is not None:
+        process.kill()
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """One request and who waits for its answer."""
+
+    order: Order
+    future: Future[Any] = field(default_factory=Future)
+
+    def fail(self, error: Exception) -> None:
+        refuse(self.order.request, self.future, error, time.monotonic() - self.order.asked_s)
+
+
+@dataclass
+class _Line:
+    """One process, and what is known by it."""
+
+    process: ObserverProcess
+    is_first: bool
+    began_s: float = field(default_factory=time.monotonic)
+    silent_s: float = 0.0
+    has_spoken: bool = False
+    update: GraphUpdate | None = None
+    """Its newest."""
+    why: Words = field(default_factory=lambda: say("the process that watches the graph has died"))
+    """Why it is no longer listened to."""
+    refusal: ObserverError | None = None
+    """Why there need not be another."""
+
+    def hangs(self) -> bool:
+        """Return whether it has been silent for too long; while it only lacks a processor it may be for longer."""
+        if self.silent_s <= HUNG_AFTER_S:
+            return False
+        return self.silent_s > GIVEN_UP_AFTER_S or (self.has_spoken and not self.process.is_ready_to_run)
+
+
+class _LostWork:
+    """Goals and publications that have ended with the process that was at them, until forgotten."""
+
+    def __init__(self) -> None:
+        self.next_number = 1
+        """Goals and publications of the next process are numbered beyond those of the last."""
+        self._goals: dict[int, Goal] = {}
+        self._publications: dict[int, Publication] = {}
+
+    def lose(self, update: GraphUpdate, why: str) -> list[Goal]:
+        """Take over what the last update of a process has; return the goals that were under way."""
+        for goal in update.goals:
+            self._goals[goal.number] = goal if goal.ended else replace(goal, status=GoalStatus.FAILED, error=why)
+        for one in update.publications:
+            self._publications[one.number] = one if one.error else replace(one, error=why)
+        self.next_number = max((self.next_number, *(1 + number for number in (*self._goals, *self._publications))))
+        return [goal for goal in update.goals if not goal.ended]
+
+    def added_to(self, update: GraphUpdate) -> GraphUpdate:
+        if not (self._goals or self._publications):
+            return update
+        goals = {**{goal.number: goal for goal in update.goals}, **self._goals}
+        ones = {**{one.number: one for one in update.publications}, **self._publications}
+        return replace(
+            update,
+            goals=tuple(goals[number] for number in sorted(goals)),
+            publications=tuple(ones[number] for number in sorted(ones)),
+        )
+
+    def heed(self, request: Request[Any]) -> bool:
+        """Heed a request to stop or to forget; return whether one of these is gone by it."""
+        before = len(self._goals) + len(self._publications)
+        if isinstance(request, ForgetGoal):
+            self._goals.pop(request.number, None)
+        elif isinstance(request, StopPublishing):
+            self._publications.pop(request.number, None)
+        elif isinstance(request, StopPublishingAll):
+            self._publications.clear()
+        return len(self._goals) + len(self._publications) < before
 
 
 class Observer:
     """The ROS graph of one domain as plain data. All methods may be called from any thread."""
 
+    start_process: Callable[[], ObserverProcess] = staticmethod(lambda: take_ahead() or ObserverProcess())
+    """Starts a process; raises OSError."""
+
     def __init__(
         self,
         domain: int,
         discovery: str | tuple[str, ...] = "localhost",
-        period_s: float = 0.1,
-        graph_s: float = LOOK_AT_GRAPH_S,
+        *,
+        graph_s: float = 0.25,
         role: str = "observer",
     ) -> None:
         """Prepare for a domain; `discovery` is localhost, subnet, or the addresses of peers.
 
-        `graph_s`: seconds between two looks at who is there, which cost more than those at messages
+        `graph_s`: seconds between two looks at who is there, which cost more than those at messages; 0.25 is often
+        enough for a reader of the screen
         `role`: part of the node's name, see `graph.ros.ONLY_LISTENING`
         """
-        self._client = ObserverClient(ObserverSettings(domain, discovery, graph_s, role, os.getpid()))
-        self.inner = InnerStates(self._client)
-        """Requests about lifecycles and log levels."""
-        self.period_s = period_s
-
-    @property
-    def period_s(self) -> float:
-        """Seconds between two updates."""
-        return self._period_s
-
-    @period_s.setter
-    def period_s(self, period_s: float) -> None:
-        self._period_s = period_s
-        self._client.want("set_period", period_s)
+        self._opening = Opening(domain, discovery, graph_s, role, os.getpid())
+        self._numbers = itertools.count(1)
+        self._lock = threading.RLock()
+        """For all that is not the thread's alone."""
+        self._wanted = Interest()
+        self._line: _Line | None = None
+        self._unsent: list[_Asked] = []
+        self._prepared: dict[Request[Any], None] = {}
+        self._waiting: dict[int, _Asked] = {}
+        self._late: dict[int, Future[CallResult]] = {}
+        """Answers to calls that have timed out, should they still come."""
+        self._lost = _LostWork()
+        self._failure: ObserverError | None = None
+        self._over = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._on_update: Callable[[GraphUpdate], None] = lambda _: None
+        self._shown: GraphUpdate | None = None
+        self._is_to_show = False
+        """Whether what is shown has changed without an update."""
+        self._old_since_s: float | None = None
+        """Unix time of the last sign of life, while what is shown is old."""
 
     def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
         """Start observing; `on_update` is called on a thread of the observer.
@@ -64,162 +338,222 @@ class Observer:
         """
         # It leaves the graph properly, while there is time for that.
         atexit.register(self.stop)
-        self._client.start(on_update)
+        self._on_update = on_update
+        self._thread = threading.Thread(target=self._run, name="deck-observer", daemon=True)
+        self._thread.start()
 
     def stop(self) -> None:
         """Leave the graph; what is under way fails. Always returns within a few seconds."""
         atexit.unregister(self.stop)
-        self._client.stop()
+        with self._lock:
+            self._over.set()
+            if self._line is not None:
+                self._line.process.send(None)
+        if self._thread is None:
+            self._end(ObserverError(say("the observer was never started")))
+        elif self._thread is not threading.current_thread():
+            self._thread.join()
 
-    def watch(self, topics: Iterable[str]) -> None:
-        """Hand over the newest message of exactly these topics in each update."""
-        self._client.want("watch", frozenset(topics))
+    @property
+    def wanted(self) -> Interest:
+        """What updates are to have."""
+        return self._wanted
 
-    def follow(self, topics: Iterable[str]) -> None:
-        """Hand over every message of exactly these topics, up to 200 of each in one update."""
-        self._client.want("follow", frozenset(topics))
+    def want(self, interest: Interest) -> None:
+        """Have updates with exactly this from now on."""
+        with self._lock:
+            if interest != self._wanted:
+                self._wanted = interest
+                if self._line is not None:
+                    self._line.process.send(interest)
 
-    def watch_pictures(self, topics: Iterable[str]) -> None:
-        """Hand over the newest picture of exactly these topics in each update.
+    def ask(self, request: Request[T]) -> Future[T]:
+        """Ask for something; the future gets the answer, or ObserverError, and what the request says that it raises.
 
-        Where the same pictures are offered compressed they are taken from there: the samples are
-        those of the topic asked for, and of another type.
+        Once it is cancelled, nobody waits for it; what has not been sent yet is not done.
         """
-        self._client.want("watch_pictures", frozenset(topics))
+        asked = _Asked(Order(next(self._numbers), request, time.monotonic()))
+        with self._lock:
+            self._is_to_show |= self._lost.heed(request)
+            failure = self._failure
+            if failure is None:
+                self._waiting[asked.order.number] = asked
+                if isinstance(request, (PreparePublisher, PrepareHold)):
+                    self._prepared[request] = None
+                failure = self._send(asked)
+        if failure is not None:
+            asked.fail(failure)
+        return asked.future
 
-    def measure(self, all_topics: bool, *, images: bool = True, fast: bool = True) -> None:
-        """Measure the rates of all topics, or only of those watched and followed.
+    def _send(self, asked: _Asked) -> ObserverError | None:
+        """Send it, or keep it for a process to come; return why that is impossible."""
+        if self._line is None:
+            self._unsent.append(asked)
+            return None
+        try:
+            self._line.process.send(asked.order)
+        except Exception as problem:  # noqa: BLE001 - whatever is not plain data raises when it is pickled
+            self._waiting.pop(asked.order.number, None)
+            return ObserverError(str(problem))
+        return None
 
-        Without `images`, of none that carries any; never of those of another machine's. Without `fast`, of none
-        that costs much to follow, which is for the time while nobody looks: the rate of a fast one is known in a
-        moment, that of a slow one is not.
-        """
-        self._client.want("measure", (all_topics, images, fast))
+    # ------------------------------------------------------------------ on the thread
 
-    def watch_goals(self, actions: Iterable[str]) -> None:
-        """Report in each update the goals that others have sent to exactly these actions."""
-        self._client.want("watch_goals", frozenset(actions))
+    def _run(self) -> None:
+        keep_room_for_large_messages()
+        end = ObserverError(say("the observer has been stopped"))
+        deaths = 0
+        try:
+            while not self._over.is_set():
+                line = self._begin()
+                self._listen(line)
+                if self._over.is_set() or line.refusal is not None:
+                    self._leave(line)
+                    end = line.refusal or end
+                    break
+                deaths = 1 + (deaths if time.monotonic() - line.began_s < LASTED_S else 0)
+                self._lose(line)
+                self._over.wait(AGAIN_S[min(deaths, len(AGAIN_S)) - 1])
+        except OSError as error:
+            end = ObserverError(say("ROS cannot be used: {error}", error=str(error)))
+            self._hand_over(GraphUpdate(time.time(), error=end.words))
+        finally:
+            self._end(end)
 
-    def watch_inner_states(self, wanted: bool) -> None:
-        """Ask nodes for their lifecycle and containers for their components, or stop asking."""
-        self._client.want("watch_inner_states", wanted)
+    def _begin(self) -> _Line:
+        """Start a process, and tell it what is wanted. Raises OSError."""
+        line = _Line(self.start_process(), is_first=self._shown is None)
+        with self._lock:
+            line.process.send(replace(self._opening, first_number=self._lost.next_number))
+            line.process.send(self._wanted)
+            self._line = line
+            unsent, self._unsent = self._unsent, []
+            failures = [(one, self._send(one)) for one in unsent if not one.future.cancelled()]
+        for asked, failure in failures:
+            if failure is not None:
+                asked.fail(failure)
+        return line
 
-    def watch_frames(self, wanted: bool) -> None:
-        """Report in each update the frames that are published on /tf and /tf_static, or none."""
-        self._client.want("watch_frames", wanted)
+    def _listen(self, line: _Line) -> None:
+        """Return when it has ended, or hangs, or is no longer wanted."""
+        before_s = time.monotonic()
+        while not self._over.is_set() and line.refusal is None:
+            try:
+                said = line.process.hear(LOOK_S)
+            except EOFError:
+                return
+            except BlockingIOError:
+                line.why = say(HUNG)
+                return
+            now_s = time.monotonic()
+            # If this process could not run, it says nothing of the other that nothing has been heard.
+            line.silent_s = 0.0 if said else line.silent_s + min(now_s - before_s, LOOK_S)
+            before_s = now_s
+            for words in said:
+                self._take(line, words)
+            if line.hangs():
+                line.why = say(HUNG)
+                return
+            self._show_age(line)
 
-    def prepare_publisher(self, topic: str, type_name: str, *, latched: bool = False) -> Future[None]:
-        """Create a publisher now, so that its first message goes out at once."""
-        return self._client.ask("prepare_publisher", topic, type_name, latched)
+    def _take(self, line: _Line, words: object) -> None:
+        line.has_spoken = True
+        if isinstance(words, dict):
+            line.update = renewed(line.update or GraphUpdate(0.0), words)
+            self._hand_over(line.update)
+        elif isinstance(words, Answer):
+            self._answer(words)
+        elif isinstance(words, ObserverError):
+            line.refusal = words
+            self._hand_over(GraphUpdate(time.time(), error=words.words))
 
-    def publish(
-        self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
-    ) -> Future[int]:
-        """Publish one message; the future returns how many subscribers it went to.
+    def _answer(self, answer: Answer) -> None:
+        with self._lock:
+            asked = self._waiting.pop(answer.number, None)
+        if asked is None:
+            late = self._late.pop(answer.number, None)
+            if late is not None:
+                late.set_result(answer.result)
+            return
+        if answer.error is not None:
+            asked.fail(answer.error)
+            return
+        result = answer.result
+        if answer.is_first:
+            self._late[answer.number] = Future()
+            result = replace(result, late=self._late[answer.number])
+        # It may have been cancelled.
+        with contextlib.suppress(InvalidStateError):
+            asked.future.set_result(result)
 
-        A new publisher waits up to a second for its subscribers, or up to four seconds just after
-        the start. A latched message goes out at once and stays for late subscribers; only the
-        count waits. The future raises PublishError, UnknownTypeError, FieldError or
-        ObserverError.
-        """
-        return self._client.ask("publish", topic, type_name, value, latched)
+    def _show_age(self, line: _Line) -> None:
+        """Say since when what is shown is old, or that it no longer is."""
+        settled = line.is_first or time.monotonic() - line.began_s > SETTLED_AFTER_S
+        if line.silent_s > OLD_AFTER_S:
+            self._grow_old(time.time() - line.silent_s)
+        elif self._old_since_s is not None and line.update is not None and settled:
+            self._old_since_s, self._is_to_show = None, True
+        if self._is_to_show:
+            self._hand_over(None)
 
-    def take_back(self, topic: str, type_name: str) -> None:
-        """Let a latched message, once published, reach no later subscriber."""
-        self._client.tell("take_back", topic, type_name)
+    def _grow_old(self, since_s: float) -> None:
+        if self._old_since_s is None and self._shown is not None:
+            self._old_since_s, self._is_to_show = since_s, True
 
-    def call(
-        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[CallResult]:
-        """Call a service; the result holds the answer or the failure, the future never raises."""
-        asked_s = time.monotonic()
+    def _hand_over(self, update: GraphUpdate | None) -> None:
+        """Show an update, or once more the one that is shown, with what has changed here."""
+        shown = update or (None if self._shown is None else replace(self._shown, samples={}))
+        if shown is None:
+            return
+        self._shown = shown
+        with self._lock:
+            self._is_to_show = False
+            shown = self._lost.added_to(shown)
+        if self._old_since_s is not None:
+            shown = replace(shown, old_since_s=self._old_since_s)
+        try:
+            self._on_update(shown)
+        except Exception:
+            # The screen is being closed; the observer is stopped next.
+            logger.exception("an update was not taken")
 
-        def refusal(error: Exception) -> CallResult:
-            elapsed_s = time.monotonic() - asked_s
-            return CallResult(service, False, None, reason_of(error), elapsed_s)
+    def _lose(self, line: _Line) -> None:
+        """Have done with a process that has ended or hangs, and keep what the next one needs to know."""
+        line.process.kill()
+        self._grow_old(time.time())
+        with self._lock:
+            self._line = None
+            ended = [] if line.update is None else self._lost.lose(line.update, line.why)
+            # A robot must not drive on to a goal that nobody follows any more.
+            cancelling = [CancelSeenGoal(goal.action, goal.goal_id, goal.type_name) for goal in ended]
+            repeated = [_Asked(Order(0, request, time.monotonic())) for request in (*self._prepared, *cancelling)]
+            kept = [asked for asked in self._waiting.values() if asked.order.request.lasts]
+            lost = [asked for asked in self._waiting.values() if not asked.order.request.lasts]
+            unsent = {asked.order.number for asked in self._unsent}
+            self._waiting = {asked.order.number: asked for asked in kept}
+            self._unsent[:0] = [*repeated, *(asked for asked in kept if asked.order.number not in unsent)]
+        self._late.clear()
+        # The receiver may ask for something else at once.
+        for asked in lost:
+            asked.fail(ObserverError(line.why))
+        self._hand_over(None)
 
-        return self._client.ask("call", service, type_name, request, timeout_s, refusal=refusal)
+    def _leave(self, line: _Line) -> None:
+        """Have it leave, and hear what it still has to say of what is under way."""
+        until_s = time.monotonic() + LEAVES_WITHIN_S
+        line.process.send(None)
+        with contextlib.suppress(EOFError, BlockingIOError):
+            while time.monotonic() < until_s:
+                for words in line.process.hear(LOOK_S):
+                    self._take(line, words)
+        with self._lock:
+            self._line = None
+        line.process.end(max(0.0, until_s - time.monotonic()))
 
-    def start_publishing(self, topic: str, type_name: str, value: Mapping[str, Value], hz: float) -> Future[int]:
-        """Publish a message at 0.1 to 100 Hz until this, or the observer, is stopped.
-
-        The future returns its number; it raises PublishError, UnknownTypeError, FieldError or
-        ObserverError.
-        """
-        return self._client.ask("start_publishing", topic, type_name, value, hz)
-
-    def stop_publishing(self, number: int) -> None:
-        """Stop this publication; updates no longer report it."""
-        self._client.tell("stop_publishing", number)
-
-    def stop_publishing_all(self) -> None:
-        """Stop all periodic publications, even those asked for a moment ago."""
-        self._client.tell("stop_publishing_all")
-
-    def stop_commanding(self) -> None:
-        """Release what is held, stop all periodic publications and cancel all goals."""
-        self._client.tell("stop_commanding")
-
-    def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
-        """Create a publisher for `hold`, and publish nothing.
-
-        The future raises PublishError, UnknownTypeError or ObserverError.
-        """
-        return self._client.ask("prepare_hold", topic, type_name)
-
-    def hold(self, topic: str, type_name: str, command: HeldCommand) -> Future[int]:
-        """Publish a message repeatedly until `command.until_s`, unless called again before that.
-
-        Then `command.rest` is published, and nothing more. The future returns how many subscribers
-        are matched now; it raises PublishError, UnknownTypeError, FieldError or ObserverError.
-        """
-        return self._client.ask("hold", topic, type_name, command)
-
-    def let_go(self, topic: str) -> None:
-        """Publish the rest message of a held topic at once."""
-        self._client.tell("let_go", topic)
-
-    def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
-        """Send a goal; the future returns its number, and updates report its progress.
-
-        It raises GoalError, UnknownTypeError, FieldError or ObserverError.
-        """
-        return self._client.ask("send_goal", action, type_name, goal)
-
-    def cancel_goal(self, number: int) -> None:
-        """Ask for a goal to be cancelled; updates report whether its server agrees."""
-        self._client.tell("cancel_goal", number)
-
-    def cancel_seen_goal(self, action: str, goal_id: str) -> None:
-        """Ask for another client's goal to be cancelled; updates report the outcome."""
-        self._client.tell("cancel_seen_goal", action, goal_id)
-
-    def forget_goal(self, number: int) -> None:
-        """Stop reporting a goal; one that has not ended is cancelled."""
-        self._client.tell("forget_goal", number)
-
-    def parameters(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[ParametersResult]:
-        """Read all parameters of a node, with descriptors; `timeout_s` is for each answer.
-
-        The result holds them or why there are none, the future never raises.
-        """
-        asked_s = time.monotonic()
-
-        def refusal(error: Exception) -> ParametersResult:
-            return ParametersResult(node, (), reason_of(error), time.monotonic() - asked_s)
-
-        return self._client.ask("parameters", node, timeout_s, refusal=refusal)
-
-    def set_parameters(
-        self, node: str, values: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[SetResult]:
-        """Set parameters, keeping their types, each independently.
-
-        The result lists those that were refused, and why; the future never raises.
-        """
-        asked_s = time.monotonic()
-
-        def refusal(error: Exception) -> SetResult:
-            return SetResult(node, {}, reason_of(error), time.monotonic() - asked_s)
-
-        return self._client.ask("set_parameters", node, values, timeout_s, refusal=refusal)
+    def _end(self, error: ObserverError) -> None:
+        with self._lock:
+            self._failure = error
+            self._unsent.clear()
+            waiting, self._waiting = list(self._waiting.values()), {}
+        for asked in waiting:
+            asked.fail(error)

@@ -8,12 +8,11 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from graph.data import Sample, TopicRow, Trouble
+from graph.data import Interest, Sample, TopicRow, Trouble
 from graph.frames.book import FRAME_TOPICS
 from graph.frames.reading import TF_MESSAGE
 from graph.heavy_types import IMAGES
 from graph.messages.types import UnknownTypeError, not_subscribed
-from graph.observer.interest import Interest
 from graph.observer.rates import QUIET_S
 from graph.observer.tap import FOLLOWED, LARGE_TYPES, Tap, first_depth
 from graph.observer.troubles import Diagnosis, quiet, structural

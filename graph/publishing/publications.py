@@ -16,7 +16,6 @@ from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from concurrent.futures import Future
 
     from rclpy.node import Node
     from rclpy.publisher import Publisher
@@ -73,25 +72,13 @@ class _Repeated:
 class RepeatedPublications:
     """Everything that is being published, each with a publisher of its own."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, first_number: int = 1) -> None:
         self._node = node
-        self._numbers = itertools.count(1)
+        self._numbers = itertools.count(first_number)
         self._repeated: dict[int, _Repeated] = {}
 
-    def number_from(self, first: int) -> None:
-        """Count those to come from this number on."""
-        self._numbers = itertools.count(first)
-
-    def start(
-        self,
-        topic: str,
-        type_name: str,
-        value: Mapping[str, Value],
-        hz: float,
-        ends: TopicEnds | None,
-        future: Future[int],
-    ) -> None:
-        """Publish from now on; the future returns the number.
+    def start(self, topic: str, type_name: str, value: Mapping[str, Value], hz: float, ends: TopicEnds | None) -> int:
+        """Publish from now on; return its number.
 
         Raises PublishError, also for an invalid rate, UnknownTypeError or FieldError.
         """
@@ -116,7 +103,7 @@ class RepeatedPublications:
         self._repeated[number] = _Repeated(
             number, topic, type_name, hz, message, cls, qos, publisher, time.monotonic()
         )
-        future.set_result(number)
+        return number
 
     def stop(self, number: int) -> None:
         repeated = self._repeated.pop(number, None)

@@ -22,8 +22,7 @@ from text.ros_names import TF_STATIC
 
 if TYPE_CHECKING:
     from graph.bag.reading import Bag, TopicInBag
-    from graph.data import FrameRow, Value
-    from graph.observer.interest import Interest
+    from graph.data import FrameRow, Interest, Value
 
 RATES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 """Factors of the original speed."""

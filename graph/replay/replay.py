@@ -16,20 +16,14 @@ from typing import TYPE_CHECKING, TypeVar
 
 from graph.bag.errors import BagError
 from graph.bag.reading import open_bag
-from graph.calls.timeouts import ANSWER_WITHIN_S
-from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult
-from graph.inner_states import LevelResult, TransitionResult
-from graph.observer.interest import Interest
-from graph.observer.requests import ObserverError
+from graph.data import GraphUpdate, Interest
+from graph.observer.requests import ObserverError, Request, refuse
 from graph.replay.player import NANOSECONDS, RATES, Player, ReplayState, next_rate
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable
     from pathlib import Path
-
-    from graph.data import Value
-    from graph.publishing.dead_man_switch import HeldCommand
 
 logger = logging.getLogger(__name__)
 
@@ -43,7 +37,6 @@ class Replay:
 
     def __init__(self, path: Path, *, rate: float = 1.0, loop: bool = False, start_s: float = 0.0) -> None:
         """Open the bag and play it from `start_s` once it is started. Raises BagError."""
-        self.period_s = 0.1
         self.bag = open_bag(path)
         """The open bag; only this replay's thread may read its messages."""
         self._state = ReplayState(
@@ -57,9 +50,7 @@ class Replay:
             notes=self.bag.notes,
         )
         self._start_s = start_s
-        self._watched: frozenset[str] = frozenset()
-        self._pictures: frozenset[str] = frozenset()
-        self._interest = Interest()
+        self._wanted = self._interest = Interest()
         self._shown = Interest()
         self._orders: deque[Callable[[Player], None]] = deque()
         self._lock = threading.Lock()
@@ -84,37 +75,23 @@ class Replay:
         elif self._thread is not threading.current_thread():
             self._thread.join(STOP_WITHIN_S)
 
-    def watch(self, topics: Iterable[str]) -> None:
-        """Decode the newest message of exactly these topics each period."""
-        self._watched = frozenset(topics)
-        self._look_at(replace(self._interest, watched=self._watched | self._pictures))
-
-    def watch_pictures(self, topics: Iterable[str]) -> None:
-        """Watch these as well: there is no network to be spared."""
-        self._pictures = frozenset(topics)
-        self._look_at(replace(self._interest, watched=self._watched | self._pictures))
-
-    def follow(self, topics: Iterable[str]) -> None:
-        """Decode every message of exactly these topics."""
-        self._look_at(replace(self._interest, followed=frozenset(topics)))
-
-    def measure(self, all_topics: bool, *, images: bool = True, fast: bool = True) -> None:
-        """Do nothing: every topic of a bag is measured."""
-
-    def watch_goals(self, actions: Iterable[str]) -> None:
-        """Do nothing: a bag has no actions."""
-
-    def watch_inner_states(self, wanted: bool) -> None:
-        """Do nothing: recordings contain no answers of nodes."""
-
     @property
-    def inner(self) -> RecordedInner:
-        """Requests to nodes, all of which are refused."""
-        return RecordedInner()
+    def wanted(self) -> Interest:
+        """What updates are to have."""
+        return self._wanted
 
-    def watch_frames(self, wanted: bool) -> None:
-        """Report in each update the frames that were published up to the playhead, or none."""
-        self._look_at(replace(self._interest, frames=wanted))
+    def want(self, interest: Interest) -> None:
+        """Have updates with exactly this: every topic is measured, and there is no network to spare pictures from."""
+        with self._lock:
+            self._wanted = interest
+            self._interest = replace(interest, watched=interest.watched | interest.pictures)
+        self._wake.set()
+
+    def ask(self, request: Request[T]) -> Future[T]:
+        """Refuse it, and say why: a recording has nobody who could do anything."""
+        future: Future[T] = Future()
+        refuse(request, future, ObserverError(say("this is a recording: there is nobody to send to")))
+        return future
 
     def toggle(self) -> None:
         """Pause or continue; at the end, start again."""
@@ -153,81 +130,8 @@ class Replay:
         """Start again at the end, or stay there."""
         self._order(lambda _player: self._set(loop=loop))
 
-    # Requests that a recording cannot serve: the caller gets a reason, never silence.
-
-    def prepare_publisher(self, topic: str, type_name: str, *, latched: bool = False) -> Future[None]:
-        del topic, type_name, latched
-        return refused()
-
-    def publish(
-        self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
-    ) -> Future[int]:
-        del topic, type_name, value, latched
-        return refused()
-
-    def start_publishing(self, topic: str, type_name: str, value: Mapping[str, Value], hz: float) -> Future[int]:
-        del topic, type_name, value, hz
-        return refused()
-
-    def stop_publishing(self, number: int) -> None:
-        """Do nothing: nothing is published."""
-
-    def stop_publishing_all(self) -> None:
-        """Do nothing: nothing is published."""
-
-    def stop_commanding(self) -> None:
-        """Do nothing: nothing is commanded."""
-
-    def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
-        del topic, type_name
-        return refused()
-
-    def hold(self, topic: str, type_name: str, command: HeldCommand) -> Future[int]:
-        del topic, type_name, command
-        return refused()
-
-    def let_go(self, topic: str) -> None:
-        """Do nothing: nothing is held."""
-
-    def call(
-        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[CallResult]:
-        """Answer that there is no service."""
-        del type_name, request, timeout_s
-        return _done(CallResult(service, False, None, _refusal(), 0.0))
-
-    def parameters(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[ParametersResult]:
-        """Answer that there are no parameters."""
-        del timeout_s
-        return _done(ParametersResult(node, error=_refusal()))
-
-    def set_parameters(
-        self, node: str, values: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[SetResult]:
-        """Answer that no parameter can be set."""
-        del values, timeout_s
-        return _done(SetResult(node, error=_refusal()))
-
-    def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
-        del action, type_name, goal
-        return refused()
-
-    def cancel_goal(self, number: int) -> None:
-        """Do nothing: there is no goal."""
-
-    def cancel_seen_goal(self, action: str, goal_id: str) -> None:
-        """Do nothing: there is no goal."""
-
-    def forget_goal(self, number: int) -> None:
-        """Do nothing: there is no goal."""
-
     def _order(self, order: Callable[[Player], None]) -> None:
         self._orders.append(order)
-        self._wake.set()
-
-    def _look_at(self, interest: Interest) -> None:
-        with self._lock:
-            self._interest = interest
         self._wake.set()
 
     def _set(self, **changes: float | bool | str) -> None:
@@ -269,7 +173,7 @@ class Replay:
             if update.samples or ordered or news != told:
                 told = news
                 on_update(update)
-            self._wake.wait(self.period_s)
+            self._wake.wait(self._interest.period_s)
 
     def _advance(self, player: Player, seconds: float) -> None:
         if player.ended and self._state.loop:
@@ -301,40 +205,3 @@ class Replay:
     def _fail(self, words: str, on_update: Callable[[GraphUpdate], None]) -> None:
         self._set(error=words, paused=True)
         on_update(GraphUpdate(time.time(), error=words))
-
-
-class RecordedInner:
-    """Answers that no node can be asked."""
-
-    def change_state(
-        self, node: str, transition: str, timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[TransitionResult]:
-        """Answer that no node changes."""
-        del timeout_s
-        return _done(TransitionResult(node, transition, error=_refusal()))
-
-    def logger_level(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
-        """Answer that it is not known."""
-        del timeout_s
-        return _done(LevelResult(node, error=_refusal()))
-
-    def set_logger_level(self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
-        del level, timeout_s
-        return _done(LevelResult(node, error=_refusal()))
-
-
-def _refusal() -> str:
-    return say("this is a recording: there is nobody to send to")
-
-
-def refused() -> Future[T]:
-    """Return the answer to a request that would change something in a recording."""
-    future: Future[T] = Future()
-    future.set_exception(ObserverError(_refusal()))
-    return future
-
-
-def _done(result: T) -> Future[T]:
-    future: Future[T] = Future()
-    future.set_result(result)
-    return future

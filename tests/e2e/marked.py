@@ -42,6 +42,6 @@ def nodes(mark: str) -> dict[int, str]:
 
 def observer(mark: str) -> int:
     """The process that watches the graph for a screen."""
-    program = "observer/process/program.py"
+    program = "graph.observer.process"
     (pid,) = (pid for pid, line in alive(mark).items() if program in line)
     return pid

@@ -6,16 +6,14 @@ It is as quick as the test's own imports, and what a test patches holds for it, 
 from __future__ import annotations
 
 import os
-import socket
 import subprocess
-import sys
 import threading
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from typing import Any, cast
 
-from graph.observer.process import language
-from graph.observer.process.serving import Server
-from graph.observer.process.started import ObserverProcess
-from graph.observer.process.wire import Wire
+from graph.observer.observer import ObserverProcess
+from graph.observer.process import ObserverLoop
 
 
 class _Thread:
@@ -23,8 +21,8 @@ class _Thread:
 
     pid = os.getpid()
 
-    def __init__(self, wire: Wire) -> None:
-        self._wire = wire
+    def __init__(self, end: Connection) -> None:
+        self._end = end
         self._thread = threading.Thread(target=self._run, name="observer", daemon=True)
         self._thread.start()
 
@@ -39,17 +37,15 @@ class _Thread:
 
     def _run(self) -> None:
         try:
-            Server(self._wire).run()
+            ObserverLoop(self._end).run()
         finally:
-            self._wire.close()
+            self._end.close()
 
 
 class ObserverThread(ObserverProcess):
     """It can be started and ended like a process, but not killed."""
 
     def __init__(self) -> None:
-        ours, theirs = socket.socketpair()
-        self._streams: dict[int, int] = {}
-        self._process = cast("Any", _Thread(Wire(theirs)))
-        self.wire = Wire(ours)
-        self.send((0, language.PATH, tuple(sys.path), 0.0))
+        ours, theirs = Pipe()
+        self._process = cast("Any", _Thread(theirs))
+        self._begin(ours, {})

@@ -7,12 +7,12 @@ import os
 import queue
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from graph.data import GraphUpdate, NodeRow, Sample, TopicRow
-from graph.observer.observer import Observer
-from graph.observer.process.started import ObserverProcess
+from graph.observer.observer import Observer, ObserverProcess
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
 from tests.ros.observer_thread import ObserverThread
 from tests.slowness import patient
@@ -97,11 +97,18 @@ class Watcher:
         self, domain: int, *, apart: Callable[[], ObserverProcess] = ObserverThread, **settings: Any
     ) -> None:
         self.observer = Observer(domain, "localhost", **settings)
-        self.observer._client.started = apart
+        self.observer.start_process = apart
         self.update = GraphUpdate(0.0)
         self.updates = 0
         self.samples: dict[str, list[Sample]] = {}
         self.observer.start(self._take)
+
+    def want(self, **changes: Any) -> None:
+        """Have this changed of what is wanted; lists of names may be of any kind."""
+        told: dict[str, Any] = {
+            name: frozenset(one) if not isinstance(one, (bool, float)) else one for name, one in changes.items()
+        }
+        self.observer.want(replace(self.observer.wanted, **told))
 
     def row(self, topic: str) -> TopicRow | None:
         return next((row for row in self.update.topics if row.name == topic), None)
@@ -129,7 +136,7 @@ class Watcher:
         return wait_until(passes, f"{topic}: {what}")
 
     def close(self) -> None:
-        self.observer.watch(())
+        self.want(watched=())
         self.observer.stop()
 
     def _take(self, update: GraphUpdate) -> None:

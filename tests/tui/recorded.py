@@ -2,7 +2,7 @@
 
 `RecordedSession` and `RecordedGraph` fit the seams of the screen. Tests make them say more
 (`session.say`, `graph.show`) and look at what was asked of them (`session.asked`,
-`graph.published`). The data are those of `tests.tui.recorded_lesson`.
+`graph.asked`). The data are those of `tests.tui.recorded_lesson`.
 """
 
 from __future__ import annotations

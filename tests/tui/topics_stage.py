@@ -30,7 +30,7 @@ class TopicsStage(ScreenStage[TopicsScreen]):
 
     def measures(self) -> bool:
         """Whether the rates of all topics are asked for now."""
-        return self.graph.measured_fast
+        return self.graph.wanted.all_fast
 
     def as_picture(self) -> bool:
         """Whether the message is shown as a picture now."""
@@ -40,8 +40,8 @@ class TopicsStage(ScreenStage[TopicsScreen]):
         """Choose a topic and wait until it is asked for."""
         self.screen.table.choose(topic)
         await until(
-            lambda: {*self.graph.watched, *SONARS} | self.graph.pictures == {topic, *SONARS},
-            lambda: f"{topic}, but {self.graph.watched}, {self.graph.pictures}",
+            lambda: {*self.graph.wanted.watched, *SONARS} | self.graph.wanted.pictures == {topic, *SONARS},
+            lambda: f"{topic}, but {self.graph.wanted.watched}, {self.graph.wanted.pictures}",
         )
         await self.pilot.pause()
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Static
 
+from graph.observer.requests import PreparePublisher, Publish
 from robot.topics import LLM_RAW_JSON
 from text import ros2_words
 from text.i18n import N_, _, decimal
@@ -133,7 +134,7 @@ class ComposerScreen(DeckScreen):
 
     def _prepare(self) -> None:
         if self.is_current and self.feed.graph is not None:
-            self.feed.graph.prepare_publisher(LLM_RAW_JSON, TYPE)
+            self.feed.graph.ask(PreparePublisher(LLM_RAW_JSON, TYPE))
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget everything of the previous session."""
@@ -188,7 +189,7 @@ class ComposerScreen(DeckScreen):
         self._sent.keep(text)
         self._trail = OutcomeTrail(clock.now(), self._listeners(), draft.response, self._newest)
         self.topics_changed()
-        future = graph.publish(LLM_RAW_JSON, TYPE, {"data": text})
+        future = graph.ask(Publish(LLM_RAW_JSON, TYPE, {"data": text}))
         # Not awaited here: further keys wait until the action of a key has finished.
         self.run_worker(self._confirm(self._trail, future), group="send")
         draft.note_sent(text)

@@ -10,6 +10,7 @@ from textual.binding import Binding
 from textual.containers import Container, Vertical
 from textual.widgets import Static
 
+from graph.observer.requests import Publish
 from launcher.errors import LauncherError
 from launcher.status import NodeState, Severity
 from robot.topics import AI_COMMAND
@@ -226,7 +227,7 @@ class LessonDeck(DeckScreen):
     def on_command_line_command_sent(self, message: CommandLine.CommandSent) -> None:
         if self.feed.graph is None:
             return
-        sent = self.feed.graph.publish(AI_COMMAND, COMMANDS_TYPE, {"data": message.text})
+        sent = self.feed.graph.ask(Publish(AI_COMMAND, COMMANDS_TYPE, {"data": message.text}))
         sent.add_done_callback(lambda done: self.app.call_later(self._tell_if_lost, done))
 
     def _tell_if_lost(self, sent: Future[int]) -> None:

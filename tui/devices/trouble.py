@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
+from graph.observer.requests import ReadParameters, SetParameters
 from text.i18n import N_
 
 if TYPE_CHECKING:
@@ -73,10 +74,10 @@ def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:
 async def switch(graph: GraphLink, node: str, device: str, trouble: SimulatedTrouble) -> tuple[bool, str]:
     """Cause the trouble, or clear it; return whether it is present now, or why that failed."""
     name = trouble.parameter or device
-    read = await asyncio.wrap_future(graph.parameters(node))
+    read = await asyncio.wrap_future(graph.ask(ReadParameters(node)))
     now = next((row.value for row in read.parameters if row.name == name), None)
     if read.error or now is None:
         return False, read.error or name
     made = now != trouble.wrong
-    done = await asyncio.wrap_future(graph.set_parameters(node, {name: trouble.wrong if made else trouble.fine}))
+    done = await asyncio.wrap_future(graph.ask(SetParameters(node, {name: trouble.wrong if made else trouble.fine})))
     return made, done.error or done.refused.get(name, "")

@@ -8,6 +8,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from graph.observer.requests import PreparePublisher, Publish, StopPublishingAll
 from robot.safety.stop_file import StopFile
 from robot.topics import EMERGENCY_STOP
 from text.i18n import _
@@ -76,7 +77,7 @@ class EmergencyControl:
         sent = self._publish(engaged=True)
         graph = self._feed.graph
         if graph is not None:
-            graph.stop_publishing_all()
+            graph.ask(StopPublishingAll())
         return Pressed(clock.now(), sent)
 
     def pressed(self, press: Pressed) -> None:
@@ -141,7 +142,7 @@ class EmergencyControl:
         """Create the publisher, so that the first message goes out at once."""
         graph = self._feed.graph
         if graph is not None:
-            prepared = graph.prepare_publisher(EMERGENCY_STOP, emergency.TOPIC_TYPE, latched=True)
+            prepared = graph.ask(PreparePublisher(EMERGENCY_STOP, emergency.TOPIC_TYPE, latched=True))
             # If it cannot be created, publishing reports that.
             prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
 
@@ -252,7 +253,7 @@ class EmergencyControl:
         if graph is None:
             return None
         message = {"data": engaged}
-        return graph.publish(EMERGENCY_STOP, emergency.TOPIC_TYPE, message, latched=True)
+        return graph.ask(Publish(EMERGENCY_STOP, emergency.TOPIC_TYPE, message, latched=True))
 
     def _end_publications(self) -> None:
         """Stop all periodic publishing: it would drive the robot as soon as the stop is released.
@@ -260,7 +261,7 @@ class EmergencyControl:
         This includes what was started during the stop, whoever releases it.
         """
         if self._feed.graph is not None:
-            self._feed.graph.stop_publishing_all()
+            self._feed.graph.ask(StopPublishingAll())
             self._tell_of_publications()
 
     def _tell_of_publications(self) -> None:

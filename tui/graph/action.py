@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual.content import Content
 
 from graph.data import Goal, GoalStatus, SeenGoal
+from graph.observer.requests import CancelGoal, CancelSeenGoal, ForgetGoal, SendGoal
 from text import ros2_words
 from text.figures import figure
 from text.i18n import N_, _, localized
@@ -105,7 +106,7 @@ class ActionPane(AskPane):
     def ask(self, type_name: str, value: Mapping[str, Any]) -> None:
         graph = self.deck.feed.graph
         if graph is not None:
-            future = graph.send_goal(self.name_shown, type_name, value)
+            future = graph.ask(SendGoal(self.name_shown, type_name, value))
             self.run_worker(self._sent(future), exit_on_error=False)
 
     async def _sent(self, future: Future[int]) -> None:
@@ -139,12 +140,12 @@ class ActionPane(AskPane):
         if isinstance(goal, SeenGoal):
             self.app.push_screen(CancelGoalScreen(goal), self._cancel_of_others)
         elif graph is not None and goal is not None:
-            graph.cancel_goal(goal.number)
+            graph.ask(CancelGoal(goal.number))
 
     def _cancel_of_others(self, goal: SeenGoal | None) -> None:
         graph = self.deck.feed.graph
         if graph is not None and goal is not None:
-            graph.cancel_seen_goal(goal.action, goal.goal_id)
+            graph.ask(CancelSeenGoal(goal.action, goal.goal_id))
 
     @property
     def can_forget(self) -> bool:
@@ -154,7 +155,7 @@ class ActionPane(AskPane):
     def forget(self) -> None:
         graph, goal = self.deck.feed.graph, self.chosen
         if graph is not None and isinstance(goal, Goal):
-            graph.forget_goal(goal.number)
+            graph.ask(ForgetGoal(goal.number))
 
 
 def _key(goal: Goal | SeenGoal) -> str:

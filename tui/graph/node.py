@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual import on
 
 from graph.housekeeping import is_housekeeping
+from graph.observer.requests import ChangeState
 from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
@@ -286,6 +287,6 @@ async def _change(app: App[Any], node: str, transition: str) -> None:
     graph = host_of(app).feed.graph
     if graph is None:
         return
-    result = await asyncio.wrap_future(graph.inner.change_state(node, transition))
+    result = await asyncio.wrap_future(graph.ask(ChangeState(node, transition)))
     words = localized(result.error) or _("{node} is {state} now").format(node=node, state=result.state)
     app.notify(plain(words, LONGEST), severity="warning" if result.error else "information", markup=False)

@@ -211,7 +211,7 @@ async def _set(app: App[Any], table: GraphParameters, values: Mapping[str, Value
     graph, node = host_of(app).feed.graph, table.node
     if graph is None:
         return _("no lesson is running")
-    result = await asyncio.wrap_future(graph.set_parameters(node, values))
+    result = await asyncio.wrap_future(graph.ask(SetParameters(node, values)))
     if table.is_mounted and node == table.node:
         table.read(node)
     if result.error:

@@ -149,7 +149,7 @@ class GraphParameters(Vertical, Working):
             self._question += 1
             self._changed = False
             self._asked_s = clock.now()
-            self.run_worker(self._take(graph.parameters(node), self._question), exit_on_error=False)
+            self.run_worker(self._take(graph.ask(ReadParameters(node)), self._question), exit_on_error=False)
         self.redraw()
 
     def hear(self, events: Iterable[Sample]) -> None:

@@ -11,8 +11,8 @@ from textual import on
 from textual.containers import Horizontal
 from textual.widgets import Input, Static
 
-from graph.calls.timeouts import ANSWER_WITHIN_S
-from graph.data import CallResult
+from graph.data import ANSWER_WITHIN_S, CallResult
+from graph.observer.requests import CallService
 from text import ros2_words
 from text.figures import figure
 from text.i18n import N_, _, decimal, localized
@@ -236,7 +236,7 @@ class ServicePane(AskPane):
         call = ServiceCall(self._number, value, clock.now(), timeout_s)
         self.calls.insert(0, call)
         del self.calls[MOST_CALLS:]
-        future = graph.call(self.name_shown, type_name, value, timeout_s)
+        future = graph.ask(CallService(self.name_shown, type_name, value, timeout_s))
         self.run_worker(self._take(call, self.name_shown, future), exit_on_error=False)
         self.redraw()
         self.asked_rows.choose(str(call.number))

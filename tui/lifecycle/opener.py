@@ -184,8 +184,8 @@ async def _start_observer_ahead() -> None:
 
     If ROS is missing, the nodes and the observer report that later.
     """
-    await _imported("graph.observer.process.started")
-    from graph.observer.process.started import start_ahead
+    await _imported("graph.observer.observer")
+    from graph.observer.observer import start_ahead
 
     start_ahead()
 

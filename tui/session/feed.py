@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from textual.message import Message
 
+from graph.data import Interest
+from graph.observer.requests import StopCommanding
 from launcher.consent import Agents
 from text.i18n import _
 from tui.session.history import KEPT_LINES, LogHistory
@@ -173,7 +175,6 @@ class Feed:
         self.tell(SessionChanged)
         self._tell_status(frozenset(link.nodes))
         self.ask_for_topics()
-        graph.watch_inner_states(True)
         graph.start(self._inbox.put)
 
     async def disconnect(self, ended: str = "") -> None:
@@ -252,7 +253,7 @@ class Feed:
         elif isinstance(event, ClosedEvent):
             if self.graph is not None:
                 # Before anything that takes time: nobody is in charge any more.
-                self.graph.stop_commanding()
+                self.graph.ask(StopCommanding())
             await owner.ended(event.reason)
 
     def take_update(self) -> GraphUpdate | None:
@@ -331,18 +332,21 @@ class Feed:
         if self.replay is None:
             followed |= set(FLOW_TOPICS)
             kept |= set(SONARS)
-        graph.watch(kept if front is None else kept | front.watch_topics())
-        graph.watch_pictures(set() if front is None else front.picture_topics())
-        graph.follow(followed)
-        graph.watch_goals(set() if front is None else front.watch_goals())
-        graph.watch_frames(front is not None and front.wants_frames)
         looks = self._measures_all or (front is not None and front.measure_all)
-        graph.measure(
-            looks or self._is_here,
-            images=self._measures_all or (looks and front is not None and front.measure_images),
-            fast=looks,
+        graph.want(
+            Interest(
+                watched=frozenset(kept if front is None else kept | front.watch_topics()),
+                followed=frozenset(followed),
+                all_topics=looks or self._is_here,
+                actions=frozenset(() if front is None else front.watch_goals()),
+                inner_states=True,
+                frames=front is not None and front.wants_frames,
+                pictures=frozenset(() if front is None else front.picture_topics()),
+                all_images=self._measures_all or (looks and front is not None and front.measure_images),
+                all_fast=looks,
+                period_s=0.25 if front is None else front.period_s,
+            )
         )
-        graph.period_s = 0.25 if front is None else front.period_s
 
     def measure_all(self, wanted: bool) -> None:
         """Measure the rates of every topic, whatever the screen in front needs."""

@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from graph.observer.merging import merged
+from graph.observer.updates import merged
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate

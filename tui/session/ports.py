@@ -8,24 +8,23 @@ type checkers only: nothing here is needed at run time.
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future
-from typing import TYPE_CHECKING, Protocol
-
-from graph.calls.timeouts import ANSWER_WITHIN_S
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
     from pathlib import Path
 
     from course.judging import JudgeEvent
     from course.lessons.lesson import LessonFolder
-    from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
-    from graph.inner_states import LevelResult, TransitionResult
-    from graph.publishing.dead_man_switch import HeldCommand
+    from graph.data import GraphUpdate, Interest
+    from graph.observer.requests import Request
     from graph.replay.replay import Replay
     from launcher.consent import Agents, ConsentAnswer
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
     from tui.session.requests import Lesson, OpenRequest, WholeGrade
+
+T = TypeVar("T")
 
 
 class SessionLink(Protocol):
@@ -96,26 +95,8 @@ class SessionLink(Protocol):
         """Disconnect from the session and leave it running."""
 
 
-class InnerLink(Protocol):
-    """What single nodes are asked about themselves; the futures never fail."""
-
-    def change_state(
-        self, node: str, transition: str, timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[TransitionResult]:
-        """Have a node with a lifecycle make a transition."""
-
-    def logger_level(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
-        """Read from which severity on a node logs."""
-
-    def set_logger_level(self, node: str, level: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[LevelResult]:
-        """Set from which severity on a node's logger writes."""
-
-
 class GraphLink(Protocol):
     """The ROS graph of one domain; no method blocks, and all may be called from any thread."""
-
-    period_s: float
-    """Seconds between two updates."""
 
     def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
         """Start observing; `on_update` is called on the observer's own thread."""
@@ -123,87 +104,11 @@ class GraphLink(Protocol):
     def stop(self) -> None:
         """Stop observing, within a limited time."""
 
-    def watch(self, topics: Iterable[str]) -> None:
-        """Decode the newest message of exactly these topics each period."""
+    def want(self, interest: Interest) -> None:
+        """Have updates with exactly this from now on."""
 
-    def follow(self, topics: Iterable[str]) -> None:
-        """Decode every message of exactly these topics."""
-
-    def watch_pictures(self, topics: Iterable[str]) -> None:
-        """Report the newest picture of exactly these topics, from wherever it costs least."""
-
-    def measure(self, all_topics: bool, *, images: bool = True, fast: bool = True) -> None:
-        """Measure the rates of all topics, or only of those watched and followed.
-
-        Without `images`, of none that carries any.
-        """
-
-    def watch_goals(self, actions: Iterable[str]) -> None:
-        """Report the goals that others have sent to exactly these actions."""
-
-    def watch_inner_states(self, wanted: bool) -> None:
-        """Report the lifecycles of nodes, and the components of containers."""
-
-    @property
-    def inner(self) -> InnerLink:
-        """Requests about lifecycles and log levels."""
-
-    def watch_frames(self, wanted: bool) -> None:
-        """Report the frames of /tf and /tf_static, or none."""
-
-    def prepare_publisher(self, topic: str, type_name: str, *, latched: bool = False) -> Future[None]:
-        """Create a publisher now, so that its first message goes out at once."""
-
-    def publish(
-        self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
-    ) -> Future[int]:
-        """Publish one message; the future gives the number of subscribers, or fails with why."""
-
-    def call(
-        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[CallResult]:
-        """Call a service."""
-
-    def start_publishing(self, topic: str, type_name: str, value: Mapping[str, Value], hz: float) -> Future[int]:
-        """Publish a message periodically; the future gives its number, or fails."""
-
-    def stop_publishing(self, number: int) -> None:
-        """Stop publishing that one; updates no longer contain it."""
-
-    def stop_publishing_all(self) -> None:
-        """Stop all periodic publishing, including what was requested a moment ago."""
-
-    def stop_commanding(self) -> None:
-        """Stop that as well, release what is held, and cancel all goals."""
-
-    def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
-        """Create a publisher for what may be held, without publishing anything."""
-
-    def hold(self, topic: str, type_name: str, command: HeldCommand) -> Future[int]:
-        """Publish repeatedly until `command.until_s`, then its rest message, then nothing."""
-
-    def let_go(self, topic: str) -> None:
-        """Publish the rest message of what is held, at once."""
-
-    def parameters(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[ParametersResult]:
-        """Read all parameters of a node with their descriptors; the future never fails."""
-
-    def set_parameters(
-        self, node: str, values: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
-    ) -> Future[SetResult]:
-        """Set parameters, each with its own type; the future never fails."""
-
-    def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
-        """Send a goal; the future gives its number, or fails. Updates report its progress."""
-
-    def cancel_goal(self, number: int) -> None:
-        """Request the cancellation of a goal."""
-
-    def cancel_seen_goal(self, action: str, goal_id: str) -> None:
-        """Request the cancellation of another client's goal; updates report the outcome."""
-
-    def forget_goal(self, number: int) -> None:
-        """Stop reporting a goal; one that has not ended is cancelled."""
+    def ask(self, request: Request[T]) -> Future[T]:
+        """Ask for something; the future gets the answer, or what the request says that it raises."""
 
 
 class JudgeLink(Protocol):

@@ -10,6 +10,7 @@ from textual.containers import Horizontal, Vertical
 from textual.content import Content
 from textual.widgets import Static
 
+from graph.observer.requests import PreparePublisher, Publish
 from text import ros2_words
 from text.i18n import N_, _, decimal
 from text.plain import plain
@@ -280,7 +281,7 @@ class SpaceScreen(DeckScreen):
         view = self.view
         view.aim = Aim(kind, view.camera.x_m, view.camera.y_m)
         if self.feed.graph is not None:
-            prepared = self.feed.graph.prepare_publisher(kind.topic, kind.type_name)
+            prepared = self.feed.graph.ask(PreparePublisher(kind.topic, kind.type_name))
             # If it cannot be created, publishing reports that.
             prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
         view.focus()
@@ -301,7 +302,7 @@ class SpaceScreen(DeckScreen):
         if reason:
             self.notify(reason, severity="warning", markup=False)
             return
-        sent = graph.publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed))
+        sent = graph.ask(Publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed)))
         if aim.kind is AimKind.GOAL:
             self.stage.sent = fixed, aim
         self._aim_changed()

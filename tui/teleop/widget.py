@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 from textual.content import Content
 from textual.message import Message
 
+from graph.observer.requests import Hold, LetGo, PrepareHold
 from graph.publishing.dead_man_switch import HeldCommand
 from robot.safety.gate_report import Gate, gate_in
 from robot.topics import DRIVE_SAFE, SAFETY_STATE, WHEEL_COMMANDS
@@ -143,7 +144,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
             return
         asked = command(self._keys.setpoint(self._limits))
         drive = HeldCommand(asked, command(STOP), RATE_HZ, self._keys.until_s)
-        held = graph.hold(self._route.topic, DRIVE_TYPE, drive)
+        held = graph.ask(Hold(self._route.topic, DRIVE_TYPE, drive))
         held.add_done_callback(self._held)
         if self._timer is not None:
             self._timer.resume()
@@ -153,7 +154,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self._keys = NOTHING
         graph = self._deck.feed.graph
         if graph is not None and self._route.topic:
-            graph.let_go(self._route.topic)
+            graph.ask(LetGo(self._route.topic))
         self.redraw()
 
     def close(self) -> None:
@@ -218,7 +219,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
             self.release()
             graph = self._deck.feed.graph
             if graph is not None and found.topic:
-                ready = graph.prepare_hold(found.topic, DRIVE_TYPE)
+                ready = graph.ask(PrepareHold(found.topic, DRIVE_TYPE))
                 # If it cannot be created, the first key reports that.
                 ready.add_done_callback(lambda done: done.cancelled() or done.exception())
         self._route = found

@@ -25,7 +25,7 @@ LASTS_S = 6.0
 @pytest.mark.parametrize(("profile", "nodes"), [("robot", 15), ("06-rviz", 4)])
 def test_a_healthy_robot_has_none_while_it_starts_either(watcher: Watcher, profile: str, nodes: int) -> None:
     """Whatever is missing for a moment while fifteen nodes start and end is not told."""
-    watcher.observer.measure(all_topics=True)
+    watcher.want(all_topics=True)
     lasting, told = LastingFindings(NORMS), set[str]()
     run = DeckProcess("run", profile)
 

@@ -68,10 +68,10 @@ def peers(module_domain: int) -> Iterator[tuple[Peer, Peer]]:
 
 @pytest.fixture
 def watcher(module_watcher: Watcher) -> Iterator[Watcher]:
-    module_watcher.observer.watch_frames(True)
+    module_watcher.want(frames=True)
     yield module_watcher
-    module_watcher.observer.watch_frames(False)
-    module_watcher.observer.measure(all_topics=False)
+    module_watcher.want(frames=False)
+    module_watcher.want(all_topics=False)
     wait_until(lambda: not module_watcher.update.frames, "no frames any more")
 
 

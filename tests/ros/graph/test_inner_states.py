@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from lifecycle_msgs.srv import ChangeState
 
+from graph.observer import requests
 from tests.ros.managed_nodes import NAMES, started
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
@@ -33,7 +34,7 @@ def nodes(module_domain: int) -> Iterator[subprocess.Popen[bytes]]:
 def watcher(module_domain: int, nodes: subprocess.Popen[bytes]) -> Iterator[Watcher]:
     del nodes
     watcher = Watcher(module_domain)
-    watcher.observer.watch_inner_states(True)
+    watcher.want(inner_states=True)
     wait_until(
         lambda: {row.node for row in watcher.update.lifecycles if row.state} == whole(NAMES), "the states of all"
     )
@@ -58,7 +59,7 @@ def until_it_is(watcher: Watcher, name: str, state: str, *transitions: str) -> N
 
 def change(watcher: Watcher, name: str, transition: str) -> tuple[str, str]:
     """The state that it led to, and why it was not made."""
-    result = watcher.observer.inner.change_state(f"/{name}", transition).result(PATIENT_S)
+    result = watcher.observer.ask(requests.ChangeState(f"/{name}", transition)).result(PATIENT_S)
     assert (result.node, result.transition) == (f"/{name}", transition)
     return result.state, result.error
 
@@ -99,10 +100,10 @@ def test_a_refusal_is_told_by_where_it_led(watcher: Watcher) -> None:
 
 
 def test_a_log_level_is_read_and_set(watcher: Watcher) -> None:
-    inner = watcher.observer.inner
-    assert inner.logger_level("/good").result(PATIENT_S).level == "info"
+    ask = watcher.observer.ask
+    assert ask(requests.LogLevel("/good")).result(PATIENT_S).level == "info"
     for level in ("debug", "info", "warn", "error", "fatal"):
-        result = inner.set_logger_level("/good", level).result(PATIENT_S)
+        result = ask(requests.LogLevel("/good", level)).result(PATIENT_S)
         assert (result.level, result.error) == (level, "")
-    assert inner.logger_level("good").result(PATIENT_S).level == "fatal"
-    assert inner.logger_level("/refusing").result(PATIENT_S).level == "info"
+    assert ask(requests.LogLevel("good")).result(PATIENT_S).level == "fatal"
+    assert ask(requests.LogLevel("/refusing")).result(PATIENT_S).level == "info"

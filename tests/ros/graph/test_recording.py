@@ -114,7 +114,7 @@ def test_a_recorder_does_not_pass_for_somebody_who_obeys(ros_domain: int, tmp_pa
     recorder = Recorder(ros_domain, "localhost", tmp_path / "bag")
     watcher = Watcher(ros_domain)
     with Peer(ros_domain) as peer:
-        watcher.observer.measure(all_topics=True)
+        watcher.want(all_topics=True)
         peer.publisher("/emergency_stop", Bool, LATCHED).publish(Bool(data=True))
         recorder.start()
         recorded(recorder, "/emergency_stop", 1)

@@ -12,6 +12,7 @@ from typing import Any, cast
 import pytest
 from std_msgs.msg import Bool
 
+from graph.data import Interest
 from graph.observer.observer import Observer
 from launcher.client.stop_road import StopRoad
 from tests.ros.node_process import NodeProcess
@@ -39,7 +40,7 @@ class Screen:
         self.emergency = EmergencyControl(cast("Any", self), cast("Any", self.feed), lambda: None)
         self._workers: list[asyncio.Future[Any]] = []
         self.observer.start(self._inbox.put)
-        self.observer.follow(FOLLOWED)
+        self.observer.want(Interest(followed=frozenset(FOLLOWED)))
         self.emergency.prepare()
 
     @property

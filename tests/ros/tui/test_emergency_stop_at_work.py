@@ -15,6 +15,7 @@ import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
+from graph.observer.requests import CallService, ReadParameters, SendGoal, SetParameters, StartPublishing
 from robot.topics import EMERGENCY_STOP
 from tests.ros.observing import Peer as Process
 from tests.ros.observing import Watcher
@@ -70,13 +71,15 @@ def begin_everything(watcher: Watcher, hung: Process) -> list[Any]:
     wait_until(lambda: len(watcher.update.actions) == 2, "both actions")
     wait_until(lambda: watcher.serves("/slow"), "the service")
     os.kill(hung.process.pid, signal.SIGSTOP)
-    waiting: list[Future[Any]] = [observer.call("/slow", ADD, {"a": n, "b": 1}, timeout_s=60.0) for n in range(30)]
-    waiting.append(observer.parameters("/hung", timeout_s=60.0))
-    waiting.append(observer.set_parameters("/hung", {"use_sim_time": True}, timeout_s=60.0))
+    waiting: list[Future[Any]] = [
+        observer.ask(CallService("/slow", ADD, {"a": n, "b": 1}, timeout_s=60.0)) for n in range(30)
+    ]
+    waiting.append(observer.ask(ReadParameters("/hung", timeout_s=60.0)))
+    waiting.append(observer.ask(SetParameters("/hung", {"use_sim_time": True}, timeout_s=60.0)))
     for n in range(3):
-        observer.start_publishing(f"/race_{n}", FLOAT, {"data": 1.0}, 100.0).result(30)
-        observer.send_goal("/hung_drive", DRIVE, {"x": float(n)}).result(30)
-        observer.send_goal("/drive_to", DRIVE, {"x": float(n)}).result(30)
+        observer.ask(StartPublishing(f"/race_{n}", FLOAT, {"data": 1.0}, 100.0)).result(30)
+        observer.ask(SendGoal("/hung_drive", DRIVE, {"x": float(n)})).result(30)
+        observer.ask(SendGoal("/drive_to", DRIVE, {"x": float(n)})).result(30)
     wait_until(lambda: len(running.goals("/drive_to")) == 3, "goals that run")
     return [running, *waiting]
 

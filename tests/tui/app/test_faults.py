@@ -12,6 +12,7 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 from textual.widget import Widget
 
+from graph.observer.requests import Publish
 from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession, lesson_samples, lesson_update
 from tests.tui.snapshots import LESSON_9, settle
 from tests.waiting import until
@@ -43,9 +44,9 @@ class Isolated:
     async def stops(self) -> bool:
         """Whether the space bar still stops the wheels."""
         await self.pilot.press("space")
-        await until(lambda: self.graph.published, "what is published")
-        topic, _type, message = self.graph.published[-1][:3]
-        return topic == "/emergency_stop" and message == {"data": True}
+        await until(lambda: self.graph.asked(Publish), "what is published")
+        topic, _type, message = self.graph.asked(Publish)[-1][:3]
+        return (topic, message) == ("/emergency_stop", {"data": True})
 
 
 @asynccontextmanager

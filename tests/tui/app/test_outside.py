@@ -94,10 +94,10 @@ async def test_it_cannot_be_started_or_stopped_and_the_keys_say_why() -> None:
 async def test_what_it_says_on_rosout_is_in_the_log_and_decks_own_are_not_doubled() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
-        assert "/rosout" not in opener.graph.followed
+        assert "/rosout" not in opener.graph.wanted.followed
         early = said("I am awake")
         await show(opener, pilot, graph("/my_node", "/arm/driver"))
-        assert "/rosout" in opener.graph.followed
+        assert "/rosout" in opener.graph.wanted.followed
         lines = (
             early,
             said("of Deck's own", "sonar_front"),
@@ -122,7 +122,7 @@ async def test_what_it_says_on_rosout_is_in_the_log_and_decks_own_are_not_double
         assert isinstance(app.screen, LogsScreen)
         assert {"my_node", "arm/driver", "late"} <= app.screen.pane.view.ring.counts.keys()
         await show(opener, pilot, graph())
-        assert "/rosout" not in opener.graph.followed
+        assert "/rosout" not in opener.graph.wanted.followed
 
 
 def outside(*rows: NodeRow) -> tuple[str, ...]:

@@ -21,7 +21,8 @@ from textual.strip import Strip
 from textual.timer import Timer
 
 from graph.data import GraphUpdate, Sample
-from graph.observer.merging import KEPT_BYTES, KEPT_SAMPLES
+from graph.observer.requests import Publish, StopCommanding
+from graph.observer.updates import KEPT_BYTES, KEPT_SAMPLES
 from launcher.client import client
 from launcher.errors import ProfileError, ProfileProblem, SessionError
 from launcher.events import ClosedEvent, StraysEvent
@@ -137,7 +138,7 @@ async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> N
         await settle(pilot)
         assert title.states(app)[0] == "the supervisor is gone"
         # Leaving the graph may take a while, or fail; until then, nothing is to drive.
-        assert opener.graph.commands_nothing
+        assert opener.graph.asked(StopCommanding)
         assert not opener.graph.stopped
         may_leave.set()
         await pilot.press("4")
@@ -257,7 +258,7 @@ async def test_the_title_says_since_when_what_is_shown_is_old() -> None:
         assert f"No word of the ROS graph since {time_of_day(SINCE_S)}" in bar.text
         await pilot.press("space")
         await settle(pilot)
-        assert opener.graph.published[-1][2] == {"data": True}
+        assert opener.graph.asked(Publish)[-1][2] == {"data": True}
 
 
 TABS = ("f2", "f3", "f4", "f5", "L", "5", "6", "7", "8", "9")

@@ -10,6 +10,7 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from graph.data import GraphUpdate
+from graph.observer.requests import Publish
 from tests.tui.recorded import TOPICS, RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.recorded_lesson import topic
 from tests.tui.snapshots import settle
@@ -68,15 +69,15 @@ async def test_nothing_can_be_started_or_stopped_and_leaving_stops_nothing() -> 
         await pilot.press("q")
         await pilot.pause()
         assert app.return_code == 0
-        assert not graph.published
+        assert not graph.asked(Publish)
 
 
 async def test_the_emergency_stop_is_published_as_always() -> None:
     async with watching(lesson_update()) as (_app, pilot, graph):
         await pilot.press("space")
         await pilot.pause()
-        assert graph.published[0][0] == "/emergency_stop"
-        assert graph.published[0][2] == {"data": True}
+        assert graph.asked(Publish)[0][0] == "/emergency_stop"
+        assert graph.asked(Publish)[0][2] == {"data": True}
 
 
 async def test_the_picker_s_first_row_looks_at_the_domain() -> None:

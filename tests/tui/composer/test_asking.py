@@ -14,6 +14,7 @@ from textual.widgets import OptionList, Static
 
 from brain.settings import settings_path
 from graph.data import Sample
+from graph.observer.requests import Publish
 from robot.topics import LLM_RAW_JSON, LLM_RESULT, SAFETY_STATE, SONAR_FRONT
 from tests.model_server import KEY, Exchange, ModelServer, obeys
 from tests.tui.composer.test_composer import PARSER, ComposerStage
@@ -127,7 +128,7 @@ def status(stage: ComposerStage) -> str:
 
 
 def sent(stage: ComposerStage) -> list[object]:
-    return [value["data"] for topic, _, value, _ in stage.graph.published if topic == LLM_RAW_JSON]
+    return [value["data"] for topic, _, value, _ in stage.graph.asked(Publish) if topic == LLM_RAW_JSON]
 
 
 @pytest.fixture(autouse=True)

@@ -11,6 +11,7 @@ from textual.events import Paste
 from textual.widgets import OptionList, Static
 
 from graph.data import EndpointInfo, Sample, TopicRow
+from graph.observer.requests import PreparePublisher, Publish
 from tests.tui.composer.test_outcome import result
 from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.screen_stage import ScreenStage, on_stage
@@ -67,7 +68,7 @@ async def test_it_opens_with_a_valid_example_and_says_who_listens(stage: Compose
     assert stage.screen.problems == ()
     to = str(stage.screen.query_one("#composer-to", Static).content)
     assert to == "/llm_raw_json → llm_parser"
-    assert stage.graph.prepared[-1][:2] == ("/llm_raw_json", "std_msgs/msg/String")
+    assert stage.graph.asked(PreparePublisher)[-1][:2] == ("/llm_raw_json", "std_msgs/msg/String")
 
 
 async def test_sending_publishes_exactly_what_stands_there(stage: ComposerStage) -> None:
@@ -75,16 +76,16 @@ async def test_sending_publishes_exactly_what_stands_there(stage: ComposerStage)
     await stage.write(text)
     await stage.pilot.press("ctrl+s")
     await stage.pilot.pause()
-    assert stage.graph.published == [("/llm_raw_json", "std_msgs/msg/String", {"data": text}, False)]
+    assert stage.graph.asked(Publish) == [("/llm_raw_json", "std_msgs/msg/String", {"data": text}, False)]
     assert stage.told() == ["· /llm_result: waiting for an answer"]
 
 
 async def test_the_trail_is_followed_also_while_another_screen_is_in_front(stage: ComposerStage) -> None:
-    assert stage.graph.followed >= FOLLOWED
+    assert stage.graph.wanted.followed >= FOLLOWED
     await stage.write(VALID)
     await stage.pilot.press("ctrl+s", "f5")
     await settle(stage.pilot)
-    assert stage.graph.followed >= FOLLOWED
+    assert stage.graph.wanted.followed >= FOLLOWED
     await stage.hear(result(event="accepted", commands=1, thought=""))
     await stage.pilot.press("f4")
     await settle(stage.pilot)
@@ -100,7 +101,7 @@ async def test_what_is_wrong_is_marked_listed_and_not_sent(stage: ComposerStage)
     )
     await stage.pilot.press("ctrl+s")
     await stage.pilot.pause()
-    assert stage.graph.published == []
+    assert stage.graph.asked(Publish) == []
     assert stage.screen.draft.editor.cursor_location == (0, 60)
 
 
@@ -109,7 +110,7 @@ async def test_what_is_wrong_is_sent_by_a_key_of_its_own(stage: ComposerStage) -
     await stage.pilot.press("ctrl+o")
     problem = {"field": "commands[0].speed", "line": 1, "column": 59, "message": "too fast"}
     await stage.hear(result(event="refused", problems=[problem]))
-    assert stage.graph.published[0][2] == {"data": TOO_FAST}
+    assert stage.graph.asked(Publish)[0][2] == {"data": TOO_FAST}
     assert stage.told() == [
         "✗ /llm_result: refused: nothing of it is executed",
         "✗ /llm_result: line 1, column 59: commands[0].speed: too fast",
@@ -162,7 +163,7 @@ async def test_without_a_lesson_nothing_is_sent(stage: ComposerStage) -> None:
     await stage.app.feed.disconnect("it has ended")
     await stage.pilot.press("ctrl+s")
     await stage.pilot.pause()
-    assert stage.graph.published == []
+    assert stage.graph.asked(Publish) == []
 
 
 async def test_a_megabyte_is_not_pasted(stage: ComposerStage) -> None:

@@ -9,6 +9,7 @@ from rich.color import ColorSystem
 from textual.widgets import Input
 
 from graph.inner_states import LifecycleRow
+from graph.observer.requests import Publish
 from launcher.status import NodeState
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_inner import managed_update
@@ -90,15 +91,17 @@ async def test_a_node_that_is_not_ready_or_dies_looks_like_none_that_is_well() -
 async def test_only_what_is_shown_is_asked_for() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (_app, pilot):
-        assert opener.graph.pictures == {"/camera/color/image_raw"}
-        assert {"/audio/mic_raw", "/emergency_stop", "/safety_state"} <= opener.graph.followed
+        assert opener.graph.wanted.pictures == {"/camera/color/image_raw"}
+        assert {"/audio/mic_raw", "/emergency_stop", "/safety_state"} <= opener.graph.wanted.followed
         graph = opener.graph
-        assert (graph.measured, graph.measured_fast) == (True, False), "rates of slow topics before somebody looks"
+        assert (graph.wanted.all_topics, graph.wanted.all_fast) == (True, False), (
+            "rates of slow topics before somebody looks"
+        )
         await pilot.press("2")
         await pilot.pause()
-        assert opener.graph.measured_fast
-        assert "/camera/color/image_raw" not in opener.graph.watched | opener.graph.pictures
-        assert "/audio/mic_raw" in opener.graph.followed
+        assert opener.graph.wanted.all_fast
+        assert "/camera/color/image_raw" not in opener.graph.wanted.watched | opener.graph.wanted.pictures
+        assert "/audio/mic_raw" in opener.graph.wanted.followed
 
 
 async def test_a_command_is_written_and_published() -> None:
@@ -107,7 +110,7 @@ async def test_a_command_is_written_and_published() -> None:
         await pilot.press("c", *"left", "enter")
         await pilot.pause()
         sent = ("/ai_command", "std_msgs/msg/String", {"data": "left"}, False)
-        assert opener.graph.published == [sent]
+        assert opener.graph.asked(Publish) == [sent]
         await pilot.press("escape")
         assert not isinstance(app.focused, Input)
 

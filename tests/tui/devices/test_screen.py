@@ -11,6 +11,7 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from graph.data import NodeRow, ParameterRow, ParametersResult, Sample
+from graph.observer.requests import SetParameters
 from launcher.status import NodeState, NodeStatus
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_devices import AT_S, STATUSES, of_chassis, status, update, with_drivers
@@ -112,11 +113,11 @@ async def test_the_second_tab_has_what_everybody_says_the_worst_on_top() -> None
         assert first.startswith("✗ sonar_rear  Cannot open ")
         assert second == "▲ chassis  The wheels stand: no drive line for 250 ms"
         # The frames of a driver are not asked for while nobody sees them.
-        assert at.graph.followed >= {"/diagnostics"}
-        assert not any("frames" in topic for topic in at.graph.followed)
+        assert at.graph.wanted.followed >= {"/diagnostics"}
+        assert not any("frames" in topic for topic in at.graph.wanted.followed)
         await at.press("left")
         assert not at.screen.shows_tree
-        assert any("frames" in topic for topic in at.graph.followed)
+        assert any("frames" in topic for topic in at.graph.wanted.followed)
 
 
 MOCK = "/mock_robot"
@@ -174,7 +175,10 @@ async def test_a_key_makes_the_trouble_and_mends_it(
         await until(lambda: len(told(app)) == 1, "the word of the trouble")
         await pilot.press(key)
         await until(lambda: len(told(app)) == 2, "the word that it is mended")
-        assert graph.set_to == [(MOCK, {parameter: wrong}), (MOCK, {parameter: fine})]
+        assert [asked[:2] for asked in graph.asked(SetParameters)] == [
+            (MOCK, {parameter: wrong}),
+            (MOCK, {parameter: fine}),
+        ]
         assert told(app)[1].startswith(over)
 
 

@@ -14,7 +14,7 @@ from textual.color import Color
 from textual.events import Key
 from textual.widgets import Input
 
-from graph.observer.requests import ObserverError
+from graph.observer.requests import ObserverError, Publish, Request, StopCommanding
 from launcher.status import NodeState
 from robot.safety.stop_file import BY_SCREEN, StopFile
 from robot.safety.stop_record import Stop
@@ -40,7 +40,7 @@ async def test_space_stops_at_once_on_every_screen(screen: str) -> None:
     opener = RecordedOpener()
     async with opened(opener, screen) as (app, pilot):
         await pilot.press("space")
-        assert opener.graph.published == [STOP]
+        assert opener.graph.asked(Publish) == [STOP]
         title = app.screen.query_one(TitleBar)
         assert "■ EMERGENCY STOP · pressed, nobody has confirmed it · ^r releases" in title.text
         assert title.styles.background == Color.parse("#b00020")
@@ -51,9 +51,9 @@ async def test_the_stop_stays_until_it_is_released() -> None:
     async with opened(opener) as (app, pilot):
         await pilot.press("space", "space", "escape", "2", "1")
         assert app.emergency.state.engaged
-        assert GO not in opener.graph.published
+        assert GO not in opener.graph.asked(Publish)
         await pilot.press("ctrl+r")
-        assert opener.graph.published[-1] == GO
+        assert opener.graph.asked(Publish)[-1] == GO
         await pilot.pause()
         assert "EMERGENCY" not in app.screen.query_one(TitleBar).text
 
@@ -63,9 +63,9 @@ async def test_in_a_text_field_space_is_a_blank_and_ctrl_x_stops() -> None:
     async with opened(opener) as (app, pilot):
         await pilot.press("c", "a", "space", "b")
         assert app.screen.query_one(CommandLine).query_one(Input).value == "a b"
-        assert opener.graph.published == []
+        assert opener.graph.asked(Publish) == []
         await pilot.press("ctrl+x")
-        assert opener.graph.published == [STOP]
+        assert opener.graph.asked(Publish) == [STOP]
 
 
 @pytest.mark.parametrize("key", ["f1", "ctrl+p"])
@@ -75,7 +75,7 @@ async def test_a_dialog_does_not_come_before_the_stop(key: str) -> None:
         await pilot.press(key)
         await pilot.pause()
         await pilot.press("ctrl+x")
-        assert opener.graph.published == [STOP]
+        assert opener.graph.asked(Publish) == [STOP]
 
 
 async def test_where_nobody_listens_the_nodes_are_stopped_instead() -> None:
@@ -85,7 +85,7 @@ async def test_where_nobody_listens_the_nodes_are_stopped_instead() -> None:
         await pilot.press("space")
         await pilot.pause()
         assert ("stop",) in opener.link.asked
-        assert STOP in opener.graph.published
+        assert STOP in opener.graph.asked(Publish)
         assert "nobody listens" in app.screen.query_one(TitleBar).text
         assert ["nobody listens" in told.message for told in app._notifications] == [True]
 
@@ -131,7 +131,7 @@ async def test_a_release_is_repeated_with_its_time_to_a_node_that_has_not_heard(
             now[0] = NOW_S + seconds
             opener.graph.show(obeyed(word(GATE, True, now[0], since_s=NOW_S), at_s=now[0]))
             await settle(pilot)
-        assert opener.graph.published == [GO]
+        assert opener.graph.asked(Publish) == [GO]
         link = opener.link
         assert isinstance(link, RecordedSession)
         assert link.stops == 4 * [False]
@@ -177,7 +177,7 @@ async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> No
         await settle(pilot)
         assert "by another" in app.screen.query_one(TitleBar).text
         await pilot.press("ctrl+r")
-        assert opener.graph.published[-1] == GO
+        assert opener.graph.asked(Publish)[-1] == GO
 
 
 async def test_a_release_without_a_stop_publishes_nothing_and_says_so() -> None:
@@ -186,7 +186,7 @@ async def test_a_release_without_a_stop_publishes_nothing_and_says_so() -> None:
         assert "Release" not in str(app.screen.query_one(KeyBar).render())
         await pilot.press("ctrl+r")
         await pilot.pause()
-        assert opener.graph.published == []
+        assert opener.graph.asked(Publish) == []
         assert [one.message for one in app._notifications] == [
             "Nothing is released: this screen knows of no emergency stop."
         ]
@@ -252,7 +252,7 @@ async def test_the_stop_waits_neither_for_the_event_loop_nor_for_keys() -> None:
         pressed.start()
         # The event loop does not run meanwhile.
         pressed.join(20)
-        assert opener.graph.published == [STOP]
+        assert opener.graph.asked(Publish) == [STOP]
         assert not app.emergency.state.engaged
         await pilot.pause()
         assert "■ EMERGENCY STOP" in app.screen.query_one(TitleBar).text
@@ -283,17 +283,17 @@ async def test_a_release_that_was_typed_before_the_stop_does_not_release_it() ->
         app.stopped_s = time.monotonic()
         app.post_message(release)
         await pilot.pause()
-        assert GO not in opener.graph.published
+        assert GO not in opener.graph.asked(Publish)
         assert app.emergency.state.engaged
         await pilot.press("ctrl+r")
-        assert opener.graph.published[-1] == GO
+        assert opener.graph.asked(Publish)[-1] == GO
 
 
 async def test_without_its_terminal_it_commands_nothing_any_more() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, _pilot):
         await asyncio.to_thread(app.terminal_lost)
-        assert opener.graph.commands_nothing
+        assert opener.graph.asked(StopCommanding)
 
 
 async def test_without_its_keys_it_stops_the_wheels_and_ends() -> None:
@@ -301,23 +301,23 @@ async def test_without_its_keys_it_stops_the_wheels_and_ends() -> None:
     async with opened(opener) as (app, pilot):
         await asyncio.to_thread(app.keyboard_lost, RuntimeError("no key"))
         await settle(pilot)
-        assert opener.graph.published == [STOP]
+        assert opener.graph.asked(Publish) == [STOP]
         assert app.return_code == 1
 
 
 async def test_a_publisher_that_fails_ends_neither_the_stop_nor_the_keys() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
-        publish, refused = opener.graph.publish, ["the middleware is gone"]
+        ask, refused = opener.graph.ask, ["the middleware is gone"]
 
-        def at_second_try(*args: Any, **more: Any) -> Future[int]:
+        def at_second_try(request: Request[Any]) -> Future[Any]:
             if refused:
                 raise RuntimeError(refused.pop())
-            return publish(*args, **more)
+            return ask(request)
 
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(opener.graph, "publish", at_second_try)
+            patch.setattr(opener.graph, "ask", at_second_try)
             await asyncio.to_thread(app.stop_wheels)
             await pilot.pause()
-        assert opener.graph.published == [STOP]
+        assert opener.graph.asked(Publish) == [STOP]
         assert app.emergency.state.engaged

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from textual.pilot import Pilot
 
+from graph.observer.requests import Publish
 from launcher.errors import UsageError
 from launcher.status import NodeState
 from robot.topics import EMERGENCY_STOP
@@ -77,7 +78,7 @@ async def test_a_stop_pressed_while_a_profile_opens_waits_and_is_given_when_it_i
         opener.begun.set()
         await settle(pilot)
         await shows(app, "pressed, nobody has confirmed it")
-        assert set(map(repr, opener.graph.published)) == {repr(STOP)}
+        assert set(map(repr, opener.graph.asked(Publish))) == {repr(STOP)}
         assert set(opener.link.stops) == {True}
         at_s = app.emergency.state.asked_s + 1.0
         opener.graph.show(obeyed(word(GATE, True, at_s, since_s=at_s), at_s=at_s))
@@ -96,7 +97,7 @@ async def test_what_is_released_before_it_is_open_is_not_given() -> None:
         await shows(app, "opening 09-brain")
         opener.begun.set()
         await settle(pilot)
-        assert opener.graph.published == []
+        assert opener.graph.asked(Publish) == []
         assert opener.link.stops == []
         assert not app.emergency.state.engaged
 
@@ -107,7 +108,7 @@ async def test_while_nodes_start_of_which_none_listens_yet_none_is_ended() -> No
         await pilot.press("space")
         await shows(app, WAITS)
         opener.graph.show(lesson_update(time_s=NOW_S + 1))
-        await until(lambda: opener.graph.published == [STOP, STOP], "the stop, given once more")
+        await until(lambda: opener.graph.asked(Publish) == [STOP, STOP], "the stop, given once more")
         await shows(app, "pressed, nobody has confirmed it")
         assert opener.link.stops == [True]
         assert ("stop",) not in opener.link.asked

@@ -52,9 +52,9 @@ def stage() -> AbstractAsyncContextManager[FlowStage]:
 
 async def test_it_follows_its_topics_also_behind_another_screen() -> None:
     async with stage() as at:
-        assert at.graph.followed >= set(TOPICS)
+        assert at.graph.wanted.followed >= set(TOPICS)
         await at.press("1")
-        assert at.graph.followed >= set(TOPICS)
+        assert at.graph.wanted.followed >= set(TOPICS)
         await at.hear(*voice(0.0))
         await at.press("6")
         assert len(at.screen.chains) == 1
@@ -112,8 +112,8 @@ async def test_it_has_what_came_before_it_was_opened_and_the_deck_has_the_trend(
     graph = RecordedGraph(update(*BEFORE))
     opener = RecordedOpener(RecordedSession(lines=()), graph)
     async with opened(opener, "logs") as (app, pilot):
-        assert graph.followed >= set(TOPICS)
-        assert SONAR_FRONT in graph.watched
+        assert graph.wanted.followed >= set(TOPICS)
+        assert SONAR_FRONT in graph.wanted.watched
         for at_s in range(30):
             far = came(SONAR_FRONT, {"data": 2.0}, at_s)
             graph.show(update(*voice(0.0) if at_s == 3 else (), far))

@@ -11,6 +11,7 @@ import pytest
 from textual.widgets import Input
 
 from graph.data import CallResult, GoalStatus, SeenGoal
+from graph.observer.requests import CallService, CancelGoal, CancelSeenGoal, ForgetGoal, SendGoal
 from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
 from tui.graph.places import GraphKind, GraphPlace
@@ -54,7 +55,7 @@ async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: G
     fill(service, "a: 30\nb: -10\n")
     await service.press("ctrl+s")
     await service.wait_for("Response in 12.0 ms")
-    assert service.graph.called == [(SERVICE, ADD, {"a": 30, "b": -10})]
+    assert service.graph.asked(CallService)[0][:3] == (SERVICE, ADD, {"a": 30, "b": -10})
     await service.wait_for("sum: 1")
     assert "a 30, b -10 → sum 1" in service.seen()
 
@@ -62,7 +63,7 @@ async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: G
 async def test_a_wrong_request_is_not_sent(service: GraphStage) -> None:
     fill(service, "a: much\n")
     await service.press("ctrl+s")
-    assert service.graph.called == []
+    assert service.graph.asked(CallService) == []
     assert "✗" in service.seen()
 
 
@@ -84,7 +85,7 @@ async def test_the_time_out_is_chosen_below_the_form_and_each_service_keeps_its_
     timeout_field(service).focus()
     await service.press("backspace", "3", "0", "ctrl+s")
     await service.wait_for("Still waiting: 0 s of 30 s")
-    assert service.graph.waited_s == [30.0]
+    assert [asked[-1] for asked in service.graph.asked(CallService)] == [30.0]
     await service.screen.go(GraphPlace(GraphKind.SERVICE, "/camera/set_parameters"))
     await service.wait_for("valid rcl_interfaces/srv/SetParameters")
     assert timeout_field(service).value == "5"
@@ -121,8 +122,8 @@ async def test_a_call_that_fails_says_why(service: GraphStage) -> None:
 async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: GraphStage) -> None:
     fill(action, "x: 1.0\ny: 2.0\ntolerance: 0.1\n")
     await action.press("ctrl+s")
-    await action.wait(lambda: action.graph.sent_goals)
-    assert action.graph.sent_goals == [(ACTION, DRIVE, {"x": 1.0, "y": 2.0, "tolerance": 0.1})]
+    await action.wait(lambda: action.graph.asked(SendGoal))
+    assert action.graph.asked(SendGoal) == [(ACTION, DRIVE, {"x": 1.0, "y": 2.0, "tolerance": 0.1})]
     await action.wait_for("#1 ◌ sending")
     status = GoalStatus.EXECUTING
     action.graph.change_goal(1, status=status, feedback={"distance": 1.5}, feedback_count=2)
@@ -167,16 +168,16 @@ async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: G
     await action.wait_for("Cancel a goal of another client?")
     assert THEIRS in action.seen()
     await action.press("escape")
-    assert action.graph.canceled_of_others == []
+    assert action.graph.asked(CancelSeenGoal) == []
     await action.press("f12", "enter")
-    await action.wait(lambda: action.graph.canceled_of_others)
-    assert action.graph.canceled_of_others == [(ACTION, THEIRS)]
+    await action.wait(lambda: action.graph.asked(CancelSeenGoal))
+    assert action.graph.asked(CancelSeenGoal) == [(ACTION, THEIRS, "")]
     # What has ended is left alone, and Deck's own come before those of others.
     pane.asked_rows.choose(MINE)
     await action.press("f12")
-    assert action.graph.canceled_goals == [1]
-    assert action.graph.canceled_of_others == [(ACTION, THEIRS)]
+    assert action.graph.asked(CancelGoal) == [(1,)]
+    assert action.graph.asked(CancelSeenGoal) == [(ACTION, THEIRS, "")]
     # Nor can Deck forget what is not its own.
     action.screen.names.focus()
     await action.press("d")
-    assert action.graph.forgotten_goals == []
+    assert action.graph.asked(ForgetGoal) == []

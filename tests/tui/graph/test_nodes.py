@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from graph.inner_states import LifecycleRow, TransitionResult
+from graph.observer.requests import ChangeState
 from launcher.status import NodeState
 from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
@@ -109,12 +110,12 @@ async def test_what_lasts_is_counted_on_the_tab_and_listed_the_worst_first(later
         await stage.wait(lambda: "Findings 4" in tab_words(stage))
         stage.screen.list_kind(GraphKind.FINDING)
         await stage.wait_for("✗ error · incompatible QoS")
-        assert stage.graph.measured_fast
+        assert stage.graph.wanted.all_fast
         listed = [entry.label for entry in stage.screen.index.listed[GraphKind.FINDING]]
         assert listed == ["✗ /camera/color/image_raw", "✗ /sensor/sonar_frnt", "✗ /set_head_postion", "▲ /imu"]
         stage.screen.list_kind(GraphKind.NODE)
         await stage.press()
-        assert not stage.graph.measured_fast
+        assert not stage.graph.wanted.all_fast
 
 
 async def test_enter_goes_to_the_topic_and_links_to_the_nodes(listed: GraphStage) -> None:
@@ -185,9 +186,9 @@ async def test_a_transition_is_made_by_a_key_and_its_outcome_is_told(managed: Gr
     await managed.wait(lambda: isinstance(managed.app.screen, ChoiceScreen))
     await managed.press("down", "enter")
     await until_told(managed, "/camera is active now")
-    assert managed.graph.inner.changes == [("/camera", "activate")]
+    assert managed.graph.asked(ChangeState)[0][:2] == ("/camera", "activate")
     why = "/camera refuses to cleanup and stays inactive; its log may say why"
-    managed.graph.inner.outcomes = {"cleanup": TransitionResult("/camera", "cleanup", "", why)}
+    managed.graph.outcomes = {"cleanup": TransitionResult("/camera", "cleanup", "", why)}
     await managed.press("J", "enter")
     await until_told(managed, "/camera refuses to cleanup and stays inactive")
 
@@ -199,8 +200,8 @@ async def test_a_log_level_is_set_or_it_is_said_how_to_allow_that(managed: Graph
     await managed.wait(lambda: isinstance(managed.app.screen, ChoiceScreen))
     await managed.press("up", "enter")
     await until_told(managed, "/camera logs from debug on")
-    assert managed.graph.inner.levels == {"/camera": "debug"}
-    managed.graph.inner.refusals["/audio"] = "/audio does not let others change its log level"
+    assert managed.graph.levels == {"/camera": "debug"}
+    managed.graph.refusals["/audio"] = "/audio does not let others change its log level"
     await managed.choose("/audio")
     await managed.press("K")
     await until_told(managed, "/audio does not let others change its log level")

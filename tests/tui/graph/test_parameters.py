@@ -15,6 +15,7 @@ from textual.events import Paste
 from textual.widgets import Input
 
 from graph.data import GraphUpdate, Sample
+from graph.observer.requests import ReadParameters, SetParameters
 from tests.hostile_text import EVIL
 from tests.tui.graph_stage import GraphStage, opened
 from text.plain import is_plain, plain
@@ -39,10 +40,10 @@ async def typed(stage: GraphStage, text: str) -> None:
 
 
 async def test_they_are_read_when_asked_and_not_before(stage: GraphStage) -> None:
-    assert stage.graph.asked_parameters == []
+    assert stage.graph.asked(ReadParameters) == []
     await stage.press("E")
     await stage.wait_for("5 parameters · read in 10 ms")
-    assert stage.graph.asked_parameters == [NODE]
+    assert [node for node, _within_s in stage.graph.asked(ReadParameters)] == [NODE]
     assert "0.1…50, above 0" in stage.seen()
     assert "⊘ sonar_front" in stage.seen()
     await stage.press("E")
@@ -54,8 +55,8 @@ async def test_another_value_is_set_and_read_back(stage: GraphStage) -> None:
     assert "Allowed: 0.1…50, above 0" in stage.seen()
     await typed(stage, "2.5")
     await stage.wait(lambda: stage.app.screen is stage.screen)
-    assert stage.graph.set_to == [(NODE, {"rate": "2.5"})]
-    await stage.wait(lambda: stage.graph.asked_parameters == [NODE, NODE])
+    assert stage.graph.asked(SetParameters)[0][:2] == (NODE, {"rate": "2.5"})
+    await stage.wait(lambda: len(stage.graph.asked(ReadParameters)) == 2)
 
 
 def shown(stage: GraphStage) -> GraphUpdate:
@@ -72,16 +73,16 @@ def changed(stage: GraphStage, node: str) -> GraphUpdate:
 
 async def test_a_change_from_outside_is_read_at_once(stage: GraphStage) -> None:
     """`ros2 param set` in another window; what other nodes change asks this one nothing."""
-    assert PARAMETER_EVENTS in stage.graph.followed
+    assert PARAMETER_EVENTS in stage.graph.wanted.followed
     await stage.press("E")
     await stage.wait_for("5 parameters")
     await stage.show(changed(stage, "/camera"))
-    assert stage.graph.asked_parameters == [NODE]
+    assert [node for node, _within_s in stage.graph.asked(ReadParameters)] == [NODE]
     await stage.show(changed(stage, NODE))
-    assert stage.graph.asked_parameters == [NODE, NODE]
+    assert len(stage.graph.asked(ReadParameters)) == 2
     await stage.press("E")
     await stage.show(changed(stage, NODE))
-    assert stage.graph.asked_parameters == [NODE, NODE], "they are not shown"
+    assert len(stage.graph.asked(ReadParameters)) == 2, "they are not shown"
 
 
 async def test_a_refusal_keeps_the_dialog_open_and_says_why(stage: GraphStage) -> None:
@@ -102,8 +103,8 @@ async def test_they_are_saved_and_loaded_as_yaml(stage: GraphStage, tmp_path: Pa
     path.write_text(path.read_text().replace("rate: 1.0", "rate: 3.0"))
     await stage.press("O")
     await typed(stage, str(path))
-    await stage.wait(lambda: stage.graph.set_to)
-    ((node, values),) = stage.graph.set_to
+    await stage.wait(lambda: stage.graph.asked(SetParameters))
+    ((node, values, _within_s),) = stage.graph.asked(SetParameters)
     assert node == NODE
     assert values["rate"] == 3.0
     assert "frame_id" not in values
@@ -120,7 +121,7 @@ async def test_a_file_that_is_wrong_is_told_with_its_line(
     await stage.wait_for("bad.yaml:3:")
     await typed(stage, "none.yaml")
     await stage.wait_for("No such file")
-    assert stage.graph.set_to == []
+    assert stage.graph.asked(SetParameters) == []
 
 
 class FieldApp(App[None]):

@@ -116,11 +116,11 @@ async def test_a_camera_on_another_page_is_not_asked_for() -> None:
         turns = 0
         for _ in range(app.screen.pages):  # type: ignore[attr-defined]
             await settle(pilot)
-            assert opener.graph.pictures == ({CAMERA} if panel.display else set())
+            assert opener.graph.wanted.pictures == ({CAMERA} if panel.display else set())
             turns += not panel.display
             await pilot.press("v")
         assert turns
-    assert CAMERA not in opener.graph.watched
+    assert CAMERA not in opener.graph.wanted.watched
 
 
 async def test_a_bomb_is_refused_in_words() -> None:

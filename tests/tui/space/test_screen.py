@@ -10,6 +10,7 @@ import pytest
 from textual.pilot import Pilot
 
 from graph.data import GraphUpdate
+from graph.observer.requests import Publish
 from space.drawing.paints import Tint
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_space import SPACE_TOPICS, frames, space_update
@@ -47,8 +48,8 @@ async def show(pilot: Pilot[Any], graph: RecordedGraph, update: GraphUpdate) -> 
 async def test_layers_come_from_the_types_of_the_topics() -> None:
     opener = robot_in_a_room()
     async with at_work(opener) as (screen, _pilot):
-        assert opener.graph.watched == WATCHED | set(SONARS)
-        assert "/markers" in opener.graph.followed
+        assert opener.graph.wanted.watched == WATCHED | set(SONARS)
+        assert "/markers" in opener.graph.wanted.followed
         shown = rows_of(screen)
         for name in ("frames", "/map", "/markers", "/scan"):
             assert name in shown
@@ -62,10 +63,10 @@ async def test_a_hidden_layer_is_neither_drawn_nor_subscribed_to() -> None:
         await pilot.press("m")
         await pilot.pause()
         assert Tint.WALL not in tints(screen)
-        assert "/map" not in opener.graph.watched
+        assert "/map" not in opener.graph.wanted.watched
         await pilot.press("a")
         await pilot.pause()
-        assert "/map" in opener.graph.watched
+        assert "/map" in opener.graph.wanted.watched
         await show(pilot, opener.graph, space_update())
         assert Tint.WALL in tints(screen)
 
@@ -115,7 +116,7 @@ START, END = (30, 12), (40, 12)
 
 
 def goals(opener: RecordedOpener) -> list[tuple[str, str, Any]]:
-    return [sent[:3] for sent in opener.graph.published if sent[0] in {GOAL, INITIAL}]
+    return [sent[:3] for sent in opener.graph.asked(Publish) if sent[0] in {GOAL, INITIAL}]
 
 
 def place_at(screen: SpaceScreen, cell: tuple[int, int]) -> tuple[float, float]:

@@ -12,6 +12,15 @@ from textual import events
 from textual.pilot import Pilot
 
 from graph.data import GraphUpdate
+from graph.observer.requests import (
+    Hold,
+    LetGo,
+    PrepareHold,
+    PreparePublisher,
+    Publish,
+    StartPublishing,
+    StopCommanding,
+)
 from launcher.events import ClosedEvent
 from robot.safety.gate_report import gate_in
 from robot.topics import DRIVE, DRIVE_TELEOP, SAFETY_STATE
@@ -84,7 +93,7 @@ async def driving(
 
 def held(opener: RecordedOpener) -> list[tuple[str, float, float]]:
     """(topic, m/s, rad) of what has been held so far."""
-    drives: list[tuple[str, Any]] = [(each[0], each[2].value["drive"]) for each in opener.graph.held]
+    drives: list[tuple[str, Any]] = [(each[0], each[2].value["drive"]) for each in opener.graph.asked(Hold)]
     return [(name, drive["speed"], drive["steering_angle"]) for name, drive in drives]
 
 
@@ -95,13 +104,13 @@ def text_of(panel: TeleopPanel) -> str:
 async def test_opening_it_makes_a_publisher_and_publishes_nothing() -> None:
     opener = opener_of(gated())
     async with opened(opener) as (_app, pilot):
-        assert [each[0] for each in opener.graph.prepared] == ["/emergency_stop"]
+        assert [each[0] for each in opener.graph.asked(PreparePublisher)] == ["/emergency_stop"]
         await pilot.press("t")
         await pilot.pause()
-        assert opener.graph.prepared[1:] == [(DRIVE_TELEOP, DRIVE_TYPE, False)]
-        assert not opener.graph.held
-        assert not opener.graph.published
-        assert not opener.graph.repeated
+        assert opener.graph.asked(PrepareHold) == [(DRIVE_TELEOP, DRIVE_TYPE)]
+        assert not opener.graph.asked(Hold)
+        assert not opener.graph.asked(Publish)
+        assert not opener.graph.asked(StartPublishing)
 
 
 async def test_each_key_holds_a_command_for_a_while_within_limits_that_keys_change() -> None:
@@ -118,8 +127,8 @@ async def test_each_key_holds_a_command_for_a_while_within_limits_that_keys_chan
                 panel.release()
                 await pilot.press(name)
                 assert held(opener)[-1] == (DRIVE_TELEOP, *asked), name
-        assert len(opener.graph.held) == sum(map(len, keys.values()))
-        word = opener.graph.held[0][2]
+        assert len(opener.graph.asked(Hold)) == sum(map(len, keys.values()))
+        word = opener.graph.asked(Hold)[0][2]
         assert word.until_s == STARTED_S + FIRST_HOLD_S
         assert word.rest["drive"] == {"speed": 0.0, "steering_angle": 0.0}
         await pilot.press("q", "x", "r", "X", "й", "c", "z")
@@ -137,7 +146,7 @@ async def test_where_nobody_listens_nothing_is_held_and_it_says_why() -> None:
     opener = opener_of(lesson_update(topics=deaf))
     async with driving(opener) as (_app, pilot, panel):
         await pilot.press("up")
-        assert opener.graph.held == []
+        assert opener.graph.asked(Hold) == []
         assert "Nobody listens to /drive_teleop or /drive: nothing will move." in text_of(panel)
 
 
@@ -149,7 +158,7 @@ async def test_it_drives_by_the_lessons_topic_until_a_gate_comes() -> None:
         assert held(opener) == [(DRIVE, 0.2, 0.0)]
         opener.graph.show(gated())
         await pilot.pause()
-        assert opener.graph.let_go_of == [DRIVE]
+        assert opener.graph.asked(LetGo) == [(DRIVE,)]
         await pilot.press("up")
         assert [name for name, *_asked in held(opener)] == [DRIVE, DRIVE_TELEOP]
 
@@ -170,10 +179,10 @@ async def test_whatever_takes_the_keys_away_stops() -> None:
             await pilot.press("up")
             panel = app.screen.query_one(TeleopPanel)
             assert panel.asked.speed_m_s, leave
-            before = len(opener.graph.let_go_of)
+            before = len(opener.graph.asked(LetGo))
             await pilot.press(leave)
             await pilot.pause()
-            assert set(opener.graph.let_go_of[before:]) == {DRIVE_TELEOP}, leave
+            assert set(opener.graph.asked(LetGo)[before:]) == {(DRIVE_TELEOP,)}, leave
             assert panel.asked.speed_m_s == 0, leave
             if leave == "tab":
                 assert "the keyboard focus is elsewhere; t or a click" in text_of(panel)
@@ -188,7 +197,7 @@ async def test_a_terminal_that_loses_the_focus_stops() -> None:
         await pilot.press("up")
         app.post_message(events.AppBlur())
         await pilot.pause()
-        assert opener.graph.let_go_of == [DRIVE_TELEOP]
+        assert opener.graph.asked(LetGo) == [(DRIVE_TELEOP,)]
         assert panel.asked.speed_m_s == 0
         app.post_message(events.AppFocus())
         await pilot.pause()
@@ -201,7 +210,7 @@ async def test_the_end_of_the_session_takes_it_away() -> None:
         await pilot.press("up")
         opener.link.say(ClosedEvent("gone"))
         await until(lambda: not app.screen.query(TeleopPanel), "the panel gone")
-        assert opener.graph.commands_nothing
+        assert opener.graph.asked(StopCommanding)
 
 
 async def test_a_key_that_has_waited_too_long_moves_nothing() -> None:
@@ -211,12 +220,12 @@ async def test_a_key_that_has_waited_too_long_moves_nothing() -> None:
         late.time = STARTED_S - FIRST_HOLD_S
         panel.post_message(late)
         await pilot.pause()
-        assert opener.graph.held == []
+        assert opener.graph.asked(Hold) == []
         late = events.Key("up", None)
         late.time = STARTED_S - 0.4
         panel.post_message(late)
         await pilot.pause()
-        assert opener.graph.held[0][2].until_s == pytest.approx(STARTED_S + 0.2)
+        assert opener.graph.asked(Hold)[0][2].until_s == pytest.approx(STARTED_S + 0.2)
 
 
 async def test_a_key_that_may_have_been_typed_while_the_process_slept_moves_nothing(
@@ -229,7 +238,7 @@ async def test_a_key_that_may_have_been_typed_while_the_process_slept_moves_noth
     async with driving(opener) as (_app, pilot, panel):
         move_hand(STARTED_S + 0.4)
         panel.press(Move.FORWARD)
-        assert len(opener.graph.held) == 1
+        assert len(opener.graph.asked(Hold)) == 1
         panel.release()
         # Read on waking, so stamped as if it were new: by then, or a moment later.
         woke_s = STARTED_S + 6.0
@@ -237,20 +246,20 @@ async def test_a_key_that_may_have_been_typed_while_the_process_slept_moves_noth
         await pilot.press("up")
         move_hand(woke_s + DRAIN_S - 0.1)
         await pilot.press("up")
-        assert len(opener.graph.held) == 1
+        assert len(opener.graph.asked(Hold)) == 1
         # Handled later than that it is no newer.
         move_hand(woke_s + DRAIN_S + 0.1)
         panel.press(Move.FORWARD, woke_s + 0.2)
-        assert len(opener.graph.held) == 1
+        assert len(opener.graph.asked(Hold)) == 1
         await pilot.press("up")
-        assert len(opener.graph.held) == 2
+        assert len(opener.graph.asked(Hold)) == 2
 
 
 async def test_while_stopped_the_keys_ask_for_nothing() -> None:
     opener = opener_of(gated())
     async with driving(opener) as (_app, pilot, panel):
         await pilot.press("space", "up")
-        assert opener.graph.held == []
+        assert opener.graph.asked(Hold) == []
         now_s = clock.now()
         opener.graph.show(obeyed(word(GATE, True, now_s), at_s=now_s, topics=GATED))
         await pilot.pause()
@@ -260,7 +269,7 @@ async def test_while_stopped_the_keys_ask_for_nothing() -> None:
         opener.graph.show(obeyed(word(GATE, False, now_s), at_s=now_s, topics=GATED))
         await pilot.pause()
         await pilot.press("up")
-        assert len(opener.graph.held) == 1
+        assert len(opener.graph.asked(Hold)) == 1
 
 
 @pytest.mark.parametrize(

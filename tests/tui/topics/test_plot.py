@@ -123,11 +123,11 @@ async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(
     await pilot.pause()
     assert screen.plot.fields == (PlotField("/drive", ("drive", "steering_angle")),)
     assert screen.plot.display
-    assert "/drive" in graph.followed
+    assert "/drive" in graph.wanted.followed
     assert any("◂ A" in screen.detail.echo.render_line(y).text for y in range(6))
     await pilot.press("4")
     await settle(pilot)
-    assert "/drive" in graph.followed
+    assert "/drive" in graph.wanted.followed
     await pilot.press("2")
     graph.show(lesson_update())
     await settle(pilot)

@@ -11,6 +11,7 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from graph.data import Sample
+from graph.observer.requests import Publish, StartPublishing, StopPublishing, StopPublishingAll
 from robot.topics import EMERGENCY_STOP
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.snapshots import opened
@@ -77,7 +78,7 @@ async def test_a_message_goes_out_once_and_its_listeners_are_told(desk: Desk) ->
     desk.fill(" speed: 0.0", " speed: 0.2")
     await desk.pilot.press("ctrl+s")
     await desk.says("Sent: 1 subscriber got it.")
-    ((topic, type_name, value, latched),) = desk.graph.published
+    ((topic, type_name, value, latched),) = desk.graph.asked(Publish)
     assert (topic, type_name, latched) == ("/drive", DRIVE, False)
     assert value["drive"]["speed"] == 0.2
 
@@ -89,7 +90,7 @@ async def test_what_is_wrong_publishes_nothing_and_is_gone_to(desk: Desk) -> Non
     for key in ("ctrl+s", "ctrl+g"):
         await desk.pilot.press(key)
         await desk.says("Not sent")
-    assert (desk.graph.published, desk.graph.repeated) == ([], [])
+    assert (desk.graph.asked(Publish), desk.graph.asked(StartPublishing)) == ([], [])
     assert "line 7: drive.speed: expected a number, got 'fast'" in desk.dialog.form.verdict
     assert desk.dialog.focused is desk.dialog.form.editor
     assert desk.dialog.form.editor.cursor_location == (6, 9)
@@ -102,16 +103,16 @@ async def test_a_message_is_published_at_a_rate_until_it_is_stopped(desk: Desk) 
     desk.dialog.rate.field.value = "2,5"
     await desk.pilot.press("ctrl+g")
     await desk.says("Publishing to /drive at 2.5 Hz.")
-    assert [(topic, hz) for topic, _type, _value, hz in desk.graph.repeated] == [("/drive", 2.5)]
+    assert [(topic, hz) for topic, _type, _value, hz in desk.graph.asked(StartPublishing)] == [("/drive", 2.5)]
     listed = desk.dialog.query_one(PublicationList)
     await until(lambda: listed.chosen_number == 1, "the publication in the list")
     # Another on the same topic takes its place.
     await desk.pilot.press("ctrl+g")
-    await until(lambda: desk.graph.stopped_publications == [1], "the end of the first")
+    await until(lambda: desk.graph.asked(StopPublishing) == [(1,)], "the end of the first")
     await until(lambda: listed.chosen_number == 2, "the second in the list")
     await desk.pilot.press("f12")
     await desk.says("Stopped: /drive")
-    assert desk.graph.stopped_publications == [1, 2]
+    assert desk.graph.asked(StopPublishing) == [(1,), (2,)]
     await until(lambda: not desk.dialog.is_publishing, "the end of all that is published")
     assert not listed.display
 
@@ -122,12 +123,12 @@ async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter
     await desk.says("Publishing to /drive")
     await desk.pilot.press("escape")
     assert isinstance(desk.app.screen, TopicsScreen)
-    assert desk.graph.stopped_publications == []
+    assert desk.graph.asked(StopPublishing) == []
     await desk.open("/ai_command")
     await until(lambda: desk.dialog.is_publishing, "what is published")
     desk.dialog.query_one(PublicationList).focus()
     await desk.pilot.press("enter")
-    assert desk.graph.stopped_publications == [1]
+    assert desk.graph.asked(StopPublishing) == [(1,)]
 
 
 async def test_a_rate_that_is_none_is_refused(desk: Desk) -> None:
@@ -138,7 +139,7 @@ async def test_a_rate_that_is_none_is_refused(desk: Desk) -> None:
         desk.dialog.form.editor.focus()
         await desk.pilot.press("ctrl+g")
         await desk.says("The rate is")
-        assert desk.graph.repeated == []
+        assert desk.graph.asked(StartPublishing) == []
         assert desk.dialog.focused is desk.dialog.rate.field
 
 
@@ -159,7 +160,7 @@ async def test_a_new_topic_needs_a_type_which_is_completed(desk: Desk) -> None:
     assert desk.dialog.focused is desk.dialog.form.editor
     await desk.pilot.press("ctrl+s")
     await desk.says("Sent")
-    assert desk.graph.published[0][:2] == ("/my/new_one", "std_msgs/msg/Float32")
+    assert desk.graph.asked(Publish)[0][:2] == ("/my/new_one", "std_msgs/msg/Float32")
 
 
 async def test_what_is_no_name_of_a_topic_is_refused(desk: Desk) -> None:
@@ -169,7 +170,7 @@ async def test_what_is_no_name_of_a_topic_is_refused(desk: Desk) -> None:
         desk.dialog.rate.tell(lambda: "", "")
         await desk.pilot.press("ctrl+s")
         await desk.says("Not a topic name")
-        assert desk.graph.published == []
+        assert desk.graph.asked(Publish) == []
 
 
 async def test_the_emergency_stop_ends_what_deck_publishes_and_says_so(desk: Desk) -> None:
@@ -179,7 +180,7 @@ async def test_the_emergency_stop_ends_what_deck_publishes_and_says_so(desk: Des
     await until(lambda: desk.dialog.is_publishing, "what is published")
     await desk.pilot.press("escape", "space")
     await desk.pilot.pause()
-    assert desk.graph.stopped_all == 1
+    assert len(desk.graph.asked(StopPublishingAll)) == 1
     told = [notice.message for notice in desk.app._notifications]
     assert told == ["Deck has stopped publishing to /ai_command: the emergency stop ended it."]
     # Nothing was left to be ended.
@@ -194,12 +195,12 @@ async def test_the_emergency_stop_of_another_ends_it_too(desk: Desk) -> None:
     stop = Sample(EMERGENCY_STOP, TOPIC_TYPE, NOW_S + 1, 0.0, 4, {"data": True})
     assert desk.graph.update is not None
     desk.graph.show(replace(desk.graph.update, samples={EMERGENCY_STOP: (stop,)}))
-    await until(lambda: desk.graph.stopped_all == 1, "the end of all that Deck publishes")
+    await until(lambda: len(desk.graph.asked(StopPublishingAll)) == 1, "the end of all that Deck publishes")
     await until(lambda: not desk.dialog.is_publishing, "the end of all that is published")
     # It is told once, however long the stop is there.
     desk.graph.show(replace(desk.graph.update, samples={EMERGENCY_STOP: (stop,)}))
     await desk.pilot.pause()
-    assert desk.graph.stopped_all == 1
+    assert len(desk.graph.asked(StopPublishingAll)) == 1
 
 
 async def test_what_is_published_in_spite_of_a_stop_ends_with_its_release(desk: Desk) -> None:
@@ -208,8 +209,8 @@ async def test_what_is_published_in_spite_of_a_stop_ends_with_its_release(desk: 
     await desk.open("/ai_command")
     await desk.pilot.press("ctrl+g")
     await until(lambda: desk.dialog.is_publishing, "what is published")
-    before = desk.graph.stopped_all
+    before = len(desk.graph.asked(StopPublishingAll))
     await desk.pilot.press("ctrl+r")
-    await until(lambda: desk.graph.stopped_all == before + 1, "the end of all that Deck publishes")
-    assert desk.graph.published[-1][:3] == (EMERGENCY_STOP, TOPIC_TYPE, {"data": False})
+    await until(lambda: len(desk.graph.asked(StopPublishingAll)) == before + 1, "the end of all that Deck publishes")
+    assert desk.graph.asked(Publish)[-1][:3] == (EMERGENCY_STOP, TOPIC_TYPE, {"data": False})
     await until(lambda: not desk.dialog.is_publishing, "the end of all that is published")

@@ -41,7 +41,7 @@ async def test_walking_past_topics_subscribes_none_of_them(
     stage: TopicsStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The one that is chosen first is asked for at first.
-    await until(lambda: stage.graph.watched - set(SONARS), "the first topic asked for")
+    await until(lambda: stage.graph.wanted.watched - set(SONARS), "the first topic asked for")
     asked: list[set[str]] = []
     monkeypatch.setattr(stage.graph, "watch", lambda topics: asked.append(set(topics)))
     # However long the keys take here, they come before the walk is over.
@@ -154,7 +154,7 @@ def filter_line(stage: TopicsStage) -> str:
 async def test_only_messages_are_shown_for_which_the_expression_holds(stage: TopicsStage) -> None:
     await only_if(stage, "m.data > 0.5")
     # Each message is looked at, not the newest of an update alone.
-    assert SONAR in stage.graph.followed
+    assert SONAR in stage.graph.wanted.followed
     await stage.show(sonar(0.7, 0.2, 0.3))
     assert "0.7" in stage.echo()
     assert filter_line(stage) == "1 of 3 messages"

@@ -12,7 +12,7 @@ from mcap.writer import CompressionType, IndexType
 from graph.bag.errors import BagError
 from graph.bag.listing import ListedBag, bags_in
 from graph.bag.reading import Bag, open_bag
-from graph.observer.interest import Interest
+from graph.data import Interest
 from graph.replay.player import ReplayTopics
 from tests.unit.bags import write_bag
 from tests.unit.odd_bags import TOPIC, damage_chunk, write_mcap, write_metadata, write_sqlite

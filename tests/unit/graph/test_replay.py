@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 from rosbags.rosbag2 import StoragePlugin
 
-from graph.data import GraphUpdate, Sample, TopicRow
+from graph.data import GraphUpdate, Interest, Sample, TopicRow
+from graph.observer.requests import CallService, Publish, ReadParameters, SendGoal, SetParameters, StartPublishing
 from graph.replay.replay import Replay
 from tests.unit.bags import write_bag
 from tests.waiting import wait_until
@@ -20,9 +21,12 @@ class Viewer:
 
     def __init__(self, path: Path, **settings: Any) -> None:
         self.replay = Replay(path, **settings)
-        self.replay.period_s = 0.02
+        self.want()
         self.update = GraphUpdate(0.0)
         self.samples: dict[str, list[Sample]] = {}
+
+    def want(self, **topics: frozenset[str]) -> None:
+        self.replay.want(Interest(**topics, period_s=0.02))  # type: ignore[arg-type]
 
     def start(self) -> None:
         self.replay.start(self._take)
@@ -55,7 +59,7 @@ def viewer(bag: Path) -> Iterator[Viewer]:
 
 
 def test_every_message_is_handed_over_once_and_in_order(viewer: Viewer) -> None:
-    viewer.replay.follow(["/number"])
+    viewer.want(followed=frozenset({"/number"}))
     viewer.start()
     viewer.wait(lambda: viewer.replay.state.ended, "the end")
     viewer.wait(lambda: len(viewer.values("/number")) == 101, "all messages")
@@ -66,7 +70,7 @@ def test_every_message_is_handed_over_once_and_in_order(viewer: Viewer) -> None:
 
 def test_it_pauses_steps_and_goes_on(viewer: Viewer) -> None:
     viewer.replay.toggle()
-    viewer.replay.watch(["/number"])
+    viewer.want(watched=frozenset({"/number"}))
     viewer.start()
     viewer.wait(lambda: viewer.values("/number") == [0.0], "the first message")
     viewer.replay.step()
@@ -81,7 +85,7 @@ def test_it_pauses_steps_and_goes_on(viewer: Viewer) -> None:
 
 def test_a_jump_shows_the_message_and_the_rate_of_that_place(viewer: Viewer) -> None:
     viewer.replay.toggle()
-    viewer.replay.watch(["/number", "/map_name"])
+    viewer.want(watched=frozenset({"/number", "/map_name"}))
     viewer.start()
     viewer.replay.seek(7.0)
     viewer.wait(lambda: viewer.values("/number")[-1:] == [70.0], "the message at seven seconds")
@@ -95,7 +99,7 @@ def test_a_jump_shows_the_message_and_the_rate_of_that_place(viewer: Viewer) -> 
 
 def test_a_latched_message_from_long_before_is_there_after_a_jump(bag: Path) -> None:
     viewer = Viewer(bag, start_s=9.0)
-    viewer.replay.watch(["/map_name"])
+    viewer.want(watched=frozenset({"/map_name"}))
     viewer.replay.toggle()
     viewer.start()
     viewer.wait(lambda: viewer.values("/map_name") == ["kitchen"], "the latched message")
@@ -105,12 +109,12 @@ def test_a_latched_message_from_long_before_is_there_after_a_jump(bag: Path) -> 
 def test_nothing_can_be_published_called_or_set(viewer: Viewer) -> None:
     viewer.start()
     for future in (
-        viewer.replay.publish("/x", "std_msgs/msg/String", {}),
-        viewer.replay.start_publishing("/x", "std_msgs/msg/String", {}, 1.0),
-        viewer.replay.send_goal("/x", "y", {}),
+        viewer.replay.ask(Publish("/x", "std_msgs/msg/String", {})),
+        viewer.replay.ask(StartPublishing("/x", "std_msgs/msg/String", {}, 1.0)),
+        viewer.replay.ask(SendGoal("/x", "y", {})),
     ):
         with pytest.raises(Exception, match="this is a recording"):
             future.result(1)
-    assert "this is a recording" in viewer.replay.call("/x", "y", {}).result(1).error
-    assert "this is a recording" in viewer.replay.parameters("/x").result(1).error
-    assert "this is a recording" in viewer.replay.set_parameters("/x", {}).result(1).error
+    assert "this is a recording" in viewer.replay.ask(CallService("/x", "y", {})).result(1).error
+    assert "this is a recording" in viewer.replay.ask(ReadParameters("/x")).result(1).error
+    assert "this is a recording" in viewer.replay.ask(SetParameters("/x", {})).result(1).error

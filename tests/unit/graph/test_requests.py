@@ -6,6 +6,7 @@ import contextlib
 import time
 from collections.abc import Mapping
 from concurrent.futures import Future
+from multiprocessing import Pipe
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -21,13 +22,11 @@ from graph.calls.exchanges import Exchange, NodeRequest
 from graph.calls.goal_life import GoalLife
 from graph.calls.lifecycle import managed
 from graph.calls.lifecycle_exchange import CHANGE_WITHIN_S, ChangeFacts, change
-from graph.calls.timeouts import ANSWER_WITHIN_S
-from graph.data import Goal, GoalStatus, GraphUpdate, ServiceRow, Value
+from graph.data import ANSWER_WITHIN_S, Goal, GoalStatus, ServiceRow, Value
 from graph.messages.dated import Draft
-from graph.observer.loop import ObserverLoop
 from graph.observer.node import ObserverNode
-from graph.observer.requests import ObserverError
-from graph.observer.settings import ObserverSettings
+from graph.observer.process import ObserverLoop
+from graph.observer.requests import Hold, LetGo, Order, Publish, Request, StartPublishing, StopPublishingAll
 from graph.publishing.dead_man_switch import CommandRepeater, HeldCommand
 from graph.publishing.publications import LATE_S, _Repeated
 from graph.qos import RELIABLE, VOLATILE, Qos
@@ -41,7 +40,7 @@ class Desk:
     def __init__(self, *known: str) -> None:
         self.known = set(known)
         self.done: list[str] = []
-        self.outbox = self.dead_man_switch = self
+        self.outbox = self.dead_man_switch = self.publications = self
 
     def knows_latched(self, topic: str, _type_name: str) -> bool:
         return topic in self.known
@@ -68,6 +67,13 @@ class Desk:
     def let_go(self, topic: str) -> None:
         self.done.append(f"let go of {topic}")
 
+    def start(self, topic: str, *_rest: Any) -> int:
+        self.done.append(f"start {topic}")
+        return 1
+
+    def close(self) -> None:
+        self.done.append("end all")
+
     def step(self) -> None:
         self.done.append("step")
 
@@ -76,57 +82,45 @@ def command() -> HeldCommand:
     return HeldCommand({}, {}, 20.0, time.monotonic() + 1.0)
 
 
-class Nobody:
-    """Nobody gives orders while these requests are carried out."""
-
-    def tell(self, update: GraphUpdate) -> None:
-        raise AssertionError(update)
-
-    def wait(self, within_s: float) -> None:
-        raise AssertionError(within_s)
-
-    def look(self) -> bool:
-        return False
-
-
-def a_loop() -> ObserverLoop:
-    return ObserverLoop(ObserverSettings(1), Nobody())
+def a_loop(*requests: Request[Any]) -> ObserverLoop:
+    loop = ObserverLoop(Pipe()[0])
+    for request in requests:
+        loop.take(Order(1, request, time.monotonic()))
+    return loop
 
 
 def test_what_cannot_wait_is_done_in_the_middle_of_a_look() -> None:
-    loop, desk = a_loop(), Desk("/stop", "/drive")
+    desk = Desk("/stop", "/drive")
     node = cast("ObserverNode", desk)
-    chatter = loop.orders.publish("/chatter", BOOL, STOP, False)
-    held = loop.orders.hold("/drive", BOOL, command())
-    stop = loop.orders.publish("/stop", BOOL, STOP, True)
-    loop.orders.let_go("/drive")
+    loop = a_loop(
+        Publish("/chatter", BOOL, STOP),
+        Hold("/drive", BOOL, command()),
+        Publish("/stop", BOOL, STOP, latched=True),
+        LetGo("/drive"),
+    )
     loop.serve_urgent(node)
     assert desk.done == ["hold /drive", "publish /stop True", "let go of /drive", "step"]
-    assert stop.done()
-    assert held.done()
-    assert not chatter.done()
-    loop._requests.carry_out(node)
+    loop.carry_out(node)
     assert desk.done[4:] == ["look for /chatter", "publish /chatter False"]
 
 
 def test_what_needs_a_look_itself_waits_for_the_end_of_this_one() -> None:
-    loop, desk = a_loop(), Desk()
+    desk = Desk()
     node = cast("ObserverNode", desk)
-    loop.orders.hold("/drive", BOOL, command())
-    loop.orders.publish("/stop", BOOL, STOP, True)
+    loop = a_loop(Hold("/drive", BOOL, command()), Publish("/stop", BOOL, STOP, latched=True))
     loop.serve_urgent(node)
     assert desk.done == ["step"]
-    loop._requests.carry_out(node)
+    loop.carry_out(node)
     assert desk.done[1:] == ["look for /drive", "hold /drive", "look for /stop", "publish /stop True"]
 
 
-def test_what_cannot_be_done_any_more_says_so() -> None:
-    loop = a_loop()
-    before = loop.orders.publish("/stop", BOOL, STOP, True)
-    loop._requests.refuse(ObserverError("over"))
-    for future in (before, loop.orders.publish("/stop", BOOL, STOP, True)):
-        with pytest.raises(ObserverError, match="over"):
-            future.result(0)
+def test_what_was_asked_for_just_before_the_end_of_all_that_is_published_ends_as_well() -> None:
+    desk = Desk()
+    node = cast("ObserverNode", desk)
+    loop = a_loop(StartPublishing("/a", BOOL, STOP, 1.0), StopPublishingAll())
+    loop.serve_urgent(node)
+    loop.carry_out(node)
+    assert desk.done == ["end all", "step", "look for /a", "start /a", "end all"]
 
 
 def talk(exchange: Exchange, *answers: Any) -> list[NodeRequest]:

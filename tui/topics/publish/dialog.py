@@ -11,6 +11,7 @@ from textual.content import Content
 
 from graph.messages.yaml_form import filled
 from graph.messages.yaml_text import is_cut
+from graph.observer.requests import Publish, StartPublishing, StopPublishing
 from text import ros2_words
 from text.i18n import _, decimal, ngettext
 from tui.actions import bindings
@@ -145,7 +146,7 @@ class PublishDialog(Dialog[None]):
         if ready is not None:
             graph, topic, value = ready
             self.rate.tell(lambda: _("Publishing…"))
-            future = graph.publish(topic, self.form.type_name, value)
+            future = graph.ask(Publish(topic, self.form.type_name, value))
             self.run_worker(self._confirm_once(topic, future), group="publish")
 
     def publish_at_rate(self) -> None:
@@ -155,7 +156,7 @@ class PublishDialog(Dialog[None]):
         if hz is not None and ready is not None:
             graph, topic, value = ready
             before = [one.number for one in self._listed or () if one.topic == topic]
-            future = graph.start_publishing(topic, self.form.type_name, value, hz)
+            future = graph.ask(StartPublishing(topic, self.form.type_name, value, hz))
             self.run_worker(self._confirm_rate(topic, hz, before, future), group="publish")
 
     def stop_chosen(self) -> None:
@@ -164,7 +165,7 @@ class PublishDialog(Dialog[None]):
         if number is None or graph is None:
             return
         stopped = next((one.topic for one in self._listed or () if one.number == number), "")
-        graph.stop_publishing(number)
+        graph.ask(StopPublishing(number))
         self.rate.tell(lambda: _("Stopped: {topic}").format(topic=stopped))
 
     def take_message(self) -> None:
@@ -238,7 +239,7 @@ class PublishDialog(Dialog[None]):
             return
         graph = self.deck.feed.graph
         for number in before if graph is not None else ():
-            graph.stop_publishing(number)  # type: ignore[union-attr]
+            graph.ask(StopPublishing(number))  # type: ignore[union-attr]
         words = _("Publishing to {topic} at {hz} Hz.")
         self.rate.tell(lambda: words.format(topic=topic, hz=decimal(f"{hz:g}")), "good")
         self._look()

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from graph.data import Interest
+from graph.observer.requests import ForgetGoal, StopPublishingAll
 from tests.ros.observing import Peer, Watcher
 from tests.ros.peer import Peer as InProcess
 from tests.waiting import wait_until
@@ -24,14 +26,10 @@ def watcher(module_watcher: Watcher) -> Iterator[Watcher]:
     module_watcher.samples.clear()
     yield module_watcher
     observer = module_watcher.observer
-    observer.watch(())
-    observer.follow(())
-    observer.watch_pictures(())
-    observer.watch_goals([])
-    observer.measure(all_topics=False)
-    observer.stop_publishing_all()
+    observer.want(Interest())
+    observer.ask(StopPublishingAll())
     for each in module_watcher.update.goals:
-        observer.forget_goal(each.number)
+        observer.ask(ForgetGoal(each.number))
     wait_until(
         lambda: not (module_watcher.update.goals or module_watcher.update.publications), "nothing is under way"
     )

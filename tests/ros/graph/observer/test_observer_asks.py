@@ -17,7 +17,17 @@ from graph.calls.goals import GoalError
 from graph.data import CallResult, Goal, GoalStatus, ParameterRow, SeenGoal, SetResult
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError, load_service
-from graph.observer.requests import ObserverError
+from graph.observer.requests import (
+    CallService,
+    CancelGoal,
+    CancelSeenGoal,
+    ForgetGoal,
+    ObserverError,
+    ReadParameters,
+    SendGoal,
+    SetParameters,
+    StopCommanding,
+)
 from tests.ros.observing import Peer, Watcher, let_updates_come
 from tests.ros.peer import Peer as InProcess
 from tests.waiting import wait_until
@@ -39,7 +49,7 @@ def adder(talker: Peer) -> Peer:
 
 def call(watcher: Watcher, service: str, request: dict[str, Any], **how: Any) -> CallResult:
     type_name = str(how.pop("type_name", ADD))
-    return watcher.observer.call(service, type_name, request, **how).result(40)
+    return watcher.observer.ask(CallService(service, type_name, request, **how)).result(40)
 
 
 @pytest.mark.usefixtures("adder")
@@ -56,12 +66,12 @@ def test_a_server_that_does_not_answer_ends_in_a_time_out_and_freezes_nothing(
 ) -> None:
     talker.advertise("/beat", type_name="std_msgs/msg/Float32")
     talker.repeat("/beat", value={"data": 1.0}, hz=20)
-    watcher.observer.watch(["/beat"])
+    watcher.want(watched=["/beat"])
     wait_until(lambda: watcher.of("/beat"), "the beat")
     slow = Peer("slow", module_domain)
     slow.serve("/slow", after_s=2.0)
     wait_until(lambda: watcher.serves("/slow"), "the service")
-    slow_one = watcher.observer.call("/slow", ADD, {"a": 1, "b": 2}, timeout_s=0.8)
+    slow_one = watcher.observer.ask(CallService("/slow", ADD, {"a": 1, "b": 2}, timeout_s=0.8))
     let_updates_come(watcher, 5)
     assert not slow_one.done()
     result = slow_one.result(30)
@@ -105,7 +115,7 @@ def test_a_service_that_vanishes_in_mid_call_is_told_long_before_the_time_out(
         silent = rclpy.create_node("silent", context=host.node.context)
         service = silent.create_service(load_service(ADD), "/vanishing", lambda _, answer: answer)
         wait_until(lambda: watcher.serves("/vanishing"), "it")
-        future = watcher.observer.call("/vanishing", ADD, {"a": 1, "b": 2}, timeout_s=60.0)
+        future = watcher.observer.ask(CallService("/vanishing", ADD, {"a": 1, "b": 2}, timeout_s=60.0))
         wait_until(lambda: takes_a_request(service), "the request")
         assert not future.done()
         silent.destroy_node()
@@ -155,7 +165,7 @@ def declare(node: Any) -> None:
 
 def rows(watcher: Watcher, node: str = "/robot") -> dict[str, ParameterRow]:
     wait_until(lambda: watcher.serves(f"{node}/list_parameters"), f"the services of {node}")
-    result = watcher.observer.parameters(node, timeout_s=30).result(40)
+    result = watcher.observer.ask(ReadParameters(node, timeout_s=30)).result(40)
     assert result.error == ""
     assert result.node == node
     assert result.elapsed_s > 0
@@ -165,7 +175,7 @@ def rows(watcher: Watcher, node: str = "/robot") -> dict[str, ParameterRow]:
 
 def set_them(watcher: Watcher, node: str = "/robot", **values: Any) -> SetResult:
     wait_until(lambda: watcher.serves(f"{node}/set_parameters"), f"the services of {node}")
-    return watcher.observer.set_parameters(node, values, timeout_s=30).result(40)
+    return watcher.observer.ask(SetParameters(node, values, timeout_s=30)).result(40)
 
 
 @pytest.mark.usefixtures("node")
@@ -212,8 +222,8 @@ def test_a_stopped_node_ends_in_a_time_out_and_holds_up_nothing(watcher: Watcher
     assert "use_sim_time" in rows(watcher, "/asleep")
     os.kill(asleep.process.pid, signal.SIGSTOP)
     try:
-        read = watcher.observer.parameters("/asleep", timeout_s=3.0)
-        write = watcher.observer.set_parameters("/asleep", {"use_sim_time": True}, timeout_s=3.0)
+        read = watcher.observer.ask(ReadParameters("/asleep", timeout_s=3.0))
+        write = watcher.observer.ask(SetParameters("/asleep", {"use_sim_time": True}, timeout_s=3.0))
         assert rows(watcher)["speed"].type_name == "double"
         assert not read.done()
         assert read.result(40).error == "/asleep does not answer within 3 s"
@@ -236,7 +246,7 @@ def server(talker: Peer, request: pytest.FixtureRequest) -> Peer:
 
 
 def send(watcher: Watcher, action: str, x: float = 1.0) -> int:
-    return watcher.observer.send_goal(action, DRIVE, {"x": x}).result(30)
+    return watcher.observer.ask(SendGoal(action, DRIVE, {"x": x})).result(30)
 
 
 def goal(watcher: Watcher, number: int) -> Goal | None:
@@ -277,13 +287,13 @@ def test_a_goal_is_accepted_executed_and_succeeds(watcher: Watcher, server: Peer
     assert told.result == {"reached": True, "distance": 0.1, "message": ""}
     assert (told.error, told.ended, told.action, told.type_name) == ("", True, server.action, DRIVE)
     assert told.elapsed_s > 0
-    watcher.observer.forget_goal(number)
+    watcher.observer.ask(ForgetGoal(number))
     wait_until(lambda: not watcher.update.goals, "the goal is forgotten")
 
 
 def test_a_goal_is_cancelled(watcher: Watcher, server: Peer) -> None:
     number = at_work(watcher, server)
-    watcher.observer.cancel_goal(number)
+    watcher.observer.ask(CancelGoal(number))
     wait_for(watcher, number, GoalStatus.CANCELING)
     server.finish(server.action, goal=0, how="canceled", distance=2.0)
     told = wait_for(watcher, number, GoalStatus.CANCELED)
@@ -292,7 +302,7 @@ def test_a_goal_is_cancelled(watcher: Watcher, server: Peer) -> None:
 
 def test_goals_that_run_are_cancelled_with_all_that_commands(watcher: Watcher, server: Peer) -> None:
     at_work(watcher, server)
-    watcher.observer.stop_commanding()
+    watcher.observer.ask(StopCommanding())
     wait_until(lambda: server.cancels(server.action) == 1, "its server is asked to cancel")
 
 
@@ -302,9 +312,9 @@ def test_goals_that_run_are_cancelled_when_the_observer_stops(server: Peer, modu
     watcher.close()
     assert server.cancels(server.action) == 1
     with pytest.raises(ObserverError):
-        watcher.observer.send_goal(server.action, DRIVE, {}).result(10)
-    watcher.observer.cancel_goal(1)
-    watcher.observer.forget_goal(1)
+        watcher.observer.ask(SendGoal(server.action, DRIVE, {})).result(10)
+    watcher.observer.ask(CancelGoal(1))
+    watcher.observer.ask(ForgetGoal(1))
 
 
 def test_what_cannot_be_sent_is_refused_in_words(watcher: Watcher, talker: Peer) -> None:
@@ -319,7 +329,7 @@ def test_what_cannot_be_sent_is_refused_in_words(watcher: Watcher, talker: Peer)
         ("/a name", DRIVE, {}, GoalError, "/a name cannot be sent a goal"),
     ):
         with pytest.raises(kind, match=words):
-            watcher.observer.send_goal(action, type_name, values).result(30)
+            watcher.observer.ask(SendGoal(action, type_name, values)).result(30)
     assert talker.goals("/drive_to") == []
     assert watcher.update.goals == ()
 
@@ -355,9 +365,9 @@ def test_a_goal_of_another_is_cancelled_that_one_alone_and_its_client_is_told(
 ) -> None:
     stranger_at_work(server, stranger, 1.0)
     stranger_at_work(server, stranger, 2.0)
-    watcher.observer.watch_goals([server.action])
+    watcher.want(actions=[server.action])
     _first, second = seen(watcher, GoalStatus.EXECUTING, GoalStatus.EXECUTING)
-    watcher.observer.cancel_seen_goal(server.action, second.goal_id)
+    watcher.observer.ask(CancelSeenGoal(server.action, second.goal_id))
     seen(watcher, GoalStatus.EXECUTING, GoalStatus.CANCELING)
     server.finish(server.action, goal=1, how="canceled")
     wait_until(lambda: stranger.ends(server.action) == {"1": CANCELED}, "a word to its client")

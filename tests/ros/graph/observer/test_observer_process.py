@@ -14,11 +14,23 @@ from pathlib import Path
 
 import pytest
 
-from graph.data import GoalStatus, GraphUpdate
-from graph.observer.observer import Observer
-from graph.observer.process.language import LATE_S, WITHDRAWN_LATE_S
-from graph.observer.process.started import ObserverProcess
-from graph.observer.requests import ObserverError
+from graph.data import GoalStatus, GraphUpdate, Interest
+from graph.observer.observer import Observer, ObserverProcess
+from graph.observer.requests import (
+    LATE_S,
+    WITHDRAWN_LATE_S,
+    CallService,
+    Hold,
+    LetGo,
+    ObserverError,
+    PreparePublisher,
+    Publish,
+    ReadParameters,
+    SendGoal,
+    StartPublishing,
+    StopCommanding,
+    StopPublishing,
+)
 from graph.publishing.dead_man_switch import HeldCommand
 from tests.middleware_words import own_words
 from tests.ros.observing import ROOT, Peer, Watcher, let_updates_come
@@ -51,7 +63,7 @@ def teller(ros_domain: int) -> Iterator[Peer]:
 
 
 def pid_of(watcher: Watcher) -> int:
-    line = watcher.observer._client._line
+    line = watcher.observer._line
     return line.process.pid if line is not None else 0
 
 
@@ -70,8 +82,8 @@ def seen_by(watcher: Watcher, pid: int) -> bool:
 
 
 def watched(watcher: Watcher) -> None:
-    watcher.observer.watch(["/beat"])
-    watcher.observer.measure(True)
+    watcher.want(watched=["/beat"])
+    watcher.want(all_topics=True)
     wait_until(lambda: watcher.node("/teller") and watcher.of("/beat"), "the graph", within_s=30)
 
 
@@ -80,22 +92,22 @@ def check_that_nobody_waits(watcher: Watcher) -> None:
     began_s = time.monotonic()
     for number in range(40):
         observer = watcher.observer
-        observer.watch(["/beat", f"/other_{number}"])
-        observer.hold("/drive", FLOAT, HeldCommand({}, {}, 20.0, time.monotonic() + 0.5))
-        observer.let_go("/drive")
-        observer.publish("/x", FLOAT, {"data": 1.0})
-        observer.stop_commanding()
+        observer.want(Interest(frozenset({"/beat", f"/other_{number}"})))
+        observer.ask(Hold("/drive", FLOAT, HeldCommand({}, {}, 20.0, time.monotonic() + 0.5)))
+        observer.ask(LetGo("/drive"))
+        observer.ask(Publish("/x", FLOAT, {"data": 1.0}))
+        observer.ask(StopCommanding())
     assert time.monotonic() - began_s < NO_WAITING_S
 
 
 def test_one_that_is_stopped_holds_up_nobody_and_is_replaced(watcher: Watcher, teller: Peer) -> None:
     watched(watcher)
-    number = watcher.observer.start_publishing("/mine", FLOAT, {"data": 1.0}, 5.0).result(20)
+    number = watcher.observer.ask(StartPublishing("/mine", FLOAT, {"data": 1.0}, 5.0)).result(20)
     wait_until(lambda: watcher.update.publications, "the publication")
     pid, before_s = pid_of(watcher), time.time()
     os.kill(pid, signal.SIGSTOP)
-    call = watcher.observer.call("/nowhere", ADD, {}, timeout_s=60)
-    stop = watcher.observer.publish("/stop", BOOL, {"data": True}, latched=True)
+    call = watcher.observer.ask(CallService("/nowhere", ADD, {}, timeout_s=60))
+    stop = watcher.observer.ask(Publish("/stop", BOOL, {"data": True}, latched=True))
     check_that_nobody_waits(watcher)
     wait_until(lambda: watcher.update.old_since_s, "it is said to be old", within_s=30)
     since_s = watcher.update.old_since_s
@@ -113,16 +125,16 @@ def test_one_that_is_stopped_holds_up_nobody_and_is_replaced(watcher: Watcher, t
     assert (ended.number, "hung" in ended.error) == (number, True)
     watcher.samples.clear()
     wait_until(lambda: watcher.of("/beat"), "messages of what is watched")
-    watcher.observer.stop_publishing(number)
+    watcher.observer.ask(StopPublishing(number))
     wait_until(lambda: not watcher.update.publications, "the ended one is forgotten")
 
 
 @pytest.mark.usefixtures("teller")
 def test_one_that_was_killed_is_replaced_at_once(watcher: Watcher) -> None:
     watched(watcher)
-    goal = watcher.observer.send_goal("/drive_to", DRIVE, {"x": 1.0}).result(20)
+    goal = watcher.observer.ask(SendGoal("/drive_to", DRIVE, {"x": 1.0})).result(20)
     wait_until(lambda: watcher.update.goals, "the goal")
-    parameters = watcher.observer.parameters("/teller", timeout_s=60)
+    parameters = watcher.observer.ask(ReadParameters("/teller", timeout_s=60))
     pid = pid_of(watcher)
     os.kill(pid, signal.SIGKILL)
     wait_until(lambda: seen_by(watcher, pid), "another has taken over", within_s=40)
@@ -131,7 +143,7 @@ def test_one_that_was_killed_is_replaced_at_once(watcher: Watcher) -> None:
     assert (ended.number, ended.status) == (goal, GoalStatus.FAILED)
     assert "died" in ended.error
     # The next one's numbers are others.
-    number = watcher.observer.start_publishing("/mine", FLOAT, {"data": 1.0}, 5.0).result(20)
+    number = watcher.observer.ask(StartPublishing("/mine", FLOAT, {"data": 1.0}, 5.0)).result(20)
     assert number > goal
 
 
@@ -142,7 +154,7 @@ def test_it_leaves_with_whoever_it_works_for(ros_domain: int) -> None:
         f"observer, told = Observer({ros_domain}), threading.Event()\n"
         "observer.start(lambda update: told.set())\n"
         "assert told.wait(30)\n"
-        "print(observer._client._line.process.pid, flush=True)\n"
+        "print(observer._line.process.pid, flush=True)\n"
         "time.sleep(60)"
     )
     screen = subprocess.Popen([sys.executable, "-c", program], cwd=ROOT, stdout=subprocess.PIPE, text=True)
@@ -158,10 +170,10 @@ def test_orders_from_before_a_hang_do_not_drive_the_robot_after_it(watcher: Watc
     teller.listen("/drive", type_name=FLOAT)
     watched(watcher)
     watcher.wait_for("/drive", lambda row: row.subscribers, "a listener")
-    watcher.observer.publish("/drive", FLOAT, {"data": 1.0}).result(20)
+    watcher.observer.ask(Publish("/drive", FLOAT, {"data": 1.0})).result(20)
     pid = pid_of(watcher)
     os.kill(pid, signal.SIGSTOP)
-    late = watcher.observer.publish("/drive", FLOAT, {"data": 2.0})
+    late = watcher.observer.ask(Publish("/drive", FLOAT, {"data": 2.0}))
     too_late_s = time.monotonic() + LATE_S
     wait_until(lambda: time.monotonic() > too_late_s, "it is too late", within_s=20)
     os.kill(pid, signal.SIGCONT)
@@ -175,11 +187,11 @@ def test_a_release_from_before_a_hang_is_given_up_and_a_stop_is_not(watcher: Wat
     teller.listen("/held", type_name=BOOL)
     watched(watcher)
     watcher.wait_for("/held", lambda row: row.subscribers, "a listener")
-    watcher.observer.prepare_publisher("/held", BOOL, latched=True).result(20)
+    watcher.observer.ask(PreparePublisher("/held", BOOL, latched=True)).result(20)
     pid = pid_of(watcher)
     os.kill(pid, signal.SIGSTOP)
-    stop = watcher.observer.publish("/held", BOOL, {"data": True}, latched=True)
-    release = watcher.observer.publish("/held", BOOL, {"data": False}, latched=True)
+    stop = watcher.observer.ask(Publish("/held", BOOL, {"data": True}, latched=True))
+    release = watcher.observer.ask(Publish("/held", BOOL, {"data": False}, latched=True))
     too_late_s = time.monotonic() + WITHDRAWN_LATE_S
     wait_until(lambda: time.monotonic() > too_late_s, "it is too late")
     os.kill(pid, signal.SIGCONT)
@@ -216,15 +228,15 @@ def test_importing_the_room_imports_neither_rclpy_nor_numpy(ros_domain: int) -> 
 
 WORKING = """
 import sys, threading, time
-from graph.observer.interest import Interest
 from graph.observer.observer import Observer
+from graph.data import Interest
+from graph.observer.requests import CallService, Publish
 seen = threading.Event()
 observer = Observer({domain})
 observer.start(lambda update: seen.set() if update.topics else None)
-observer.measure(True)
-observer.watch(["/rosout"])
-observer.publish("/x", "std_msgs/msg/String", {{"data": "x"}}, latched=True)
-call = observer.call("/y", "example_interfaces/srv/AddTwoInts", {{}}, timeout_s=60)
+observer.want(Interest(frozenset(["/rosout"]), all_topics=True))
+observer.ask(Publish("/x", "std_msgs/msg/String", {{"data": "x"}}, latched=True))
+call = observer.ask(CallService("/y", "example_interfaces/srv/AddTwoInts", {{}}, timeout_s=60))
 assert seen.wait(30)
 {end}
 """
@@ -262,15 +274,15 @@ def test_it_writes_nothing_and_ends_cleanly(ros_domain: int, end: str, tmp_path:
 def test_a_domain_that_is_refused_is_told_and_so_is_every_order(domain: int, discovery: str, word: str) -> None:
     updates: list[GraphUpdate] = []
     observer = Observer(domain, discovery)
-    before = observer.publish("/x", "std_msgs/msg/String", {"data": "x"})
+    before = observer.ask(Publish("/x", "std_msgs/msg/String", {"data": "x"}))
     observer.start(updates.append)
     with pytest.raises(ObserverError, match="ROS cannot be used"):
         before.result(30)
     wait_until(lambda: updates, "an update")
     assert word in updates[0].error
     with pytest.raises(ObserverError, match="ROS cannot be used"):
-        observer.publish("/x", "std_msgs/msg/String", {"data": "x"}).result(1)
-    result = observer.call("/y", "example_interfaces/srv/AddTwoInts", {}).result(1)
+        observer.ask(Publish("/x", "std_msgs/msg/String", {"data": "x"})).result(1)
+    result = observer.ask(CallService("/y", "example_interfaces/srv/AddTwoInts", {})).result(1)
     assert "ROS cannot be used" in result.error
     observer.stop()
 
@@ -324,8 +336,8 @@ def stopped(peer: Peer) -> Iterator[None]:
 
 def test_one_stopped_node_freezes_nothing(ros_domain: int, stuck: Peer, lively: Peer) -> None:
     watcher = TimedWatcher(ros_domain)
-    watcher.observer.watch(["/lively", "/stuck"])
-    watcher.observer.measure(all_topics=True)
+    watcher.want(watched=["/lively", "/stuck"])
+    watcher.want(all_topics=True)
     try:
         for topic in ("/lively", "/stuck"):
             watcher.wait_for(topic, lambda row: row.hz and abs(row.hz - 20) < 2, "its rate")
@@ -340,10 +352,10 @@ def test_one_stopped_node_freezes_nothing(ros_domain: int, stuck: Peer, lively: 
 
 def check_that_all_goes_on(watcher: TimedWatcher) -> None:
     watcher.longest_s = 0.0
-    unanswered = watcher.observer.call("/add", ADD, {"a": 1, "b": 2}, timeout_s=3)
-    parameters = watcher.observer.parameters("/stuck", timeout_s=3)
-    publishing = watcher.observer.publish("/lively", FLOAT, {"data": 3.0})
-    answered = watcher.observer.call("/other_add", ADD, {"a": 1, "b": 2}, timeout_s=20).result(30)
+    unanswered = watcher.observer.ask(CallService("/add", ADD, {"a": 1, "b": 2}, timeout_s=3))
+    parameters = watcher.observer.ask(ReadParameters("/stuck", timeout_s=3))
+    publishing = watcher.observer.ask(Publish("/lively", FLOAT, {"data": 3.0}))
+    answered = watcher.observer.ask(CallService("/other_add", ADD, {"a": 1, "b": 2}, timeout_s=20)).result(30)
     assert answered.response == {"sum": 3}
     seen = len(watcher.samples["/lively"])
     watcher.wait_for("/stuck", lambda row: row.trouble is not None, "it has gone quiet")

@@ -16,6 +16,7 @@ import graph.ros
 from graph.data import Publication
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
+from graph.observer.requests import Hold, PrepareHold, Publish, StartPublishing, StopCommanding, StopPublishingAll
 from graph.publishing.dead_man_switch import RESTS, HeldCommand
 from graph.publishing.outbox import PublishError
 from tests.ros.observing import Peer, Watcher
@@ -37,7 +38,7 @@ def known(watcher: Watcher, topic: str) -> None:
 def test_the_very_first_message_reaches_its_subscriber(talker: Peer, watcher: Watcher) -> None:
     talker.listen("/first", type_name=STRING)
     known(watcher, "/first")
-    assert watcher.observer.publish("/first", STRING, {"data": "вперед"}).result(10) == 1
+    assert watcher.observer.ask(Publish("/first", STRING, {"data": "вперед"})).result(10) == 1
     wait_until(lambda: talker.heard.get("/first") == ["вперед"], "the message")
 
 
@@ -50,18 +51,18 @@ def test_who_hears_it_is_counted_without_the_echo(talker: Peer, watcher: Watcher
     counts: list[dict[str, int]] = []
 
     def has_echo() -> bool:
-        futures = {topic: watcher.observer.publish(topic, STRING, {"data": "x"}) for topic in heard}
+        futures = {topic: watcher.observer.ask(Publish(topic, STRING, {"data": "x"})) for topic in heard}
         counts.append({topic: future.result(10) for topic, future in futures.items()})
         return all(watcher.of(topic) for topic in heard)
 
     try:
         # The echo is opened while the publishers are there, and counted at no moment.
         assert not has_echo()
-        watcher.observer.watch(heard)
+        watcher.want(watched=heard)
         wait_until(has_echo, "an echo of both")
         assert counts == [heard] * len(counts)
     finally:
-        watcher.observer.watch(())
+        watcher.want(watched=())
 
 
 @pytest.mark.parametrize("reliability", ["reliable", "best_effort"])
@@ -70,16 +71,16 @@ def test_every_kind_of_subscriber_hears_it(talker: Peer, watcher: Watcher, relia
     topic = f"/to/{reliability}/{durability}"
     talker.listen(topic, type_name=STRING, reliability=reliability, durability=durability)
     known(watcher, topic)
-    assert watcher.observer.publish(topic, STRING, {"data": "x"}).result(10) == 1
+    assert watcher.observer.ask(Publish(topic, STRING, {"data": "x"})).result(10) == 1
     wait_until(lambda: talker.heard.get(topic) == ["x"], "the message")
 
 
 def test_a_latched_message_reaches_those_who_come_later(talker: Peer, watcher: Watcher) -> None:
-    future = watcher.observer.publish("/emergency_stop", BOOL, {"data": True}, latched=True)
+    future = watcher.observer.ask(Publish("/emergency_stop", BOOL, {"data": True}, latched=True))
     assert future.result(10) == 0
     talker.listen("/emergency_stop", type_name=BOOL, durability="transient_local", depth=1)
     wait_until(lambda: talker.heard.get("/emergency_stop") == ["True"], "the stop of before")
-    watcher.observer.publish("/emergency_stop", BOOL, {"data": False}, latched=True)
+    watcher.observer.ask(Publish("/emergency_stop", BOOL, {"data": False}, latched=True))
     wait_until(lambda: talker.heard["/emergency_stop"] == ["True", "False"], "the release")
 
 
@@ -93,7 +94,7 @@ def test_what_cannot_be_published_is_refused_in_words(talker: Peer, watcher: Wat
         ("/9 lives", STRING, {"data": "x"}, PublishError, "/9 lives cannot be published"),
     ):
         with pytest.raises(error, match=word):
-            watcher.observer.publish(topic, type_name, value).result(10)
+            watcher.observer.ask(Publish(topic, type_name, value)).result(10)
 
 
 def test_last_words_reach_a_node_that_is_held_up(ros_domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -105,13 +106,13 @@ def test_last_words_reach_a_node_that_is_held_up(ros_domain: int, monkeypatch: p
         for one in listeners:
             one.listen("/last", type_name=STRING)
         watcher.wait_for("/last", lambda row: row.subscribers == len(listeners), "subscribers")
-        watcher.observer.publish("/last", STRING, {"data": "go"}).result(10)
+        watcher.observer.ask(Publish("/last", STRING, {"data": "go"})).result(10)
         for one in listeners:
             wait_until(lambda: one.heard.get("/last"), one.name)  # noqa: B023
             one.process.send_signal(signal.SIGSTOP)
         awake = threading.Timer(0.5, _wake, [listeners])
         awake.start()
-        watcher.observer.publish("/last", STRING, {"data": "stop"}).result(10)
+        watcher.observer.ask(Publish("/last", STRING, {"data": "stop"})).result(10)
         watcher.close()
         awake.join()
         for one in listeners:
@@ -132,7 +133,7 @@ def _wake(listeners: list[Peer]) -> None:
 
 
 def start(watcher: Watcher, topic: str, hz: float, value: float = 1.0) -> int:
-    return watcher.observer.start_publishing(topic, FLOAT, {"data": value}, hz).result(30)
+    return watcher.observer.ask(StartPublishing(topic, FLOAT, {"data": value}, hz)).result(30)
 
 
 def row(watcher: Watcher, number: int) -> Publication | None:
@@ -154,8 +155,8 @@ def is_silent(peer: InProcess, topic: str) -> bool:
 
 def test_all_are_stopped_even_one_that_has_not_begun(watcher: Watcher, peer: InProcess) -> None:
     start(watcher, "/one", 50.0)
-    waiting = watcher.observer.start_publishing("/other", FLOAT, {"data": 1.0}, 50.0)
-    watcher.observer.stop_publishing_all()
+    waiting = watcher.observer.ask(StartPublishing("/other", FLOAT, {"data": 1.0}, 50.0))
+    watcher.observer.ask(StopPublishingAll())
     waiting.result(30)
     wait_until(lambda: not watcher.update.publications, "no row")
     for topic in ("/one", "/other"):
@@ -181,7 +182,7 @@ def ready(watcher: Watcher, peer: InProcess) -> list[tuple[float, float]]:
 
     peer.node.create_subscription(AckermannDriveStamped, "/drive", hear, 100)
     watcher.wait_for("/drive", lambda row: row.subscribers == 1, "the robot listens")
-    watcher.observer.prepare_hold("/drive", DRIVE).result(30)
+    watcher.observer.ask(PrepareHold("/drive", DRIVE)).result(30)
     wait_until(lambda: peer.node.count_publishers("/drive"), "the publisher is found")
     return heard
 
@@ -192,7 +193,7 @@ def test_it_is_repeated_while_it_is_held_and_rests_when_nobody_says_more(watcher
     asked_s = began_s
     while asked_s - began_s < 1.0:
         asked_s = time.monotonic()
-        watcher.observer.hold("/drive", DRIVE, command(0.2, HELD_S)).result(30)
+        watcher.observer.ask(Hold("/drive", DRIVE, command(0.2, HELD_S))).result(30)
     # From here on nobody says anything: as if whoever held it had hung.
     let_go_s = time.monotonic()
     wait_until(lambda: len([1 for _at, speed in heard if speed == 0]) == RESTS, "rest")
@@ -207,7 +208,7 @@ def test_it_is_repeated_while_it_is_held_and_rests_when_nobody_says_more(watcher
 def test_an_observer_that_ends_rests_with_its_last_word(module_domain: int, peer: InProcess) -> None:
     watcher = Watcher(module_domain)
     heard = ready(watcher, peer)
-    watcher.observer.hold("/drive", DRIVE, command(0.2, 2.0)).result(30)
+    watcher.observer.ask(Hold("/drive", DRIVE, command(0.2, 2.0))).result(30)
     wait_until(lambda: heard, "it moves")
     watcher.close()
     wait_until(lambda: heard[-1][1] == 0, "rest")
@@ -215,11 +216,11 @@ def test_an_observer_that_ends_rests_with_its_last_word(module_domain: int, peer
 
 def test_all_that_commands_stops_at_once_and_the_observer_goes_on(watcher: Watcher, peer: InProcess) -> None:
     heard, numbers = ready(watcher, peer), peer.hear("/out", Float32)
-    watcher.observer.start_publishing("/out", "std_msgs/msg/Float32", {"data": 1.0}, 50.0).result(30)
-    watcher.observer.hold("/drive", DRIVE, command(0.2, 30.0)).result(30)
+    watcher.observer.ask(StartPublishing("/out", "std_msgs/msg/Float32", {"data": 1.0}, 50.0)).result(30)
+    watcher.observer.ask(Hold("/drive", DRIVE, command(0.2, 30.0))).result(30)
     wait_until(lambda: heard and numbers, "both are heard")
-    watcher.observer.stop_commanding()
+    watcher.observer.ask(StopCommanding())
     wait_until(lambda: heard[-1][1] == 0, "rest")
     wait_until(lambda: not peer.node.count_publishers("/out"), "no publisher")
-    watcher.observer.hold("/drive", DRIVE, command(0.3, 0.25)).result(30)
+    watcher.observer.ask(Hold("/drive", DRIVE, command(0.3, 0.25))).result(30)
     wait_until(lambda: heard[-1][1] > 0.25, "it can be driven again")

@@ -39,7 +39,7 @@ def test_every_kind_of_publisher_is_heard(talker: Peer, watcher: Watcher, reliab
     topic = f"/kind/{reliability}/{durability}"
     talker.advertise(topic, type_name=FLOAT, reliability=reliability, durability=durability)
     talker.repeat(topic, value={"data": 2.5}, hz=20)
-    watcher.observer.watch([topic])
+    watcher.want(watched=[topic])
     wait_until(lambda: watcher.of(topic), f"a sample of {topic}")
     assert watcher.of(topic)[0] == 2.5
     row = watcher.wait_for(topic, lambda row: row.measured, "is measured")
@@ -54,15 +54,15 @@ def test_only_the_newest_is_decoded_of_a_watched_topic_and_all_of_a_followed_one
 ) -> None:
     for topic in ("/burst/watched", "/burst/followed"):
         talker.advertise(topic, type_name="std_msgs/msg/Int32", depth=200)
-    watcher.observer.period_s = 0.5
-    watcher.observer.watch(["/burst/watched"])
-    watcher.observer.follow(["/burst/followed"])
+    watcher.want(period_s=0.5)
+    watcher.want(watched=["/burst/watched"])
+    watcher.want(followed=["/burst/followed"])
     for topic in ("/burst/watched", "/burst/followed"):
         wait_until(partial(talker.listeners, topic), f"{topic} subscribed")
         talker.publish(topic, value={"data": "NUMBER"}, times=100)
     wait_until(lambda: watcher.of("/burst/followed")[-1:] == [99], "the last followed")
     wait_until(lambda: watcher.of("/burst/watched")[-1:] == [99], "the last watched")
-    watcher.observer.period_s = 0.1
+    watcher.want(period_s=0.1)
     assert watcher.of("/burst/followed") == list(range(100))
     assert len(watcher.of("/burst/watched")) < 10
     watcher.wait_for("/burst/watched", lambda row: row.count == 100, "all counted")
@@ -72,7 +72,7 @@ def test_a_publisher_and_a_subscriber_that_do_not_fit_are_named(talker: Peer, wa
     talker.advertise("/misfit", type_name=FLOAT, reliability="best_effort")
     talker.listen("/misfit", type_name=FLOAT, reliability="reliable")
     talker.repeat("/misfit", value={"data": 1.0}, hz=20)
-    watcher.observer.watch(["/misfit"])
+    watcher.want(watched=["/misfit"])
     row = watcher.wait_for("/misfit", lambda row: row.trouble is Trouble.QOS_MISMATCH, "misfit")
     assert row.facts == {
         "policy": "reliability",
@@ -86,7 +86,7 @@ def test_a_publisher_and_a_subscriber_that_do_not_fit_are_named(talker: Peer, wa
 
 
 def test_a_publisher_that_comes_back_with_another_qos_or_type_is_heard_again(talker: Peer, watcher: Watcher) -> None:
-    watcher.observer.watch(["/changing"])
+    watcher.want(watched=["/changing"])
     talker.advertise("/changing", type_name=FLOAT)
     talker.repeat("/changing", value={"data": 1.0}, hz=20)
     wait_until(lambda: watcher.of("/changing")[-1:] == [1.0], "the first")
@@ -186,7 +186,7 @@ def _is_right(row: TopicRow | None, topic: str) -> bool:
 @pytest.mark.usefixtures("load")
 def test_all_eleven_rates_are_right(module_domain: int) -> None:
     watcher = Watcher(module_domain, period_s=0.25)
-    watcher.observer.measure(all_topics=True)
+    watcher.want(all_topics=True)
     try:
         wait_until(lambda: all(_is_right(watcher.row(t), t) for t in EXPECTED_HZ), "right rates")
         image = watcher.row(LOAD)
@@ -208,14 +208,14 @@ def test_a_topic_is_subscribed_only_while_somebody_looks(load: Peer, module_doma
         row = watcher.row(LOAD)
         assert row is not None
         assert (row.measured, row.hz) == (False, None)
-        watcher.observer.watch([LOAD])
+        watcher.want(watched=[LOAD])
         wait_until(lambda: load.listeners(LOAD) == 1, "watched")
         assert load.listeners(FLOATS[0]) == 0
-        watcher.observer.watch([])
+        watcher.want(watched=[])
         wait_until(lambda: load.listeners(LOAD) == 0, "left alone again")
-        watcher.observer.measure(all_topics=True)
+        watcher.want(all_topics=True)
         wait_until(lambda: load.listeners(FLOATS[0]) == 1, "measured")
-        watcher.observer.measure(all_topics=False)
+        watcher.want(all_topics=False)
         assert load.listeners(FLOATS[0]) == 1, "a light one is kept for whoever comes back"
         wait_until(lambda: load.listeners(FLOATS[0]) == 0, "not measured any more", within_s=90)
     finally:
@@ -230,13 +230,13 @@ def test_while_nobody_looks_slow_topics_are_measured_and_costly_ones_left_alone(
         talker.advertise(topic, type_name=FLOAT)
         talker.repeat(topic, value={"data": 1.0}, hz=hz)
     talker.advertise(large, type_name="sensor_msgs/msg/PointCloud2")
-    watcher.observer.measure(True, images=False, fast=False)
+    watcher.want(all_topics=True, all_images=False, all_fast=False)
     watcher.wait_for(slow, lambda row: row.hz is not None, "has a rate")
     watcher.wait_for(fast, lambda row: not row.measured and talker.listeners(fast) == 0, "was found to be fast")
     row = watcher.row(large)
     assert row is not None
     assert not row.measured
-    watcher.observer.measure(True)
+    watcher.want(all_topics=True)
     watcher.wait_for(fast, lambda row: row.hz is not None, "is measured for whoever looks")
     assert watcher.wait_for(slow, lambda row: row.hz is not None, "has its rate still").count > 1
     for topic in (slow, fast, large):
@@ -270,12 +270,12 @@ def test_the_relay_listens_while_somebody_looks(camera: Peer, watcher: Watcher, 
     ) as relay:
         assert relay.stdin is not None
         try:
-            watcher.observer.measure(all_topics=True)
+            watcher.want(all_topics=True)
             row: Any = watcher.wait_for(relayed, lambda row: row.publishers == 1, "is offered")
             let_updates_come(watcher, 5)
             assert not row.measured, "a list of topics asks for no pictures"
-            watcher.observer.measure(all_topics=False)
-            watcher.observer.watch_pictures([RAW])
+            watcher.want(all_topics=False)
+            watcher.want(pictures=[RAW])
             wait_until(lambda: COMPRESSED_IMAGE in kinds(watcher), "relayed pictures")
             sample = watcher.samples[RAW][-1]
             assert sample.value["format"] == "rgb8; jpeg compressed bgr8; of 2x2"
