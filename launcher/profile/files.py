@@ -28,15 +28,15 @@ def with_own_files(profile: Branch, folder: Path) -> Branch:
         name: MappingEntry(node.key_place, _with_full_paths(node.value, folder))
         for name, node in nodes.value.entries.items()
     }
-    every = MappingEntry(nodes.key_place, Branch(found, nodes.value.place, nodes.value.size))
-    return Branch({**profile.entries, "nodes": every}, profile.place, profile.size)
+    every = MappingEntry(nodes.key_place, Branch(found, nodes.value.place))
+    return Branch({**profile.entries, "nodes": every}, profile.place)
 
 
 def _with_full_paths(node: Tree, folder: Path) -> Tree:
     if not isinstance(node, Branch):
         return node
     parts = {key: _with_full_path(key, part, folder) for key, part in node.entries.items()}
-    return Branch(parts, node.place, node.size)
+    return Branch(parts, node.place)
 
 
 def _with_full_path(key: str, part: MappingEntry, folder: Path) -> MappingEntry:

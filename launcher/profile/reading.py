@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from launcher.profile.text import MAX_BYTES
 from text.sentences import say
 from text.yaml_faults import YamlError
-from text.yaml_reading import Rules, check_colons, mapping, read
-from text.yaml_tree import FilePlace, Scalar, empty
+from text.yaml_tree import FilePlace, Rules, Scalar, check_colons, empty, mapping, read
 
 if TYPE_CHECKING:
     from launcher.profile.problems import Problems
