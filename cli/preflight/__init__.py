@@ -27,7 +27,7 @@ MEDIA = {"camera": ask_camera, "sound": ask_sound}
 
 def examine(profile: Profile, find_ports: Callable[[], Sequence[SerialPort]] = serial_ports) -> list[Finding]:
     """Check all devices that the profile's nodes refer to, in parallel."""
-    said = profile.document.devices
+    said = profile.devices
     devices = {name: said[name] for name in profile.used if name in said}
     questions: dict[str, Callable[[], tuple[str, DeviceAnswer]]] = {
         **ask_ports(devices, find_ports),

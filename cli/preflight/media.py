@@ -16,7 +16,7 @@ from cli.child_python import python
 from cli.doctor.finding import Level
 from cli.doctor.serial_ports import permission_fix
 from cli.preflight.open_port import DeviceAnswer, holders
-from launcher.profile.device_variables import variable
+from launcher.profile.serial_choice import variable
 from text.i18n import _
 from text.nested import read_json
 

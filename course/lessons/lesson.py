@@ -24,7 +24,7 @@ from text.os_words import os_reason
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from launcher.profile.spec import Profile
+    from launcher.profile.model import Profile
     from launcher.profile.steps.model import StepDocument
 
 LANGUAGES = ("en", "ru")
@@ -54,7 +54,7 @@ class LessonFolder:
 
     @property
     def steps(self) -> tuple[StepDocument, ...]:
-        return self.profile.document.steps
+        return self.profile.steps
 
     @property
     def points(self) -> int:

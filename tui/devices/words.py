@@ -121,7 +121,7 @@ def _lessons_with_drivers() -> tuple[str, ...]:
         except LauncherError:
             continue
         if any(
-            node.document.run in DRIVERS or (node.document.run == HEAD and "port" in node.params) for node in nodes
+            node.run in DRIVERS or (node.run == HEAD and "port" in node.params) for node in nodes
         ):
             found.append(entry.name)
     return tuple(found)

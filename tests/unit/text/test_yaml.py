@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from graph.calls.parameters_values import WrongValueError, carried
 from graph.messages.yaml_reading import read_message
-from launcher.profile.problems import Problems
+from launcher.profile.reading import Problems
 from launcher.profile.reading import read_yaml as read_profile
 from text.nested import MAX_DEPTH, NestedTooDeeplyError, read_json
 from text.nested_yaml import read_yaml
