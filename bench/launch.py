@@ -161,7 +161,7 @@ def by_list(profile: Profile) -> Iterator[Started]:
         settings.write_text(json.dumps({"lesson": profile.path.stem, "tour": "seen"}))
         terminal = Terminal(argv, 120, 40, {**environment(), "XDG_CONFIG_HOME": config})
         try:
-            terminal.wait_for(profile.document.title["en"])
+            terminal.wait_for(profile.title["en"])
             time.sleep(READING_S)
             pid = terminal.process.pid
             started = Started(pid, time.monotonic(), cpu_s(descendants(pid)))

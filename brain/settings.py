@@ -27,8 +27,7 @@ from text.os_words import os_reason
 from text.sentences import say
 from text.suggestions import did_you_mean
 from text.yaml_faults import YamlError
-from text.yaml_reading import Rules, mapping, read
-from text.yaml_tree import field_name, place_of, plain
+from text.yaml_tree import Rules, field_name, mapping, place_of, plain, read
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

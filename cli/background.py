@@ -100,7 +100,7 @@ async def _up(options: Namespace) -> int:
         domain=options.domain,
         ports=serial_ports,
     )
-    profile = in_own_domain(profile, options.domain)
+    profile = in_own_domain(profile)
     try:
         link = await client.launch(profile, foreground=False, node_lang=language(), supervisor=options.supervisor)
     except AlreadyRunningError as error:
@@ -112,7 +112,7 @@ async def _up(options: Namespace) -> int:
             await asyncio.wait_for(_settle(link), UP_WITHIN_S)
         except asyncio.TimeoutError:
             say_error(_("not everything is up yet; `deck ps` shows the progress"))
-        optional = {name for name, node in profile.nodes.items() if node.document.optional}
+        optional = {name for name, node in profile.nodes.items() if node.optional}
         show(link.session, tuple(link.nodes.values()), optional)
         healthy = all(well(node, optional) for node in link.nodes.values())
     finally:

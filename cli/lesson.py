@@ -13,7 +13,7 @@ from course.proof.domains import unused_domains
 from course.proof.proof import ProofVerdict, incomplete, prove, variants
 from course.proof.skeleton import new_lesson
 from launcher.processes.interrupts import run
-from launcher.profile.text import shown
+from launcher.profile.defaults import shown
 from text.i18n import _, localized, ngettext
 from text.output import GREEN, RED, Paint, write
 from text.plain import plain

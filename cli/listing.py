@@ -10,9 +10,8 @@ from cli.commands import command
 from cli.options import add_json, add_profile_options
 from launcher.errors import ProfileError
 from launcher.profile.catalog import find_profile, list_profiles
-from launcher.profile.load import load_profile
-from launcher.profile.own_files import faults_of
-from launcher.profile.text import shown
+from launcher.profile.defaults import shown
+from launcher.profile.load import faults_of, load_profile
 from text.i18n import _, localized, ngettext, pick
 from text.output import DIM, RED, YELLOW, Paint, json_text, write
 from text.plain import plain

@@ -23,7 +23,7 @@ from cli.commands import command
 from cli.options import add_language, between, port
 from launcher.processes.ending import ENDING
 from launcher.processes.interrupts import run
-from launcher.profile.text import shown
+from launcher.profile.defaults import shown
 from text.i18n import _, localized
 from text.output import BOLD, RED, YELLOW, Paint, say_error, write
 from text.sentences import say

@@ -9,7 +9,7 @@ from cli.commands import command
 from course.folder.folder import NewFolder, new_folder, new_node
 from course.lessons.catalog import find_lesson
 from launcher.errors import UsageError
-from launcher.profile.text import shown
+from launcher.profile.defaults import shown
 from text.i18n import _
 from text.output import write
 from text.plain import plain

@@ -63,7 +63,7 @@ def run_command(options: Namespace) -> int:
         domain=options.domain,
         ports=serial_ports,
     )
-    profile = in_own_domain(profile, options.domain)
+    profile = in_own_domain(profile)
     if stop_is_kept(profile.domain):
         say_error(stop_words(profile.domain))
     return run(_main(profile, options))
@@ -199,7 +199,7 @@ class Run:
             return
         self._told[node.name] = now
         bad = node.crashed or node.restarts
-        if bad and not self._asked_to_stop and not self._profile.nodes[node.name].document.optional:
+        if bad and not self._asked_to_stop and not self._profile.nodes[node.name].optional:
             self._ever_bad.add(node.name)
         self.report.status(node)
 
@@ -217,7 +217,7 @@ class Run:
 
     def _summary(self, client: SupervisorClient, reason: str, seconds: float) -> int:
         nodes = self._before_stop or client.nodes
-        optional = {name for name, node in self._profile.nodes.items() if node.document.optional}
+        optional = {name for name, node in self._profile.nodes.items() if node.optional}
         healthy = {
             name: name not in self._ever_bad and well(node, optional, on_the_way=self._on_the_way)
             for name, node in nodes.items()

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from launcher.profile.load import Profile
 
 
-def in_own_domain(profile: Profile, asked: int | None) -> Profile:
+def in_own_domain(profile: Profile) -> Profile:
     """Return the profile in the domain it is to run in, and say what has to be said of it."""
-    settled = apart_from_classmates(profile, asked)
+    settled = apart_from_classmates(profile)
     if settled.domain != profile.domain:
         words = _("somebody else on this account is in domain {taken}: this one runs in domain {domain}")
         say_error(words.format(taken=profile.domain, domain=settled.domain))

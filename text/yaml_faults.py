@@ -1,29 +1,28 @@
 """What is wrong with a YAML text, in words that help whoever typed it: PyYAML's are for its makers.
 
-`events` reads for every room: the same fault gets the same message everywhere.
+`composed` reads for every room: the same fault gets the same message everywhere.
 """
 
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import yaml
 
 from text.i18n import N_
-from text.sentences import say
+from text.sentences import Words, say
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from text.sentences import Words
-    from text.yaml_tree import FilePlace, Where
+PLAIN = "plain"
+"""The tag of a word without quotes; what it means, `text.yaml_scalars` knows."""
+LONGEST_VALUE = 30
+"""Characters of a value that an error repeats."""
 
 
 class YamlError(ValueError):
     """A text is not the YAML that was asked for; str() is `line:column: what is wrong`."""
 
-    def __init__(self, line: int, column: int, message: str, where: Where = ()) -> None:
+    def __init__(self, line: int, column: int, message: str, where: tuple[str | int, ...] = ()) -> None:
         """Say what is wrong at a place, counted from 1; `where` is the path of a wrong value."""
         super().__init__(f"{line}:{column}: {message}")
         self.line = line
@@ -34,24 +33,37 @@ class YamlError(ValueError):
         """A path such as `("nodes", "sonar_front")`, empty for a fault in the text itself."""
 
 
-LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_SAFE_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def fault(place: FilePlace, message: str, where: Where = ()) -> YamlError:
-    """Return the error to raise for a place; `where` is the path of the value that is wrong."""
-    return YamlError(place.line, place.column, message, where)
+class _Loader(_SAFE_LOADER):  # type: ignore[misc]
+    """Makes nodes of a text, without deciding what a word without quotes means."""
+
+    yaml_implicit_resolvers = {None: [(PLAIN, re.compile(""))]}  # noqa: RUF012 - as PyYAML has it
 
 
-def events(text: str) -> Iterator[yaml.Event]:
-    """Yield what stands in a text, piece by piece. Raises YamlError."""
+def composed(text: str, *, shares: bool) -> yaml.Node | None:
+    """Return the only document of a text, None if there is none. Raises YamlError.
+
+    `shares`: whether anchors and aliases are allowed.
+    """
     try:
         text.encode()
     except UnicodeEncodeError as error:
         raise character_error(text, error.start) from error
     try:
-        yield from yaml.parse(text, Loader=LOADER)
+        if not shares and ("&" in text or "*" in text):
+            _refuse_anchors(text)
+        return yaml.compose(text, Loader=_Loader)
     except yaml.YAMLError as error:
         raise _syntax_error(error, text) from error
+
+
+def _refuse_anchors(text: str) -> None:
+    for event in yaml.parse(text, Loader=_SAFE_LOADER):
+        if getattr(event, "anchor", None) is not None and event.start_mark is not None:
+            words = say("anchors and aliases are refused: write the value out")
+            raise YamlError(event.start_mark.line + 1, event.start_mark.column + 1, words)
 
 
 _LIST = N_("this list is not closed: a ',' or a ']' is missing")
@@ -82,6 +94,9 @@ _WORDS = {
     "block sequence entries are not allowed": N_(
         "a list cannot begin here: put it on a line of its own, or the '-' in quotes"
     ),
+    "but found another document": N_("a second document begins here, and only one is read"),
+    "found undefined alias": N_("this alias refers to nothing: there is no such anchor before it"),
+    "second occurrence": N_("there is an anchor of this name already"),
 }
 _NO_COLON_FOUND = "could not find expected ':'"
 _DASH = re.compile(r"\s*-[^\s-]")
@@ -89,7 +104,6 @@ _NO_SPACE = N_("a space is missing after this '-', or a ':' in this line")
 _COLON = "mapping values are not allowed"
 _SECOND_COLON = N_("a second ':' in one line: put the text that holds it in quotes")
 _NO_COLON = N_("this line does not fit the one above: a ':' is missing there, or the indentation differs")
-
 
 _LIKE_SPACE = "\u00a0\u1680\u2000-\u200a\u202f\u205f\u3000"
 _ZERO_WIDTH = "\u00ad\u180e\u200b\u2060\ufeff"
@@ -102,20 +116,15 @@ _IN_NAME = re.compile(f"[{_ODD}{_INVISIBLE}]")
 _HIDDEN = re.compile(f"[{_ZERO_WIDTH}{_INVISIBLE}]")
 _NUMBER = re.compile(r"[-+.0-9][0-9.eE+-]*")
 _INDENTED = re.compile(rf"^ *[{_ODD}]")
-_WIDE = {
-    "\N{FULLWIDTH COLON}": ":",
-    "\N{FULLWIDTH COMMA}": ",",
-    "\N{FULLWIDTH LEFT CURLY BRACKET}": "{",
-    "\N{FULLWIDTH RIGHT CURLY BRACKET}": "}",
-    "\N{FULLWIDTH LEFT SQUARE BRACKET}": "[",
-    "\N{FULLWIDTH RIGHT SQUARE BRACKET}": "]",
-}
-"""What Chinese and Japanese keyboards write, and what only YAML understands."""
-_WIDE_COLON = re.compile("[A-Za-z][A-Za-z0-9_]* ?(?P<odd>\N{FULLWIDTH COLON})")
+_WIDE = dict(zip("\uff1a\uff0c\uff5b\uff5d\uff3b\uff3d", ":,{}[]", strict=True))
+"""What Chinese and Japanese keyboards write (full width), and what only YAML understands."""
+_WIDE_COLON = re.compile("[A-Za-z][A-Za-z0-9_]* ?(?P<odd>\uff1a)")
 _WIDE_MEANT = re.compile(f"(?<=[A-Za-z0-9_}}\\] ])[{''.join(_WIDE)}]")
 _QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'|(?<= )#.*")
 _BREAKS = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 """What ends a line in YAML 1.1."""
+_WITHOUT_SPACE = re.compile(r"(?P<name>[A-Za-z]\w*) ?:(?P<value>[^/\s][^\n]*)")
+"""A name and its value in one word; not `http://`."""
 
 
 def space_meant(word: str, *, is_name: bool) -> int | None:
@@ -123,6 +132,8 @@ def space_meant(word: str, *, is_name: bool) -> int | None:
 
     None: it has none. Between two words of a value it may be meant; in a name it never is.
     """
+    if word.isascii():
+        return None
     if is_name:
         found = _IN_NAME.search(word)
         return found.start() if found else wide_colon(word)
@@ -139,6 +150,16 @@ def wide_colon(text: str) -> int | None:
     return found.start("odd") if found else None
 
 
+def space_missing(text: str) -> Words | None:
+    """Say where a space is missing in `x:0`, which is one word; None if it is something else."""
+    found = _WITHOUT_SPACE.match(text)
+    if found is None:
+        return None
+    name, value = found["name"], found["value"]
+    value = value if len(value) <= LONGEST_VALUE else f"{value[:LONGEST_VALUE]}…"
+    return say("a space is missing after the ':': {mended}", mended=f"{name}: {value}")
+
+
 def not_as_it_seems(line: int, column: int, character: str) -> YamlError:
     """Return that a character only looks like another one, or like nothing."""
     code = f"{ord(character):04X}"
@@ -153,27 +174,9 @@ def not_as_it_seems(line: int, column: int, character: str) -> YamlError:
     return YamlError(line, column, words)
 
 
-LONGEST_VALUE = 30
-"""Characters of a value that an error repeats."""
-_WITHOUT_SPACE = re.compile(r"(?P<name>[A-Za-z]\w*) ?:(?P<value>[^/\s][^\n]*)")
-"""A name and its value in one word; not `http://`."""
-
-
-def space_missing(text: str) -> Words | None:
-    """Say where a space is missing in `x:0`, which is one word; None if it is something else."""
-    found = _WITHOUT_SPACE.match(text)
-    if found is None:
-        return None
-    name, value = found["name"], found["value"]
-    value = value if len(value) <= LONGEST_VALUE else f"{value[:LONGEST_VALUE]}…"
-    return say("a space is missing after the ':': {mended}", mended=f"{name}: {value}")
-
-
 def character_error(text: str, offset: int) -> YamlError:
     """Return that YAML does not allow a character."""
-    before = text[:offset]
-    line = before.count("\n") + 1
-    column = offset - (before.rfind("\n") + 1) + 1
+    line, column = text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset)
     code = f"{ord(text[offset]):04X}"
     return YamlError(line, column, say("the character U+{code} is not allowed: remove it", code=code))
 
@@ -181,10 +184,8 @@ def character_error(text: str, offset: int) -> YamlError:
 def _syntax_error(error: yaml.YAMLError, text: str) -> YamlError:
     mark = getattr(error, "problem_mark", None)
     if not isinstance(error, yaml.MarkedYAMLError) or mark is None:
-        for offset, character in enumerate(text):
-            if yaml.reader.Reader.NON_PRINTABLE.match(character):
-                return character_error(text, offset)
-        return YamlError(1, 1, say("not YAML: {reason}", reason=str(error)))
+        odd = yaml.reader.Reader.NON_PRINTABLE.search(text)
+        return character_error(text, odd.start()) if odd else YamlError(1, 1, _unknown(str(error)))
     lines = _BREAKS.split(text)
     content = lines[mark.line] if mark.line < len(lines) else ""
     seen = _unseen(mark.line + 1, content) or _hidden_break(text[: mark.index + 1])
@@ -201,7 +202,11 @@ def _syntax_error(error: yaml.YAMLError, text: str) -> YamlError:
         meant = _NO_SPACE
     meant = meant or _meant(found, _WORDS)
     reason = ", ".join(words for words in (error.problem, error.context) if words)
-    return YamlError(*place, say(meant) if meant else say("not YAML: {reason}", reason=reason))
+    return YamlError(*place, say(meant) if meant else _unknown(reason))
+
+
+def _unknown(reason: str) -> Words:
+    return say("not YAML: {reason}", reason=reason)
 
 
 def _unseen(line: int, content: str) -> YamlError | None:

@@ -21,9 +21,8 @@ from cli.doctor.checks import permission_fix
 from cli.doctor.finding import Finding, Level
 from cli.preflight.answers import ask
 from cli.preflight.open_port import DeviceAnswer, bad, good, held, holders, opened
-from launcher.profile.device_variables import variable
 from launcher.profile.devices import wanted
-from launcher.profile.serial_choice import AUTO, UnresolvedPort, choose
+from launcher.profile.serial_choice import AUTO, UnresolvedPort, choose, variable
 from launcher.serial_ports import lasting_names, serial_ports
 from text.i18n import _, localized
 from text.nested import read_json
@@ -55,7 +54,7 @@ SOUND = Path(__file__).resolve().parents[2] / "nodes" / "drivers" / "sound_devic
 
 def examine(profile: Profile, find_ports: Callable[[], Sequence[SerialPort]] = serial_ports) -> list[Finding]:
     """Check all devices that the profile's nodes refer to, in parallel."""
-    said = profile.document.devices
+    said = profile.devices
     devices = {name: said[name] for name in profile.used if name in said}
     media = {"camera": ask_camera, "sound": ask_sound}
     questions = ask_ports(devices, find_ports)

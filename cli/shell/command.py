@@ -111,7 +111,7 @@ def _place(options: Namespace) -> tuple[str, int, str | tuple[str, ...]]:
         from launcher.profile.load import load_profile
 
         profile = load_profile(find_profile(options.profile), domain=options.domain)
-        return profile.name, profile.domain, options.discovery or profile.document.discovery
+        return profile.name, profile.domain, options.discovery or profile.discovery
     return session.name, session.domain, options.discovery or session.discovery
 
 

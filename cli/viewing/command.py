@@ -191,7 +191,7 @@ def _lines(opened: ViewOpened, ssh: str) -> list[str]:
 
 def _rviz(domain: int, discovery: str | tuple[str, ...]) -> NoReturn:
     from cli.shell.command import environment_in
-    from launcher.profile.text import SHIPPED
+    from launcher.profile.defaults import SHIPPED
     from view.installed import rviz_program
 
     program = _have(rviz_program)

@@ -14,7 +14,7 @@ from launcher.profile.load import load_profile
 
 if TYPE_CHECKING:
     from course.lessons.lesson import LessonFolder
-    from launcher.profile.spec import Profile
+    from launcher.profile.model import Profile
     from launcher.status import NodeStatus, SessionInfo
 
 OF_DECK = "nodes."
@@ -34,7 +34,7 @@ def programs_for(session: SessionInfo, node: NodeStatus) -> list[Path | str | No
     profile = load_profile(session.profile, hardware=session.hardware)
     lesson = lesson_of(profile)
     spec = profile.nodes.get(node.name)
-    own_at_first = spec is not None and bool(spec.own_file)
+    own_at_first = spec is not None and bool(spec.file)
     if bool(node.file) != own_at_first:
         return [None]
     if node.file:
@@ -45,7 +45,7 @@ def programs_for(session: SessionInfo, node: NodeStatus) -> list[Path | str | No
 def _of_deck(lesson: LessonFolder | None, node: str) -> list[str]:
     """Return Deck's node of this name in a lesson."""
     spec = None if lesson is None else lesson.profile.nodes.get(node)
-    run = "" if spec is None else spec.document.run or ""
+    run = "" if spec is None else spec.run or ""
     return [run] if run.startswith(OF_DECK) else []
 
 
@@ -72,4 +72,4 @@ def _profile_in(folder: Path) -> Profile | None:
 
 def _file_in(profile: Profile, node: str) -> str:
     spec = profile.nodes.get(node)
-    return "" if spec is None else spec.own_file
+    return "" if spec is None else spec.file

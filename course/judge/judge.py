@@ -328,7 +328,7 @@ async def judging(
     `functions`: those of the lesson's checks, if they are not to be read when their turn comes.
     """
     observer = Observer(client.session.domain, client.session.discovery, graph_s=PERIOD_S)
-    values = draw(lesson.profile.document.values, seed)
+    values = draw(lesson.profile.values, seed)
     evidence = Evidence(observer, client, lesson.path, values, functions or {})
     loop = asyncio.get_running_loop()
 

@@ -14,7 +14,7 @@ from text.sentences import say
 from text.suggestions import did_you_mean
 
 if TYPE_CHECKING:
-    from launcher.profile.spec import Profile
+    from launcher.profile.model import Profile
 
 SHIPPED = Path(__file__).resolve().parents[2] / "lessons"
 COURSE = "DECK_COURSE"
@@ -64,7 +64,7 @@ def next_lesson(lesson: LessonFolder) -> LessonFolder | None:
 
 def lesson_of(profile: Profile) -> LessonFolder | None:
     """Return the lesson that a profile belongs to, by its number; None if there is none."""
-    number = profile.document.lesson
+    number = profile.lesson
     if number:
         fits = fitting(number, lessons())
         return lessons()[fits[0]] if len(fits) == 1 else None

@@ -26,7 +26,7 @@ from text.sentences import say
 
 if TYPE_CHECKING:
     from course.lessons.mistakes import Mistake
-    from launcher.profile.spec import Profile
+    from launcher.profile.model import Profile
     from launcher.profile.steps.model import StepDocument
 
 LANGUAGES = ("en", "ru")
@@ -56,7 +56,7 @@ class LessonFolder:
 
     @property
     def steps(self) -> tuple[StepDocument, ...]:
-        return self.profile.document.steps
+        return self.profile.steps
 
     @property
     def points(self) -> int:

@@ -173,7 +173,7 @@ async def _until_it_fails(variant: Variant, places: Places, domain: int, seed: i
         until = variant.fails_at or ""
         async with trial(variant.lesson, places, seed=seed, domain=domain) as judge:
             await judge.once(until=until, on_step=take)
-    values = draw(variant.lesson.profile.document.values, seed)
+    values = draw(variant.lesson.profile.values, seed)
     return LessonResult(seed, values, tuple(steps))
 
 

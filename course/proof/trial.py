@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import shutil
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from course.judge.judge import judging
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from course.judge.judge import Judge
     from course.lessons.lesson import LessonFolder
     from launcher.client.start import StartingSupervisor
-    from launcher.profile.spec import NodeSpec, Profile
+    from launcher.profile.model import Profile
+    from launcher.profile.node import Node
 
 PARTING_S = 12.0
 """How long the nodes may take to end when all has been judged."""
@@ -105,15 +106,11 @@ async def trial(
 def _at_home(profile: Profile, lesson: LessonFolder, places: Places) -> Profile:
     """Return the profile for nodes that work in these folders, and meet nobody on the network."""
 
-    def at_home(node: NodeSpec) -> NodeSpec:
+    def at_home(node: Node) -> Node:
         if node.is_ours:
-            return replace(node, cwd=node.cwd or lesson.starter)
-        env = {**places.environment, **node.document.env}
-        document = node.document.model_copy(update={"env": env})
-        return replace(node, cwd=node.cwd or places.files, document=document)
+            return node.model_copy(update={"cwd": node.cwd or str(lesson.starter)})
+        env = {**places.environment, **node.env}
+        return node.model_copy(update={"cwd": node.cwd or str(places.files), "env": env})
 
-    return replace(
-        profile,
-        document=profile.document.model_copy(update={"discovery": "localhost"}),
-        nodes={name: at_home(node) for name, node in profile.nodes.items()},
-    )
+    nodes = {name: at_home(node) for name, node in profile.nodes.items()}
+    return profile.model_copy(update={"discovery": "localhost", "nodes": nodes})

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 
 from graph.messages.yaml_reading import RULES, read
 from text.sentences import say
-from text.yaml_faults import YamlError, character_error, fault
-from text.yaml_reading import check_colons, mapping
+from text.yaml_faults import YamlError, character_error
 from text.yaml_scalars import quoted, written
-from text.yaml_tree import Branch, Listing, Scalar
+from text.yaml_tree import Branch, Listing, Scalar, check_colons, fault, mapping
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from text.sentences import say
 from text.yaml_faults import YamlError
-from text.yaml_reading import Rules, check_colons, mapping
-from text.yaml_reading import read as read_tree
-from text.yaml_tree import Listing, empty, plain
+from text.yaml_tree import Listing, Rules, check_colons, empty, mapping, plain
+from text.yaml_tree import read as read_tree
 
 if TYPE_CHECKING:
     from text.yaml_tree import Branch, Tree

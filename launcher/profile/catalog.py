@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from launcher.errors import LauncherError, ProfileError, ProfileNotFoundError, UsageError
-from launcher.profile.defaults import FOLDERS_OWN
-from launcher.profile.text import SHIPPED
+from launcher.profile.defaults import FOLDERS_OWN, SHIPPED
 from text.sentences import say
 from text.suggestions import near
 
@@ -150,9 +149,9 @@ def _entry(path: Path, hardware: str) -> ProfileEntry:
     return ProfileEntry(
         name=profile.name,
         path=profile.path,
-        title=profile.document.title,
-        about=profile.document.about,
-        lesson=profile.document.lesson,
+        title=profile.title,
+        about=profile.about,
+        lesson=profile.lesson,
         nodes=tuple(profile.nodes),
-        panels=profile.document.panels,
+        panels=profile.panels,
     )

@@ -1,128 +1,113 @@
-"""Checks across the parts of a profile: names, commands, needs, modules."""
+"""Checks across the parts of a profile: names, commands, needs, modules; ids and `${...}` of steps."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
-from launcher.profile.files import file_of, files_beside
-from launcher.profile.model import LONGEST_NODE_NAME, NODE_NAME, is_file
+from launcher.profile.defaults import shown
+from launcher.profile.model import Profile
 from launcher.profile.modules import is_installed, likely_names
-from launcher.profile.text import shown
+from launcher.profile.node import LONGEST_NODE_NAME, NODE_NAME, Node, Ready, is_file
+from launcher.profile.reading import Problems, file_of, files_beside
+from launcher.profile.steps.checks import CheckDocument, EndsCheck, FieldCheck, LogCheck, PublishCheck, kind_of
+from launcher.profile.steps.draw import draw
+from launcher.profile.steps.expressions import Drawn, ExpressionError, evaluate, expressions
+from launcher.profile.steps.model import ValueDocument
 from launcher.profile.when import WhenError, holds
 from text.sentences import say
 from text.suggestions import did_you_mean
-from text.yaml_tree import empty, find, place_of
+from text.yaml_tree import Where, empty, find, place_of
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from launcher.profile.model import NodeDocument, ReadyDocument
-    from launcher.profile.problems import Problems
-    from text.yaml_tree import Branch, Where
+PASSIVE = ("field", "log", "nothing", "python", "image", "rate")
+"""What may stand in `then`: what only looks."""
 
 
-def applies(name: str, node: NodeDocument, hardware: str, tree: Branch, problems: Problems) -> bool:
+def applies(node: Node, hardware: str, problems: Problems) -> bool:
     """Whether a node's `when` allows it to run on this hardware."""
-    if node.when is None:
-        return True
     try:
-        return holds(node.when, {"hardware": hardware})
+        return node.when is None or holds(node.when, {"hardware": hardware})
     except WhenError as error:
-        where = ("nodes", name, "when")
-        problems.add(place_of(tree, where), where, error.message, error.hint)
+        problems.at(("nodes", node.name, "when"), error.message, error.hint)
         return True
 
 
-def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) -> None:
-    """Check one node on its own: its name, and that it has exactly one of `run` and `exec`."""
-    where = ("nodes", name)
-    place = place_of(tree, where, key=True)
-    if not NODE_NAME.fullmatch(name) or len(name) > LONGEST_NODE_NAME:
-        problems.add(
-            place,
-            where,
-            say("{name!r} is not a valid name for a ROS node", name=name),
-            say("letters, digits and _, not beginning with a digit"),
-        )
-    given = {key for key in ("run", "exec") if not empty(find(tree, (*where, key)))}
+def check_node(node: Node, problems: Problems) -> None:
+    """Check one node on its own: its name, its command, its condition."""
+    where = ("nodes", node.name)
+    if not NODE_NAME.fullmatch(node.name) or len(node.name) > LONGEST_NODE_NAME:
+        message = say("{name!r} is not a valid name for a ROS node", name=node.name)
+        problems.at(where, message, say("letters, digits and _, not beginning with a digit"), key=True)
+    given = [key for key in ("run", "exec") if not empty(find(problems.tree, (*where, key)))]
     if not given:
-        problems.add(place, where, say("needs `run` or `exec`"), say("write run: nodes.hello"))
+        problems.at(where, say("needs `run` or `exec`"), say("write run: nodes.hello"), key=True)
     elif len(given) > 1:
-        message = say("has both `run` and `exec`")
-        problems.add(place_of(tree, (*where, "exec"), key=True), where, message, say("keep one"))
+        place = place_of(problems.tree, (*where, "exec"), key=True)
+        problems.add(place, where, say("has both `run` and `exec`"), say("keep one"))
     if node.ready is not None:
-        if not _is_one_condition(node, node.ready):
-            problems.add(
-                place_of(tree, (*where, "ready")),
-                (*where, "ready"),
-                say("expected exactly one of topic, service, node, lifecycle"),
-                say("write ready: {topic: /chatter, within: 10}"),
-            )
-        for key in ("type", "rate"):
-            if getattr(node.ready, key) is not None and node.ready.topic is None:
-                problems.add(
-                    place_of(tree, (*where, "ready", key), key=True),
-                    (*where, "ready", key),
-                    say("`{key}` belongs to a topic, but none is given here", key=key),
-                    say("write ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1}"),
-                )
+        _check_ready(node, node.ready, problems)
 
 
-def _is_one_condition(node: NodeDocument, ready: ReadyDocument) -> bool:
-    """Whether one thing is waited for; a node whose lifecycle is meant may be named, too."""
+def _check_ready(node: Node, ready: Ready, problems: Problems) -> None:
+    where = ("nodes", node.name, "ready")
+    # A node whose lifecycle is meant may be named, too.
     one = ready.lifecycle if node.lifecycle else ready.lifecycle or ready.node
     count = sum(each is not None for each in (ready.topic, ready.service, one))
-    return count == 1 or (count == 0 and node.lifecycle is not None)
+    if count != 1 and (count or node.lifecycle is None):
+        message = say("expected exactly one of topic, service, node, lifecycle")
+        problems.at(where, message, say("write ready: {topic: /chatter, within: 10}"))
+    for key in ("type", "rate"):
+        if getattr(ready, key) is not None and ready.topic is None:
+            problems.at(
+                (*where, key),
+                say("`{key}` belongs to a topic, but none is given here", key=key),
+                say("write ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1}"),
+                key=True,
+            )
 
 
-def check_run(name: str, run: str, folders: Sequence[Path], tree: Branch, problems: Problems) -> None:
-    """Check that the module or file that a node runs exists.
+def check_files(node: Node, folder: Path, problems: Problems) -> None:
+    """Check that the module or file that a node runs exists, and the directory it runs in.
 
-    `folders`: that of the profile, and others where users may expect modules; Deck does not search
-    them.
+    `folder`: that of the profile, where users may expect modules; Deck does not search it.
     """
-    where = ("nodes", name, "run")
+    # Unlike Path.is_dir and Path.is_file, those of os.path do not raise for a name that nothing can have.
+    if node.cwd is not None and not os.path.isdir(node.cwd):  # noqa: PTH112
+        message = say("there is no directory {path}", path=shown(Path(node.cwd)))
+        problems.at(("nodes", node.name, "cwd"), message)
+    run, where = node.run, ("nodes", node.name, "run")
+    if run is None:
+        return
     if is_file(run):
-        # Unlike Path.is_file, this does not raise for a name that no file can have.
         if not os.path.isfile(run):  # noqa: PTH113
             file = Path(run)
-            message = say("there is no file {path}", path=shown(file))
             hint = did_you_mean(f"./{file.name}", files_beside(file.parent))
-            problems.add(place_of(tree, where), where, message, hint)
+            problems.at(where, say("there is no file {path}", path=shown(file)), hint)
     elif not is_installed(run):
-        message = say("there is no module {module!r}", module=run)
-        own = file_of(run.removesuffix(".py"), folders, folders[0])
+        own = file_of(run.removesuffix(".py"), [folder, Path(node.cwd or Path.cwd())], folder)
         hint = say("for your own file write run: {file}", file=own) if own else ""
-        problems.add(place_of(tree, where), where, message, hint or did_you_mean(run, likely_names(run)))
+        problems.at(
+            where, say("there is no module {module!r}", module=run), hint or did_you_mean(run, likely_names(run))
+        )
 
 
-def check_needs(
-    needs: Mapping[str, tuple[str, ...]],
-    everybody: Sequence[str],
-    optional: set[str],
-    tree: Branch,
-    problems: Problems,
-) -> None:
+def check_needs(nodes: Mapping[str, Node], everybody: Sequence[str], problems: Problems) -> None:
     """Check that the nodes needed by others exist, are not optional, and form no cycles.
 
-    `needs`: those of the nodes that run; `everybody`: all node names in the file.
+    `nodes`: those that run; `everybody`: all node names in the file.
     """
-    for name, needed in needs.items():
-        for index, other in enumerate(needed):
+    for name, node in nodes.items():
+        for index, other in enumerate(node.needs):
             where: Where = ("nodes", name, "needs", index)
             if other not in everybody:
-                message = say("there is no node {name!r}", name=other)
-                problems.add(place_of(tree, where), where, message, did_you_mean(other, everybody))
-            elif other in optional:
-                message = say("{name} is optional, so nothing can need it", name=other)
-                problems.add(place_of(tree, where), where, message)
-    for cycle in _cycles(needs):
-        where = ("nodes", cycle[0], "needs")
-        path = " -> ".join([*cycle, cycle[0]])
-        message = say("nodes need each other in a cycle: {cycle}", cycle=path)
-        problems.add(place_of(tree, where), where, message, say("remove one of the needs"))
+                problems.at(where, say("there is no node {name!r}", name=other), did_you_mean(other, everybody))
+            elif other in nodes and nodes[other].optional:
+                problems.at(where, say("{name} is optional, so nothing can need it", name=other))
+    for cycle in _cycles({name: node.needs for name, node in nodes.items()}):
+        message = say("nodes need each other in a cycle: {cycle}", cycle=" -> ".join([*cycle, cycle[0]]))
+        problems.at(("nodes", cycle[0], "needs"), message, say("remove one of the needs"))
 
 
 def _cycles(needs: Mapping[str, tuple[str, ...]]) -> list[list[str]]:
@@ -147,3 +132,79 @@ def _cycles(needs: Mapping[str, tuple[str, ...]]) -> list[list[str]]:
                 path.append(name)
                 branches.append(iter(needs[name]))
     return cycles
+
+
+def check_steps(profile: Profile, nodes: Collection[str], problems: Problems) -> None:
+    """Check the steps and values of a profile with these nodes."""
+    for name, value in profile.values.items():
+        _check_value(("values", name), value, problems)
+    if problems.found:
+        return
+    values = draw(profile.values, seed=1)
+    before: list[str] = []
+    for index, step in enumerate(profile.steps):
+        where: Where = ("steps", index)
+        if step.id in before:
+            problems.at((*where, "id"), say("there is a step {id!r} already", id=step.id))
+        for number, other in enumerate(step.needs):
+            if other not in before:
+                message = say("no step before this one is called {id!r}", id=other)
+                problems.at((*where, "needs", number), message, did_you_mean(other, before))
+        before.append(step.id)
+        _check_checks(step.checks, (*where, "checks"), nodes, problems)
+        for here, text in _texts(step.checks, (*where, "checks")):
+            _check_text(text, here, values, problems)
+
+
+def _check_value(where: Where, value: ValueDocument, problems: Problems) -> None:
+    if (value.between is None) == (not value.one_of):
+        problems.at(where, say("expected exactly one of between, one_of"))
+    elif value.between is not None and value.between[0] >= value.between[1]:
+        problems.at(where, say("the first number must be the smaller one"))
+    elif not all(isinstance(each, (str, int, float)) for each in value.one_of):
+        problems.at(where, say("expected texts or numbers"))
+
+
+def _check_checks(
+    checks: tuple[CheckDocument, ...], above: Where, nodes: Collection[str], problems: Problems
+) -> None:
+    for index, check in enumerate(checks):
+        where = (*above, index)
+        if isinstance(check, (LogCheck, EndsCheck)):
+            kind = str(kind_of(check))
+            name = str(getattr(check, kind))
+            if name not in nodes:
+                message = say("there is no node {name!r}", name=name)
+                problems.at((*where, kind), message, did_you_mean(name, nodes))
+        if isinstance(check, FieldCheck):
+            given = (check.between, check.equals, check.changes, check.matches)
+            if sum(each is not None for each in given) != 1:
+                problems.at(where, say("expected exactly one of between, equals, changes, matches"))
+        if isinstance(check, PublishCheck):
+            then = (*where, "then")
+            for number, follows in enumerate(check.then):
+                if kind_of(follows) not in PASSIVE:
+                    problems.at((*then, number), say("only these can follow: {kinds}", kinds=", ".join(PASSIVE)))
+            _check_checks(check.then, then, nodes, problems)
+
+
+def _texts(value: Any, where: Where) -> Iterator[tuple[Where, str]]:  # noqa: ANN401 - any YAML
+    if isinstance(value, CheckDocument):
+        value = value.model_dump(by_alias=True)
+    if isinstance(value, str):
+        yield where, value
+    elif isinstance(value, dict):
+        for key, inner in value.items():
+            if key not in ("look", "what"):
+                yield from _texts(inner, (*where, key))
+    elif isinstance(value, (list, tuple)):
+        for index, inner in enumerate(value):
+            yield from _texts(inner, (*where, index))
+
+
+def _check_text(text: str, where: Where, values: Mapping[str, Drawn], problems: Problems) -> None:
+    try:
+        for expression in expressions(text):
+            evaluate(expression, values)
+    except ExpressionError as error:
+        problems.at(where, error.words)

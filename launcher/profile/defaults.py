@@ -1,14 +1,11 @@
-"""The defaults of a profile, for code that does not import the profile model."""
+"""Where profiles are and what they are called, for code that does not import their model."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
-READY_WITHIN_S = 10.0
-"""How long a node may take to become ready."""
+SHIPPED = Path(__file__).resolve().parents[2] / "profiles"
+"""The profiles of the course."""
 FOLDERS_OWN = "lesson.yaml"
 """The profile that is meant by the folder it is in, and has that folder's name."""
 
@@ -16,3 +13,12 @@ FOLDERS_OWN = "lesson.yaml"
 def name_of(profile: Path) -> str:
     """Return what a profile is called."""
     return profile.parent.name if profile.name == FOLDERS_OWN else profile.stem
+
+
+def shown(path: Path) -> str:
+    """Return the path for messages: relative if it is below the current folder."""
+    absolute = path.absolute()
+    try:
+        return str(absolute.relative_to(Path.cwd()))
+    except (ValueError, OSError):
+        return str(absolute)

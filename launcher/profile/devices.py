@@ -4,31 +4,30 @@ Nodes refer to them as `${devices.pico.port}` in `params`, `exec` and `env`; an 
 `DECK_PICO_PORT` overrides a setting without editing the file. Settings under `mock` or `real`
 replace all others, the variable included, on that hardware only, so that a mock robot never drives
 a real one. `port: auto` is resolved by USB ids (`launcher.profile.serial_choice`) just before the
-profile is started.
+profile is started. `${run_dir}` and `${domain}` are filled in as well.
 """
 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
-from launcher.profile.device_variables import variable
-from launcher.profile.problems import Problems
-from launcher.profile.reading import read_value
-from launcher.profile.references import Filler, used_devices
-from launcher.profile.serial_choice import AUTO, KINDS, UnresolvedPort, WantedPort, choose
-from launcher.profile.when import HARDWARE
+from launcher.profile.reading import Problems, read_value, replaced
+from launcher.profile.serial_choice import AUTO, KINDS, UnresolvedPort, WantedPort, choose, variable
+from launcher.profile.when import HARDWARE, WhenError, holds
+from launcher.serial_ports import SerialPort
 from text.sentences import say
-from text.yaml_tree import Branch, Listing, MappingEntry, Scalar, find, place_of, plain
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from launcher.serial_ports import SerialPort
-    from text.yaml_tree import Tree
+from text.suggestions import did_you_mean
+from text.yaml_tree import Branch, Listing, MappingEntry, Scalar, Tree, Where, find, place_of, plain
 
 LISTED = "usb"
 """The only setting that may be a list."""
+DEVICE = re.compile(r"\$\{devices\.([^}]*)\}")
+PLACE = re.compile(r"\$\{(\w+)\}")
+REFERRING = ("params", "exec", "env")
+"""The parts of a node in which references are filled in."""
 
 
 def with_devices(
@@ -49,14 +48,17 @@ def with_devices(
         problems: collects what is wrong
         ports: lists the serial ports; None leaves `auto` as it is
     """
-    devices = tree.entries.get("devices")
     settings: dict[str, Scalar] = {}
-    if devices is not None and isinstance(devices.value, Branch):
-        branch = Filler({}, places, problems).branch(devices.value, ("devices",))
-        branch = _overridden(branch, hardware, environ, problems)
+    devices = find(tree, ("devices",))
+    if isinstance(devices, Branch):
+        branch = _Filler({}, places, problems).branch(devices, ("devices",))
+        for device, entry in branch.entries.items():
+            if isinstance(entry.value, Branch):
+                own = _settings(device, entry.value, hardware, environ, problems)
+                branch = replaced(branch, (device,), own)
         if ports is not None and hardware == "real":
             branch = _found(branch, used_devices(tree, hardware), ports, problems)
-        tree = _replaced(tree, "devices", branch)
+        tree = replaced(tree, ("devices",), branch)
         settings = {
             f"{device}.{name}": entry.value
             for device, each in branch.entries.items()
@@ -64,10 +66,51 @@ def with_devices(
             for name, entry in each.value.entries.items()
             if isinstance(entry.value, Scalar)
         }
-    nodes = tree.entries.get("nodes")
-    if nodes is None or not isinstance(nodes.value, Branch):
-        return tree
-    return _replaced(tree, "nodes", Filler(settings, places, problems).nodes(nodes.value))
+    filler = _Filler(settings, places, problems)
+    for name, key, part in _referring(tree):
+        where = ("nodes", name, key)
+        tree = replaced(tree, where, filler.tree(part, where))
+    return tree
+
+
+def used_devices(tree: Branch, hardware: str) -> set[str]:
+    """Return the devices that are referred to by nodes which run on this hardware."""
+    return {
+        match[1].partition(".")[0]
+        for name, _key, part in _referring(tree)
+        if _runs(find(tree, ("nodes", name, "when")), hardware)
+        for text in _texts(part)
+        for match in DEVICE.finditer(text)
+    }
+
+
+def _referring(tree: Branch) -> list[tuple[str, str, Tree]]:
+    """Return the parts of nodes in which references may stand: node, key and what is there."""
+    nodes = find(tree, ("nodes",))
+    return [
+        (name, key, entry.value.entries[key].value)
+        for name, entry in (nodes.entries.items() if isinstance(nodes, Branch) else ())
+        for key in REFERRING
+        if isinstance(entry.value, Branch) and key in entry.value.entries
+    ]
+
+
+def _runs(when: Tree | None, hardware: str) -> bool:
+    if not isinstance(when, Scalar) or not isinstance(when.value, str):
+        return True
+    try:
+        return holds(when.value, {"hardware": hardware})
+    except WhenError:
+        return True  # Its fault is reported elsewhere.
+
+
+def _texts(tree: Tree) -> Iterator[str]:
+    if isinstance(tree, Scalar):
+        if isinstance(tree.value, str):
+            yield tree.value
+        return
+    for part in tree.items if isinstance(tree, Listing) else (entry.value for entry in tree.entries.values()):
+        yield from _texts(part)
 
 
 def wanted(devices: Mapping[str, Mapping[str, Any]]) -> dict[str, WantedPort]:
@@ -82,21 +125,6 @@ def wanted(devices: Mapping[str, Mapping[str, Any]]) -> dict[str, WantedPort]:
         path = port if port == AUTO else os.path.realpath(port)
         found[device] = WantedPort(path, tuple(str(each).lower() for each in ids))
     return found
-
-
-def _replaced(branch: Branch, key: str, value: Tree) -> Branch:
-    entries = dict(branch.entries)
-    entries[key] = MappingEntry(entries[key].key_place, value)
-    return Branch(entries, branch.place)
-
-
-def _overridden(devices: Branch, hardware: str, environ: Mapping[str, str], problems: Problems) -> Branch:
-    """Return the devices with the values from the environment and for this hardware."""
-    for device, entry in devices.entries.items():
-        if isinstance(entry.value, Branch):
-            settings = _settings(device, entry.value, hardware, environ, problems)
-            devices = _replaced(devices, device, settings)
-    return devices
 
 
 def _settings(device: str, written: Branch, hardware: str, environ: Mapping[str, str], problems: Problems) -> Branch:
@@ -156,8 +184,53 @@ def _found(devices: Branch, used: set[str], ports: Callable[[], Sequence[SerialP
         if isinstance(port, UnresolvedPort):
             problems.add(place_of(devices, where[1:]), where, port.message, port.hint)
             continue
-        branch = devices.entries[device].value
-        if isinstance(branch, Branch):
-            value = Scalar(port.path, port.path, place_of(branch, ("port",)))
-            devices = _replaced(devices, device, _replaced(branch, "port", value))
+        value = Scalar(port.path, port.path, place_of(devices, where[1:]))
+        devices = replaced(devices, where[1:], value)
     return devices
+
+
+class _Filler:
+    """Fills in values; an unknown name in `${}` is left as it is."""
+
+    def __init__(self, settings: Mapping[str, Scalar], places: Mapping[str, str], problems: Problems) -> None:
+        """`settings`: {"pico.port": ...}; `places`: {"run_dir": ...}."""
+        self._settings, self._places, self._problems = settings, places, problems
+
+    def branch(self, branch: Branch, where: Where) -> Branch:
+        """Return a branch with everything filled in."""
+        filled = {
+            key: MappingEntry(entry.key_place, self.tree(entry.value, (*where, key)))
+            for key, entry in branch.entries.items()
+        }
+        return Branch(filled, branch.place)
+
+    def tree(self, tree: Tree, where: Where) -> Tree:
+        if isinstance(tree, Branch):
+            return self.branch(tree, where)
+        if isinstance(tree, Listing):
+            items = (self.tree(item, (*where, index)) for index, item in enumerate(tree.items))
+            return Listing(tuple(items), tree.place)
+        if not isinstance(tree.value, str) or "${" not in tree.value:
+            return tree
+        return self._text(tree, where)
+
+    def _text(self, scalar: Scalar, where: Where) -> Scalar:
+        text = PLACE.sub(lambda match: self._places.get(match[1], match[0]), scalar.text)
+        for name in DEVICE.findall(text):
+            if name not in self._settings:
+                self._unknown(name, scalar, where)
+                return scalar
+        whole = DEVICE.fullmatch(text)
+        if whole:
+            found = self._settings[whole[1]]
+            return Scalar(found.value, found.text, scalar.place)
+        if text == scalar.text and not DEVICE.search(text):
+            return scalar
+        filled = DEVICE.sub(lambda match: self._settings[match[1]].text, text)
+        return Scalar(filled, filled, scalar.place)
+
+    def _unknown(self, name: str, scalar: Scalar, where: Where) -> None:
+        message = say("there is no device setting {name!r}", name=name)
+        known = say("known: {keys}", keys=", ".join(self._settings))
+        hint = did_you_mean(name, self._settings) or known
+        self._problems.add(scalar.place, where, message, hint if self._settings else "")

@@ -7,36 +7,28 @@ in the file, and starts nothing.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from launcher.domain.domain import LAST_SAFE_DOMAIN, choose_domain
 from launcher.errors import DomainError, ProfileError, ProfileProblem
-from launcher.profile.check import applies, check_needs, check_node, check_run
-from launcher.profile.defaults import name_of
-from launcher.profile.devices import with_devices
-from launcher.profile.extends import read_profile
-from launcher.profile.overrides import read_sets
+from launcher.profile.check import applies, check_files, check_needs, check_node, check_steps
+from launcher.profile.defaults import name_of, shown
+from launcher.profile.devices import used_devices, with_devices
+from launcher.profile.model import Profile
+from launcher.profile.node import Node, Ready
 from launcher.profile.params import flatten
-from launcher.profile.problems import Problems
-from launcher.profile.references import used_devices
-from launcher.profile.spec import NodeSpec, Profile, Ready
-from launcher.profile.steps.check import check_steps
-from launcher.profile.text import shown
+from launcher.profile.reading import Problems, read_profile, read_value
 from launcher.profile.validate import validate
 from launcher.profile.when import HARDWARE
+from launcher.serial_ports import SerialPort
 from text.run_path import run_path
 from text.sentences import say
-from text.yaml_tree import Branch, FilePlace, Scalar, find, place_of
+from text.suggestions import did_you_mean
+from text.yaml_tree import Branch, FilePlace, MappingEntry, Scalar, find
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from launcher.profile.model import NodeDocument, ProfileDocument
-    from launcher.serial_ports import SerialPort
-
-__all__ = ["NodeSpec", "Profile", "ProfileError", "ProfileProblem", "Ready", "load_profile"]
+__all__ = ["Node", "Profile", "ProfileError", "ProfileProblem", "Ready", "load_profile"]
 
 
 def load_profile(
@@ -67,123 +59,131 @@ def load_profile(
     env = os.environ if environ is None else environ
     problems = Problems()
     if hardware not in HARDWARE:
-        message = say("expected mock or real, found {found!r}", found=hardware)
-        problems.add(FilePlace("--hardware"), (), message)
+        problems.add(FilePlace("--hardware"), (), say("expected mock or real, found {found!r}", found=hardware))
     tree = read_profile(path, problems)
     if tree is None or problems.found:
         raise ProfileError(problems.in_order())
     places = {"run_dir": str(run_path(env).absolute()), "domain": _early_domain(tree, domain, env)}
     used = used_devices(tree, hardware)
-    tree = with_devices(tree, hardware, places, env, problems, ports)
-    document, valid = validate(tree, problems)
-    reader = _SpecBuilder(path.absolute(), tree, problems, used)
-    nodes = reader.nodes(valid, hardware)
-    if document is not None:
-        check_steps(document, set(valid), tree, problems)
-    nodes = read_sets(overrides, nodes, set(valid) - set(nodes), problems)
-    if problems.found or document is None:
+    tree = problems.tree = with_devices(tree, hardware, places, env, problems, ports)
+    profile, valid = validate(problems)
+    nodes = _running(valid, hardware, path.absolute().parent, problems)
+    if profile is not None:
+        check_steps(profile, set(valid), problems)
+    nodes = _with_overrides(overrides, nodes, set(valid) - set(nodes), problems)
+    if problems.found or profile is None:
         raise ProfileError(problems.in_order())
-    chosen = choose_domain(domain, document.domain, env)
-    return reader.profile(document, nodes, hardware, chosen)
+    given: dict[str, Any] = {
+        "path": path.absolute(),
+        "name": name_of(path.absolute()),
+        "nodes": nodes,
+        "hardware": hardware,
+        "domain": choose_domain(domain, _own_domain(tree), env),
+        "is_domain_chosen": bool(domain is not None or _own_domain(tree) is not None or env.get("ROS_DOMAIN_ID")),
+        "used": tuple(name for name in profile.devices if name in used),
+        "warnings": _warnings(tree),
+    }
+    return profile.model_copy(update=given)
+
+
+def _own_domain(tree: Branch) -> int | None:
+    """Return the domain that the profile says, None if it says none, or nothing valid."""
+    written = find(tree, ("domain",))
+    value = written.value if isinstance(written, Scalar) else None
+    return value if type(value) is int else None
 
 
 def _early_domain(tree: Branch, asked: int | None, environ: Mapping[str, str]) -> str:
     """Return the value of `${domain}`, before anything is validated."""
-    written = find(tree, ("domain",))
-    value = written.value if isinstance(written, Scalar) else None
     try:
-        return str(choose_domain(asked, value if type(value) is int else None, environ))
+        return str(choose_domain(asked, _own_domain(tree), environ))
     except DomainError:
         return ""  # Reported later, once everything else is valid.
 
 
-@dataclass
-class _SpecBuilder:
-    """Turns validated documents into specs that can be started."""
-
-    path: Path
-    tree: Branch
-    problems: Problems
-    used: set[str]
-    """The devices that nodes refer to."""
-
-    def nodes(self, valid: Mapping[str, NodeDocument], hardware: str) -> dict[str, NodeSpec]:
-        """Return the nodes that run on this hardware, including those with problems."""
-        tree, problems = self.tree, self.problems
-        every = find(tree, ("nodes",))
-        everybody = list(every.entries) if isinstance(every, Branch) else []
-        for name, node in valid.items():
-            check_node(name, node, tree, problems)
-        running = {name: node for name, node in valid.items() if applies(name, node, hardware, tree, problems)}
-        if not running and not problems.found:
-            self._nothing_runs(bool(valid), hardware)
-        optional = {name for name, node in running.items() if node.optional}
-        needs = {name: node.needs for name, node in running.items()}
-        check_needs(needs, everybody, optional, tree, problems)
-        return {name: self._node(name, node, running) for name, node in running.items()}
-
-    def _nothing_runs(self, left_out: bool, hardware: str) -> None:
-        message = say("there are no nodes to start")
-        if left_out:
-            message = say("no node is left with --hardware {hardware}", hardware=hardware)
-        self.problems.add(place_of(self.tree, ("nodes",), key=True), ("nodes",), message)
-
-    def _node(self, name: str, node: NodeDocument, running: Mapping[str, Any]) -> NodeSpec:
-        where = ("nodes", name, "params")
-        params = find(self.tree, where)
-        cwd = None if node.cwd is None else Path(node.cwd)
-        # Unlike Path.is_dir, this does not raise for a name that no directory can have.
-        if cwd is not None and not os.path.isdir(cwd):  # noqa: PTH112
-            here = ("nodes", name, "cwd")
-            message = say("there is no directory {path}", path=shown(cwd))
-            self.problems.add(place_of(self.tree, here), here, message)
-        if node.run is not None:
-            folders = [self.path.parent, cwd or Path.cwd()]
-            check_run(name, node.run, folders, self.tree, self.problems)
-        return NodeSpec(
-            name=name,
-            document=node,
-            params={} if params is None else flatten(params, where, self.problems),
-            needs=tuple(other for other in node.needs if other in running),
-            ready=_ready(name, node),
-            cwd=cwd,
-            folder=self.path.parent,
+def _warnings(tree: Branch) -> tuple[ProfileProblem, ...]:
+    found = Problems(tree=tree)
+    if (_own_domain(tree) or 0) > LAST_SAFE_DOMAIN:
+        found.at(
+            ("domain",),
+            say("the ports of domains above {safe} may be taken", safe=LAST_SAFE_DOMAIN),
+            say("choose one from 1 to {safe}", safe=LAST_SAFE_DOMAIN),
         )
+    return found.in_order()
 
-    def profile(self, document: ProfileDocument, nodes: dict[str, NodeSpec], hardware: str, domain: int) -> Profile:
-        return Profile(
-            path=self.path,
-            name=name_of(self.path),
-            nodes=nodes,
-            document=document,
-            domain=domain,
-            hardware=hardware,
-            used=tuple(name for name in document.devices if name in self.used),
-            warnings=self._warnings(document),
+
+def _running(valid: Mapping[str, Node], hardware: str, folder: Path, problems: Problems) -> dict[str, Node]:
+    """Return the nodes that run on this hardware, including those with problems."""
+    every = find(problems.tree, ("nodes",))
+    everybody = list(every.entries) if isinstance(every, Branch) else []
+    for node in valid.values():
+        check_node(node, problems)
+    running = {name: node for name, node in valid.items() if applies(node, hardware, problems)}
+    if not running and not problems.found:
+        message = say("no node is left with --hardware {hardware}", hardware=hardware)
+        problems.at(("nodes",), message if valid else say("there are no nodes to start"), key=True)
+    check_needs(running, everybody, problems)
+    for node in running.values():
+        check_files(node, folder, problems)
+    return {name: _resolved(node, running, folder, problems) for name, node in running.items()}
+
+
+def _resolved(node: Node, running: Mapping[str, Node], folder: Path, problems: Problems) -> Node:
+    """Return a node with what follows from the rest of the profile, and by default."""
+    where = ("nodes", node.name, "params")
+    params = find(problems.tree, where)
+    changes: dict[str, Any] = {
+        "params": {} if params is None else flatten(params, where, problems),
+        "needs": tuple(other for other in node.needs if other in running),
+    }
+    if node.ready is None and node.run is not None and node.lifecycle is None:
+        changes["ready"] = Ready(node=node.name)
+    elif node.ready is not None and node.ready.lifecycle is not None and node.ready.node is None:
+        changes["ready"] = node.ready.model_copy(update={"node": node.name})
+    words = node.exec or ()
+    if node.file and words and node.cwd is None and os.path.isfile(folder / words[1]):  # noqa: PTH113
+        changes["exec"] = (words[0], str(folder / words[1]), *words[2:])
+    return node.model_copy(update=changes)
+
+
+def _with_overrides(
+    overrides: Iterable[str], nodes: dict[str, Node], left_out: set[str], problems: Problems
+) -> dict[str, Node]:
+    """Return the nodes with the parameters of `--set node.param=value`.
+
+    `left_out`: nodes in the file that do not run on this hardware.
+    """
+    result = dict(nodes)
+    for text in overrides:
+        place = FilePlace(f"--set {text}")
+        target, equals, written = text.partition("=")
+        name, dot, param = target.strip().partition(".")
+        if not (equals and dot and name and param):
+            problems.add(place, (), say("expected node.param=value"), say("write --set sonar_front.rate=2.0"))
+        elif name in left_out:
+            problems.add(place, (), say("{name} does not run on this hardware", name=name))
+        elif name not in result:
+            known = did_you_mean(name, result) or say("known: {keys}", keys=", ".join(result))
+            problems.add(place, (), say("there is no node {name!r}", name=name), known)
+        else:
+            value = read_value(written, place.file, problems)
+            if value is not None:
+                one = Branch({param: MappingEntry(place, value)}, place)
+                params = {**result[name].params, **flatten(one, (name,), problems)}
+                result[name] = result[name].model_copy(update={"params": params})
+    return result
+
+
+def faults_of(profile: Profile) -> tuple[ProfileProblem, ...]:
+    """Return a problem for each of the learner's own files that does not compile, or imports what is not there."""
+    from launcher.faults.source import look_at
+
+    files = {node.file: name for name, node in profile.nodes.items() if node.file}
+    faults = [(name, look_at(file)) for file, name in files.items()]
+    return tuple(
+        ProfileProblem(
+            shown(Path(fault.file)), fault.line, fault.column, f"nodes.{name}", fault.exception, fault.meaning
         )
-
-    def _warnings(self, document: ProfileDocument) -> tuple[ProfileProblem, ...]:
-        found = Problems()
-        if document.domain is not None and document.domain > LAST_SAFE_DOMAIN:
-            found.add(
-                place_of(self.tree, ("domain",)),
-                ("domain",),
-                say("the ports of domains above {safe} may be taken", safe=LAST_SAFE_DOMAIN),
-                say("choose one from 1 to {safe}", safe=LAST_SAFE_DOMAIN),
-            )
-        return found.in_order()
-
-
-def _ready(name: str, node: NodeDocument) -> Ready | None:
-    """Return the condition as written; by default a `run` node must be in the graph."""
-    if node.ready is None:
-        return None if node.run is None or node.lifecycle else Ready("node", name)
-    ready = node.ready
-    if ready.lifecycle is not None:
-        return Ready("lifecycle", ready.node or name, ready.lifecycle, within_s=ready.within)
-    # A node that is brought up is in the graph.
-    for kind in ("topic", "service") if node.lifecycle else ("topic", "service", "node"):
-        found = getattr(ready, kind)
-        if found is not None:
-            return Ready(kind, found, ready.type or "", ready.rate or 0.0, ready.within)
-    return None
+        for name, fault in faults
+        if fault is not None
+    )

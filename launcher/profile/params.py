@@ -1,24 +1,18 @@
-"""A node's parameters: from YAML to `-p name:=value`, with the types of ROS.
+"""A node's parameters, with the types of ROS.
 
-ROS has bool, 64-bit integer, double, string, and lists of one of these. rcl reads the value of `-p`
-as YAML, so text is always written in quotes: `"1"` stays text. A list that mixes integers and other
-numbers becomes a list of doubles; rcl would refuse the mixture.
+ROS has bool, 64-bit integer, double, string, and lists of one of these. A list that mixes integers and
+other numbers becomes a list of doubles; rcl would refuse the mixture.
 """
 
 from __future__ import annotations
 
 import re
 import sys
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
+from launcher.profile.reading import Problems
 from text.sentences import say
-from text.yaml_tree import Branch, Listing, Scalar
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from launcher.profile.problems import Problems
-    from text.yaml_tree import Tree, Where
+from text.yaml_tree import Branch, Listing, Scalar, Tree, Where
 
 Single: TypeAlias = bool | int | float | str
 Param: TypeAlias = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
@@ -26,9 +20,8 @@ Param: TypeAlias = bool | int | float | str | list[bool] | list[int] | list[floa
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_/][A-Za-z0-9_/]*)*")
 """The names that rcl accepts in `-p name:=value`: `a`, `a.b`, `qos_overrides./scan.depth`."""
 LONGEST_TEXT = 32_768
-"""Linux refuses an argument of 128 KiB; escaping may turn one byte into four."""
+"""Linux refuses an argument of 128 KiB; and escaping makes text longer."""
 INT64 = 2**63
-ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 
 def flatten(params: Tree, where: Where, problems: Problems) -> dict[str, Param]:
@@ -37,43 +30,6 @@ def flatten(params: Tree, where: Where, problems: Problems) -> dict[str, Param]:
     if isinstance(params, Branch):
         _flatten(params, "", where, flat, problems)
     return flat
-
-
-def as_arguments(params: Mapping[str, Param]) -> list[str]:
-    """Return the arguments that follow `--ros-args`."""
-    return [part for name, value in params.items() for part in ("-p", f"{name}:={written(value)}")]
-
-
-def written(value: Param) -> str:
-    """Write a value so that rcl and any YAML parser read back the same value and type."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, int):
-        return str(value)
-    if isinstance(value, float):
-        return _float(value)
-    if isinstance(value, str):
-        return '"' + "".join(map(_escaped, value)) + '"'
-    return "[" + ", ".join(written(item) for item in value) + "]"
-
-
-def _float(value: float) -> str:
-    if value != value:  # noqa: PLR0124 - the definition of nan
-        return ".nan"
-    if value in (float("inf"), float("-inf")):
-        return ".inf" if value > 0 else "-.inf"
-    digits, exponent, power = repr(value).partition("e")
-    # YAML 1.1 reads 1e+16 as text: its floats need a dot.
-    return (digits if "." in digits else digits + ".0") + exponent + power
-
-
-def _escaped(character: str) -> str:
-    if character in ESCAPES:
-        return ESCAPES[character]
-    if character.isprintable():
-        return character
-    code = ord(character)
-    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
 def _flatten(params: Branch, prefix: str, where: Where, flat: dict[str, Param], problems: Problems) -> None:

@@ -6,10 +6,10 @@ reported and the user chooses.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from launcher.profile.device_variables import variable
 from launcher.serial_ports import BRIDGES, PICO
 from text.sentences import say
 
@@ -59,6 +59,11 @@ def choose(wanted: Mapping[str, WantedPort], ports: Sequence[SerialPort]) -> dic
         if each.port == AUTO
     }
     return {device: _one(device, wanted[device], fitting, ports) for device in fitting}
+
+
+def variable(device: str, setting: str) -> str:
+    """Return the name of the environment variable that overrides a device's setting."""
+    return re.sub(r"\W", "_", f"DECK_{device}_{setting}".upper(), flags=re.ASCII)
 
 
 def how_to_choose(device: str) -> str:

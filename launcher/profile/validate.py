@@ -4,25 +4,19 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
-from launcher.profile.field_marks import AsText, marked
-from launcher.profile.model import NodeDocument, ProfileDocument, ReadyDocument
+from launcher.profile.model import AgentsDocument, Profile
+from launcher.profile.node import AsText, Document, Given, Node, Ready, marked
+from launcher.profile.reading import Problems
 from launcher.profile.steps.checks import KINDS, FrameDocument, kind_of
 from launcher.profile.steps.model import StepDocument, ValueDocument
 from text.sentences import say
 from text.suggestions import did_you_mean
-from text.yaml_tree import Branch, Listing, empty, find, place_of, plain
-
-if TYPE_CHECKING:
-    from pydantic import BaseModel
-    from pydantic_core import ErrorDetails
-
-    from launcher.profile.fields import Document
-    from launcher.profile.problems import Problems
-    from text.yaml_tree import Tree, Where
+from text.yaml_tree import Branch, Listing, Tree, Where, empty, find, plain
 
 D = TypeVar("D", bound="Document")
 
@@ -44,46 +38,36 @@ LIMITS = {
 }
 
 
-def validate(tree: Branch, problems: Problems) -> tuple[ProfileDocument | None, dict[str, NodeDocument]]:
+def validate(problems: Problems) -> tuple[Profile | None, dict[str, Node]]:
     """Return the profile without its nodes, and the nodes; everything invalid becomes a problem.
 
     Each node is validated separately, so that a fault in one does not hide faults in another.
     """
-    data = _data(tree)
-    nodes = data.get("nodes")
-    if isinstance(nodes, dict):
+    nodes = find(problems.tree, ("nodes",))
+    data = _data(problems.tree, Profile)
+    if isinstance(nodes, Branch):
         data["nodes"] = {}
-    profile = _validated(ProfileDocument, data, (), tree, problems)
-    valid: dict[str, NodeDocument] = {}
-    for name, content in nodes.items() if isinstance(nodes, dict) else ():
-        node = _validated(NodeDocument, content, ("nodes", name), tree, problems)
+    profile = _validated(Profile, data, (), problems)
+    valid: dict[str, Node] = {}
+    for name, entry in nodes.entries.items() if isinstance(nodes, Branch) else ():
+        said = (
+            _data(entry.value, Node) if isinstance(entry.value, Branch) or empty(entry.value) else plain(entry.value)
+        )
+        node = _validated(Node, said, ("nodes", name), problems)
         if node is not None:
-            valid[name] = node
+            valid[name] = node.model_copy(update={"name": name})
     return profile, valid
 
 
-def _data(tree: Branch) -> dict[str, Any]:
+def _data(tree: Tree, model: type[Document]) -> dict[str, Any]:
     """Return plain data, omitting keys without a value, with text wherever only text makes sense.
 
     In `exec: [--x, 0.10]` the value is the text 0.10 as written, and in `lesson: 9` the text 9.
     """
-    data: dict[str, Any] = {key: plain(entry.value) for key, entry in tree.entries.items() if not empty(entry.value)}
-    for key in marked(ProfileDocument, AsText):
-        if key in data:
-            data[key] = _as_text(find(tree, (key,)))
-    nodes = find(tree, ("nodes",))
-    if isinstance(nodes, Branch):
-        data["nodes"] = {name: _node(entry.value) for name, entry in nodes.entries.items()}
-    return data
-
-
-def _node(tree: Tree) -> Any:  # noqa: ANN401 - whatever stands there
-    if not isinstance(tree, Branch):
-        return plain(tree) if not empty(tree) else {}
-    as_text = marked(NodeDocument, AsText)
+    as_text = marked(model, AsText)
     return {
         key: _as_text(entry.value) if key in as_text else plain(entry.value)
-        for key, entry in tree.entries.items()
+        for key, entry in (tree.entries.items() if isinstance(tree, Branch) else ())
         if not empty(entry.value)
     }
 
@@ -96,18 +80,21 @@ def _as_text(tree: Tree | None) -> Any:  # noqa: ANN401 - whatever stands there
     return tree.text if tree is not None and not empty(tree) else None
 
 
-def _validated(model: type[D], data: object, where: Where, tree: Branch, problems: Problems) -> D | None:
+def _validated(model: type[D], data: Any, where: Where, problems: Problems) -> D | None:  # noqa: ANN401 - any YAML
     """Return the document; if there are problems, without the keys that cause them.
 
     So later checks can report other problems in the same run.
     """
+    for key in marked(model, Given) if isinstance(data, dict) else ():
+        if data.pop(key, None) is not None:
+            problems.at((*where, key), *_unknown((*where, key), problems.tree), key=True)
     try:
         return model.model_validate(data)
     except ValidationError as error:
         faults = error.errors(include_url=False)
     for details in faults:
         if not _only_follows(details):
-            _add(details, where, tree, problems)
+            _add(details, where, problems)
     if not isinstance(data, dict):
         return None
     at_fault = {details["loc"][0] for details in faults if details["loc"]}
@@ -121,11 +108,9 @@ def _only_follows(details: ErrorDetails) -> bool:
     return details["type"] == "too_short" and bool(details["input"])
 
 
-def _add(details: ErrorDetails, above: Where, tree: Branch, problems: Problems) -> None:
+def _add(details: ErrorDetails, above: Where, problems: Problems) -> None:
     where = (*above, *_without_kinds(details["loc"]))
-    kind = details["type"]
-    message, hint = _words(details, where, tree)
-    problems.add(place_of(tree, where, key=kind == "extra_forbidden"), where, message, hint)
+    problems.at(where, *_words(details, where, problems.tree), key=details["type"] == "extra_forbidden")
 
 
 def _without_kinds(where: Where) -> Where:
@@ -158,9 +143,7 @@ def _words_of_choice(details: ErrorDetails, where: Where, tree: Branch) -> tuple
     """Return what is wrong with a key or a value that must be one of several."""
     kind, found = details["type"], details["input"]
     if kind == "extra_forbidden":
-        known = _keys(where[:-1], tree)
-        hint = did_you_mean(str(where[-1]), known) or say("known: {keys}", keys=", ".join(known))
-        return say("unknown key"), hint
+        return _unknown(where, tree)
     if kind == "union_tag_not_found":
         return say("no kind of check is named here"), _likely_kind(found)
     if kind == "literal_error":
@@ -197,24 +180,27 @@ def _likely_kind(check: object) -> str:
     return say("known: {keys}", keys=", ".join(KINDS))
 
 
-def _keys(where: Where, tree: Branch) -> list[str]:
-    return [field.alias or name for name, field in _model(where, tree).model_fields.items()]
+def _unknown(where: Where, tree: Branch) -> tuple[str, str]:
+    model = _model(where[:-1], tree)
+    given = marked(model, Given)
+    known = [field.alias or name for name, field in model.model_fields.items() if name not in given]
+    hint = did_you_mean(str(where[-1]), known) or say("known: {keys}", keys=", ".join(known))
+    return say("unknown key"), hint
 
 
 def _model(where: Where, tree: Branch) -> type[BaseModel]:
     """Return the model of the mapping at this place."""
-    if where[:1] == ("nodes",):
-        return ReadyDocument if where[-1] == "ready" else NodeDocument
-    if where[:1] == ("values",):
-        return ValueDocument
-    if where[:1] != ("steps",):
-        return ProfileDocument
-    if where[-1] == "transform":
-        return FrameDocument
-    if len(where) == 2:
-        return StepDocument
-    here = find(tree, where)
-    return KINDS[kind_of(None if here is None else plain(here)) or "node"]
+    above = where[0] if where else ""
+    if above == "nodes":
+        return Ready if where[-1] == "ready" else Node
+    if above == "steps" and len(where) > 2:
+        here = find(tree, where)
+        kind = kind_of(None if here is None else plain(here)) or "node"
+        return FrameDocument if where[-1] == "transform" else KINDS[kind]
+    return _BY_KEY.get(above, Profile)
+
+
+_BY_KEY: dict[str | int, type[BaseModel]] = {"agents": AgentsDocument, "values": ValueDocument, "steps": StepDocument}
 
 
 def described(value: object) -> str:

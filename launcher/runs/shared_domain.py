@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 import shlex
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from launcher.domain.domain import LAST_SAFE_DOMAIN
 from launcher.errors import DomainTakenError
 from launcher.processes.owner import who_words
-from launcher.profile.driving import drives
 from launcher.run_id import supervisor_of
 from launcher.runs.found import supervisors
 from launcher.runs.record import RunRecord
@@ -91,7 +90,7 @@ def refuse_shared_domain(profile: Profile) -> None:
     here = neighbours(everyone, profile.domain)
     if not here:
         return
-    driving = any(drives(node.command) for node in profile.nodes.values())
+    driving = any(node.drives for node in profile.nodes.values())
     raise DomainTakenError(
         profile.domain,
         [one.words for one in here],
@@ -100,20 +99,20 @@ def refuse_shared_domain(profile: Profile) -> None:
     )
 
 
-def apart_from_classmates(profile: Profile, asked: int | None, environ: Mapping[str, str] = os.environ) -> Profile:
+def apart_from_classmates(profile: Profile, environ: Mapping[str, str] = os.environ) -> Profile:
     """Return the profile, in a free domain if a classmate with the same account is in its own.
 
     A classmate is who has logged in by SSH from another address. A domain that somebody has chosen
-    (`asked`, in the profile or by ROS_DOMAIN_ID) stays.
+    stays.
     """
-    if asked is not None or profile.document.domain is not None or environ.get("ROS_DOMAIN_ID"):
+    if profile.is_domain_chosen:
         return profile
     us = environ.get("SSH_CONNECTION", "").split(" ")[0]
     everyone = list(supervisors())
     hosts = {one.record.session.started_by.host for one in neighbours(everyone, profile.domain)}
     if not us or not hosts - {us, ""}:
         return profile
-    return replace(profile, domain=free_domain(everyone, profile.domain))
+    return profile.model_copy(update={"domain": free_domain(everyone, profile.domain)})
 
 
 def rival(everyone: Iterable[FoundSupervisor], record: RunRecord) -> Neighbour | None:

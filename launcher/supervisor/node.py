@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from launcher.processes.table import Process
     from launcher.processes.usage import Usage
+    from launcher.profile.node import Node
     from launcher.supervisor.node_context import NodeContext, RunningProcess
-    from launcher.supervisor.plan import NodePlan
 
 USAGE = 2
 """Exit code of a program that rejects its arguments; Deck's nodes use it for parameters."""
@@ -67,7 +67,7 @@ class _Now:
 class SupervisedNode:
     """One node of the session."""
 
-    def __init__(self, plan: NodePlan, around: NodeContext) -> None:
+    def __init__(self, plan: Node, around: NodeContext) -> None:
         """`around`: the session that the node belongs to."""
         self.plan = plan
         self.state = NodeState.WAITING
@@ -165,7 +165,7 @@ class SupervisedNode:
         else:
             self.start()
 
-    def exchange(self, plan: NodePlan, fault: NodeFault | None) -> None:
+    def exchange(self, plan: Node, fault: NodeFault | None) -> None:
         """Restart it with another program, as `saved` does."""
         self.plan = plan
         self._renew(fault, say("exchanged for {program}", program=plan.command))
@@ -469,7 +469,7 @@ class SupervisedNode:
         """Whether another attempt would end in the same way."""
         if self._does_not_compile and lasted < USAGE_WITHIN_S:
             return True
-        if self.plan.module:
+        if self.plan.is_forked:
             return end.code == USAGE and lasted < USAGE_WITHIN_S
         return end.code in (NOT_EXECUTABLE, NOT_FOUND)
 

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from launcher.clock import Clock
     from launcher.processes.exit import Exit
     from launcher.processes.table import Process
+    from launcher.profile.node import Node, Ready
     from launcher.status import NodeFault, NodeState, Severity
-    from launcher.supervisor.plan import NodePlan
-    from launcher.supervisor.readiness import ReadyCondition, Seen
+    from launcher.supervisor.readiness import Seen
 
 
 class RunningProcess(Protocol):
@@ -43,25 +43,25 @@ class NodeContext(Protocol):
     def clock(self) -> Clock:
         """The clock for the waits between two attempts."""
 
-    async def launch(self, plan: NodePlan) -> RunningProcess:
+    async def launch(self, plan: Node) -> RunningProcess:
         """Start the node's process; raises `SpawnError`."""
 
-    async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
+    async def ready(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
         """Return once the condition holds; `tell` gets other states.
 
         Raises `UnwatchableError`, and `NotBroughtUpError` for a lifecycle.
         """
 
-    def missing(self, plan: NodePlan) -> str:
+    def missing(self, plan: Node) -> str:
         """Say which needed nodes are not ready yet; empty if all are."""
 
     def last_words(self, name: str) -> str:
         """Return the last words of the node."""
 
-    def crash(self, plan: NodePlan) -> NodeFault | None:
+    def crash(self, plan: Node) -> NodeFault | None:
         """Return what the last output of a learner's own node tells of its end."""
 
-    def ended_early(self, plan: NodePlan) -> NodeFault | None:
+    def ended_early(self, plan: Node) -> NodeFault | None:
         """Return why a learner's own node has ended without an error; None if it was to."""
 
     def say(self, name: str, severity: Severity, words: str) -> None:

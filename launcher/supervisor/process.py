@@ -1,28 +1,26 @@
-"""A node's process with all its descendants: starting, finding, signalling, releasing."""
+"""The supervisor's processes: those of nodes with all their descendants, orphans, short-lived helpers."""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import signal
 import time
-from typing import TYPE_CHECKING
+from collections.abc import AsyncIterator, Mapping, Sequence
 
 from launcher.logs.reader import PipeReader, node_pipe
-from launcher.processes.exit import Exit, signal_name
-from launcher.processes.members import Members
+from launcher.logs.session_log import SessionLog
+from launcher.processes.exit import Exit, Reaper, signal_name
+from launcher.processes.members import Members, is_marked
 from launcher.processes.signal import send
-from launcher.spawn_server.spawner import SpawnRequest
+from launcher.processes.table import Process, processes
+from launcher.profile.node import Node
+from launcher.spawn_server.spawner import SpawnedProcess, Spawner, SpawnRequest
+from launcher.supervisor.plan import Plan
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from launcher.logs.session_log import SessionLog
-    from launcher.processes.exit import Reaper
-    from launcher.processes.table import Process
-    from launcher.spawn_server.spawner import SpawnedProcess, Spawner
-    from launcher.supervisor.plan import NodePlan, Plan
-
+_ENDS_WITHIN_S = 3.0
+"""How long a helper may take to end once its stdin is closed."""
 _FRESH_S = 0.02
 """A scan of all processes of at most this age also serves other nodes that are stopping."""
 
@@ -112,17 +110,17 @@ class ProcessLauncher:
         self._plan = plan
         self._log = log
 
-    async def launch(self, node: NodePlan) -> NodeProcess:
+    async def launch(self, node: Node) -> NodeProcess:
         """Start a node; raises `SpawnError`."""
-        within = () if node.ours else self._plan.within
-        warm = bool(node.module) and not within
+        within = () if node.is_ours else self._plan.within
+        warm = node.is_forked and not within
         request = SpawnRequest(
             kind="module" if warm else "exec",
             name=node.name,
             title=f"deck: {node.name} ({node.command})",
-            argv=node.module if warm else (*within, *node.argv),
-            cwd=node.cwd,
-            env={**self._plan.env, **node.env},
+            argv=(str(node.run), *node.ros_args()) if warm else (*within, *node.argv()),
+            cwd=node.cwd or "/",
+            env=self._plan.env_of(node),
         )
         out, out_write = node_pipe()
         err, err_write = node_pipe()
@@ -140,3 +138,69 @@ class ProcessLauncher:
         self.scan.members.add(node.name, spawned)
         self.scan.forget()
         return NodeProcess(node.name, spawned, self, readers, confined=bool(within))
+
+
+class Orphans:
+    """The remaining processes of a run whose nodes are gone; a `launcher.processes.stop.Target`."""
+
+    def __init__(self, run_id: str, spawner: Spawner) -> None:
+        """The spawn server is not an orphan: it is needed to the end."""
+        self._run_id = run_id
+        self._spawner = spawner
+
+    def left(self) -> Sequence[Process]:
+        """Return the processes with the run's mark, and the children we have adopted."""
+        us = os.getpid()
+        return [
+            process
+            for process in processes()
+            if process.pid not in (us, self._spawner.server_pid)
+            and not process.zombie
+            and (process.parent == us or is_marked(process, self._run_id))
+        ]
+
+    def signal(self, process: Process, number: signal.Signals) -> None:
+        """Send one of them a signal, and wake it so that it handles it."""
+        send(process, number, signal.SIGCONT)
+
+
+@contextlib.asynccontextmanager
+async def helping(spawner: Spawner, reaper: Reaper, request: SpawnRequest) -> AsyncIterator[asyncio.StreamReader]:
+    """Start a process that knows ROS for the length of a `with`; yields its stdout, a line a report.
+
+    Raises:
+        SpawnError: if it cannot be started.
+    """
+    hold_read, hold = os.pipe()
+    report, report_write = os.pipe()
+    spawned: SpawnedProcess | None = None
+    try:
+        try:
+            spawned = await spawner.spawn(request, (hold_read, report_write, 2))
+        finally:
+            os.close(hold_read)
+            os.close(report_write)
+        reader = asyncio.StreamReader()
+        transport, _protocol = await asyncio.get_running_loop().connect_read_pipe(
+            lambda: asyncio.StreamReaderProtocol(reader), os.fdopen(os.dup(report), "rb", 0)
+        )
+        try:
+            yield reader
+        finally:
+            transport.close()
+    finally:
+        # It ends cleanly when its stdin is closed, and announces that to the graph.
+        os.close(hold)
+        os.close(report)
+        if spawned is not None:
+            _ = asyncio.create_task(_see_off(spawned, spawner, reaper))  # noqa: RUF006 - it ends by itself
+
+
+async def _see_off(spawned: SpawnedProcess, spawner: Spawner, reaper: Reaper) -> None:
+    ended = reaper.exit_of(spawned.pid, spawned.started_ticks)
+    try:
+        await asyncio.wait_for(asyncio.shield(ended), _ENDS_WITHIN_S)
+    except asyncio.TimeoutError:
+        send(spawned, signal.SIGKILL)
+        await ended
+    spawner.forget(spawned.pid)

@@ -1,7 +1,7 @@
 """Waiting until a node can be used, that is, its name, topic or service is in the ROS graph.
 
 The graph is watched by a probe process (`launcher.spawn_server.probe`) that exists only while a
-node is waited for.
+node is waited for, and each wait for a lifecycle has a process of its own.
 """
 
 from __future__ import annotations
@@ -9,39 +9,22 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from launcher.spawn_server.spawner import SpawnError, SpawnRequest
-from launcher.supervisor.helper import helping
+from launcher.processes.exit import Reaper
+from launcher.profile.node import Ready
+from launcher.spawn_server.spawner import Spawner, SpawnError, SpawnRequest
+from launcher.status import NodeFault
+from launcher.supervisor.process import helping
 from text.nested import read_json
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from launcher.processes.exit import Reaper
-    from launcher.spawn_server.spawner import Spawner
+from text.sentences import say
 
 MAX_PROBES = 3
-"""After this many probes have died in a row, the graph counts as unwatchable."""
+"""After this many processes have died in a row, the graph counts as unwatchable."""
 LINGER_S = 5.0
 """The probe stays this long when nothing is waited for: the next node may come soon."""
-
-
-@dataclass(frozen=True)
-class ReadyCondition:
-    """Something that must be in the ROS graph."""
-
-    kind: str
-    """`node`, `topic` (a publisher of it), `service`; or `lifecycle`, of a node."""
-    name: str
-    type: str = ""
-    """For a topic: only a publisher of this type counts, `std_msgs/msg/Float32`; empty: any. For
-    a lifecycle: the state, `active`."""
-    rate_hz: float = 0.0
-    """For a topic: messages must arrive at least this often; 0: none need to."""
-    goes: bool = False
-    """For a lifecycle: whether the node is to be brought to that state, not only waited for."""
 
 
 @dataclass(frozen=True)
@@ -66,12 +49,22 @@ class UnwatchableError(Exception):
     """The graph cannot be watched: rclpy is not installed, or does not start."""
 
 
+class NotBroughtUpError(Exception):
+    """The node will not get into the wanted state."""
+
+    def __init__(self, transition: str, state: str) -> None:
+        """Store the transition that failed, empty if none was possible, and the state it is in."""
+        super().__init__(transition, state)
+        self.transition = transition
+        self.state = state
+
+
 class Readiness:
     """Reports when conditions are met; all conditions are known from the start."""
 
     def __init__(
         self,
-        conditions: Sequence[ReadyCondition],
+        conditions: Sequence[Ready],
         spawner: Spawner,
         reaper: Reaper,
         env: Mapping[str, str | None],
@@ -86,9 +79,9 @@ class Readiness:
         self._reaper = reaper
         self._env = env
         self._on_clashes = on_clashes
-        self._waiters: dict[asyncio.Future[None], tuple[ReadyCondition, Callable[[Seen], None]]] = {}
-        self._holding: frozenset[ReadyCondition] = frozenset()
-        self._seen: dict[ReadyCondition, Seen] = {}
+        self._waiters: dict[asyncio.Future[None], tuple[Ready, Callable[[Seen], None]]] = {}
+        self._holding: frozenset[Ready] = frozenset()
+        self._seen: dict[Ready, Seen] = {}
         self._task: asyncio.Task[None] | None = None
         self._linger: asyncio.TimerHandle | None = None
 
@@ -98,7 +91,7 @@ class Readiness:
             self._task = asyncio.create_task(self._watch())
             self._stop_later()
 
-    async def until(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
+    async def until(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
         """Return once `condition` holds; until then `tell` gets every new state of the topic.
 
         Raises:
@@ -169,7 +162,7 @@ class Readiness:
                         ]
                     )
 
-    def _learn(self, holding: frozenset[ReadyCondition], seen: dict[ReadyCondition, Seen]) -> None:
+    def _learn(self, holding: frozenset[Ready], seen: dict[Ready, Seen]) -> None:
         before, self._holding, self._seen = self._seen, holding, seen
         for future, (condition, tell) in self._waiters.items():
             if future.done():
@@ -180,5 +173,69 @@ class Readiness:
                 tell(seen[condition])
 
     def _request(self) -> SpawnRequest:
-        wanted = json.dumps([(c.kind, c.name, c.type, c.rate_hz) for c in self._conditions])
+        wanted = json.dumps([_asked(condition) for condition in self._conditions])
         return SpawnRequest("probe", "deck_probe", "deck: probe", (wanted,), "/", self._env)
+
+
+def _asked(condition: Ready) -> tuple[str, str | None, str, float]:
+    """Return a condition as the probe takes it: kind, name, type and rate."""
+    kind = "topic" if condition.topic else "service" if condition.service else "node"
+    return kind, getattr(condition, kind), condition.type or "", condition.rate or 0.0
+
+
+class LifecycleWaits:
+    """Each wait has a process of its own, which ends with it."""
+
+    def __init__(self, spawner: Spawner, reaper: Reaper, env: Mapping[str, str | None]) -> None:
+        """`env`: the variables that a process needs to join the right domain."""
+        self._spawner = spawner
+        self._reaper = reaper
+        self._env = env
+
+    async def until(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
+        """Return once the node is in the wanted state; until then `tell` gets every other state.
+
+        Raises:
+            NotBroughtUpError: if a transition to that state has failed.
+            UnwatchableError: if the graph cannot be watched.
+        """
+        for _attempt in range(MAX_PROBES):
+            if await self._one_process(condition, tell):
+                return
+        raise UnwatchableError
+
+    async def _one_process(self, condition: Ready, tell: Callable[[Seen], None]) -> bool:
+        """Listen to one process; return whether the state was reached before it ended."""
+        wanted = json.dumps([condition.node, condition.lifecycle, condition.goes])
+        request = SpawnRequest("lifecycle", "deck_lifecycle", "deck: lifecycle", (wanted,), "/", self._env)
+        with contextlib.suppress(SpawnError, ValueError):
+            async with helping(self._spawner, self._reaper, request) as reports:
+                async for line in reports:
+                    told = read_json(line)
+                    if told["state"] == condition.lifecycle:
+                        return True
+                    if "failed" in told:
+                        raise NotBroughtUpError(told["failed"], told["state"])
+                    tell(Seen((told["state"],)))
+        return False
+
+
+def clash_of(node: str, file: str, clashes: Sequence[Clash]) -> NodeFault | None:
+    """Return the first topic that this node (full name) uses with another type than others do.
+
+    It neither hears the others nor is heard.
+    """
+    for topic, users in clashes:
+        own = [kind for user, kind in users if user == node]
+        others = [(user, kind) for user, kind in users if user != node and kind not in own]
+        if own and others:
+            user, kind = others[0]
+            return NodeFault(
+                "warning",
+                file,
+                exception=say(
+                    "{topic} is {own} here, and {other} in {node}", topic=topic, own=own[0], other=kind, node=user
+                ),
+                meaning=say("A topic has one type: messages of another do not arrive."),
+            )
+    return None

@@ -6,15 +6,14 @@ import asyncio
 from typing import TYPE_CHECKING, Protocol
 
 from launcher.status import NodeState, Severity
-from launcher.supervisor.lifecycle import NotBroughtUpError
-from launcher.supervisor.readiness import UnwatchableError
+from launcher.supervisor.readiness import NotBroughtUpError, UnwatchableError
 from launcher.supervisor.words import instead, late, not_brought_up, what
 from text.sentences import say
 
 if TYPE_CHECKING:
+    from launcher.profile.node import Node, Ready
     from launcher.supervisor.node_context import NodeContext
-    from launcher.supervisor.plan import NodePlan
-    from launcher.supervisor.readiness import ReadyCondition, Seen
+    from launcher.supervisor.readiness import Seen
 
 LATE_S = 60.0
 """How long after its time limit a node may still become ready."""
@@ -34,7 +33,7 @@ class HasState(Protocol):
 class Readying:
     """One process of a node on its way to be ready."""
 
-    def __init__(self, plan: NodePlan, around: NodeContext, node: HasState) -> None:
+    def __init__(self, plan: Node, around: NodeContext, node: HasState) -> None:
         """`around`: the session that the node belongs to."""
         self._plan = plan
         self._around = around
@@ -58,7 +57,7 @@ class Readying:
             return not_brought_up(error.transition, error.state, last)
         return ""
 
-    async def _holds(self, condition: ReadyCondition) -> bool:
+    async def _holds(self, condition: Ready) -> bool:
         """Wait for a condition; return False if it does not come to hold in the longest time."""
         plan, node, clock = self._plan, self._node, self._around.clock
         node.become(NodeState.STARTING, say("waiting for {what}", what=what(condition)))

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import os
 import signal
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,13 +30,11 @@ from launcher.runs.record import RunRecord, exclusively
 from launcher.runs.run_folder import RunFolder
 from launcher.runs.shared_domain import free_domain, rival
 from launcher.runs.strays import end_strays, find_strays, forget_ended_runs
-from launcher.spawn_server.spawner import Spawner
-from launcher.status import SessionInfo, Severity, Stray
-from launcher.supervisor.orphans import Orphans
+from launcher.spawn_server.spawner import Spawner, SpawnError, SpawnRequest
+from launcher.status import Severity, Stray
 from launcher.supervisor.own_files import OwnFiles
-from launcher.supervisor.picture_relay import relay_pictures
 from launcher.supervisor.plan import Plan
-from launcher.supervisor.process import ProcessLauncher, ProcessScan
+from launcher.supervisor.process import Orphans, ProcessLauncher, ProcessScan, helping
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
 from robot.safety.stop_file import BY_SCREEN, StopFile
@@ -56,6 +56,10 @@ LAST_WORDS = "supervisor"
 """Name of the log with the supervisor's own output, above all its tracebacks."""
 HURRIED_S = 5.0
 """A process that outlives SIGKILL by this time is stuck in the kernel; we stop waiting for it."""
+RELAY = "graph.picture_relay"
+RELAY_AFTER_S, LONGEST_RELAY_S = 3.0, 60.0
+"""The nodes go first. So long after the end of one relay another is started: twice as long each
+time, unless it has worked for a while."""
 STRAYS_AGAIN_S = 3.0
 """Processes of a run that ended a moment ago may still be ending."""
 
@@ -84,22 +88,13 @@ async def _open_stdin() -> asyncio.StreamReader:
 
 
 def _record(plan: Plan, run_id: str, client: int) -> RunRecord:
-    session = SessionInfo(
+    session = replace(
+        plan.session,
         run_id=run_id,
-        profile=plan.profile,
-        name=plan.name,
-        title=plan.title,
-        lesson=plan.lesson,
-        domain=plan.domain,
-        discovery=plan.discovery,
-        hardware=plan.hardware,
-        panels=plan.panels,
         supervisor_pid=os.getpid(),
-        log_dir=str(Path(plan.log_dir, plan.name, run_id)),
-        foreground=plan.foreground,
+        log_dir=str(Path(plan.session.log_dir, plan.session.name, run_id)),
         started_by=who_runs(client),
         since_s=time.time(),
-        agents=plan.agents,
     )
     nodes = tuple(node.name for node in plan.nodes)
     return RunRecord(Path(plan.run_dir, run_id), session, nodes, {}, plan.drives)
@@ -109,11 +104,11 @@ def _claim(run_folder: RunFolder, plan: Plan) -> bool:
     """Claim the domain for this run, unless another one has these nodes in it."""
     folder = run_folder.run_dir
     try:
-        with exclusively(folder, plan.domain):
+        with exclusively(folder, plan.session.domain):
             everyone = list(supervisors())
             other = rival(everyone, run_folder.record)
             if other is not None:
-                _answer(_refusal(other, free_domain(everyone, plan.domain)))
+                _answer(_refusal(other, free_domain(everyone, plan.session.domain)))
                 return False
             run_folder.settle()
         folder = Path(run_folder.record.session.log_dir)
@@ -178,7 +173,7 @@ class Supervisor:
         launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._log)
         self._own_files = OwnFiles(lambda: self._session.own_files(), self._saved)  # noqa: PLW0108
         self._session = Session(plan, launcher, self._log, self._status_changed, self._own_files.note)
-        open_because = why_open(os.environ, plan.discovery)
+        open_because = why_open(os.environ, plan.session.discovery)
         if open_because:
             self._log.say(DECK, Severity.WARN, open_because)
         self._stop_file = StopFile(self.info.domain, "/supervisor")
@@ -206,7 +201,7 @@ class Supervisor:
         _answer({"folder": str(self._run_folder.record.folder)})
         helpers = [
             asyncio.create_task(self._session.measure()),
-            asyncio.create_task(relay_pictures(self._plan, self._spawner, self._reaper)),
+            asyncio.create_task(_relay_pictures(self._plan, self._spawner, self._reaper)),
             asyncio.create_task(self._look_for_strays()),
             asyncio.create_task(self._run_folder.keep(self.control.serve, self._warn)),
             asyncio.create_task(self._watch_owner(stdin)),
@@ -405,3 +400,21 @@ class Supervisor:
 
     def _prune_logs(self) -> None:
         prune_runs(Path(self.info.log_dir).parent)
+
+
+async def _relay_pictures(plan: Plan, spawner: Spawner, reaper: Reaper) -> None:
+    """Keep the relay running until this is cancelled; a local session needs none."""
+    if plan.session.discovery == "localhost":
+        return
+    where = json.dumps([plan.session.domain, plan.session.discovery])
+    request = SpawnRequest("module", "deck_relay", "deck: relay", (RELAY, where), "/", plan.env)
+    after_s = RELAY_AFTER_S
+    while True:
+        await asyncio.sleep(after_s)
+        began_s = time.monotonic()
+        with contextlib.suppress(SpawnError):
+            async with helping(spawner, reaper, request) as words:
+                async for _line in words:
+                    pass
+        lasted = time.monotonic() - began_s > LONGEST_RELAY_S
+        after_s = RELAY_AFTER_S if lasted else min(2 * after_s, LONGEST_RELAY_S)

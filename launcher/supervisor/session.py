@@ -13,12 +13,9 @@ from launcher.faults.stuck import stuck_in
 from launcher.faults.telling import fault_in
 from launcher.processes.usage import UsageMeter
 from launcher.status import NodeState, Severity
-from launcher.supervisor.clashes import clash_of
 from launcher.supervisor.dependencies import stop_waves, with_needs
-from launcher.supervisor.exchange import exchanged
-from launcher.supervisor.lifecycle import LIFECYCLE, LifecycleWaits
 from launcher.supervisor.node import SupervisedNode
-from launcher.supervisor.readiness import Readiness
+from launcher.supervisor.readiness import LifecycleWaits, Readiness, clash_of
 from launcher.supervisor.words import who
 from text.sentences import say
 
@@ -28,10 +25,11 @@ if TYPE_CHECKING:
     from launcher.clock import Clock
     from launcher.logs.session_log import SessionLog
     from launcher.processes.table import Process
+    from launcher.profile.node import Node, Ready
     from launcher.status import LogLine, NodeFault
-    from launcher.supervisor.plan import NodePlan, Plan
+    from launcher.supervisor.plan import Plan
     from launcher.supervisor.process import NodeProcess, ProcessLauncher
-    from launcher.supervisor.readiness import Clash, ReadyCondition, Seen
+    from launcher.supervisor.readiness import Clash, Seen
 
 USAGE_EVERY_S = 2.0
 
@@ -66,7 +64,7 @@ class Session:
         self._on_start = on_start
         self._meter = UsageMeter()
         self._readiness = Readiness(
-            [each for node in plan.nodes for each in node.conditions if each.kind != LIFECYCLE],
+            [each for node in plan.nodes for each in node.conditions if not each.lifecycle],
             launcher.spawner,
             launcher.reaper,
             plan.env,
@@ -160,7 +158,7 @@ class Session:
 
     # The `NodeContext` of the nodes.
 
-    async def launch(self, plan: NodePlan) -> NodeProcess:
+    async def launch(self, plan: Node) -> NodeProcess:
         """Start a node's process; raises `SpawnError`."""
         if plan.name in self.processes:
             # It may have died without notice, and a probe that saw it alive still sees it.
@@ -174,15 +172,15 @@ class Session:
         self.processes[plan.name] = (process.pid, process.started_ticks)
         return process
 
-    async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
+    async def ready(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
         """Return once the condition holds; `tell` gets other states.
 
         Raises `UnwatchableError`, and `NotBroughtUpError` for a lifecycle.
         """
-        waits = self._lifecycles if condition.kind == LIFECYCLE else self._readiness
+        waits = self._lifecycles if condition.lifecycle else self._readiness
         await waits.until(condition, tell)
 
-    def missing(self, plan: NodePlan) -> str:
+    def missing(self, plan: Node) -> str:
         """Say which needed nodes are not ready yet; empty if all are."""
         absent = [self.nodes[name] for name in plan.needs if not self.nodes[name].serves]
         if not absent:
@@ -192,7 +190,7 @@ class Session:
     def last_words(self, name: str) -> str:
         return self.log.last_words(name)
 
-    def crash(self, plan: NodePlan) -> NodeFault | None:
+    def crash(self, plan: Node) -> NodeFault | None:
         """Return what the last output of a learner's own node tells of its end."""
         told = self._faults.get(plan.name)
         if told is not None:
@@ -221,7 +219,9 @@ class Session:
         """Run a file or a module in the place of a node's program, or the program itself again."""
         self._chosen([name])
         (plan,) = (plan for plan in self.plan.nodes if plan.name == name)
-        plan = plan if program is None else exchanged(plan, program)
+        if program is not None:
+            # With the same name, parameters, remaps and needs.
+            plan = plan.model_copy(update={"run": program, "exec": None, "warm": plan.is_forked})
         self.nodes[name].exchange(plan, look_at(plan.file) if plan.file else None)
 
     def heard(self, line: LogLine) -> None:
@@ -251,7 +251,7 @@ class Session:
             if node.plan.file:
                 node.clashes(clash_of(f"/{name}", node.plan.file, clashes))
 
-    def ended_early(self, plan: NodePlan) -> NodeFault | None:
+    def ended_early(self, plan: Node) -> NodeFault | None:
         """Return why a learner's own node has ended without an error; None if it was to."""
         return unspun(plan.file)
 

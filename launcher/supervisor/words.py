@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
     from launcher.processes.exit import Exit
     from launcher.processes.table import Process
-    from launcher.supervisor.plan import NodePlan
-    from launcher.supervisor.readiness import ReadyCondition, Seen
+    from launcher.profile.node import Node, Ready
+    from launcher.supervisor.readiness import Seen
 
 NOT_EXECUTABLE, NOT_FOUND = 126, 127
 NOT_FOUND_WORDS = "deck: command not found"
@@ -39,12 +39,12 @@ def suspended(pid: int) -> NodeFault:
     )
 
 
-def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
+def end_words(end: Exit, plan: Node, last: str, *, asked: bool) -> str:
     """How a process ended, with its `last` line of output unless it was `asked` to end."""
     if end.clean:
         return say("ended")
-    if end.code == NOT_FOUND and last.startswith(NOT_FOUND_WORDS) and not plan.module:
-        program = plan.argv[0]
+    if end.code == NOT_FOUND and last.startswith(NOT_FOUND_WORDS) and not plan.is_forked:
+        program = plan.argv()[0]
         if plan.optional:
             return say("{program} is not installed; the lesson continues without it", program=program)
         return say("{program} is not installed", program=program)
@@ -61,74 +61,64 @@ def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
     return say("{how}: {last}", how=how, last=_short(last)) if told else how
 
 
-def what(condition: ReadyCondition) -> str:
+def what(condition: Ready) -> str:
     """Describe the condition that is waited for."""
-    if condition.kind == "topic":
+    if condition.topic:
         if condition.type:
-            return say("publisher of {name} ({type})", name=condition.name, type=condition.type)
-        return say("publisher of {name}", name=condition.name)
-    if condition.kind == "service":
-        return say("service {name}", name=condition.name)
-    if condition.kind == "lifecycle":
-        return say("{name} to be {state}", name=condition.name, state=condition.type)
-    return say("node {name} in the graph", name=condition.name)
+            return say("publisher of {name} ({type})", name=condition.topic, type=condition.type)
+        return say("publisher of {name}", name=condition.topic)
+    if condition.service:
+        return say("service {name}", name=condition.service)
+    if condition.lifecycle:
+        return say("{name} to be {state}", name=condition.node, state=condition.lifecycle)
+    return say("node {name} in the graph", name=condition.node)
 
 
-def instead(condition: ReadyCondition, seen: Seen) -> str:
+def instead(condition: Ready, seen: Seen) -> str:
     """Describe why the condition does not hold: another type or state, or too few messages."""
-    if condition.kind == "lifecycle":
+    types = ", ".join(seen.types)
+    if condition.lifecycle:
         return say(
-            "{name} is {state}, expected {wanted}",
-            name=condition.name,
-            state=", ".join(seen.types),
-            wanted=condition.type,
+            "{name} is {state}, expected {wanted}", name=condition.node, state=types, wanted=condition.lifecycle
         )
+    topic = condition.topic
     if condition.type and condition.type not in seen.types:
-        return say(
-            "{name} is published as {types}, expected {type}",
-            name=condition.name,
-            types=", ".join(seen.types),
-            type=condition.type,
-        )
+        return say("{name} is published as {types}, expected {type}", name=topic, types=types, type=condition.type)
     if seen.rate_hz is None:
-        return say(
-            "the rate of {name} cannot be measured: {types} is not installed",
-            name=condition.name,
-            types=", ".join(seen.types),
-        )
+        return say("the rate of {name} cannot be measured: {types} is not installed", name=topic, types=types)
     return say(
         "{name} arrives at {rate:.2g} Hz, expected {wanted:g} Hz",
-        name=condition.name,
+        name=topic,
         rate=seen.rate_hz,
-        wanted=condition.rate_hz,
+        wanted=condition.rate,
     )
 
 
-def late(condition: ReadyCondition, seen: Seen | None, within_s: float) -> str:
+def late(condition: Ready, seen: Seen | None, within_s: float) -> str:
     """Say that a node is not ready in time, and why."""
     why = lack(condition) if seen is None else instead(condition, seen)
     return say("not ready within {seconds:g} s: {why}", seconds=within_s, why=why)
 
 
-def lack(condition: ReadyCondition) -> str:
+def lack(condition: Ready) -> str:
     """Say what is missing after the wait has timed out."""
-    if condition.kind == "topic":
-        return say("nobody publishes {name}", name=condition.name)
-    if condition.kind == "service":
-        return say("nobody serves {name}", name=condition.name)
-    if condition.kind == "lifecycle":
-        return say("{name} tells no state: it is not there, or has no lifecycle", name=condition.name)
-    return say("node {name} is not in the graph", name=condition.name)
+    if condition.topic:
+        return say("nobody publishes {name}", name=condition.topic)
+    if condition.service:
+        return say("nobody serves {name}", name=condition.service)
+    if condition.lifecycle:
+        return say("{name} tells no state: it is not there, or has no lifecycle", name=condition.node)
+    return say("node {name} is not in the graph", name=condition.node)
 
 
-def left_undone(condition: ReadyCondition) -> str:
+def left_undone(condition: Ready) -> str:
     """Say what is missing when a node ends, even cleanly; empty if it only had to appear."""
-    if condition.kind == "topic":
-        return say("ended by itself, but should still publish {name}", name=condition.name)
-    if condition.kind == "service":
-        return say("ended by itself, but should still serve {name}", name=condition.name)
-    if condition.kind == "lifecycle":
-        return say("ended by itself, but should still be {state}", state=condition.type)
+    if condition.topic:
+        return say("ended by itself, but should still publish {name}", name=condition.topic)
+    if condition.service:
+        return say("ended by itself, but should still serve {name}", name=condition.service)
+    if condition.lifecycle:
+        return say("ended by itself, but should still be {state}", state=condition.lifecycle)
     return ""
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 import signal
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from launcher.profile.load import load_profile
@@ -63,12 +62,12 @@ class RobotNodes:
         """Start nodes, one right after the other, and wait until each works."""
         for name in names:
             spec = self._specs[name]
-            assert spec.document.run is not None
+            assert spec.run is not None
             params = {**spec.params, **OWN.get(name, {})}
             if "port" in params:
                 params["port"] = str(self.folder / str(params["port"]).rpartition("/")[2])
-            arguments = tuple(replace(spec, params=params).ros_args())
-            self.processes[name] = NodeProcess(spec.document.run, self.domain, arguments=arguments)
+            arguments = tuple(spec.model_copy(update={"params": params}).ros_args())
+            self.processes[name] = NodeProcess(spec.run, self.domain, arguments=arguments)
         for name in names:
             self.processes[name].wait_for_words(READY[name])
 

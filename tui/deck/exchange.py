@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from course.folder.programs import programs_for
 from launcher.errors import LauncherError
-from launcher.profile.text import shown
+from launcher.profile.defaults import shown
 from text.i18n import _, localized
 from text.os_words import os_reason
 from text.plain import plain

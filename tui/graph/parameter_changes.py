@@ -15,6 +15,7 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Input, Static
 
+from graph.observer.requests import SetParameters
 from text import ros2_words
 from text.i18n import _, localized, ngettext
 from text.os_words import os_reason

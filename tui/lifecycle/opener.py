@@ -163,7 +163,7 @@ def _read(path: Path, request: OpenRequest) -> Profile:
         path, hardware=request.hardware, overrides=request.overrides, domain=request.domain, ports=serial_ports
     )
     if not request.beside:
-        profile = apart_from_classmates(profile, request.domain)
+        profile = apart_from_classmates(profile)
         refuse_shared_domain(profile)
     return profile
 

@@ -23,7 +23,7 @@ from text.i18n import N_
 if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
-    from launcher.profile.panels import Panel as PanelName
+    from launcher.profile.model import Panel as PanelName
     from tui.panels.panel import Panel
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, Union
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
 
-from launcher.profile.fields import Document, RosName, Texts, TypeName, refuse
+from launcher.profile.node import Document, RosName, Texts, TypeName, refuse
 from launcher.profile.steps.expressions import PLACE, written
 from text.sentences import say
 

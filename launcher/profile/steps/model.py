@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
 
-from launcher.profile.fields import Document, Texts, refuse
+from launcher.profile.node import Document, Texts, refuse
 from launcher.profile.steps.checks import Check
 from text.sentences import say
 

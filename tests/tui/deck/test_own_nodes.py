@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.profile.text import SHIPPED as PROFILES
+from launcher.profile.defaults import SHIPPED as PROFILES
 from launcher.status import HALTED, STUCK, NodeFault, NodeState, NodeStatus
 from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession
 from tests.tui.snapshots import opened, seen

@@ -19,7 +19,6 @@ from cli.preflight.answers import ask
 from cli.preflight.devices import examine
 from cli.preflight.open_port import DeviceAnswer, OpenPort, opened
 from launcher.profile.load import Profile
-from launcher.profile.model import ProfileDocument
 from launcher.serial_ports import SerialPort
 from robot.wire.lsc16 import Battery
 from robot.wire.lsc16 import encode as encode_servos
@@ -190,8 +189,7 @@ def robot(*, used: bool = True, **devices: dict[str, Any]) -> Profile:
     return Profile(
         path=Path("robot.yaml"),
         name="robot",
-        nodes={},
-        document=ProfileDocument.model_validate({"devices": devices}),
+        devices=devices,
         domain=0,
         hardware="real",
         used=tuple(devices) if used else (),

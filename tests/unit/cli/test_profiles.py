@@ -96,7 +96,7 @@ def test_what_was_written_is_kept_as_a_copy(course: Path, capsys: pytest.Capture
     # A folder is a profile, with that folder's name.
     profile = load_profile(find_profile(str(file.parent)))
     assert profile.name == "02-sonar-safety"
-    assert profile.nodes["sonar_front"].own_file == str(file)
+    assert profile.nodes["sonar_front"].file == str(file)
 
 
 @pytest.mark.parametrize("code", ["en", "ru"])

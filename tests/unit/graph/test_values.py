@@ -83,8 +83,8 @@ def test_long_arrays_are_cut_and_tell_their_length() -> None:
         ("", 1, 1, "is empty: write {} for a message with nothing but defaults"),
         ("~", 1, 1, "is empty: write {}"),
         ("[1]", 1, 1, "expected `name: value`, found a list"),
-        ("a: &x 1", 1, 4, "anchors are refused"),
-        ("a: " + "[" * 100, 1, 67, "is nested deeper than 64 levels"),
+        ("a: &x 1", 1, 4, "anchors and aliases are refused"),
+        ("a: " + "[" * 100 + "]" * 100, 1, 67, "is nested deeper than 64 levels"),
         ("a: " + "я" * 600_000, 1, 1, "is longer than 1024 KiB"),
     ],
 )

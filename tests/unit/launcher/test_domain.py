@@ -155,10 +155,10 @@ def beside(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 @pytest.mark.usefixtures("beside")
 def test_who_comes_from_another_machine_gets_a_domain_of_their_own(tmp_path: Path) -> None:
     profile = loaded(tmp_path, HELLO)
-    assert apart_from_classmates(profile, None, FROM_B).domain == profile.domain % 101 + 1
+    assert apart_from_classmates(profile, FROM_B).domain == profile.domain % 101 + 1
     # The same person, or somebody at the machine itself, is asked instead.
-    assert apart_from_classmates(profile, None, FROM_A).domain == profile.domain
-    assert apart_from_classmates(profile, None, {}).domain == profile.domain
+    assert apart_from_classmates(profile, FROM_A).domain == profile.domain
+    assert apart_from_classmates(profile, {}).domain == profile.domain
 
 
 def test_the_run_directory_is_the_one_told_or_that_of_ones_own_login(

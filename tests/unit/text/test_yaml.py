@@ -12,13 +12,12 @@ from hypothesis import strategies as st
 
 from graph.calls.parameters_values import WrongValueError, carried
 from graph.messages.yaml_reading import read_message
-from launcher.profile.problems import Problems
+from launcher.profile.reading import Problems
 from launcher.profile.reading import read_yaml as read_profile
 from text.nested import MAX_DEPTH, NestedTooDeeplyError, read_json
 from text.nested_yaml import read_yaml
 from text.yaml_faults import YamlError
-from text.yaml_reading import Rules, mapping, read
-from text.yaml_tree import Branch, FilePlace, field_name, find, place_of, plain
+from text.yaml_tree import Branch, FilePlace, Rules, field_name, find, mapping, place_of, plain, read
 
 STRICT = Rules(shares=False, longest=1024 * 1024, deepest=64)
 SHARING = Rules(shares=True, longest=1024 * 1024, deepest=24, most=1000)
@@ -41,7 +40,7 @@ def meant(text: str) -> object:
         ("on", True), ("No", False), ("y", "y"), ("1e3", 1000.0), ("-.5e-1", -0.05), ("0o17", 15),
         ("017", 15), ("09", "09"), ("0x1F", 31), ("1_000", 1000), ("12:30", "12:30"),
         ("2026-01-01", "2026-01-01"), ("~", None), ("", None), ("inf", math.inf),
-        ("-.inf", -math.inf), ("1e400", "1e400"), ("'on'", "on"), ('"5"', "5"), ("! 5", "5"),
+        ("-.inf", -math.inf), ("1e400", "1e400"), ("'on'", "on"), ('"5"', "5"),
         ("!!str 5", "5"), ("!!int 0o17", 15), ("!!int '5'", 5), ("!!float 5", 5.0),
         ("!!bool 'yes'", True), ("!!null ~", None), ("=", "="), ("<<", "<<"),
         ("9" * 2000, "9" * 2000),
@@ -85,10 +84,10 @@ def test_everything_has_its_place() -> None:
     assert find(tree, ("a", 2)) is None
 
 
-def test_an_alias_stands_for_its_value_at_its_own_place() -> None:
+def test_an_alias_stands_for_its_value_and_its_place() -> None:
     tree = fields("a: &x [1, {b: 2}]\nc: *x", SHARING)
     assert plain(tree) == {"a": [1, {"b": 2}], "c": [1, {"b": 2}]}
-    assert place_of(tree, ("c",)) == FilePlace("", 2, 4)
+    assert place_of(tree, ("c",)) == FilePlace("", 1, 4)
 
 
 def test_an_anchor_on_a_key_remembers_what_its_word_means() -> None:
@@ -147,16 +146,17 @@ REFUSED_EVERYWHERE = [
     ("a: " + "я" * 600_000, 1, 1, "is longer than 1024 KiB"),
 ]
 REFUSED_WHERE_NOTHING_IS_SHARED = [
-    ("a: &x 1", 1, 4, "anchors are refused: write the value out"),
-    ("a: *x", 1, 4, "aliases are refused: write the value out"),
-    ("a: " + "[" * 100, 1, 67, "is nested deeper than 64 levels"),
+    ("a: &x 1", 1, 4, "anchors and aliases are refused: write the value out"),
+    ("a: *x", 1, 4, "anchors and aliases are refused: write the value out"),
+    ("a: " + "[" * 100 + "]" * 100, 1, 67, "is nested deeper than 64 levels"),
 ]
 REFUSED_OF_WHAT_IS_SHARED = [
-    ("a: &x {b: *x}", 1, 11, "*x contains itself"),
-    ("a: *x", 1, 4, "*x refers to nothing: there is no &x before it"),
+    ("a: &x {b: *x}", 1, 4, "contains itself, by an alias"),
+    ("a: *x", 1, 4, "this alias refers to nothing: there is no such anchor before it"),
+    ("a: &x 1\nb: &x 2", 2, 4, "there is an anchor of this name already"),
     ("a: {<<: 1}", 1, 5, "expected a mapping to merge"),
-    ("a: " + "[" * 100, 1, 27, "is nested deeper than 24 levels"),
-    ("a: &x [" + "1," * 500 + "]\nb: *x", 2, 4, "has more than 1000 values, counting aliases"),
+    ("a: " + "[" * 100 + "]" * 100, 1, 27, "is nested deeper than 24 levels"),
+    ("a: &x [" + "1," * 500 + "]\nb: *x", 1, 4, "has more than 1000 values, counting aliases"),
 ]
 
 

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from launcher.errors import ProfileError
 from launcher.profile.load import load_profile
-from launcher.profile.model import NodeDocument, ProfileDocument, ReadyDocument
+from launcher.profile.model import Profile
+from launcher.profile.node import Document, Given, Node, Ready, marked
 from tests.unit.profile_files import refused, told, written
 
 BAD = [
@@ -133,6 +134,14 @@ BAD = [
 ]  # fmt: skip
 
 
+@pytest.mark.parametrize(("above", "model"), [("{key}: 1", Profile), ("nodes: {{a: {{exec: [x], {key}: 1}}}}", Node)])
+def test_what_the_loader_gives_cannot_be_written(above: str, model: type[Document], tmp_path: Path) -> None:
+    for key in marked(model, Given):
+        text = above.format(key=key) if model is Node else above.format(key=key) + "\nnodes: {a: {exec: [x]}}"
+        (message,) = told(tmp_path, text)
+        assert f"{key}: unknown key" in message
+
+
 @pytest.mark.parametrize(("text", "expected"), BAD)
 def test_one_message_tells_place_field_and_mend(text: str, expected: str, tmp_path: Path) -> None:
     (tmp_path / "mine.py").touch()
@@ -235,7 +244,7 @@ def test_a_huge_file_is_told(tmp_path: Path) -> None:
 
 KEYS = sorted(
     {
-        *(*ProfileDocument.model_fields, *NodeDocument.model_fields, *ReadyDocument.model_fields),
+        *(*Profile.model_fields, *Node.model_fields, *Ready.model_fields),
         *("a", "b", "en", "pico", "port", "<<", "x y", "", "1"),
     }
 )
@@ -248,10 +257,10 @@ ANYTHING = st.recursive(
     lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(st.sampled_from(KEYS), inner, max_size=4)),
     max_leaves=12,
 )
-NODE = st.dictionaries(st.sampled_from(sorted(NodeDocument.model_fields)), ANYTHING, max_size=6)
+NODE = st.dictionaries(st.sampled_from(sorted(Node.model_fields)), ANYTHING, max_size=6)
 PROFILE = st.fixed_dictionaries(
     {"nodes": st.dictionaries(st.sampled_from(["a", "b", "c"]), NODE, max_size=3)},
-    optional={name: ANYTHING for name in ProfileDocument.model_fields if name != "nodes"},
+    optional={name: ANYTHING for name in Profile.model_fields if name != "nodes"},
 )
 
 

@@ -9,7 +9,7 @@ import pytest
 from launcher.errors import ProfileNotFoundError
 from launcher.profile.catalog import find_profile
 from launcher.profile.load import load_profile
-from launcher.profile.schema import render
+from launcher.profile.model import render
 from launcher.profile.steps.checks import KINDS, kind_of
 from launcher.profile.steps.expressions import ExpressionError, evaluate, filled
 from tests.unit.profile_files import loaded, told, written
@@ -30,14 +30,14 @@ def test_every_lesson_is_there() -> None:
 @pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
 def test_a_lesson_is_valid_and_titled_in_both_languages(path: Path, hardware: str) -> None:
     profile = load_profile(path, hardware=hardware)
-    assert set(profile.document.title) == set(profile.document.about) == {"en", "ru"}
+    assert set(profile.title) == set(profile.about) == {"en", "ru"}
     assert profile.warnings == ()
     assert profile.path.read_text().startswith("# yaml-language-server: $schema=schema.json")
 
 
 def test_the_schema_is_true() -> None:
     assert (PROFILES / "schema.json").read_text() == render(), (
-        "python -m launcher.profile.schema > profiles/schema.json"
+        "python -m launcher.profile.model > profiles/schema.json"
     )
 
 
@@ -53,7 +53,7 @@ def test_the_schema_is_true() -> None:
 def test_who_is_to_publish_a_topic_is_ready_by_it_and_its_type(lesson: str, node: str, topic: str, kind: str) -> None:
     ready = load_profile(PROFILES / f"{lesson}.yaml").nodes[node].ready
     assert ready is not None
-    assert (ready.kind, ready.name, ready.type) == ("topic", topic, kind)
+    assert (ready.topic, ready.type) == (topic, kind)
 
 
 def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
@@ -61,7 +61,7 @@ def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
     assert nodes["safety_stop"].params["gate"] is True
     assert nodes["safety_stop"].params["rear_topic"] == "/sensor/sonar_rear"
     assert nodes["electronic_differential"].params["drive_topic"] == "/drive_safe"
-    assert nodes["drive_to_point"].document.remap == {"/drive": "/drive_action"}
+    assert nodes["drive_to_point"].remap == {"/drive": "/drive_action"}
     assert nodes["drive_to_point"].params["simulate"] == "never"
 
 
@@ -116,7 +116,7 @@ def test_a_file_stands_relative_to_the_profile_that_names_it(tmp_path: Path, mon
     written(other, "extends: ../robot/robot.yaml\nnodes: {b: {run: ../robot/my_sonar.py}}")
     monkeypatch.chdir(other)
     nodes = load_profile("lesson.yaml").nodes
-    assert nodes["a"].document.run == nodes["b"].document.run == str(robot / "my_sonar.py")
+    assert nodes["a"].run == nodes["b"].run == str(robot / "my_sonar.py")
     assert nodes["a"].command == "./my_sonar.py"
     assert nodes["a"].argv()[-4:] == [*(str(robot / "my_sonar.py"), "--ros-args", "-r", "__node:=a")]
 
@@ -210,7 +210,7 @@ def test_every_kind_is_read_by_its_own_key(tmp_path: Path) -> None:
             )
         )
     )
-    (step,) = loaded(tmp_path, text).document.steps
+    (step,) = loaded(tmp_path, text).steps
     assert {kind_of(check) for check in step.checks} == set(KINDS)
 
 

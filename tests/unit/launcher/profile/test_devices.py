@@ -43,8 +43,8 @@ def test_places_are_put_in_on_mock_hardware(tmp_path: Path) -> None:
 def test_auto_becomes_the_port_that_was_found(tmp_path: Path) -> None:
     profile = started(tmp_path, PICO)
     assert profile.nodes["chassis"].params["port"] == "/dev/serial/by-id/pico"
-    assert profile.document.devices["pico"]["port"] == "/dev/serial/by-id/pico"
-    assert profile.document.devices["other"]["port"] == "auto", "no node that runs uses it"
+    assert profile.devices["pico"]["port"] == "/dev/serial/by-id/pico"
+    assert profile.devices["other"]["port"] == "auto", "no node that runs uses it"
 
 
 def test_a_variable_goes_before_auto(tmp_path: Path) -> None:

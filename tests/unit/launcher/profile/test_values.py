@@ -15,10 +15,9 @@ from hypothesis import strategies as st
 from launcher import node_program
 from launcher.errors import DomainError, ProfileError
 from launcher.profile.load import Profile, load_profile
+from launcher.profile.node import written as argument
 from launcher.profile.params import NAME, flatten
-from launcher.profile.params import written as argument
-from launcher.profile.problems import Problems
-from launcher.profile.reading import read_value
+from launcher.profile.reading import Problems, read_value
 from launcher.profile.when import WhenError, holds
 from tests.unit.profile_files import loaded, told, written
 from text.yaml_scalars import meaning
@@ -78,7 +77,7 @@ def test_what_yaml_says_is_what_the_argument_says(value: Any) -> None:
         ("yes", "p:=true"), ('"yes"', 'p:="yes"'),
         ("12:30", 'p:="12:30"'), ("2026-01-02", 'p:="2026-01-02"'), ("0x10", "p:=16"),
         ("[1, 2.5]", "p:=[1.0, 2.5]"), ('["1", a]', 'p:=["1", "a"]'), ("привет", 'p:="привет"'),
-        ('"a\\nb\\u0007"', 'p:="a\\nb\\x07"'), ("{a: {b: 1}}", "p.a.b:=1"),
+        ('"a\\nb\\u0007"', 'p:="a\\nb\\u0007"'), ("{a: {b: 1}}", "p.a.b:=1"),
     ],
 )  # fmt: skip
 def test_the_command_line_of_a_node(yaml_value: str, argument: str, tmp_path: Path) -> None:
@@ -139,9 +138,9 @@ def extended(folder: Path, text: str) -> Profile:
 def test_a_parameter_deep_down_is_overridden_and_the_rest_stays(tmp_path: Path) -> None:
     profile = extended(tmp_path, "nodes: {sonar: {params: {limits: {near: 0.5}}}}")
     assert profile.nodes["sonar"].params == {"rate": 1.0, "limits.near": 0.5, "limits.far": 3.0}
-    assert profile.nodes["sonar"].document.run == "nodes.hello"
-    assert profile.document.title == {"en": "Base", "ru": "Основа"}
-    assert profile.document.panels == ("sonar",)
+    assert profile.nodes["sonar"].run == "nodes.hello"
+    assert profile.title == {"en": "Base", "ru": "Основа"}
+    assert profile.panels == ("sonar",)
 
 
 def test_a_node_is_taken_out_by_null_and_one_added(tmp_path: Path) -> None:
@@ -200,15 +199,15 @@ nodes:
 def test_devices_are_put_in_with_their_types(tmp_path: Path) -> None:
     node = loaded(tmp_path, DEVICES).nodes["chassis"]
     assert node.params == {"port": "/dev/ttyACM0", "baud": 115200, "k": 1.5}
-    assert node.document.exec == ("chassis", "--url", "serial:/dev/ttyACM0", "${HOME}")
-    assert node.document.env == {"PORT": "/dev/ttyACM0"}
+    assert node.exec == ("chassis", "--url", "serial:/dev/ttyACM0", "${HOME}")
+    assert node.env == {"PORT": "/dev/ttyACM0"}
 
 
 def test_variables_override_devices(tmp_path: Path) -> None:
     path = written(tmp_path, DEVICES)
     profile = load_profile(path, environ={"DECK_PICO_PORT": "/dev/x", "DECK_PICO_BAUD": "9600"})
     assert profile.nodes["chassis"].params == {"port": "/dev/x", "baud": 9600, "k": 1.5}
-    assert profile.document.devices["pico"] == {"port": "/dev/x", "baud": 9600, "scale": 1.5}
+    assert profile.devices["pico"] == {"port": "/dev/x", "baud": 9600, "scale": 1.5}
 
 
 def test_a_variable_of_the_wrong_type_is_told(tmp_path: Path) -> None:

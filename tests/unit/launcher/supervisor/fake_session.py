@@ -5,18 +5,22 @@ from __future__ import annotations
 import asyncio
 import signal
 from collections.abc import Callable
+from typing import Any
 
 from launcher.processes.exit import Exit
 from launcher.processes.table import Process
+from launcher.profile.node import Node, Ready
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import NodeFault, NodeState, Severity
-from launcher.supervisor.lifecycle import NotBroughtUpError
 from launcher.supervisor.node import SupervisedNode
-from launcher.supervisor.plan import NodePlan
-from launcher.supervisor.readiness import ReadyCondition, Seen, UnwatchableError
+from launcher.supervisor.readiness import NotBroughtUpError, Seen, UnwatchableError
 from tests.unit.manual_clock import ManualClock, settle
 
-PLAN = NodePlan(name="sonar", command="nodes.sonar", argv=("sonar",), restart="on-failure")
+PLAN = Node(name="sonar", exec=("sonar",), restart="on-failure")
+
+
+def planned(**changes: Any) -> Node:
+    return PLAN.model_copy(update=changes)
 
 
 class FakeProcess:
@@ -68,7 +72,7 @@ class FakeSession:
         self.is_ready = asyncio.Event()
         self.watchable = True
         self.never: NotBroughtUpError | None = None
-        self.awaited: list[ReadyCondition] = []
+        self.awaited: list[Ready] = []
         self.absent = ""
         self.states: list[NodeState] = []
         self.lines: list[str] = []
@@ -81,14 +85,14 @@ class FakeSession:
     def process(self) -> FakeProcess:
         return self.started[-1]
 
-    async def launch(self, _plan: NodePlan) -> FakeProcess:
+    async def launch(self, _plan: Node) -> FakeProcess:
         if self.refuses:
             raise SpawnError(self.refuses)
         number = 100 + 10 * len(self.started)
         self.started.append(FakeProcess(number, self.ends_by, self.grandchild_ends_by))
         return self.process
 
-    async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
+    async def ready(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
         self.tell = tell
         self.awaited.append(condition)
         if not self.watchable:
@@ -97,16 +101,16 @@ class FakeSession:
         if self.never is not None:
             raise self.never
 
-    def missing(self, _plan: NodePlan) -> str:
+    def missing(self, _plan: Node) -> str:
         return self.absent
 
     def last_words(self, _name: str) -> str:
         return self.said_last
 
-    def crash(self, _plan: NodePlan) -> NodeFault | None:
+    def crash(self, _plan: Node) -> NodeFault | None:
         return self.fault
 
-    def ended_early(self, _plan: NodePlan) -> NodeFault | None:
+    def ended_early(self, _plan: Node) -> NodeFault | None:
         return self.early
 
     def say(self, _name: str, severity: Severity, words: str) -> None:
@@ -122,7 +126,7 @@ async def crash(session: FakeSession) -> None:
     await settle()
 
 
-async def started(session: FakeSession, plan: NodePlan = PLAN) -> SupervisedNode:
+async def started(session: FakeSession, plan: Node = PLAN) -> SupervisedNode:
     node = SupervisedNode(plan, session)
     node.start()
     await settle()

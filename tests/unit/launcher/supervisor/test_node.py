@@ -9,16 +9,15 @@ import pytest
 
 from cli.health import well
 from launcher.processes.exit import Exit
+from launcher.profile.node import Node, Ready
 from launcher.status import IDLE, STUCK, NodeFault, NodeState, Severity
-from launcher.supervisor.lifecycle import NotBroughtUpError
-from launcher.supervisor.plan import NodePlan
-from launcher.supervisor.readiness import ReadyCondition, Seen
-from tests.unit.launcher.supervisor.fake_session import PLAN, FakeSession, crash, started
+from launcher.supervisor.readiness import NotBroughtUpError, Seen
+from tests.unit.launcher.supervisor.fake_session import PLAN, FakeSession, crash, planned, started
 from tests.unit.manual_clock import settle
 from text.i18n import localized
 
-ACTIVE = ReadyCondition("lifecycle", "sonar", "active", goes=True)
-TOPIC = ReadyCondition("topic", "/sonar")
+ACTIVE = Ready(node="sonar", lifecycle="active", goes=True)
+TOPIC = Ready(topic="/sonar", within=7)
 
 
 async def test_a_node_without_a_condition_runs_at_once(session: FakeSession) -> None:
@@ -29,7 +28,7 @@ async def test_a_node_without_a_condition_runs_at_once(session: FakeSession) -> 
 
 
 async def test_a_node_is_ready_when_its_condition_holds(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, ready=ReadyCondition("topic", "/sonar")))
+    node = await started(session, planned(ready=Ready(topic="/sonar")))
     assert (node.state, node.serves) == (NodeState.STARTING, False)
     assert "/sonar" in node.detail
     session.is_ready.set()
@@ -38,7 +37,7 @@ async def test_a_node_is_ready_when_its_condition_holds(session: FakeSession) ->
 
 
 async def test_a_node_that_is_not_ready_in_time_runs_on_and_says_so(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, ready=ReadyCondition("node", "sonar"), within_s=7))
+    node = await started(session, planned(ready=Ready(node="sonar", within=7)))
     await session.clock.advance(7)
     assert (node.state, node.serves) == (NodeState.RUNNING, False)
     assert node.detail == "not ready within 7 s: node sonar is not in the graph"
@@ -48,8 +47,8 @@ async def test_a_node_that_is_not_ready_in_time_runs_on_and_says_so(session: Fak
 
 
 async def test_what_there_is_in_place_of_what_is_awaited_is_told_at_once(session: FakeSession) -> None:
-    awaited = ReadyCondition("topic", "/sonar", "std_msgs/msg/Float32", 5)
-    node = await started(session, replace(PLAN, ready=awaited, within_s=7))
+    awaited = Ready(topic="/sonar", type="std_msgs/msg/Float32", rate=5, within=7)
+    node = await started(session, planned(ready=awaited))
     session.tell(Seen(("std_msgs/msg/String",)))
     wrong = "/sonar is published as std_msgs/msg/String, expected std_msgs/msg/Float32"
     assert (node.state, node.detail) == (NodeState.STARTING, wrong)
@@ -61,7 +60,7 @@ async def test_what_there_is_in_place_of_what_is_awaited_is_told_at_once(session
 
 
 async def test_a_node_is_brought_up_before_its_other_condition(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, lifecycle=ACTIVE, ready=TOPIC, within_s=7))
+    node = await started(session, planned(lifecycle="active", ready=TOPIC))
     assert (node.state, node.detail) == (NodeState.STARTING, "waiting for sonar to be active")
     session.tell(Seen(("configuring",)))
     assert node.detail == "sonar is configuring, expected active"
@@ -77,7 +76,7 @@ async def test_a_node_is_brought_up_before_its_other_condition(session: FakeSess
 async def test_a_node_that_fails_to_come_up_is_ended_and_has_failed(session: FakeSession) -> None:
     session.never = NotBroughtUpError("configure", "unconfigured")
     session.is_ready.set()
-    node = await started(session, replace(PLAN, lifecycle=ACTIVE, restart="never"))
+    node = await started(session, planned(lifecycle="active", restart="never"))
     await settle()
     assert session.process.heard == [(100, signal.SIGINT)]
     why = "configure failed, it is unconfigured now: no such port"
@@ -121,7 +120,7 @@ async def test_a_crash_is_told_and_the_node_started_again_after_a_while(session:
 async def test_why_it_has_crashed_is_told_until_it_has_been_well_for_a_while(session: FakeSession, file: str) -> None:
     fault = NodeFault("crash", file, 3, exception="ValueError: x") if file else None
     session.fault = fault
-    node = await started(session, replace(PLAN, file=file))
+    node = await started(session, planned(run=file or None, exec=None if file else ("sonar",)))
     await crash(session)
     await session.clock.advance(1.1)
     assert node.state is NodeState.RUNNING
@@ -144,7 +143,7 @@ async def test_a_node_that_is_started_by_hand_has_no_crash_to_tell_of(session: F
 
 
 async def test_a_crash_before_it_is_ready_waits_as_long(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, ready=TOPIC))
+    node = await started(session, planned(ready=TOPIC))
     await crash(session)
     assert (node.state, len(session.started)) == (NodeState.BACKOFF, 1)
     await session.clock.advance(0.9)
@@ -154,7 +153,7 @@ async def test_a_crash_before_it_is_ready_waits_as_long(session: FakeSession) ->
 
 
 async def test_a_file_that_does_not_compile_is_not_tried_again_until_it_is_saved(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, file="/own/hello.py"))
+    node = await started(session, planned(run="/own/hello.py", exec=None))
     session.fault = fault = NodeFault("syntax", "/own/hello.py", 3, exception="SyntaxError: x")
     await crash(session)
     assert (node.state, node.detail, node.fault) == (NodeState.FAILED, fault.words, fault)
@@ -171,7 +170,7 @@ async def test_what_an_early_end_is_called_agrees_with_its_state(
     session: FakeSession, kind: str, state: NodeState, gravest: Severity
 ) -> None:
     """A main that nobody calls is an error, said once, and no healthy end."""
-    node = await started(session, replace(PLAN, file="/own/hello.py"))
+    node = await started(session, planned(run="/own/hello.py", exec=None))
     session.early = fault = NodeFault(kind, "/own/hello.py", 3, exception="it came to its end")
     session.process.end(100, Exit(0))
     await settle()
@@ -181,7 +180,7 @@ async def test_what_an_early_end_is_called_agrees_with_its_state(
 
 
 async def test_a_stuck_callback_ails_the_node_until_it_returns(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, file="/own/hello.py"))
+    node = await started(session, planned(run="/own/hello.py", exec=None))
     node.ail(fault := NodeFault(STUCK, "/own/hello.py", 3, exception="tick has been stuck"))
     assert (node.status().ails, node.status().why) == (True, fault.words)
     assert session.gravest is Severity.ERROR
@@ -191,7 +190,7 @@ async def test_a_stuck_callback_ails_the_node_until_it_returns(session: FakeSess
 
 
 async def test_a_node_that_a_signal_has_suspended_is_not_healthy_until_it_goes_on(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, file="/own/hello.py"))
+    node = await started(session, planned(run="/own/hello.py", exec=None))
     node.warn(warning := NodeFault("warning", "/own/hello.py", 3, exception="a warning"))
     node.halted(100)
     assert (node.status().ails, well(node.status())) == (True, False)
@@ -207,7 +206,7 @@ async def test_a_node_that_a_signal_has_suspended_is_not_healthy_until_it_goes_o
 
 
 async def test_an_interrupted_node_is_not_called_killed(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, restart="never"))
+    node = await started(session, planned(restart="never"))
     session.process.end(100, Exit(None, "SIGINT"))
     await settle()
     assert localized(node.detail, "ru").startswith("прерван (SIGINT)")
@@ -231,7 +230,7 @@ async def test_a_crash_loop_ends_with_a_word_why(session: FakeSession) -> None:
 
 
 async def test_a_node_given_up_can_be_started_by_hand(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, restart="never"))
+    node = await started(session, planned(restart="never"))
     await crash(session)
     given_up = node.state
     assert given_up is NodeState.FAILED
@@ -249,10 +248,10 @@ async def test_a_process_that_cannot_be_started_is_tried_again(session: FakeSess
     assert node.state is NodeState.RUNNING
 
 
-OPTIONAL = replace(PLAN, optional=True)
-MODULE = replace(PLAN, module=("nodes.sonar",))
+OPTIONAL = planned(optional=True)
+MODULE = planned(run="nodes.sonar", exec=None)
 PUBLISHES, SERVES, IS_THERE = (
-    replace(PLAN, ready=ReadyCondition(kind, "/x")) for kind in ("topic", "service", "node")
+    planned(ready=Ready.model_validate({kind: "/x"})) for kind in ("topic", "service", "node")
 )
 ABSENT = "deck: command not found: sonar"
 LESSON_GOES_ON = "not installed; the lesson continues without it"
@@ -266,16 +265,16 @@ LESSON_GOES_ON = "not installed; the lesson continues without it"
         (PLAN, 127, "", "FAILED", "exit code 127"),
         (PLAN, 127, ABSENT, "FAILED", "sonar is not installed"),
         (OPTIONAL, 127, ABSENT, "EXITED", "sonar is not installed; the lesson continues without it"),
-        (replace(OPTIONAL, restart="never"), 127, "x", "EXITED", "exit code 127: x"),
+        (OPTIONAL.model_copy(update={"restart": "never"}), 127, "x", "EXITED", "exit code 127: x"),
         (MODULE, 2, "no such port", "FAILED", "exit code 2: no such port"),
-        (replace(MODULE, restart="always"), 2, "", "FAILED", "exit code 2"),
+        (MODULE.model_copy(update={"restart": "always"}), 2, "", "FAILED", "exit code 2"),
         (PUBLISHES, 0, "", "FAILED", "ended by itself, but should still publish /x"),
         (SERVES, 0, "", "FAILED", "ended by itself, but should still serve /x"),
         (IS_THERE, 0, "", "EXITED", "ended"),
     ],
 )
 async def test_an_end_is_told_as_what_it_is_and_not_tried_again(
-    session: FakeSession, plan: NodePlan, code: int, last: str, state: str, detail: str, was_ready: bool
+    session: FakeSession, plan: Node, code: int, last: str, state: str, detail: str, was_ready: bool
 ) -> None:
     if was_ready:
         session.is_ready.set()

@@ -5,15 +5,15 @@ from __future__ import annotations
 import asyncio
 import signal
 from collections.abc import AsyncIterator
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from launcher.profile.node import Node
 from launcher.status import NodeState, Severity
 from launcher.supervisor.dependencies import stop_waves, with_needs
 from launcher.supervisor.own_files import OwnFiles
-from launcher.supervisor.plan import NodePlan, plan_of
+from launcher.supervisor.plan import plan_of
 from launcher.supervisor.restart_policy import (
     CRASH_WINDOW_S,
     LAST_DELAY_S,
@@ -24,7 +24,7 @@ from launcher.supervisor.restart_policy import (
     GivenUp,
     RestartPolicy,
 )
-from tests.unit.launcher.supervisor.fake_session import PLAN, FakeProcess, FakeSession, crash, started
+from tests.unit.launcher.supervisor.fake_session import FakeProcess, FakeSession, crash, planned, started
 from tests.unit.manual_clock import settle
 from tests.unit.profile_files import loaded
 from tests.waiting import until
@@ -32,7 +32,7 @@ from tests.waiting import until
 
 @pytest.mark.parametrize("restart", ["on-failure", "always"])
 async def test_a_stop_by_hand_is_never_undone(session: FakeSession, restart: str) -> None:
-    node = await started(session, replace(PLAN, restart=restart))
+    node = await started(session, planned(restart=restart))
     await node.stop()
     assert (node.state, node.detail) == (NodeState.EXITED, "stopped by SIGINT")
     await session.clock.advance(300)
@@ -242,7 +242,7 @@ nodes:
 """
 
 
-def planned(folder: Path) -> dict[str, NodePlan]:
+def of_profile(folder: Path) -> dict[str, Node]:
     (folder / "talker.py").write_text("")
     profile = loaded(folder, PROFILE, domain=1)
     plan = plan_of(profile, run_dir="", log_dir="", foreground=True, node_lang="")
@@ -250,7 +250,7 @@ def planned(folder: Path) -> dict[str, NodePlan]:
 
 
 def test_only_modules_of_deck_are_its_own(tmp_path: Path) -> None:
-    ours = {name for name, node in planned(tmp_path).items() if node.ours}
+    ours = {name for name, node in of_profile(tmp_path).items() if node.is_ours}
     assert ours == {"sonar", "cold"}
 
 
