@@ -62,6 +62,10 @@ class Screens:
             self._app.install_screen(getattr(import_module(module), made)(), name)
         return self._app.get_screen(name)
 
+    def there(self) -> list[Screen[Any]]:
+        """Return the screens that were made, in front or not."""
+        return [self._app.get_screen(name) for name in SCREENS if self._app.is_screen_installed(name)]
+
     async def forget(self) -> None:
         """Remove the screens of a session that is over."""
         for name in SCREENS:

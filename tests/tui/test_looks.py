@@ -264,6 +264,22 @@ def test_a_part(name: str, snap_compare: SnapCompare) -> None:
     assert snap_compare(app, terminal_size=NARROW.size, run_before=before)
 
 
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", sorted({*SCREENS, "wall", "plot", "publish"} - {"composer", "devices", "space"}))
+async def test_a_change_of_language_leaves_a_screen_as_it_is_in_the_other(name: str) -> None:
+    """Left out is what shows data that are in a language themselves, or a rate until the clock goes on."""
+    scene = {**SCREENS, **PARTS}[name]
+    whole: list[str] = []
+    for first in ("ru", "en"):
+        app, before = staged(scene, replace(WIDE, language=first))
+        async with app.run_test(size=WIDE.size) as pilot:
+            await before(pilot)
+            app.speak("ru")
+            await settle(pilot)
+            whole.append(seen(app))
+    assert whole[1] == whole[0]
+
+
 def test_a_replay(tmp_path: Path, snap_compare: SnapCompare) -> None:
     """At the middle of a recording: the bar with place, length and rate; panels as they were."""
     bag = write_robot_bag(tmp_path / "drive")

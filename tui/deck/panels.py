@@ -114,14 +114,6 @@ class DeckPanels:
         await self._put_up([name for name in PANELS if name in self._put])
         return True
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        for panel in self.all:
-            panel.words_changed()
-        if self._grid is not None:
-            self._grid.words_changed()
-        self._say_small()
-
     async def _put_up(self, names: Iterable[str]) -> None:
         if self._grid is not None:
             self._screen.minimize()
@@ -134,8 +126,9 @@ class DeckPanels:
 
             self._grid = PanelGrid(panels, id="panel-grid")
             await self._screen.query_one("#board").mount(self._grid, after="#nodes")
-        self._say_small()
+        self.say_small()
 
-    def _say_small(self) -> None:
+    def say_small(self) -> None:
+        """Prepare the words that stand where the panels do not fit, in the current language."""
         words = _("Too small for panels: they need {columns}×{rows}")
         self._screen.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))

@@ -86,8 +86,3 @@ class BrainPanel(Panel):
         if BRAIN_STATE in update.samples:
             view.show_placeholder(other_type(newest(update, BRAIN_STATE), TYPE))
         view.show_trouble(*trouble_of(update, BRAIN_STATE))
-
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        super().words_changed()
-        self.query_one(BrainView).words_changed()

@@ -55,9 +55,7 @@ class LlmPanel(Panel):
         self._newest.update({topic: update.samples[topic][-1] for topic in FOLLOWED & update.samples.keys()})
         self._say()
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        super().words_changed()
+    def on_language_changed(self) -> None:
         self._say()
 
     def _say(self) -> None:

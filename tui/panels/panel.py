@@ -133,8 +133,7 @@ class Panel(Vertical):
         """Draw the background of the widget, which is visible while the widget fails."""
         return Content(self._fault) if self._fault else super().render()
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self._entitle()
 
 

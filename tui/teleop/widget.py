@@ -238,10 +238,8 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         topic = f" → {self._route.topic}" if self._route.topic else ""
         self.border_title = Content(_(TITLE) + topic)
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self._entitle()
-        super().words_changed()
 
     # Drawing
 

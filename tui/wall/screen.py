@@ -160,8 +160,6 @@ class WallScreen(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        for panel in (self.query_one(CameraPanel), self.query_one(VoicePanel)):
-            panel.words_changed()
         if self.feed.update is not None:
             self._show_numbers(self.feed.update)
         self._show_state(self.feed.update)

@@ -66,8 +66,3 @@ class HeadPanel(Panel):
         except (ValueError, KeyError, TypeError, OverflowError):
             # Anybody may publish there; messages in another format are ignored.
             return
-
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        super().words_changed()
-        self.query_one(HeadView).words_changed()

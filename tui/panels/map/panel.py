@@ -142,11 +142,6 @@ class MapPanel(Panel):
         # The age is shown in whole seconds, and not redrawn more often.
         return trouble, detail, None if age_s is None else age_s // 1
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        super().words_changed()
-        self.query_one(RoomMap).words_changed()
-
 
 def _is_published(update: GraphUpdate, topic: str) -> bool:
     row = row_of(update, topic)

@@ -60,8 +60,3 @@ class SonarPanel(Panel):
             if topic in update.samples:
                 gauges.show_placeholder(place, other_type(newest(update, topic), TYPE))
             gauges.show_trouble(place, *trouble_of(update, topic))
-
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        super().words_changed()
-        self.query_one(SonarView).words_changed()

@@ -158,11 +158,6 @@ class SonarView(Container):
         """Set whether there is a rear sonar to be shown."""
         self.set_class(both, "-both")
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        for sonar in self.query(Sonar):
-            sonar.words_changed()
-
     def on_resize(self, event: Resize) -> None:
         """Place them side by side if that leaves more lines to each."""
         self.set_class(event.size.width >= 56 and event.size.height < 16, "-flat")

@@ -84,8 +84,3 @@ class VoicePanel(Panel):
         # The course's own microphone does not report a level.
         there = microphone is not None and microphone.publishers > 0
         talk.show_level(None, missing=not there and talk.has_talk)
-
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        super().words_changed()
-        self.query_one(VoiceView).words_changed()

@@ -63,11 +63,6 @@ class WheelsPanel(Panel):
         drawing.show_placeholder(self._joints.placeholder if topic == WHEEL_COMMANDS else self._placeholder)
         drawing.show_trouble(*trouble_of(update, topic))
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        super().words_changed()
-        self.query_one(WheelsView).words_changed()
-
 
 def would_be(value: Mapping[str, Any]) -> WheelsReading | None:
     """Return what an AckermannDriveStamped would make the wheels do; None for an invalid one."""
