@@ -43,11 +43,10 @@ from tui.frame.title_bar import TitleBar
 from tui.graph.places import GraphKind, GraphPlace
 from tui.graph.screen import GraphScreen
 from tui.panels.brain import BrainPanel
-from tui.panels.head.reading import HeadReading
-from tui.panels.head.widget import HeadView
-from tui.panels.sonar.widget import Sonar
-from tui.panels.voice.widget import VoiceView
-from tui.panels.wheels.widget import WheelsView
+from tui.panels.head import HeadReading, HeadView
+from tui.panels.sonar import Sonar
+from tui.panels.voice import VoiceView
+from tui.panels.wheels import WheelsView
 from tui.session.requests import OpenRequest, ReplayRequest
 from tui.topics.publish.dialog import PublishDialog
 from tui.topics.screen import TopicsScreen

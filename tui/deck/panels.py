@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from textual.widgets import Static
 
+from launcher.profile.panels import PANELS, panels_for
 from text.i18n import _
 from tui.deck.watched import Watched
-from tui.panels.registry import PANELS, make_panel, panels_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -119,7 +120,7 @@ class DeckPanels:
             self._screen.minimize()
             await self._grid.remove()
             self._grid = None
-        panels = [make_panel(name) for name in names if name in PANELS]
+        panels = [made(name) for name in names if name in PANELS]
         self._screen.set_class(bool(panels), "-with-panels")
         if panels:
             from tui.panels.panel_grid import PanelGrid
@@ -132,3 +133,9 @@ class DeckPanels:
         """Prepare the words that stand where the panels do not fit, in the current language."""
         words = _("Too small for panels: they need {columns}×{rows}")
         self._screen.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))
+
+
+def made(name: str) -> Panel:
+    """Make the panel of this name: the class `SonarPanel` of the module `tui.panels.sonar`."""
+    panel: Panel = getattr(import_module(f"tui.panels.{name}"), f"{name.title()}Panel")()
+    return panel

@@ -8,8 +8,7 @@ from robot.topics import BRAIN_STATE
 from text.i18n import N_
 from tui.log_view.index import folded
 from tui.outcome.model_usage import brain_reports, budget_words, usage_words
-from tui.panels.other_type import other_type
-from tui.panels.panel import Panel, newest, trouble_of
+from tui.panels.panel import Panel, newest, other_type, trouble_of
 from tui.widgets.drawing import Drawing, Ink, Line
 
 if TYPE_CHECKING:

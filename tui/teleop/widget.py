@@ -23,7 +23,7 @@ from tui.emergency.gate import gate_words
 from tui.frame.actions.app import emergency_release
 from tui.frame.host import Host, host_of
 from tui.panels.panel import newest, row_of
-from tui.panels.wheels.reading import WheelsReading, wheels_in
+from tui.panels.wheels import WheelsReading, wheels_in
 from tui.teleop.actions import MOVES, TELEOP_ACTIONS, open_teleop
 from tui.teleop.keys import NOTHING, Move, TeleopLimits
 from tui.teleop.route import DRIVE_TYPE, RATE_HZ, Route, command, nowhere_words, route
