@@ -12,6 +12,7 @@ from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.events import InputEvent, Key, Paste
 from textual.keys import key_to_character
+from textual.widget import Widget
 
 from graph.observer.requests import StopCommanding
 from text.i18n import LANGUAGES, _, language, set_language
@@ -429,12 +430,13 @@ class DeckApp(App[int], Acting):
         self.notify(_("Press q, or Ctrl+Q in a text field, to leave."), markup=False)
 
     def speak(self, code: str) -> None:
-        """Switch to this language and redraw every text."""
+        """Switch to this language; every widget draws itself anew, and those that keep words hear of it."""
         set_language(code)
         self._remember(language=code)
-        for screen in self.screen_stack:
-            screen.post_message(LanguageChanged())
-        self.feed.tell(LanguageChanged)
+        for screen in {*self.screen_stack, *self._screens.there()}:
+            for widget in (screen, *screen.walk_children(Widget)):
+                widget.refresh(layout=True)
+                widget.post_message(LanguageChanged())
         self.refresh_bindings()
 
     def switch_language(self) -> None:

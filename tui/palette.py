@@ -5,41 +5,21 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
 from text.i18n import NAMES, _, in_every_language
-from tui.actions import Action, bound
-from tui.composer.actions import COMPOSER_ACTIONS
-from tui.deck.actions import DECK_ACTIONS
-from tui.devices.actions import DEVICES_ACTIONS
-from tui.flow.actions import FLOW_ACTIONS
-from tui.frame.actions.app import (
-    show_composer,
-    show_deck,
-    show_devices,
-    show_flow,
-    show_frames,
-    show_graph,
-    show_lesson,
-    show_logs,
-    show_space,
-    show_topics,
-    show_wall,
-)
+from tui.actions import Action, actions_of, bound
+from tui.frame.actions.app import SHOW
 from tui.frame.actions.replay import REPLAY_ACTIONS
 from tui.frame.host import host_of
-from tui.frame_tree.actions import FRAMES_ACTIONS
-from tui.graph.actions import GRAPH_ACTIONS
-from tui.lesson.actions import LESSON_ACTIONS
-from tui.logs.actions import LOGS_ACTIONS
-from tui.space.actions import SPACE_ACTIONS
+from tui.screens import SCREENS
 from tui.teleop.actions import TELEOP_ACTIONS, open_teleop
 from tui.themes import CYCLE
-from tui.topics.actions import TOPICS_ACTIONS, open_publish
+from tui.topics.actions import open_publish
 from tui.topics.publish.actions import PUBLISH_ACTIONS
-from tui.wall.actions import WALL_ACTIONS
 
 if TYPE_CHECKING:
     from textual.app import App
@@ -80,20 +60,17 @@ class ActionPlace:
         return " › ".join(map(_, words))
 
 
+def _of_screen(name: str) -> ActionPlace:
+    module = f"tui.{SCREENS[name].folder}.actions"
+    import_module(module)
+    return ActionPlace(SHOW[name], actions_of(module))
+
+
 PLACES = (
-    ActionPlace(show_deck, (*DECK_ACTIONS, open_teleop)),
-    ActionPlace(show_deck, TELEOP_ACTIONS, open_teleop),
-    ActionPlace(show_lesson, LESSON_ACTIONS),
-    ActionPlace(show_topics, TOPICS_ACTIONS),
-    ActionPlace(show_topics, PUBLISH_ACTIONS, open_publish),
-    ActionPlace(show_composer, COMPOSER_ACTIONS),
-    ActionPlace(show_logs, LOGS_ACTIONS),
-    ActionPlace(show_graph, GRAPH_ACTIONS),
-    ActionPlace(show_flow, FLOW_ACTIONS),
-    ActionPlace(show_devices, DEVICES_ACTIONS),
-    ActionPlace(show_frames, FRAMES_ACTIONS),
-    ActionPlace(show_wall, WALL_ACTIONS),
-    ActionPlace(show_space, SPACE_ACTIONS),
+    *map(_of_screen, SHOW),
+    ActionPlace(SHOW["deck"], (open_teleop,)),
+    ActionPlace(SHOW["deck"], TELEOP_ACTIONS, open_teleop),
+    ActionPlace(SHOW["topics"], PUBLISH_ACTIONS, open_publish),
 )
 """Every screen of a session, listed without importing any of them: that would delay keys."""
 

@@ -3,31 +3,97 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from textual.app import App
 from textual.widget import Widget
 
+from text.i18n import N_
 from tui.actions import REGISTRY
 
 if TYPE_CHECKING:
     from textual.screen import Screen
 
+
+class ScreenEntry(NamedTuple):
+    """Where a screen is, and what its key, the title bar, the help and the palette say of it."""
+
+    folder: str
+    """In `tui`; what can be done on the screen is in the module `actions` there."""
+    made: str
+    """The class in the module `screen`."""
+    key: str = ""
+    """In Textual's notation; none for the list of lessons, where one is without a session."""
+    title: str = ""
+    about: str = ""
+
+    def load(self) -> type[Screen[Any]]:
+        """Return the class: the first frame needs only one of them."""
+        screen: type[Screen[Any]] = getattr(import_module(f"tui.{self.folder}.screen"), self.made)
+        return screen
+
+
 SCREENS = {
-    "picker": ("tui.picker.screen", "PickerScreen"),
-    "deck": ("tui.deck.screen", "LessonDeck"),
-    "lesson": ("tui.lesson.screen", "LessonScreen"),
-    "topics": ("tui.topics.screen", "TopicsScreen"),
-    "composer": ("tui.composer.screen", "ComposerScreen"),
-    "logs": ("tui.logs.screen", "LogsScreen"),
-    "graph": ("tui.graph.screen", "GraphScreen"),
-    "flow": ("tui.flow.screen", "FlowScreen"),
-    "devices": ("tui.devices.screen", "DevicesScreen"),
-    "frames": ("tui.frame_tree.screen", "FramesScreen"),
-    "space": ("tui.space.screen", "SpaceScreen"),
-    "wall": ("tui.wall.screen", "WallScreen"),
+    "picker": ScreenEntry("picker", "PickerScreen"),
+    "deck": ScreenEntry(
+        "deck", "LessonDeck", "1,f2", N_("Deck"), N_("The lesson at work: nodes, sensors, wheels, head and voice.")
+    ),
+    "lesson": ScreenEntry(
+        "lesson",
+        "LessonScreen",
+        "L",
+        N_("Lesson"),
+        N_("The task of this step, what is judged of your nodes, and hints."),
+    ),
+    "topics": ScreenEntry(
+        "topics", "TopicsScreen", "2,f3", N_("Topics"), N_("Every topic with its rates; the selected one live.")
+    ),
+    "composer": ScreenEntry(
+        "composer",
+        "ComposerScreen",
+        "3,f4",
+        N_("Composer"),
+        N_("Write the JSON that an LLM would send, and see the result."),
+    ),
+    "logs": ScreenEntry(
+        "logs", "LogsScreen", "4,f5", N_("Logs"), N_("The messages of all nodes: filter, search, save.")
+    ),
+    "graph": ScreenEntry(
+        "graph", "GraphScreen", "5", N_("Graph"), N_("Who talks to whom; call services, send goals, set parameters.")
+    ),
+    "flow": ScreenEntry(
+        "flow",
+        "FlowScreen",
+        "6",
+        N_("Flow"),
+        N_("One timeline of all nodes: what followed from a word that was said."),
+    ),
+    "devices": ScreenEntry(
+        "devices",
+        "DevicesScreen",
+        "7",
+        N_("Devices"),
+        N_("Every driver, what it is connected to, and what goes over its port."),
+    ),
+    "frames": ScreenEntry(
+        "frame_tree",
+        "FramesScreen",
+        "8",
+        N_("Frames"),
+        N_("The tree of frames: who publishes them, how often, and what is wrong with it."),
+    ),
+    "space": ScreenEntry(
+        "space", "SpaceScreen", "9", N_("Space"), N_("The robot, its map and what its sensors see, from above.")
+    ),
+    "wall": ScreenEntry(
+        "wall",
+        "WallScreen",
+        "0",
+        N_("Wall"),
+        N_("Big numbers and a big picture, to be read across a room; Esc goes back."),
+    ),
 }
-"""Imported when first shown: the first frame needs only one of them."""
+"""In the order in which the top line names them."""
 
 DIALOGS = (
     "tui.bags.begin",
@@ -58,9 +124,12 @@ class Screens:
     def made(self, name: str) -> Screen[Any]:
         """Return the screen called `name`, creating it on first use."""
         if not self._app.is_screen_installed(name):
-            module, made = SCREENS[name]
-            self._app.install_screen(getattr(import_module(module), made)(), name)
+            self._app.install_screen(SCREENS[name].load()(), name)
         return self._app.get_screen(name)
+
+    def there(self) -> list[Screen[Any]]:
+        """Return the screens that were made, in front or not."""
+        return [self._app.get_screen(name) for name in SCREENS if self._app.is_screen_installed(name)]
 
     async def forget(self) -> None:
         """Remove the screens of a session that is over."""
@@ -79,8 +148,8 @@ class Screens:
 
 def every_action() -> frozenset[str]:
     """Return the binding id of every action; this has to import every screen."""
-    for module, _made in SCREENS.values():
-        import_module(module)
+    for screen in SCREENS.values():
+        screen.load()
     for dialog in DIALOGS:
         import_module(dialog)
     return frozenset(REGISTRY)

@@ -10,7 +10,7 @@ import json
 import re
 import sys
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
@@ -18,12 +18,11 @@ from launcher.consent import DEFAULT_RULES as RULES
 from launcher.domain.domain import LAST_DOMAIN, default_domain
 from launcher.errors import ProfileProblem
 from launcher.profile.node import AsText, Document, Given, Joined, Node, RosName, Texts, refuse
+from launcher.profile.panels import Panel
 from launcher.profile.serial_choice import KINDS
 from launcher.profile.steps.model import StepDocument, Values
 from text.sentences import say
 
-Panel = Literal["sonar", "wheels", "map", "camera", "head", "voice", "brain", "composer"]
-"""`tui.panels.registry` maps these names to the panels and the topics they show."""
 PEER = re.compile(r"[A-Za-z0-9:][A-Za-z0-9.:%_-]*")
 
 

@@ -22,7 +22,7 @@ LESSON = "04b-electronic-differential"
 NAMES = ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
 BROKEN = """
 import sys
-from tui.panels.wheels.widget import WheelsView
+from tui.panels.wheels import WheelsView
 
 def fail(self, width, height):
     raise OverflowError("broken on purpose")

@@ -43,11 +43,10 @@ from tui.frame.title_bar import TitleBar
 from tui.graph.places import GraphKind, GraphPlace
 from tui.graph.screen import GraphScreen
 from tui.panels.brain import BrainPanel
-from tui.panels.head.reading import HeadReading
-from tui.panels.head.widget import HeadView
-from tui.panels.sonar.widget import Sonar
-from tui.panels.voice.widget import VoiceView
-from tui.panels.wheels.widget import WheelsView
+from tui.panels.head import HeadReading, HeadView
+from tui.panels.sonar import Sonar
+from tui.panels.voice import VoiceView
+from tui.panels.wheels import WheelsView
 from tui.session.requests import OpenRequest, ReplayRequest
 from tui.topics.publish.dialog import PublishDialog
 from tui.topics.screen import TopicsScreen
@@ -255,6 +254,22 @@ def test_a_screen(name: str, look: Look, snap_compare: SnapCompare) -> None:
 def test_a_part(name: str, snap_compare: SnapCompare) -> None:
     app, before = staged(PARTS[name], NARROW)
     assert snap_compare(app, terminal_size=NARROW.size, run_before=before)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", sorted({*SCREENS, "wall", "plot", "publish"} - {"composer", "devices", "space"}))
+async def test_a_change_of_language_leaves_a_screen_as_it_is_in_the_other(name: str) -> None:
+    """Left out is what shows data that are in a language themselves, or a rate until the clock goes on."""
+    scene = {**SCREENS, **PARTS}[name]
+    whole: list[str] = []
+    for first in ("ru", "en"):
+        app, before = staged(scene, replace(WIDE, language=first))
+        async with app.run_test(size=WIDE.size) as pilot:
+            await before(pilot)
+            app.speak("ru")
+            await settle(pilot)
+            whole.append(seen(app))
+    assert whole[1] == whole[0]
 
 
 def test_a_replay(tmp_path: Path, snap_compare: SnapCompare) -> None:

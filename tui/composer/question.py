@@ -71,7 +71,7 @@ class RobotSenses:
         if not (value := self._fresh(ODOMETRY)):
             return None
         # It imports numpy, which the Composer needs for nothing else.
-        from tui.panels.map.reading import pose_in
+        from tui.panels.map_scene import pose_in
 
         found = pose_in(value)
         return None if found is None else found[0]

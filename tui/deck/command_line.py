@@ -91,7 +91,7 @@ class CommandLine(Vertical):
         yield Static("", markup=False)
 
     def on_mount(self) -> None:
-        self.words_changed()
+        self.on_language_changed()
 
     @property
     def field(self) -> Input:
@@ -103,7 +103,7 @@ class CommandLine(Vertical):
             self._listeners = count
             self._show_remark()
 
-    def words_changed(self) -> None:
+    def on_language_changed(self) -> None:
         """Redraw in the current language."""
         self.field.placeholder = ", ".join(WORDS[language()])
         self._show_remark()

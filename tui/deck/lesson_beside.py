@@ -51,11 +51,6 @@ class LessonBesideNodes:
         if self._column is not None:
             self._column.status_changed(self._screen)
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        if self._column is not None:
-            self._column.show()
-
     async def _bring(self) -> None:
         lesson = host_of(self._screen).lesson
         wished = lesson is not None and lesson.beside_nodes

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from textual.widgets import Static
 
+from launcher.profile.panels import PANELS, panels_for
 from text.i18n import _
 from tui.deck.watched import Watched
-from tui.panels.registry import PANELS, make_panel, panels_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -114,28 +115,27 @@ class DeckPanels:
         await self._put_up([name for name in PANELS if name in self._put])
         return True
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        for panel in self.all:
-            panel.words_changed()
-        if self._grid is not None:
-            self._grid.words_changed()
-        self._say_small()
-
     async def _put_up(self, names: Iterable[str]) -> None:
         if self._grid is not None:
             self._screen.minimize()
             await self._grid.remove()
             self._grid = None
-        panels = [make_panel(name) for name in names if name in PANELS]
+        panels = [made(name) for name in names if name in PANELS]
         self._screen.set_class(bool(panels), "-with-panels")
         if panels:
             from tui.panels.panel_grid import PanelGrid
 
             self._grid = PanelGrid(panels, id="panel-grid")
             await self._screen.query_one("#board").mount(self._grid, after="#nodes")
-        self._say_small()
+        self.say_small()
 
-    def _say_small(self) -> None:
+    def say_small(self) -> None:
+        """Prepare the words that stand where the panels do not fit, in the current language."""
         words = _("Too small for panels: they need {columns}×{rows}")
         self._screen.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))
+
+
+def made(name: str) -> Panel:
+    """Make the panel of this name: the class `SonarPanel` of the module `tui.panels.sonar`."""
+    panel: Panel = getattr(import_module(f"tui.panels.{name}"), f"{name.title()}Panel")()
+    return panel

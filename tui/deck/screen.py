@@ -395,12 +395,8 @@ class LessonDeck(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        self.pane.words_changed()
         self._show_nodes()
-        self.query_one(CommandLine).words_changed()
-        self._panels.words_changed()
-        self._dock.words_changed()
-        self._beside.words_changed()
+        self._panels.say_small()
 
     def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
         """Update the possible keys, and what is said of the node."""

@@ -149,8 +149,7 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
             self._marks = dict(marks)
             self.refresh()
 
-    def relabel(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self._flatten()
         self.refresh()
 

@@ -23,7 +23,7 @@ from text.plain import plain
 from tui.flow.chains import FlowStep, Lane, StepKind
 from tui.outcome import words as outcome_words
 from tui.outcome.model_usage import COMPOSER, brain_reports, usage_noted
-from tui.panels.voice.reading import LEVELS, heard
+from tui.panels.voice import LEVELS, heard
 from tui.session.past import FLOW_TOPICS
 
 if TYPE_CHECKING:

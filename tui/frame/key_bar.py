@@ -126,11 +126,11 @@ def _places(names: Iterable[str]) -> dict[str, tuple[int, int]]:
     """
     met: dict[str, int] = {}
     for name in names:
-        met.setdefault(REGISTRY[name].__module__, len(met))
+        met.setdefault(REGISTRY[name].module, len(met))
     return {
-        name: (met[action.__module__], place)
+        name: (met[action.module], place)
         for place, (name, action) in enumerate(REGISTRY.items())
-        if action.__module__ in met
+        if action.module in met
     }
 
 

@@ -223,11 +223,8 @@ class DeckScreen(Screen[None], Acting, Working):
         self.show_frame()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Redraw every widget; the screen itself must update widgets that store their texts."""
         del message
         self.show_frame()
-        for widget in self.query("*"):
-            widget.refresh(layout=True)
 
     def show_frame(self) -> None:
         """Show title, session and emergency stop in their current state."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual.containers import Vertical
 from textual.widgets import Static
 
+from graph.observer.requests import ReadParameters
 from text.i18n import N_, _, localized, ngettext
 from text.plain import is_plain, plain
 from text.yaml_scalars import in_quotes, unquoted

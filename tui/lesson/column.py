@@ -45,6 +45,9 @@ class LessonColumn(VerticalScroll):
         for name in ("head", "task", "checks", "hints", "text"):
             yield Static(classes=name, markup=False)
 
+    def on_language_changed(self) -> None:
+        self.show()
+
     def follow(self, screen: Screen[None]) -> None:
         self._at_work.show_on(screen, self.show)
         self.show()

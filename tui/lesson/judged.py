@@ -9,7 +9,7 @@ from textual.content import Content
 from course.results import State
 from text.i18n import _
 from text.plain import plain
-from tui.frame.actions.app import close_session, show_lesson
+from tui.frame.actions.app import SHOW, close_session
 from tui.lesson import words
 from tui.lesson.actions import make_own_folder
 
@@ -28,7 +28,7 @@ def judged_lines(at_work: LessonAtWork, host: Host, *, beside: bool = False) -> 
     step, lesson = at_work.step, at_work.folder
     if step is None or lesson is None:
         return
-    there = host.keys_of(show_lesson)[0]
+    there = host.keys_of(SHOW["lesson"])[0]
     result = at_work.result(step)
     if result.state is State.WAITS:
         yield from words.waiting_lines(lesson.steps, step, at_work.passed)

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 from launcher.errors import LauncherError
 from launcher.profile.defaults import FOLDERS_OWN
+from launcher.profile.panels import PANELS
 from text.i18n import language
 from tui.lifecycle.replay import replayed
-from tui.panels.registry import PANELS
 from tui.session.requests import Lesson, Score, Task
 from tui.session.watching import watched
 
@@ -77,7 +77,7 @@ class LiveOpener:
         await _start_observer_ahead()
         await _imported("launcher.client.client", "launcher.runs.shared_domain", "graph.observer.observer")
         # Done now, because after a lesson is chosen its nodes need the processors.
-        await _imported(*OF_SCREEN, *(entry.module for entry in PANELS.values()))
+        await _imported(*OF_SCREEN, *(f"tui.panels.{name}" for name in PANELS))
 
     async def _start_ahead(self) -> None:
         async with self._starting:

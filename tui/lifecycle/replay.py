@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tui.panels.registry import panels_for
+from launcher.profile.panels import panels_for
 from tui.session.watching import NodelessLink
 
 if TYPE_CHECKING:

@@ -106,7 +106,7 @@ class LogPane(Vertical, Working):
     def _show_state(self) -> None:
         self.query_one(LogBar).show(self.view)
 
-    def words_changed(self) -> None:
+    def on_language_changed(self) -> None:
         """Redraw in the current language."""
         self.view.lay_out()
         self._show_state()

@@ -165,7 +165,6 @@ class LogsScreen(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        self.pane.words_changed()
         self._show_nodes()
 
     @on(LogView.StateChanged)

@@ -8,8 +8,7 @@ from robot.topics import BRAIN_STATE
 from text.i18n import N_
 from tui.log_view.index import folded
 from tui.outcome.model_usage import brain_reports, budget_words, usage_words
-from tui.panels.other_type import other_type
-from tui.panels.panel import Panel, newest, trouble_of
+from tui.panels.panel import Panel, newest, other_type, trouble_of
 from tui.widgets.drawing import Drawing, Ink, Line
 
 if TYPE_CHECKING:
@@ -86,8 +85,3 @@ class BrainPanel(Panel):
         if BRAIN_STATE in update.samples:
             view.show_placeholder(other_type(newest(update, BRAIN_STATE), TYPE))
         view.show_trouble(*trouble_of(update, BRAIN_STATE))
-
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        super().words_changed()
-        self.query_one(BrainView).words_changed()

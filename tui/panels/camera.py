@@ -11,8 +11,7 @@ from graph.pictures.pixels import ImageError
 from robot.topics import CAMERA
 from text.figures import whole
 from text.i18n import N_, _, localized
-from tui.panels.other_type import other_type
-from tui.panels.panel import Panel, newest, row_of, trouble_of
+from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
 from tui.session.messages import PicturesChanged
 from tui.widgets.image_view import ImageView
 from tui.widgets.newest_picture import NewestPicture

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
@@ -13,6 +14,7 @@ from graph.data import Trouble
 from text.i18n import _
 from text.plain import plain
 from tui.faults import report_fault
+from tui.widgets.drawing import Placeholder
 
 if TYPE_CHECKING:
     from textual.visual import VisualType
@@ -133,8 +135,7 @@ class Panel(Vertical):
         """Draw the background of the widget, which is visible while the widget fails."""
         return Content(self._fault) if self._fault else super().render()
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self._entitle()
 
 
@@ -171,3 +172,60 @@ def first_published(update: GraphUpdate, topics: Iterable[str]) -> str:
         if row is not None and row.publishers:
             return name
     return names[0]
+
+
+LONGEST = 200
+
+
+def other_type(sample: Sample | None, awaited: str) -> Placeholder | None:
+    """Return the received and the expected type; None if they are the same, or nothing arrives."""
+    if sample is None or sample.type_name == awaited:
+        return None
+    words = _("{topic}: {type} comes; expected: {awaited}").format(
+        topic=sample.topic, type=_short(sample.type_name), awaited=_short(awaited)
+    )
+    return Placeholder(_("messages arrive, but of another type"), plain(words, LONGEST))
+
+
+def _short(type_name: str) -> str:
+    return type_name.replace("/msg/", "/")
+
+
+TYPE = "sensor_msgs/msg/JointState"
+ANOTHER_S = 2.0
+"""A readable message counts for this long: two publishers may alternate."""
+LONGEST = 200
+
+
+class Joints:
+    """Messages of a JointState topic that should be about these joints."""
+
+    def __init__(self, topic: str, awaited: Sequence[str]) -> None:
+        """Pass in `awaited` the joints of which at least one must be present."""
+        self._topic, self._awaited = topic, tuple(awaited)
+        self._read_s = -math.inf
+        self._other: Sample | None = None
+
+    def hear(self, sample: Sample, *, read: bool) -> None:
+        """Take in a message, and whether it was readable."""
+        if read:
+            self._read_s, self._other = sample.received_s, None
+        elif not 0.0 <= sample.received_s - self._read_s < ANOTHER_S:
+            self._other = sample
+
+    @property
+    def placeholder(self) -> Placeholder | None:
+        """What to show instead of values: which joints are received, and which are expected."""
+        sample = self._other
+        if sample is None:
+            return None
+        if (wrong := other_type(sample, TYPE)) is not None:
+            return wrong
+        found = sample.value.get("name")
+        names = plain(", ".join(map(str, found)), LONGEST) if isinstance(found, (list, tuple)) else ""
+        if not names:
+            came = _("{topic}: received no joint names").format(topic=self._topic)
+        else:
+            came = _("{topic}: received {names}").format(topic=self._topic, names=names)
+        awaited = _("expected: {names}").format(names=", ".join(self._awaited))
+        return Placeholder(_("messages arrive, but with other joint names"), f"{came}; {awaited}")

@@ -127,7 +127,7 @@ class PanelGrid(Container, can_focus=True):
         self._page = min(self._page, max(0, len(self._pages) - 1))
         self._lay_out(height)
 
-    def words_changed(self) -> None:
+    def on_language_changed(self) -> None:
         """Show the page number in the current language."""
         self._lay_out(self.size.height)
 

@@ -13,6 +13,7 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from launcher.errors import LauncherError
+from launcher.profile.panels import PANELS
 from text.i18n import N_, _, localized, ngettext, pick
 from text.plain import plain
 from text.sentences import reason_of
@@ -21,7 +22,6 @@ from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import BREAKPOINTS, HEIGHTS
 from tui.frame.title_bar import TitleBar
-from tui.panels.registry import entry_of
 from tui.session.hardware_words import hardware_words
 from tui.session.requests import WatchRequest
 from tui.session.started_words import started_words
@@ -413,7 +413,7 @@ def _about_lesson(lesson: Lesson) -> Content:
     count = len(lesson.nodes)
     starts = ngettext("Starts {n} node", "Starts {n} nodes", count).format(n=count)
     lines.append(_field(starts, plain(", ".join(lesson.nodes))))
-    known = ((panel, entry_of(panel)) for panel in lesson.panels)
+    known = ((panel, PANELS.get(panel)) for panel in lesson.panels)
     shows = [_(entry.title) if entry else plain(panel) for panel, entry in known]
     lines.append(_field(_("Shows"), ", ".join([*shows, _("log")])))
     lines.append(_field(_("File"), plain(str(lesson.path))))

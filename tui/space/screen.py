@@ -152,7 +152,6 @@ class SpaceScreen(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        self.view.words_changed()
         self._show()
 
     @on(SpaceView.CameraMoved)

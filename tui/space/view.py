@@ -172,7 +172,7 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self._fitted = None
         self.post_message(self.CameraMoved())
 
-    def words_changed(self) -> None:
+    def on_language_changed(self) -> None:
         """Draw in the current theme and language."""
         self._theme = None
         self.refresh()

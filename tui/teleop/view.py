@@ -9,9 +9,8 @@ from rich.cells import cell_len
 
 from robot.words import STOP, DriveSetpoint
 from text.i18n import _, decimal
-from tui.panels.sonar.bar import big
-from tui.panels.wheels.reading import WheelsReading
-from tui.panels.wheels.widget import number_words
+from tui.panels.sonar import big
+from tui.panels.wheels import WheelsReading, number_words
 from tui.teleop.keys import TeleopLimits
 from tui.widgets.drawing import Ink, Line, beside, cells_of, fit
 

@@ -24,7 +24,7 @@ from tui.emergency.gate import gate_words
 from tui.frame.actions.app import emergency_release
 from tui.frame.host import Host, host_of
 from tui.panels.panel import newest, row_of
-from tui.panels.wheels.reading import WheelsReading, wheels_in
+from tui.panels.wheels import WheelsReading, wheels_in
 from tui.teleop.actions import MOVES, TELEOP_ACTIONS, open_teleop
 from tui.teleop.keys import NOTHING, Move, TeleopLimits
 from tui.teleop.route import DRIVE_TYPE, RATE_HZ, Route, command, nowhere_words, route
@@ -239,10 +239,8 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         topic = f" → {self._route.topic}" if self._route.topic else ""
         self.border_title = Content(_(TITLE) + topic)
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self._entitle()
-        super().words_changed()
 
     # Drawing
 

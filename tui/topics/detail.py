@@ -152,7 +152,7 @@ class TopicDetail(Vertical, Working):
         found = self.filter.fitting(() if self._newest is None else (self._newest,))
         if found is None and not self.filter.is_wrong:
             self._sample = None
-            self._say()
+            self.say()
         return found
 
     def show_topic(self, row: TopicRow | None) -> None:
@@ -164,13 +164,13 @@ class TopicDetail(Vertical, Working):
             self.picture.show_words("")
             self.filter.show_topic("" if row is None else row.name)
         self._row = row
-        self._say()
+        self.say()
 
     def show_message(self, sample: Sample) -> None:
         resized = self._sample is None or self._sample.size_bytes != sample.size_bytes
         self._sample = sample
         if resized:
-            self._say()
+            self.say()
         self.echo.show(sample.topic, sample.value)
 
     def copy_message(self) -> None:
@@ -216,14 +216,10 @@ class TopicDetail(Vertical, Working):
         if had_focus and self.front.can_focus:
             self.front.focus()
 
-    def relabel(self) -> None:
-        """Redraw in the current language."""
-        self._say()
-        self.endpoints.relabel()
-        self.echo.relabel()
-        self.filter.relabel()
+    def on_language_changed(self) -> None:
+        self.say()
 
-    def _say(self) -> None:
+    def say(self) -> None:
         head, row = self.query_one(TopicHead), self._row
         if self.as_endpoints:
             self.endpoints.show(row)

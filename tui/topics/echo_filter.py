@@ -59,7 +59,7 @@ class EchoFilter(Horizontal):
         yield Static(classes="filter-told", markup=False)
 
     def on_mount(self) -> None:
-        self.relabel()
+        self.on_language_changed()
 
     @property
     def field(self) -> Field:
@@ -107,8 +107,7 @@ class EchoFilter(Horizontal):
             self._tell()
         return found
 
-    def relabel(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self.query_one(".filter-label", Static).update(" " + _("only if"))
         self.field.placeholder = _("an expression on the message m, such as m.data > 0.5")
         self._tell()

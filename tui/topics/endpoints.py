@@ -65,8 +65,7 @@ class TopicEndpoints(ScrollView, can_focus=True):
         """The whole text as wrapped now."""
         return "\n".join("".join(ink.text for ink in line).rstrip() for line in self._lines)
 
-    def relabel(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self._fold()
 
     def on_resize(self) -> None:

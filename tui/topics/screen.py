@@ -188,8 +188,6 @@ class TopicsScreen(DeckScreen):
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
         self._label()
-        self.detail.relabel()
-        self.plot.words_changed()
 
     @on(TopicsTable.TopicChosen)
     def _chosen(self) -> None:
@@ -229,7 +227,7 @@ class TopicsScreen(DeckScreen):
 
     @on(EchoTree.PauseChanged)
     def _pause_changed(self) -> None:
-        self.detail.relabel()
+        self.detail.say()
         self._keep_pace()
         self.refresh_bindings()
 

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from text.i18n import N_
 from tui.deck.actions import edit_node, exchange_node, restart_node
 from tui.frame.actions.app import (
+    SHOW,
     close_session,
     emergency_release,
     emergency_stop,
     leave,
-    show_deck,
     show_help,
-    show_lesson,
     show_palette,
-    show_topics,
     switch_language,
 )
 from tui.lesson.actions import go_on, make_own_folder, take_hint
@@ -76,7 +74,7 @@ PAGES = (
             N_("A step that has passed stays green. Nothing goes on before you do."),
         ),
         (
-            (show_lesson, N_("the Lesson screen")),
+            (SHOW["lesson"], N_("the Lesson screen")),
             (edit_node, N_("open your file in your editor, at the line of the mistake")),
             (take_hint, N_("a hint, then a plainer one, then the solution")),
             (go_on, N_("go on to the next step")),
@@ -91,8 +89,8 @@ PAGES = (
             ),
         ),
         (
-            (show_deck, N_("the nodes, the sensors and the wheels")),
-            (show_topics, N_("every topic, the selected one live; the other numbers show more")),
+            (SHOW["deck"], N_("the nodes, the sensors and the wheels")),
+            (SHOW["topics"], N_("every topic, the selected one live; the other numbers show more")),
             (restart_node, N_("start the selected node again")),
             (exchange_node, N_("put your own node in the place of Deck's, and back")),
             (show_help, N_("all keys of the screen in front")),

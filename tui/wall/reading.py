@@ -9,8 +9,8 @@ from robot.topics import BATTERY, ODOMETRY, SONAR_FRONT, SONAR_REAR, WHEEL_COMMA
 from text.figures import figure, whole
 from text.i18n import N_, _
 from tui.panels.panel import newest, row_of, trouble_of
-from tui.panels.sonar.words import Bounds, Zone, number, remark, zone_of
-from tui.panels.wheels.reading import wheels_in
+from tui.panels.sonar import Bounds, Zone, number, remark, zone_of
+from tui.panels.wheels import wheels_in
 from tui.widgets.trouble import no_data_words, trouble_words
 
 if TYPE_CHECKING:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 from textual.containers import Container, Vertical
 from textual.widgets import Static
 
+from launcher.profile.panels import panels_for
 from robot.topics import BATTERY, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
 from text.i18n import N_, _
 from text.plain import plain
@@ -17,10 +18,8 @@ from tui.frame.actions.app import emergency_release
 from tui.frame.screen import DeckScreen
 from tui.panels.camera import CameraPanel
 from tui.panels.panel import row_of
-from tui.panels.registry import panels_for
-from tui.panels.sonar.bounds import bounds_of
-from tui.panels.sonar.words import COURSE
-from tui.panels.voice.panel import VoicePanel
+from tui.panels.sonar import COURSE, bounds_of
+from tui.panels.voice import VoicePanel
 from tui.wall.actions import WALL_ACTIONS
 from tui.wall.figure import BigNumber, big_word
 from tui.wall.reading import WallReader
@@ -160,8 +159,6 @@ class WallScreen(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        for panel in (self.query_one(CameraPanel), self.query_one(VoicePanel)):
-            panel.words_changed()
         if self.feed.update is not None:
             self._show_numbers(self.feed.update)
         self._show_state(self.feed.update)

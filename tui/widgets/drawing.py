@@ -157,8 +157,7 @@ class Drawing(OneStyle, Widget):
         self._lines = self._drawn(width, height) if width and height else []
         self.refresh()
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self.on_resize()
 
     def render_lines(self, crop: Region) -> list[Strip]:

@@ -101,6 +101,10 @@ class ImageView(OneStyle, Widget):
             self._waits = True
             self._look_in(wait_s)
 
+    def on_language_changed(self) -> None:
+        if self._newest is not None and self._shown is not None:
+            self._take(self._newest)
+
     def show_words(self, headline: str, detail: str = "") -> None:
         """Show why there is no picture, in its place."""
         if self._newest is None and (headline, detail) == (self._headline, self._detail):

@@ -158,6 +158,9 @@ class YamlForm(Vertical, Acting, Working):
         if self.type_name and not self._loading and self.text != self._checked:
             self._take(self.text, _checked(self.type_name, self.text))
 
+    def on_language_changed(self) -> None:
+        self.relabel()
+
     def relabel(self) -> None:
         """Show the verdict in the current language."""
         words = "✓ " + _("valid {type}").format(type=plain(self.type_name, 100))

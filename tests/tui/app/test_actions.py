@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from importlib import import_module
 from typing import Any
 
 import pytest
@@ -20,7 +19,7 @@ from tests.tui.snapshots import opened, seen, settle
 from tests.waiting import until
 from tui.actions import REGISTRY
 from tui.app import DeckApp
-from tui.frame.actions.app import TABS, show_composer, show_wall
+from tui.frame.actions.app import SHOW, TABS
 from tui.frame.key_bar import KeyBar
 from tui.help.page import Page
 from tui.help.screen import HelpScreen
@@ -208,8 +207,8 @@ async def test_what_acts_is_only_gone_to_and_its_key_is_told() -> None:
 
 
 def test_every_action_of_every_screen_has_its_place() -> None:
-    for name, (module, made) in SCREENS.items():
-        screen = getattr(import_module(module), made)
+    for name, entry in SCREENS.items():
+        screen = entry.load()
         # What every screen inherits is offered on each of them.
         own = vars(screen).get("BINDINGS", ())
         bound = {each.id for each in own if each.id in REGISTRY}
@@ -234,7 +233,7 @@ async def test_no_key_of_the_tabs_is_typed_into_a_field_that_nobody_has_entered(
 
     monkeypatch.setattr(Screen, "set_focus", noted)
     async with opened() as (app, pilot):
-        for tab in [*TABS, *reversed(TABS), show_wall, show_composer, show_wall]:
+        for tab in [*TABS, *reversed(TABS), SHOW["wall"], SHOW["composer"], SHOW["wall"]]:
             await pilot.press(tab.key.split(",")[0])
             await until(partial(in_front, app, tab.id.removeprefix("screen.")), tab.id)
         assert [one for one in focused if isinstance(one, (Input, TextArea))] == []

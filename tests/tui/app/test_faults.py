@@ -21,10 +21,9 @@ from tui.deck.screen import LessonDeck
 from tui.dialogs.safe import Plainly, SafeScreen
 from tui.frame.title_bar import TitleBar
 from tui.isolation import isolating
-from tui.panels.head.widget import HeadView
+from tui.panels.head import HeadView
 from tui.panels.panel import Panel
-from tui.panels.wheels.panel import WheelsPanel
-from tui.panels.wheels.widget import WheelsView
+from tui.panels.wheels import WheelsPanel, WheelsView
 
 
 @dataclass

@@ -43,8 +43,8 @@ from tui.lifecycle.end_session import EndSessionScreen
 from tui.lifecycle.stopping import StoppingScreen
 from tui.lifecycle.strays import StraysScreen
 from tui.logs.screen import LogsScreen
-from tui.panels.head.widget import HeadView
-from tui.panels.wheels.widget import WheelsView
+from tui.panels.head import HeadView
+from tui.panels.wheels import WheelsView
 from tui.picker.screen import PickerScreen
 from tui.session.inbox import GraphInbox
 from tui.session.ports import SessionLink

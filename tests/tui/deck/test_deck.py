@@ -10,6 +10,7 @@ from textual.widgets import Input
 
 from graph.inner_states import LifecycleRow
 from graph.observer.requests import Publish
+from launcher.profile.panels import PANELS
 from launcher.status import NodeState
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_inner import managed_update
@@ -17,15 +18,17 @@ from tests.tui.snapshots import opened, settle
 from text.sentences import say
 from tui.app import DeckApp
 from tui.deck.nodes_table import NodesTable
+from tui.deck.panels import made
 from tui.deck.screen import LessonDeck
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
 from tui.panels.camera import CameraPanel
-from tui.panels.head.panel import HeadPanel
+from tui.panels.head import HeadPanel
+from tui.panels.panel import Panel
 from tui.panels.panel_grid import PanelGrid, heights, in_rows, paged
-from tui.panels.sonar.panel import SonarPanel
-from tui.panels.voice.panel import VoicePanel
-from tui.panels.wheels.panel import WheelsPanel
+from tui.panels.sonar import SonarPanel
+from tui.panels.voice import VoicePanel
+from tui.panels.wheels import WheelsPanel
 from tui.themes import CYCLE
 
 
@@ -203,3 +206,8 @@ async def test_of_16_colours_good_bad_and_plain_words_have_their_own(monkeypatch
             assert good in {2, 10}, app.theme
             assert bad in {1, 9}, app.theme
             assert plain not in {good, bad}, app.theme
+
+
+@pytest.mark.parametrize("name", PANELS)
+def test_every_panel_of_the_file_format_has_its_class(name: str) -> None:
+    assert isinstance(made(name), Panel)

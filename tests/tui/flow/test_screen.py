@@ -20,7 +20,7 @@ from tui.flow.chains import Lane
 from tui.flow.reading import TOPICS
 from tui.flow.screen import FlowScreen
 from tui.flow.view import FlowView
-from tui.panels.sonar.widget import Sonar
+from tui.panels.sonar import Sonar
 from tui.session.past import KEPT, Past
 
 

@@ -10,10 +10,8 @@ import pytest
 
 from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
 from tests.tui.panel_stage import alone, rows
-from tui.panels.head.reading import HeadReading, head_in
-from tui.panels.head.widget import HeadView
-from tui.panels.wheels.reading import WheelsReading, wheels_in
-from tui.panels.wheels.widget import WheelsView
+from tui.panels.head import HeadReading, HeadView, head_in
+from tui.panels.wheels import WheelsReading, WheelsView, wheels_in
 
 NAMES = ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
 

@@ -10,8 +10,7 @@ from graph.data import GraphUpdate, Trouble
 from robot.motion.odometry import Pose
 from tests.tui.panel_stage import Bare, rows
 from tests.tui.recorded_map import NOBODY, map_update, odometry, stamped
-from tui.panels.map.panel import MapPanel
-from tui.panels.map.widget import RoomMap
+from tui.panels.map import MapPanel, RoomMap
 
 
 class Alone(Bare):

@@ -24,9 +24,9 @@ from tests.tui.recorded_map import MAP_SESSION, map_update, reading
 from tests.tui.snapshots import opened, settle
 from tests.waiting import until
 from tui.panels.camera import CameraPanel
-from tui.panels.head.widget import HeadView
-from tui.panels.sonar.widget import Sonar
-from tui.panels.wheels.widget import WheelsView
+from tui.panels.head import HeadView
+from tui.panels.sonar import Sonar
+from tui.panels.wheels import WheelsView
 from tui.widgets.drawing import Drawing
 from tui.widgets.image_view import ImageView
 

@@ -13,9 +13,7 @@ from tests.tui.panel_stage import alone, rows
 from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_samples, lesson_update, sample
 from tests.tui.snapshots import opened, settle
 from text.i18n import set_language
-from tui.panels.sonar.bounds import bounds_of
-from tui.panels.sonar.widget import Sonar
-from tui.panels.sonar.words import COURSE, Bounds, Zone, zone_of
+from tui.panels.sonar import COURSE, Bounds, Sonar, Zone, bounds_of, zone_of
 
 INF, NAN = math.inf, math.nan
 

@@ -13,9 +13,7 @@ from hypothesis import strategies as st
 from graph.data import GraphUpdate, Sample, TopicRow
 from tests.tui.panel_stage import alone, rows
 from tests.tui.recorded import NOW_S, lesson_update, sample, topic
-from tui.panels.voice.panel import VoicePanel
-from tui.panels.voice.reading import heard
-from tui.panels.voice.widget import VoiceView, level_line
+from tui.panels.voice import VoicePanel, VoiceView, heard, level_line
 
 MICROPHONE, LEVEL = "/audio/mic_raw", "/audio/level"
 

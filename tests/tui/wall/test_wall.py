@@ -17,8 +17,8 @@ from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.frame.title_bar import TitleBar
 from tui.panels.camera import CameraPanel
-from tui.panels.sonar.words import COURSE
-from tui.panels.voice.panel import VoicePanel
+from tui.panels.sonar import COURSE
+from tui.panels.voice import VoicePanel
 from tui.wall.figure import BigNumber, big_word
 from tui.wall.reading import WallNumber, WallReader
 from tui.wall.screen import WallScreen

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.i18n import N_, _
-from tui.actions.action import Announce, actions_of
+from tui.actions.action import Action, Announce, actions_of
+from tui.screens import SCREENS
 
 if TYPE_CHECKING:
     from tui.frame.host import Host
@@ -72,115 +73,18 @@ def show_help(host: Host) -> None:
     host.show_help()
 
 
-@action(
-    "screen.deck",
-    "1,f2",
-    N_("Deck"),
-    N_("The lesson at work: nodes, sensors, wheels, head and voice."),
-    when=_has_session,
-)
-async def show_deck(host: Host) -> None:
-    await host.show_screen("deck")
+def _shows(name: str) -> Action[Host]:
+    entry = SCREENS[name]
+
+    @action(f"screen.{name}", entry.key, entry.title, entry.about, when=_has_session)
+    async def show(host: Host) -> None:
+        await host.show_screen(name)
+
+    return show
 
 
-@action(
-    "screen.lesson",
-    "L",
-    N_("Lesson"),
-    N_("The task of this step, what is judged of your nodes, and hints."),
-    when=_has_session,
-)
-async def show_lesson(host: Host) -> None:
-    await host.show_screen("lesson")
-
-
-@action(
-    "screen.topics", "2,f3", N_("Topics"), N_("Every topic with its rates; the selected one live."), when=_has_session
-)
-async def show_topics(host: Host) -> None:
-    await host.show_screen("topics")
-
-
-@action(
-    "screen.composer",
-    "3,f4",
-    N_("Composer"),
-    N_("Write the JSON that an LLM would send, and see the result."),
-    when=_has_session,
-)
-async def show_composer(host: Host) -> None:
-    await host.show_screen("composer")
-
-
-@action("screen.logs", "4,f5", N_("Logs"), N_("The messages of all nodes: filter, search, save."), when=_has_session)
-async def show_logs(host: Host) -> None:
-    await host.show_screen("logs")
-
-
-@action(
-    "screen.graph",
-    "5",
-    N_("Graph"),
-    N_("Who talks to whom; call services, send goals, set parameters."),
-    when=_has_session,
-)
-async def show_graph(host: Host) -> None:
-    await host.show_screen("graph")
-
-
-@action(
-    "screen.flow",
-    "6",
-    N_("Flow"),
-    N_("One timeline of all nodes: what followed from a word that was said."),
-    when=_has_session,
-)
-async def show_flow(host: Host) -> None:
-    await host.show_screen("flow")
-
-
-@action(
-    "screen.devices",
-    "7",
-    N_("Devices"),
-    N_("Every driver, what it is connected to, and what goes over its port."),
-    when=_has_session,
-)
-async def show_devices(host: Host) -> None:
-    await host.show_screen("devices")
-
-
-@action(
-    "screen.frames",
-    "8",
-    N_("Frames"),
-    N_("The tree of frames: who publishes them, how often, and what is wrong with it."),
-    when=_has_session,
-)
-async def show_frames(host: Host) -> None:
-    await host.show_screen("frames")
-
-
-@action(
-    "screen.space",
-    "9",
-    N_("Space"),
-    N_("The robot, its map and what its sensors see, from above."),
-    when=_has_session,
-)
-async def show_space(host: Host) -> None:
-    await host.show_screen("space")
-
-
-@action(
-    "screen.wall",
-    "0",
-    N_("Wall"),
-    N_("Big numbers and a big picture, to be read across a room; Esc goes back."),
-    when=_has_session,
-)
-async def show_wall(host: Host) -> None:
-    await host.show_screen("wall")
+SHOW = {name: _shows(name) for name, entry in SCREENS.items() if entry.key}
+"""The action that brings each screen to the front."""
 
 
 @action(
@@ -259,5 +163,5 @@ def leave(host: Host) -> None:
 
 
 APP_ACTIONS = actions_of(__name__)
-TABS = [each for each in APP_ACTIONS if each.id.startswith("screen.") and each is not show_wall]
+TABS = [show for name, show in SHOW.items() if name != "wall"]
 """In the order in which the top line names them."""

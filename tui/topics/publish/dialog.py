@@ -125,9 +125,6 @@ class PublishDialog(Dialog[None]):
         dialog.border_title = Content(self.title_words())
         stop = f"{self.deck.keys_of(emergency_stop)[-1]} {_(emergency_stop.title)}"
         dialog.border_subtitle = Content(stop)
-        self.target.relabel()
-        self.form.relabel()
-        self.rate.relabel()
         self._listed = None
         self._look()
 

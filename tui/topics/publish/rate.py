@@ -51,6 +51,9 @@ class PublishRate(Horizontal):
         yield Static(id="rate-unit", markup=False)
         yield Static(id="rate-said", markup=False)
 
+    def on_mount(self) -> None:
+        self.on_language_changed()
+
     @property
     def field(self) -> Input:
         return self.query_one(Input)
@@ -80,8 +83,7 @@ class PublishRate(Horizontal):
         shown.set_class(look == "bad", "-bad")
         shown.update(plain(words(), LONGEST))
 
-    def relabel(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self.query_one("#rate-label", Static).update(_("Rate"))
         self.query_one("#rate-unit", Static).update(_("Hz"))
         self.tell(self._words, self._look)

@@ -50,6 +50,7 @@ class PublishTarget(Vertical, Working):
 
     def on_mount(self) -> None:
         """Read the installed types."""
+        self.on_language_changed()
         self.run_worker(self._learn_types(), group="types")
 
     @property
@@ -70,8 +71,7 @@ class PublishTarget(Vertical, Working):
     def is_name(self) -> bool:
         return TOPIC_NAME.fullmatch(self.topic) is not None
 
-    def relabel(self) -> None:
-        """Redraw in the current language."""
+    def on_language_changed(self) -> None:
         self.query_one("#target-topic-label", Static).update(_("Topic"))
         self.query_one("#target-type-label", Static).update(_("Type"))
         self.field.placeholder = _("/name of an existing or a new topic")

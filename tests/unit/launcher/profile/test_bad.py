@@ -15,6 +15,7 @@ from launcher.errors import ProfileError
 from launcher.profile.load import load_profile
 from launcher.profile.model import Profile
 from launcher.profile.node import Document, Given, Node, Ready, marked
+from launcher.profile.panels import PANELS
 from tests.unit.profile_files import refused, told, written
 
 BAD = [
@@ -40,7 +41,7 @@ BAD = [
     ("nodes: {a: {exec: [x], restart: allways}}",
      "1:33: nodes.a.restart: expected one of never, on-failure, always, found the text 'allways' (did you mean always?)"),
     ("panels: [sonr]\nnodes: {a: {exec: [x]}}",
-     "1:10: panels[0]: expected one of sonar, wheels, map, camera, head, voice, brain, composer, found the text 'sonr' (did you mean sonar?)"),
+     f"1:10: panels[0]: expected one of {', '.join(PANELS)}, found the text 'sonr' (did you mean sonar?)"),
     ("nodes: {a: {exec: [x], ready: {node: a, within: 0}}}",
      "1:49: nodes.a.ready.within: expected more than 0, found 0"),
     ("domain: 233\nnodes: {a: {exec: [x]}}", "1:9: domain: expected at most 232, found 233"),

@@ -1,15 +1,83 @@
-"""The head: where it looks, seen from above and from the side, and where it is commanded to look."""
+"""Where the head looks, read from a JointState."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from text.i18n import _
+import numpy as np
+
+from robot.joints import HEAD_PAN, HEAD_TILT
+from robot.topics import HEAD_STATE, LLM_RESULT
+from text.figures import whole
+from text.i18n import N_, _
+from text.nested import read_json
 from text.plain import plain
-from tui.panels.dots import Dots, Point
-from tui.panels.head.reading import LIMIT_DEG, HeadReading
+from tui.panels.canvas import Canvas, Point
+from tui.panels.panel import Joints, Panel, trouble_of
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+
+LIMIT_DEG = 90.0
+SAME_WITHIN_DEG = 0.5
+
+
+@dataclass(frozen=True)
+class HeadReading:
+    """Angles in degrees; positive is left and up."""
+
+    pan_deg: float
+    tilt_deg: float
+
+    @property
+    def pan_words(self) -> str:
+        return _words(self.pan_deg, _("{degrees}° left"), _("{degrees}° right"))
+
+    @property
+    def tilt_words(self) -> str:
+        return _words(self.tilt_deg, _("{degrees}° up"), _("{degrees}° down"))
+
+    @property
+    def is_known(self) -> bool:
+        """Whether both angles are known: servos have none before they are first moved."""
+        return math.isfinite(self.pan_deg) and math.isfinite(self.tilt_deg)
+
+    def near(self, other: HeadReading) -> bool:
+        """Whether the two are the same except for rounding."""
+        pan, tilt = self.pan_deg - other.pan_deg, self.tilt_deg - other.tilt_deg
+        return abs(pan) < SAME_WITHIN_DEG and abs(tilt) < SAME_WITHIN_DEG
+
+
+def _words(degrees: float, plus: str, minus: str) -> str:
+    if not math.isfinite(degrees):
+        return "---"
+    if not round(degrees):
+        return "0°"
+    return (plus if degrees > 0 else minus).format(degrees=whole(abs(degrees)))
+
+
+def head_in(value: Mapping[str, Any]) -> HeadReading | None:
+    """Read a sensor_msgs/JointState in radians; None if it is not about the head.
+
+    A missing joint is read as nan.
+    """
+    names = [str(name) for name in value.get("name", ())]
+    if HEAD_PAN not in names and HEAD_TILT not in names:
+        return None
+    positions = value.get("position", ())
+
+    def degrees(joint: str) -> float:
+        at = names.index(joint) if joint in names else len(positions)
+        return math.degrees(float(positions[at])) if at < len(positions) else math.nan
+
+    return HeadReading(degrees(HEAD_PAN), degrees(HEAD_TILT))
+
 
 CAPTION_FROM = 10
 DRAWN_FROM = (22, 6)
@@ -98,7 +166,7 @@ class HeadView(Drawing):
 
     def _views(self, pose: HeadReading, width: int, rows: int) -> list[Line]:
         columns = (width - 2) // 2
-        above, side = Dots(columns, rows), Dots(columns, rows)
+        above, side = Canvas(columns, rows), Canvas(columns, rows)
         radius = min(above.width / 2, above.height / 2) - 2
         told = self._told
         dial = Dial(above, (above.width / 2, (above.height + radius) / 2), radius, 90.0)
@@ -117,15 +185,15 @@ def _caption(width: int) -> Line:
 class Dial(NamedTuple):
     """Half a circle of dots around a centre; `zero_deg` is the direction of 0, 90 is upwards."""
 
-    dots: Dots
+    dots: Canvas
     centre: Point
     radius: float
     zero_deg: float
 
     def draw(self, degrees: float, told_deg: float | None, look: str) -> None:
         """Draw the scale, the needle, and a mark where the head is commanded to look."""
-        for step in range(-90, 91, 15):
-            self.dots.dot(*self._at(step, 1.0), "muted")
+        x, y = np.transpose([self._at(step, 1.0) for step in range(-90, 91, 15)])
+        self.dots.dots(x, y, "muted")
         if told_deg is not None and math.isfinite(told_deg):
             self.dots.line(self._at(told_deg, 0.75), self._at(told_deg, 1.1), "strong")
         if math.isfinite(degrees):
@@ -138,3 +206,52 @@ class Dial(NamedTuple):
         angle = math.radians(self.zero_deg + degrees)
         reach = self.radius * share
         return self.centre[0] + reach * math.cos(angle), self.centre[1] - reach * math.sin(angle)
+
+
+class HeadPanel(Panel):
+    """Pan and tilt, from above and from the side."""
+
+    title = N_("Head")
+    least = 3
+    weight = 4
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._joints = Joints(HEAD_STATE, (HEAD_PAN, HEAD_TILT))
+
+    def compose(self) -> ComposeResult:
+        yield HeadView()
+
+    def watched(self) -> set[str]:
+        return {HEAD_STATE}
+
+    def followed(self) -> set[str]:
+        """The topics with the outcome of LLM commands."""
+        return {LLM_RESULT}
+
+    def show(self, update: GraphUpdate) -> None:
+        """Show the newest pose and the newest command."""
+        drawing = self.query_one(HeadView)
+        for sample in update.samples.get(HEAD_STATE, ()):
+            pose = head_in(sample.value)
+            if pose is not None:
+                drawing.show(pose)
+            self._joints.hear(sample, read=pose is not None)
+        drawing.show_placeholder(self._joints.placeholder)
+        for sample in update.samples.get(LLM_RESULT, ()):
+            self._hear(str(sample.value.get("data", "")))
+        drawing.show_trouble(*trouble_of(update, HEAD_STATE))
+
+    def _hear(self, text: str) -> None:
+        try:
+            said: Any = read_json(text)
+            if said["event"] == "head":
+                drawing = self.query_one(HeadView)
+                drawing.command(HeadReading(float(said["pan"]), float(said["tilt"])))
+                if "error" in said:
+                    drawing.answer(str(said["error"]))
+                else:
+                    drawing.answer(_("done") if said.get("sum") == 1 else _("refused"))
+        except (ValueError, KeyError, TypeError, OverflowError):
+            # Anybody may publish there; messages in another format are ignored.
+            return

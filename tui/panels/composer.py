@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robot.topics import LLM_RAW_JSON
 from text.i18n import N_, _
 from tui import clock
-from tui.frame.actions.app import show_composer
+from tui.frame.actions.app import SHOW
 from tui.frame.host import host_of
 from tui.outcome.trail import FOLLOWED, OutcomeTrail
 from tui.outcome.view import Outcome
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from robot.commands.schema import LlmResponse
 
 
-class LlmPanel(Panel):
+class ComposerPanel(Panel):
     """The trail of the newest message: accepted or refused, drive, wheels, head."""
 
     title = N_("LLM commands")
@@ -55,15 +55,13 @@ class LlmPanel(Panel):
         self._newest.update({topic: update.samples[topic][-1] for topic in FOLLOWED & update.samples.keys()})
         self._say()
 
-    def words_changed(self) -> None:
-        """Redraw in the current language."""
-        super().words_changed()
+    def on_language_changed(self) -> None:
         self._say()
 
     def _say(self) -> None:
         outcome = self.query_one(Outcome)
         if self._trail is None:
-            key = host_of(self).keys_of(show_composer)[0]
+            key = host_of(self).keys_of(SHOW["composer"])[0]
             outcome.show(_("Nothing received yet; {key} opens the Composer.").format(key=key), ())
             return
         at = clock.time_of_day(self._trail.sent_s)

@@ -1,24 +1,94 @@
-"""The conversation between human and robot: who said what and when, the newest at the bottom.
-
-Below it is the level of the microphone.
-"""
+"""The content of a sound message: text, as in the lessons, or PCM samples, or neither."""
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
+import numpy as np
 from rich.cells import cell_len
 
-from robot.sound import SILENCE_DBFS
+from robot.sound import RATE_HZ, SILENCE_DBFS, level_dbfs, samples_of, text_in
+from robot.topics import AUDIO_LEVEL, HEARD, MICROPHONE, SPEAKER
 from text.figures import whole
-from text.i18n import _
+from text.i18n import N_, _, decimal, ngettext
+from text.plain import plain
 from tui.log_view.index import folded
 from tui.log_view.rows import clock
-from tui.panels.sonar.bar import EIGHTHS
-from tui.panels.voice.reading import Heard, heard
+from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
+from tui.panels.sonar import EIGHTHS
 from tui.widgets.drawing import Drawing, Ink, Line, cells_of, fit
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+    from tui.widgets.drawing import Placeholder
+
+LONGEST_TEXT = 2_000
+SHOWN_BYTES = 12
+LEAST_PCM = 64
+"""In bytes; anything shorter is not audible."""
+SLICES = 8
+QUIETEST_DB = -60.0
+LEVELS = "▁▂▃▄▅▆▇█"
+
+
+@dataclass(frozen=True)
+class Heard:
+    """One message: its text, or the duration and loudness of its sound."""
+
+    text: str = ""
+    seconds: float = 0.0
+    levels: str = ""
+
+    @property
+    def is_sound(self) -> bool:
+        return bool(self.levels)
+
+    @property
+    def words(self) -> str:
+        if not self.is_sound:
+            return self.text
+        return _("PCM {seconds} s {levels}").format(seconds=decimal(f"{self.seconds:.1f}"), levels=self.levels)
+
+    def and_then(self, later: Heard) -> Heard:
+        """Join two pieces of one sound."""
+        levels = (self.levels + later.levels)[-SLICES:]
+        return Heard("", self.seconds + later.seconds, levels)
+
+
+def heard(data: bytes, sample_rate_hz: int = RATE_HZ) -> Heard:
+    """Read the bytes of a message; any input gives a result that can be shown."""
+    if not data:
+        return Heard(_("(an empty message)"))
+    text = _text_in(data)
+    if text is not None:
+        return Heard(text)
+    if len(data) < LEAST_PCM:
+        count = ngettext("{count} byte, not text:", "{count} bytes, not text:", len(data))
+        more = "…" if len(data) > SHOWN_BYTES else ""
+        return Heard(f"{count.format(count=len(data))} {data[:SHOWN_BYTES].hex(' ')}{more}")
+    samples = samples_of(data)
+    return Heard("", len(samples) / sample_rate_hz, _levels(samples))
+
+
+def _text_in(data: bytes) -> str | None:
+    text = text_in(data)
+    return None if text is None else plain(" ".join(text.split()), LONGEST_TEXT)
+
+
+def _levels(samples: NDArray[np.int16]) -> str:
+    """The loudness of each slice of the sound as a column."""
+    levels = ""
+    for part in np.array_split(samples, SLICES):
+        share = 1 - max(QUIETEST_DB, level_dbfs(part.tobytes())) / QUIETEST_DB
+        levels += LEVELS[min(len(LEVELS) - 1, int(share * len(LEVELS)))]
+    return levels
+
 
 QUIETEST_DB, LOUDEST_DB = -60.0, 0.0
 """Ends of the bar."""
@@ -176,3 +246,72 @@ def _body(what: Heard) -> str:
 def _one_sound(last: Saying, saying: Saying) -> bool:
     both = last.what.is_sound and saying.what.is_sound
     return both and abs(saying.time_s - last.time_s) <= SAME_SOUND_S
+
+
+TYPE = "std_msgs/msg/ByteMultiArray"
+TOPICS: dict[str, Speaker] = {MICROPHONE: "human", SPEAKER: "robot"}
+SILENT_S = 2.0
+"""A driver that has reported no level for this long has no microphone."""
+
+
+class VoicePanel(Panel):
+    """The conversation so far."""
+
+    title = N_("Voice")
+    least = 2
+    weight = 2
+    across_below = 80
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._placeholder: dict[str, Placeholder | None] = {}
+
+    def compose(self) -> ComposeResult:
+        yield VoiceView()
+
+    def followed(self) -> set[str]:
+        """All messages of microphone and loudspeaker, and the words that were recognised."""
+        return {*TOPICS, HEARD}
+
+    def watched(self) -> set[str]:
+        return {AUDIO_LEVEL}
+
+    def show(self, update: GraphUpdate) -> None:
+        """Add what was said, in order of arrival."""
+        talk = self.query_one(VoiceView)
+        said = [sample for topic in (*TOPICS, HEARD) for sample in update.samples.get(topic, ())]
+        for sample in sorted(said, key=lambda one: one.received_s):
+            data = sample.value.get("data", b"")
+            if sample.topic == HEARD and isinstance(data, str):
+                talk.hear("human", data.encode("utf-8", "replace"), sample.received_s)
+            elif isinstance(data, bytes):
+                talk.hear(TOPICS.get(sample.topic, "human"), data, sample.received_s)
+        self._show_level(talk, update)
+        placeholder = self._of_another_type(update)
+        talk.show_placeholder(placeholder)
+        talk.show_trouble(*((None,) if placeholder else trouble_of(update, MICROPHONE)))
+
+    def _of_another_type(self, update: GraphUpdate) -> Placeholder | None:
+        """Return what to show for the first topic with messages of another type."""
+        for topic in TOPICS:
+            if topic in update.samples:
+                self._placeholder[topic] = other_type(newest(update, topic), TYPE)
+            row, words = row_of(update, topic), self._placeholder.get(topic)
+            if row is not None and row.publishers and words is not None:
+                return words
+        return None
+
+    def _show_level(self, talk: VoiceView, update: GraphUpdate) -> None:
+        sample = newest(update, AUDIO_LEVEL)
+        dbfs = sample.value.get("data") if sample is not None else None
+        if isinstance(dbfs, (int, float)) and math.isfinite(dbfs):
+            talk.show_level(float(dbfs))
+            return
+        teller, microphone = row_of(update, AUDIO_LEVEL), row_of(update, MICROPHONE)
+        if teller is not None and teller.publishers:
+            if teller.trouble is not None or (teller.age_s or 0.0) > SILENT_S:
+                talk.show_level(None, missing=True)
+            return
+        # The course's own microphone does not report a level.
+        there = microphone is not None and microphone.publishers > 0
+        talk.show_level(None, missing=not there and talk.has_talk)

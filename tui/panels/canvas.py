@@ -1,11 +1,8 @@
-"""A canvas of braille dots for many objects, with two by four dots in every cell.
-
-Like `tui.panels.dots`, but with arrays: a room has thousands of dots, and is copied for every
-frame.
-"""
+"""A canvas of braille dots: two by four in every cell, about square on a terminal."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +13,8 @@ from tui.widgets.drawing import LOOKS, Ink, Line
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from tui.panels.dots import Point
+Point = tuple[float, float]
+"""x to the right and y downwards, in dots."""
 
 _LOOKS = ("", *LOOKS)
 _NUMBER = {look: number for number, look in enumerate(_LOOKS)}
@@ -99,3 +97,13 @@ def _line(codes: NDArray[np.uint16], looks: NDArray[np.uint8]) -> Line:
         Ink(text[start:end], _LOOKS[looks[start]])
         for start, end in zip(starts, (*starts[1:], len(text)), strict=True)
     ]
+
+
+def rectangle(centre: Point, width: float, length: float, angle_rad: float) -> list[Point]:
+    """Corners of a rectangle that is `length` long upwards, rotated anticlockwise by the angle."""
+    sin, cos = math.sin(angle_rad), math.cos(angle_rad)
+    corners: list[Point] = []
+    for across, along in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+        x, y = across * width / 2, along * length / 2
+        corners.append((centre[0] + x * cos + y * sin, centre[1] - x * sin + y * cos))
+    return corners

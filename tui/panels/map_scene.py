@@ -1,0 +1,438 @@
+"""Which part of the floor is shown, and where a point of it is on the canvas.
+
+Seen from above as on paper: x to the right and y upwards, so that a left turn appears as a left
+turn. A metre has the same length in both directions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robot.motion.odometry import Point as Place
+from robot.motion.odometry import Pose, yaw_from_quaternion
+from robot.world.world import Body, SimulatedSonar
+from space.reading.fields import NotDrawnError
+from space.reading.fields import field as field_of
+from space.reading.grids import grid_cells
+from tui.panels.canvas import Canvas
+from tui.panels.sonar import COURSE, Bounds, ink_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from tui.panels.canvas import Point
+
+
+@dataclass(frozen=True)
+class Extent:
+    """A rectangle of the floor, in metres."""
+
+    left_m: float
+    right_m: float
+    bottom_m: float
+    top_m: float
+
+    def holding(self, *places: Point) -> Extent:
+        """Extend it to include these points."""
+        across, up = [x for x, _y in places], [y for _x, y in places]
+        return Extent(
+            min([self.left_m, *across]),
+            max([self.right_m, *across]),
+            min([self.bottom_m, *up]),
+            max([self.top_m, *up]),
+        )
+
+    def joined(self, other: Extent) -> Extent:
+        """Extend it to include both."""
+        return self.holding((other.left_m, other.bottom_m), (other.right_m, other.top_m))
+
+    def widened(self, margin_m: float) -> Extent:
+        return Extent(
+            self.left_m - margin_m, self.right_m + margin_m, self.bottom_m - margin_m, self.top_m + margin_m
+        )
+
+    def rounded(self) -> Extent:
+        """Round outwards to steps of about a tenth of it: the view must not move with the robot."""
+        width_m, height_m = self.right_m - self.left_m, self.top_m - self.bottom_m
+        step_m = 10.0 ** math.floor(math.log10(max(width_m, height_m, 1.0)))
+        return Extent(
+            math.floor(self.left_m / step_m) * step_m,
+            math.ceil(self.right_m / step_m) * step_m,
+            math.floor(self.bottom_m / step_m) * step_m,
+            math.ceil(self.top_m / step_m) * step_m,
+        )
+
+
+@dataclass(frozen=True)
+class Viewport:
+    """An extent in the middle of a canvas with this many dots."""
+
+    left_m: float
+    top_m: float
+    """Coordinates of the upper left corner of the first dot."""
+    dots_per_m: float
+    columns: int
+    rows: int
+    """In cells."""
+
+    def place(self, x_m: float, y_m: float) -> Point:
+        """The position of a point of the floor, in dots."""
+        return (x_m - self.left_m) * self.dots_per_m, (self.top_m - y_m) * self.dots_per_m
+
+
+def fitted(extent: Extent, columns: int, rows: int) -> Viewport:
+    """Show all of an extent as large as possible in this many cells."""
+    width_m = max(1e-6, extent.right_m - extent.left_m)
+    height_m = max(1e-6, extent.top_m - extent.bottom_m)
+    # Points on the edge are drawn in the outermost dot.
+    scale = min((2 * columns - 1) / width_m, (4 * rows - 1) / height_m)
+    return Viewport(
+        (extent.left_m + extent.right_m) / 2 - columns / scale,
+        (extent.bottom_m + extent.top_m) / 2 + 2 * rows / scale,
+        scale,
+        columns,
+        rows,
+    )
+
+
+FARTHEST_M = 1e6
+"""A pose farther away than this is not valid."""
+OCCUPIED_FROM = 50
+"""The threshold of 100, in a nav_msgs/OccupancyGrid."""
+
+
+@dataclass(frozen=True, eq=False)
+class OccupancyGrid:
+    """The map of a room; each message creates a new one."""
+
+    cells: NDArray[np.int8]
+    """Shape (rows, columns): -1 unknown, 0 free, 100 occupied."""
+    cell_m: float
+    origin: Pose
+    """Position of the corner of the first cell, and the rotation of the rows."""
+    frame: str
+    extent: Extent | None
+    """The known part, None if nothing is known."""
+
+    def centres(
+        self, rows: NDArray[np.float64], columns: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Positions of cells, x and y in metres."""
+        along, up = (columns + 0.5) * self.cell_m, (rows + 0.5) * self.cell_m
+        cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
+        return self.origin.x_m + cos * along - sin * up, self.origin.y_m + sin * along + cos * up
+
+    def occupied_at(self, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether there is an obstacle at these positions; outside there is none."""
+        east, north = x_m - self.origin.x_m, y_m - self.origin.y_m
+        cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
+        columns = np.floor((cos * east + sin * north) / self.cell_m)
+        rows = np.floor((cos * north - sin * east) / self.cell_m)
+        high, wide = self.cells.shape
+        inside = (rows >= 0) & (rows < high) & (columns >= 0) & (columns < wide)
+        found = np.zeros(x_m.shape, dtype=np.bool_)
+        at = rows[inside].astype(np.intp), columns[inside].astype(np.intp)
+        found[inside] = self.cells[at] >= OCCUPIED_FROM
+        return found
+
+
+def pose_in(value: Mapping[str, Any]) -> tuple[Pose, str] | None:
+    """Read an Odometry or a PoseStamped: pose and frame; None if the position is not valid."""
+    try:
+        inner = value["pose"]
+        inner = inner.get("pose", inner)
+        place, turn = inner["position"], inner["orientation"]
+        heading = yaw_from_quaternion(*(float(turn[axis]) for axis in "xyzw"))
+        pose = Pose(float(place["x"]), float(place["y"]), heading)
+        frame = str(value["header"]["frame_id"])
+    except (KeyError, TypeError, ValueError, AttributeError):
+        return None
+    near = pose.is_finite and max(abs(pose.x_m), abs(pose.y_m)) <= FARTHEST_M
+    return (pose, frame) if near else None
+
+
+def goal_in(value: Mapping[str, Any]) -> Place | None:
+    """Read a PoseStamped with a goal; None if there is no goal any more."""
+    found = pose_in(value)
+    if found is None or not found[1]:
+        return None
+    return Place(found[0].x_m, found[0].y_m)
+
+
+def occupancy_in(value: Mapping[str, Any]) -> OccupancyGrid | None:
+    """Read an OccupancyGrid; None for an invalid one."""
+    try:
+        found, frame = grid_cells(value), str(field_of(value, "header.frame_id"))
+    except NotDrawnError:
+        return None
+    x_m, y_m, _ = found.origin.translation
+    origin = Pose(x_m, y_m, yaw_from_quaternion(*found.origin.rotation))
+    occupancy = OccupancyGrid(found.cells, found.cell_m, origin, frame, None)
+    return replace(occupancy, extent=_known(occupancy))
+
+
+def _known(occupancy: OccupancyGrid) -> Extent | None:
+    known = occupancy.cells >= 0
+    rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
+    if not rows.size:
+        return None
+    # Half a cell on each side: the outer edges of the outermost cells.
+    x, y = occupancy.centres(
+        np.array([rows[0] - 0.5, rows[0] - 0.5, rows[-1] + 0.5, rows[-1] + 0.5]),
+        np.array([columns[0] - 0.5, columns[-1] + 0.5, columns[0] - 0.5, columns[-1] + 0.5]),
+    )
+    return Extent(float(x.min()), float(x.max()), float(y.min()), float(y.max()))
+
+
+LEAST_M = 0.02
+"""Shorter distances are not added."""
+TORN_M = 0.6
+"""A longer distance was not really driven: the odometry was reset, or nobody was looking."""
+MOST = 4000
+
+
+class DrivenPath:
+    """The points of the path in order, in pieces."""
+
+    def __init__(self) -> None:
+        self.pieces: list[list[Point]] = []
+        self.length_m = 0.0
+        self.revision = 0
+        """Changes when older points have been changed."""
+        self._least_m = LEAST_M
+        self._points = 0
+        self._corners: list[Point] = []
+
+    @property
+    def bounds(self) -> list[Point]:
+        """Opposite corners of the bounding box of the whole path; none at first."""
+        return self._corners
+
+    def add(self, x_m: float, y_m: float) -> bool:
+        """Continue to a point; return whether the path has changed."""
+        way_m = math.dist(self.pieces[-1][-1], (x_m, y_m)) if self.pieces else math.inf
+        if way_m < self._least_m:
+            return False
+        if way_m > max(TORN_M, 2 * self._least_m):
+            self.pieces.append([(x_m, y_m)])
+        else:
+            self.length_m += way_m
+            self.pieces[-1].append((x_m, y_m))
+        self._points += 1
+        across, up = zip(*self._corners, (x_m, y_m), strict=True)
+        self._corners = [(min(across), min(up)), (max(across), max(up))]
+        if self._points > MOST:
+            self._thin()
+        return True
+
+    def clear(self) -> None:
+        self.pieces, self.length_m, self._points = [], 0.0, 0
+        self._least_m, self._corners = LEAST_M, []
+        self.revision += 1
+
+    def _thin(self) -> None:
+        """Drop every second point, and the oldest pieces."""
+        self.pieces = [_halved(piece) for piece in self.pieces[-MOST // 4 :]]
+        self._points = sum(map(len, self.pieces))
+        self._least_m *= 2
+        self.revision += 1
+
+
+def _halved(piece: list[Point]) -> list[Point]:
+    kept = piece[::2]
+    return kept if kept[-1] == piece[-1] else [*kept, piece[-1]]
+
+
+FRONT, REAR = "front", "rear"
+BODY = Body()
+MAX_RANGE_M = SimulatedSonar().farthest_m
+"""The length of a cone in which nothing was detected."""
+LONGEST_RAY_M = 1e4
+"""A longer ray is drawn with this length: its end is outside every map."""
+CONE_RAD = 0.06
+"""Half of the angle of the cone; wider than the real one, so that it is recognisable."""
+BROKEN_M = 0.6
+"""Length of the dashed ray of a sonar without a valid reading."""
+PATH, GOAL, ROBOT, TRUTH, WALL, GRID = "second", "good", "accent", "muted", "", "muted"
+GOAL_SIGN, HIT_SIGN, BLIND_SIGN, FREE_SIGN = "◎", "●", "?", "∠"
+_DRAWN_FROM = 8.0
+"""In dots; a smaller robot is drawn as a dart large enough to be seen."""
+_APART = 2.0
+"""In dots; a true pose closer to the robot would only blur it."""
+_HULL_FROM = 20.0
+"""In dots; a larger robot is drawn with its outline around the dart."""
+_HULL = ((-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
+_DART = ((1.0, 0.0), (-0.9, 1.0), (-0.45, 0.0), (-0.9, -1.0))
+_WIDER = 1.35
+"""A dart that stands for the whole robot is wider than the robot by this factor."""
+_GRID_CELLS = 4
+"""Minimum distance between the dots of the grid, in cells."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything that moves, that is all but the room and the path."""
+
+    pose: Pose
+    truth: Pose | None = None
+    goal: Place | None = None
+    rays: dict[str, float] = field(default_factory=dict)
+    """`FRONT` and `REAR` to metres according to REP-117."""
+    bounds: Bounds = COURSE
+    """Which of these distances count as near."""
+
+
+def ray_origin(pose: Pose, place: str) -> tuple[Point, float]:
+    """Position of a sonar at the bumper in metres, and its direction."""
+    offset_m = BODY.length_m - BODY.behind_m if place == FRONT else -BODY.behind_m
+    x_m = pose.x_m + offset_m * math.cos(pose.heading_rad)
+    y_m = pose.y_m + offset_m * math.sin(pose.heading_rad)
+    return (x_m, y_m), pose.heading_rad + (0.0 if place == FRONT else math.pi)
+
+
+def along(start: Point, heading_rad: float, metres: float) -> Point:
+    """The point at this distance in a direction."""
+    return start[0] + metres * math.cos(heading_rad), start[1] + metres * math.sin(heading_rad)
+
+
+def draw_grid(canvas: Canvas, view: Viewport, step_m: float) -> None:
+    """Draw a dot at every crossing of a grid, one of them at the origin."""
+    if math.isinf(step_m):
+        return
+    across, up = canvas.width / view.dots_per_m, canvas.height / view.dots_per_m
+    first = math.ceil(view.left_m / step_m), math.ceil((view.top_m - up) / step_m)
+    x, y = np.meshgrid(
+        np.arange(first[0], math.floor((view.left_m + across) / step_m) + 1) * step_m,
+        np.arange(first[1], math.floor(view.top_m / step_m) + 1) * step_m,
+    )
+    canvas.dots((x - view.left_m) * view.dots_per_m, (view.top_m - y) * view.dots_per_m, GRID)
+
+
+def grid_step_m(view: Viewport) -> float:
+    """The distance between the dots of the grid: 1 m, or 2, 5, 10, ... if that is too close."""
+    for step_m in (digit * 10.0**power for power in range(8) for digit in (1, 2, 5)):
+        if step_m * view.dots_per_m >= 2 * _GRID_CELLS:
+            return step_m
+    return math.inf
+
+
+def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> None:
+    """Draw the obstacles in the room."""
+    if occupancy.cell_m * view.dots_per_m <= 1.0:
+        rows, columns = np.nonzero(occupancy.cells >= OCCUPIED_FROM)
+        x_m, y_m = occupancy.centres(rows.astype(np.float64), columns.astype(np.float64))
+        canvas.dots((x_m - view.left_m) * view.dots_per_m, (view.top_m - y_m) * view.dots_per_m, WALL)
+        return
+    x, y = np.meshgrid(np.arange(canvas.width) + 0.5, np.arange(canvas.height) + 0.5)
+    stands = occupancy.occupied_at(view.left_m + x / view.dots_per_m, view.top_m - y / view.dots_per_m)
+    canvas.dots(x[stands], y[stands], WALL)
+
+
+def draw_path(canvas: Canvas, view: Viewport, piece: list[Point]) -> None:
+    """Draw a piece of the path."""
+    for start, end in pairwise(piece):
+        canvas.line(view.place(*start), view.place(*end), PATH)
+
+
+def draw_scene(canvas: Canvas, view: Viewport, scene: Scene) -> None:
+    """Draw everything that moves, the robot last."""
+    for place, metres in scene.rays.items():
+        _draw_ray(canvas, view, scene.pose, place, metres, ink_of(metres, scene.bounds))
+    if scene.goal is not None:
+        canvas.sign(view.place(scene.goal.x_m, scene.goal.y_m), GOAL_SIGN, GOAL)
+    if scene.truth is not None:
+        truth, believed = robot_corners(view, scene.truth), robot_corners(view, scene.pose)
+        if max(map(math.dist, truth, believed)) >= _APART:
+            canvas.outline(truth, TRUTH)
+    _draw_robot(canvas, view, scene.pose)
+
+
+def _draw_ray(canvas: Canvas, view: Viewport, pose: Pose, place: str, metres: float, look: str) -> None:
+    start, heading = ray_origin(pose, place)
+    begin = view.place(*start)
+    if math.isnan(metres):
+        end = view.place(*along(start, heading, BROKEN_M))
+        canvas.line(begin, end, look, (1, 2))
+        canvas.sign(end, BLIND_SIGN, look)
+    elif metres == math.inf:
+        ends = [
+            view.place(*along(start, heading + side * CONE_RAD, MAX_RANGE_M)) for side in (-1.0, -0.5, 0.0, 0.5, 1.0)
+        ]
+        for edge in (ends[0], ends[-1]):
+            canvas.line(begin, edge, look, (1, 1))
+        for one, other in pairwise(ends):
+            canvas.line(one, other, look)
+    else:
+        end = view.place(*along(start, heading, min(max(0.0, metres), LONGEST_RAY_M)))
+        canvas.line(begin, end, look)
+        canvas.sign(end, HIT_SIGN, look)
+
+
+def _draw_robot(canvas: Canvas, view: Viewport, pose: Pose) -> None:
+    """Draw a dart that points ahead, inside the outline of the robot if that is visible."""
+    nose, left, notch, right = robot_corners(view, pose)
+    canvas.fill([nose, left, notch], ROBOT)
+    canvas.fill([nose, notch, right], ROBOT)
+    if _life_dots(view) >= _HULL_FROM:
+        canvas.outline(_placed(view, pose, _HULL, 1.0, 1.0), ROBOT)
+
+
+def robot_corners(view: Viewport, pose: Pose) -> list[Point]:
+    """Nose, left, notch and right of the dart; larger than life if it would be too small."""
+    life = _life_dots(view)
+    size = max(1.0, _DRAWN_FROM / life)
+    return _placed(view, pose, _DART, size, size if life >= _HULL_FROM else size * _WIDER)
+
+
+def _life_dots(view: Viewport) -> float:
+    return BODY.length_m * view.dots_per_m
+
+
+def _placed(view: Viewport, pose: Pose, shape: tuple[Point, ...], longer: float, wider: float) -> list[Point]:
+    """Place a shape, given in halves of the robot's length and width about its centre."""
+    middle_m = BODY.length_m / 2 - BODY.behind_m
+    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+    corners = []
+    for ahead, left in shape:
+        x = middle_m + ahead * longer * BODY.length_m / 2
+        y = left * wider * BODY.width_m / 2
+        corners.append(view.place(pose.x_m + x * cos - y * sin, pose.y_m + x * sin + y * cos))
+    return corners
+
+
+class Layers:
+    """The canvas below everything that moves."""
+
+    def __init__(self) -> None:
+        self._canvas = Canvas(1, 1)
+        self._drawn: tuple[Viewport, OccupancyGrid | None, DrivenPath, int] | None = None
+        self._done = (0, 0)
+        """Number of pieces of the path that have been drawn, and of points in the last of them."""
+
+    def canvas(self, view: Viewport, occupancy: OccupancyGrid | None, trail: DrivenPath) -> Canvas:
+        """Return a copy with grid, room and path, to draw the rest on."""
+        wanted = (view, occupancy, trail, trail.revision)
+        if wanted != self._drawn:
+            self._drawn, self._done = wanted, (0, 0)
+            self._canvas = Canvas(view.columns, view.rows)
+            draw_grid(self._canvas, view, grid_step_m(view))
+            if occupancy is not None:
+                draw_occupancy(self._canvas, view, occupancy)
+        self._go_on(view, trail)
+        return self._canvas.copy()
+
+    def _go_on(self, view: Viewport, trail: DrivenPath) -> None:
+        pieces, points = self._done
+        for number in range(max(0, pieces - 1), len(trail.pieces)):
+            piece = trail.pieces[number]
+            # The next line begins at the last point drawn.
+            first = max(0, points - 1) if number == pieces - 1 else 0
+            draw_path(self._canvas, view, piece[first:])
+        self._done = len(trail.pieces), len(trail.pieces[-1]) if trail.pieces else 0
