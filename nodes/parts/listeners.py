@@ -1,26 +1,20 @@
-"""Subscribes to a sensor, whether its driver is a reliable publisher, as in the course, or not.
-
-A best-effort request would match both, but would then lose most large pictures, which travel in
-many fragments, of a reliable publisher. So best effort is requested only if nothing else is
-offered.
-"""
+"""Subscribes to a sensor, and to /odom."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import time
+from collections.abc import Callable
+from typing import Any
 
-from rclpy.event_handler import SubscriptionEventCallbacks
+from nav_msgs.msg import Odometry
+from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
 from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
 
-from nodes.parts.qos import DEPTH
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo
-    from rclpy.subscription import Subscription
-
-    from nodes.parts.node import LessonNode
+from nodes.parts.node import DEPTH, NEWEST_OF_ANY, LessonNode
+from robot.motion.odometry import Pose, yaw_from_quaternion
+from robot.topics import ODOMETRY
+from text.i18n import N_
 
 
 class SensorListener:
@@ -62,3 +56,32 @@ class SensorListener:
         self._relaxed = True
         strict, self._subscription = (self._subscription, self._subscribed(ReliabilityPolicy.BEST_EFFORT))
         self._node.destroy_subscription(strict)
+
+
+ODOM = "odom"
+"""The frame of the poses on /odom (REP-105)."""
+_NO_NUMBER = N_("{topic} is not a number and is ignored")
+
+
+class OdometryListener:
+    """Keeps the newest pose; one with nan or infinity is ignored."""
+
+    def __init__(self, node: LessonNode) -> None:
+        self._say = node.say
+        self._heard_s = time.monotonic()
+        self.pose: Pose | None = None
+        """The newest pose, None before the first."""
+        node.create_subscription(Odometry, ODOMETRY, self._hear, NEWEST_OF_ANY)
+
+    @property
+    def age_s(self) -> float:
+        """Return the seconds since the newest pose, or since the start if there is none."""
+        return time.monotonic() - self._heard_s
+
+    def _hear(self, message: Odometry) -> None:
+        place, turn = message.pose.pose.position, message.pose.pose.orientation
+        pose = Pose(place.x, place.y, yaw_from_quaternion(turn.x, turn.y, turn.z, turn.w))
+        if pose.is_finite:
+            self.pose, self._heard_s = pose, time.monotonic()
+        else:
+            self._say.warn(_NO_NUMBER, every_s=1.0, topic=ODOMETRY)
