@@ -26,9 +26,8 @@ from nodes.simulated.devices import FAULTS, FINE, NOISE, SILENT, SLOW, UNPLUGGED
 from robot.joints import DRIVE_JOINTS
 from robot.topics import MAP, MOCK_MOTORS, MOCK_POSE
 from robot.wire.tfluna import TofFrame, encode
+from robot.world.boards import SimulatedPico, SimulatedServos
 from robot.world.grid import CellMap, grid_of
-from robot.world.pico import SimulatedPico
-from robot.world.servos import SimulatedServos
 from robot.world.world import STEP_S, SimulatedSonar, World
 from space.transform import quaternion_from_rpy
 from text.i18n import N_

@@ -42,7 +42,7 @@ _AHEAD = 3
 
 
 class PacedSpeaker:
-    """Publishes sound on /audio/speaker_raw at the pace at which it is played."""
+    """Publishes sound on /audio/speaker_raw at the pace at which it is played: so it can be broken off."""
 
     def __init__(self, node: LessonNode, rate_hz: int) -> None:
         self._publisher = node.create_publisher(ByteMultiArray, SPEAKER, DEPTH)

@@ -19,7 +19,7 @@ from std_msgs.msg import Float32
 from nodes.drivers.serial_link import SerialLink
 from nodes.parts.diagnostics import tell_every_second
 from nodes.parts.node import DEPTH, Choice, LessonNode, Number, PeriodicThread, Text, Whole
-from robot.frames.tof import TofReader
+from robot.frames.readers import TofReader
 from robot.topics import SONAR_FRONT
 from robot.wire.tfluna import BAUD, Model, TofDecoder
 from text.i18n import N_

@@ -15,7 +15,7 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from nodes.drivers.serial_link import SerialLink
 from nodes.parts.commands import Refusal
 from nodes.parts.node import LessonNode, TranslatedLogger
-from robot.frames.pico import PicoReader
+from robot.frames.readers import PicoReader
 from robot.wire.pico import (
     PROTOCOL,
     SEQUENCES,

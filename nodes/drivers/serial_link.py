@@ -22,9 +22,7 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from std_msgs.msg import String
 
 from nodes.parts.node import LessonNode, change_period
-from robot.frames.batches import Chunk, FrameBatcher
-from robot.frames.lines import encode
-from robot.frames.protocols import FrameReader, RawReader
+from robot.frames.protocols import Chunk, FrameBatcher, FrameReader, RawReader, encode
 from text.i18n import N_
 from text.sentences import reason_of
 
@@ -37,7 +35,10 @@ _MOST_OCTETS = 16_384
 
 
 class SerialFrames:
-    """Collects bytes for a batch, and publishes it from the node's thread."""
+    """`~/frames`: the traffic in words, from the node's thread, while somebody is subscribed.
+
+    Without subscribers, bytes are not even kept. See `robot.frames.protocols.encode` for the format.
+    """
 
     def __init__(self, node: LessonNode, make: Callable[[str], FrameReader]) -> None:
         """`make` creates a reader of this device's frames for a language."""
@@ -92,7 +93,10 @@ _STALE_S = 0.5
 
 
 class SerialReads:
-    """Reads one port from opening until closing."""
+    """Reads one port from opening until closing: one wait and one read for whatever has come.
+
+    pyserial's own `read` waits and reads once for the first byte and once more for the rest.
+    """
 
     def __init__(self, port: serial.Serial) -> None:
         self._port, self._handle = port, port.fileno()
@@ -123,7 +127,11 @@ _WITHIN_S = 0.1
 
 
 class SerialWrites:
-    """Writes to one port from opening until closing."""
+    """Writes to one port, and never half of something: what a full port has cut is finished first.
+
+    pyserial's own `write` does not say how much it has sent before its time-out. What comes next would
+    stick to half a line, and the device would refuse both.
+    """
 
     def __init__(self, port: serial.Serial) -> None:
         self._port = port

@@ -14,7 +14,7 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes.drivers.serial_link import SerialLink
 from nodes.parts.node import LessonNode
-from robot.frames.lsc16 import ServoReader
+from robot.frames.readers import ServoReader
 from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder, ServoMove, encode
 from text.i18n import N_
 

@@ -132,7 +132,16 @@ _ANOTHER_CLOCK_S = 30.0
 
 
 class StallDetector:
-    """Ask it in every callback and from a timer: the time between two calls is the time asleep."""
+    """Whether this process was held up, so that waiting messages may be older than they seem.
+
+    A process that was suspended or starved for seconds finds commands and readings in its queues that
+    seem new: a drive command whose stop waits behind it. So it ignores all messages for a moment. A
+    machine under load may need longer than that to deliver what has waited; then the stamp of a message
+    shows its age, if it has one. Clocks of two machines differ, so stamps are checked only for the
+    first seconds.
+
+    Ask it in every callback and from a timer: the time between two calls is the time asleep.
+    """
 
     def __init__(self) -> None:
         self._last_s = time.monotonic()
@@ -160,7 +169,12 @@ _WATCH_S = 5.0
 
 
 class FirstHeard:
-    """Watches which sources are heard for the first time after the start."""
+    """Whether a node that has just started may have missed a latched message of an undiscovered node.
+
+    Discovery takes tenths of a second, sometimes seconds, and a latched message arrives a little later;
+    the command of another node may come first. A source that was already sending when the node started
+    is recognised by its first message, which is among the first messages received.
+    """
 
     def __init__(self) -> None:
         self._started_s = self._newest_s = time.monotonic()
@@ -198,7 +212,11 @@ _NAMESAKE = N_("another {name}")
 
 
 class SolePublisher:
-    """Looks once a second for several publishers of a topic, and names them."""
+    """Looks once a second whether another node publishes what only one should, and names it.
+
+    ROS lets anybody publish anything; a node can only name who does. It does not refuse to run: the
+    endpoint of a killed node stays for up to 20 s, and its successor must drive.
+    """
 
     def __init__(self, node: LessonNode, topic: str, *, own: bool = False, others: str) -> None:
         """Say `others` of them; `own`: the node publishes it itself, else one other may."""

@@ -18,7 +18,12 @@ from text.i18n import N_
 
 
 class SensorListener:
-    """Subscribes reliably, or as best effort from the first publisher on that offers no more."""
+    """Subscribes reliably, or as best effort from the first publisher on that offers no more.
+
+    A best-effort request would match both, but would then lose most large pictures, which travel in
+    many fragments, of a reliable publisher. So best effort is requested only if nothing else is
+    offered.
+    """
 
     def __init__(
         self,

@@ -95,7 +95,8 @@ OF_MANY = QoSProfile(depth=64, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 class StopNews:
     """Hears the topic, and what those say that obey it: they may have heard what this node missed.
 
-    What it broke off must not come back after the release.
+    What it broke off must not come back after the release. What it has heard itself it passes on by the
+    disk: it may be the only one that has.
     """
 
     def __init__(self, node: LessonNode, stopped: Callable[[], None]) -> None:

@@ -18,8 +18,8 @@ from nodes.parts.node import DEPTH, LessonNode
 from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.motion.odometry import Pose, yaw_from_quaternion
 from robot.topics import HEAD_STATE, MOCK_POSE
-from robot.world.room import LIVING_ROOM
 from robot.world.view import CameraPose, RoomView
+from robot.world.world import LIVING_ROOM
 from text.i18n import N_
 
 _SKY_TOP, _SKY_LOW = (96, 148, 224), (196, 220, 244)

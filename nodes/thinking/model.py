@@ -34,7 +34,11 @@ _CLOSING_S = 2.0
 
 
 class Background:
-    """A thread with an event loop, and the way back to the node's thread; `close` it."""
+    """A thread with an event loop, and the way back to the node's thread; `close` it.
+
+    A node's callbacks must not wait for a network. There is one question at a time; a newer one takes
+    the place of the one under way, which is hung up on.
+    """
 
     def __init__(self, node: LessonNode) -> None:
         self._results: deque[Callable[[], None]] = deque()
@@ -197,7 +201,11 @@ _ANSWERED = N_("has answered; {model}")
 
 
 class BrainState:
-    """Publishes at each change, and once a second."""
+    """/brain_state at each change, and once a second: what the brain does, and what that takes.
+
+    A status named after the node: OK while it thinks and answers, WARN by its rules, ERROR if a model
+    that is set up gave no answer. The values are for programs; what is unknown is empty.
+    """
 
     def __init__(self, node: LessonNode, model: AskedModel | None) -> None:
         self._node, self._model = node, model

@@ -6,8 +6,7 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from robot.commands.schema import CommandError, parse_llm
-from robot.commands.so_far import so_far
+from robot.commands.schema import CommandError, parse_llm, so_far
 from robot.commands.wrapping import THINK, unwrapped
 
 if TYPE_CHECKING:
