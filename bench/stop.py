@@ -30,7 +30,7 @@ from launcher.profile.load import load_profile
 from robot.wire.pico import Drive, Halt, Hello, PicoDecoder, Release, encode
 from robot.wire.tfluna import Model, TofDecoder, TofFrame
 from robot.wire.tfluna import encode as encode_tof
-from robot.world.pico import SimulatedPico
+from robot.world.boards import SimulatedPico
 from robot.world.world import STEP_S, World
 
 if TYPE_CHECKING:

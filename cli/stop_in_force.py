@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from robot.safety.stop_place import stop_place
+from robot.safety.stop_file import stop_place
 from text.i18n import _
 
 

@@ -9,35 +9,23 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from types import FrameType
+from types import FrameType
 
 
 def _leave(_number: int, _frame: FrameType | None) -> None:
     os._exit(0)
 
 
-__preload__ = (
-    ".parts.runner",
-    ".parts.node",
-    ".parts.parameters",
-    ".parts.translated_logger",
-    ".parts.qos",
-    ".parts.emergency",
-)
+__preload__ = (".parts.runner", ".parts.node", ".parts.emergency")
 """Imports of nearly every node: the launcher's spawn server may import them in advance."""
 __preload_idle__ = (
-    ".parts.refusals",
-    ".driving.repeat",
+    ".parts.commands",
+    ".parts.repeat",
     ".safety.gate",
-    ".parts.sole_publisher",
     ".parts.head_client",
-    ".simulated.room_scene",
-    ".simulated.scene",
+    ".simulated.scenes",
     ".drivers.servos",
-    ".parts.sound",
+    ".parts.messages",
     # Brings pydantic, which takes longer than all others together.
     "robot.commands.schema",
 )

@@ -15,7 +15,6 @@ unusable, the robot stands. The word for stop never waits for a model.
 from __future__ import annotations
 
 import math
-import sys
 import time
 from typing import TYPE_CHECKING
 
@@ -25,14 +24,11 @@ from std_msgs.msg import ByteMultiArray, Float32, String
 
 from brain.faults import FaultKind, ModelError
 from nodes.parts.head_client import HeadAnswer, HeadClient
-from nodes.parts.node import LessonNode
-from nodes.parts.parameters import Choice, Number, Text
-from nodes.parts.pictures import BadPictureError, jpeg_of
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
-from nodes.parts.sensor import SensorListener
-from nodes.parts.sound import from_message, to_message
+from nodes.parts.listeners import SensorListener
+from nodes.parts.messages import BadPictureError, jpeg_of, sound_message, sound_of
+from nodes.parts.node import DEPTH, Choice, LessonNode, Number, Text
 from nodes.parts.stop_news import StopNews
+from nodes.thinking.mind import ModelMind
 from robot.commands.brain import Decision, asks_to_stop, decide, spoken
 from robot.commands.schema import DriveCommand, LlmResponse, SpokenResponse
 from robot.safety.distance import Reading, range_state
@@ -43,7 +39,6 @@ from text.i18n import N_
 
 if TYPE_CHECKING:
     from brain.situation import Situation
-    from nodes.thinking.mind import ModelMind
 
 LOOK_PAN_DEG, LOOK_TILT_DEG = 45, 0
 FORWARD, STOP_WORD = WORDS["ru"][0], WORDS["ru"][4]
@@ -92,20 +87,17 @@ class AiBrain(LessonNode):
     """Turns each voice message into words, a decision and an answer."""
 
     NAME = "ai_brain"
-    SETTINGS = (
-        Choice("backend", "rules", "Who thinks", fixed=True, choices=("rules", "llm")),
-        Text("prompt", "", "File with the system prompt; empty: Deck's own", may_be_empty=True),
-        Choice(
-            "picture",
-            "auto",
-            "Whether the model gets the newest picture; auto: if vision_model is set",
-            choices=("auto", "sent", "none"),
-            fixed=True,
-        ),
-        Number("stop_distance", 1.0, "Nearer than this it stops", low=0.05, high=100.0, unit="m"),
-        Number("stale_after_s", 2.5, "An older distance is ignored", low=0.1, high=60.0, unit="s"),
-        Number("head_timeout", 5.0, "How long to wait for the head's answer", low=0.1, high=60.0, unit="s"),
+    backend = Choice("rules", "Who thinks", fixed=True, choices=("rules", "llm"))
+    prompt = Text("", "File with the system prompt; empty: Deck's own", may_be_empty=True)
+    picture = Choice(
+        "auto",
+        "Whether the model gets the newest picture; auto: if vision_model is set",
+        choices=("auto", "sent", "none"),
+        fixed=True,
     )
+    stop_distance = Number(1.0, "Nearer than this it stops", low=0.05, high=100.0, unit="m")
+    stale_after_s = Number(2.5, "An older distance is ignored", low=0.1, high=60.0, unit="s")
+    head_timeout = Number(5.0, "How long to wait for the head's answer", low=0.1, high=60.0, unit="s")
 
     def __init__(self) -> None:
         super().__init__()
@@ -117,11 +109,11 @@ class AiBrain(LessonNode):
         """Whether the newest words were recognised from sound, not sent as text."""
         self._command = self.create_publisher(String, AI_COMMAND, DEPTH)
         self._speaker = self.create_publisher(ByteMultiArray, SPEAKER, DEPTH)
-        self._head = HeadClient(self, lambda: self.number("head_timeout"))
+        self._head = HeadClient(self, lambda: self.head_timeout)
         SensorListener(self, Image, CAMERA, self._see, depth=1, raw=True)
         SensorListener(self, Float32, SONAR_FRONT, self._measure)
         self._voice = self.create_publisher(String, SAY, DEPTH)
-        self._mind = self._model_mind() if self.text("backend") == "llm" else None
+        self._mind = self._model_mind() if self.backend == "llm" else None
         StopNews(self, self._emergency)
         self.create_subscription(ByteMultiArray, MICROPHONE, self._hear, DEPTH)
         self.create_subscription(String, HEARD, self._understand, DEPTH)
@@ -133,8 +125,8 @@ class AiBrain(LessonNode):
 
     def _model_mind(self) -> ModelMind | None:
         from nodes.thinking.mind import ModelMind
+        from nodes.thinking.model import BrainState
         from nodes.thinking.senses import Senses
-        from nodes.thinking.state import BrainState
 
         try:
             mind = ModelMind(self, self._say_and_do, self._no_answer)
@@ -142,7 +134,7 @@ class AiBrain(LessonNode):
             self.say.warn(_NO_MODEL, problem=error.words)
             self._state = BrainState(self, None)
             return None
-        self._senses = Senses(self, self.number("stale_after_s"))
+        self._senses = Senses(self, self.stale_after_s)
         self._json = self.create_publisher(String, LLM_RAW_JSON, DEPTH)
         return mind
 
@@ -157,7 +149,7 @@ class AiBrain(LessonNode):
         self._front_m, self._front_s = message.data, time.monotonic()
 
     def _hear(self, message: ByteMultiArray) -> None:
-        sound = from_message(message)
+        sound = sound_of(message)
         # What a real microphone hears is recognised elsewhere.
         if text_in(sound) is not None:
             self._answer(spoken(sound))
@@ -185,11 +177,11 @@ class AiBrain(LessonNode):
 
     def _by_rules(self, words: str) -> None:
         reading = Reading(self._front_m, time.monotonic() - self._front_s)
-        front = range_state(reading, self.number("stop_distance"), self.number("stale_after_s"))
+        front = range_state(reading, self.stop_distance, self.stale_after_s)
         self._act(decide(parse_word(words), front), words)
 
     def _fresh_front(self) -> float | None:
-        fresh = time.monotonic() - self._front_s <= self.number("stale_after_s")
+        fresh = time.monotonic() - self._front_s <= self.stale_after_s
         return self._front_m if fresh else None
 
     def _jpeg(self) -> bytes:
@@ -227,7 +219,7 @@ class AiBrain(LessonNode):
         self._json.publish(String(data=response.model_dump_json()))
 
     def _speak(self, words: str) -> None:
-        self._speaker.publish(to_message(words.encode()))
+        self._speaker.publish(sound_message(words.encode()))
         self._voice.publish(String(data=words))
 
     # ---------------------------------------------------------------- what the rules decide
@@ -280,10 +272,5 @@ def _canonical(word: str) -> str:
     return next((known for known in WORDS["ru"] if parse_word(known) == asked), STOP_WORD)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(AiBrain, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(AiBrain.main())

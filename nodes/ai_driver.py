@@ -7,14 +7,10 @@ stop, and so does an emergency stop.
 
 from __future__ import annotations
 
-import sys
-
 from std_msgs.msg import String
 
-from nodes.driving.repeat import REPEAT_FOR_S, DriveRepeater
-from nodes.parts.node import LessonNode
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
+from nodes.parts.node import DEPTH, LessonNode
+from nodes.parts.repeat import REPEAT_FOR_S, DriveRepeater
 from robot.topics import AI_COMMAND
 from robot.words import WORDS, parse_word
 from text.i18n import N_
@@ -28,7 +24,7 @@ class AiDriver(LessonNode):
     """Commands a motion for each known word, and none for any other."""
 
     NAME = "ai_driver_translator"
-    SETTINGS = (REPEAT_FOR_S,)
+    repeat_for_s = REPEAT_FOR_S
 
     def __init__(self) -> None:
         super().__init__()
@@ -51,10 +47,5 @@ class AiDriver(LessonNode):
         self.say.info(_DRIVE, word=message.data.strip(), speed=setpoint.speed_m_s, steering=setpoint.steering_rad)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(AiDriver, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(AiDriver.main())

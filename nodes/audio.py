@@ -8,22 +8,15 @@ returns; the state of both goes to /diagnostics once a second.
 
 from __future__ import annotations
 
-import sys
 import time
-from dataclasses import dataclass
 
 from std_msgs.msg import ByteMultiArray, Float32
 
 from nodes.drivers.sound_device import IN, OUT
-from nodes.drivers.sound_port import SoundPort
-from nodes.drivers.sound_status import PortStatus
-from nodes.drivers.sound_words import EMPTY, LATE, ODD, UNPLAYED, WORDS
+from nodes.drivers.sound_port import EMPTY, LATE, ODD, UNPLAYED, WORDS, PortStatus, SoundPort
 from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.node import LessonNode
-from nodes.parts.parameters import Number, Text, Whole
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
-from nodes.parts.sound import from_message, to_message
+from nodes.parts.messages import sound_message, sound_of
+from nodes.parts.node import DEPTH, LessonNode, Number, Text, Whole
 from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, text_in
 from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
 from text.i18n import N_
@@ -34,53 +27,31 @@ _FRESH_S = 0.5
 """Without a block for this long beyond its length, there is no level."""
 
 
-@dataclass(frozen=True)
-class DeviceText(Text):
-    """A device name, or its number as an integer."""
-
-    def accept(self, value: object) -> str:
-        """Return a str; 2 becomes "2"."""
-        is_number = isinstance(value, int) and not isinstance(value, bool)
-        return super().accept(str(value) if is_number else value)
-
-    def expected(self) -> str:
-        return N_("name, part of one, number, none; empty: the default")
+_NAMES = N_("name, part of one, number, none; empty: the default")
 
 
 class Audio(LessonNode):
     """Publishes from the threads of its ports."""
 
     NAME = "audio_system"
-    SETTINGS = (
-        DeviceText("input_device", "", N_("The microphone"), fixed=True, may_be_empty=True),
-        DeviceText("output_device", "", N_("The loudspeaker"), fixed=True, may_be_empty=True),
-        Whole(
-            "sample_rate", RATE_HZ, "Samples a second, of both topics", fixed=True, low=8000, high=96_000, unit="Hz"
-        ),
-        Whole("block_ms", 100, "Length of a message", fixed=True, low=10, high=1000, unit="ms"),
-        Number(
-            "speaker_queue_s",
-            60.0,
-            "Sound that may wait; beyond that the oldest is dropped",
-            fixed=True,
-            low=0.5,
-            high=600.0,
-            unit="s",
-        ),
+    input_device = Text("", "The microphone", fixed=True, may_be_empty=True, or_number=True, form=_NAMES)
+    output_device = Text("", "The loudspeaker", fixed=True, may_be_empty=True, or_number=True, form=_NAMES)
+    sample_rate = Whole(RATE_HZ, "Samples a second, of both topics", fixed=True, low=8000, high=96_000, unit="Hz")
+    block_ms = Whole(100, "Length of a message", fixed=True, low=10, high=1000, unit="ms")
+    speaker_queue_s = Number(
+        60.0, "Sound that may wait; beyond that the oldest is dropped", fixed=True, low=0.5, high=600.0, unit="s"
     )
 
     def __init__(self) -> None:
         super().__init__()
-        self._rate_hz, self._block_ms = (int(self.number("sample_rate")), int(self.number("block_ms")))
+        self._rate_hz, self._block_ms = (self.sample_rate, self.block_ms)
         self._meter = LevelMeter(self._rate_hz)
         self._heard_s = -_FRESH_S
         self._publisher = self.create_publisher(ByteMultiArray, MICROPHONE, DEPTH)
         self._levels = self.create_publisher(Float32, AUDIO_LEVEL, DEPTH)
         form = self._rate_hz, self._block_ms
-        self._microphone = SoundPort(self.say, IN, self.text("input_device"), *form, heard=self._hear)
-        self._speaker = SoundPort(
-            self.say, OUT, self.text("output_device"), *form, queue_s=self.number("speaker_queue_s")
-        )
+        self._microphone = SoundPort(self.say, IN, self.input_device, *form, heard=self._hear)
+        self._speaker = SoundPort(self.say, OUT, self.output_device, *form, queue_s=self.speaker_queue_s)
         self.create_subscription(ByteMultiArray, SPEAKER, self._play, DEPTH)
         self.every(LEVEL_S, self._tell_level)
         for port, name in ((self._microphone, "microphone"), (self._speaker, "speaker")):
@@ -100,7 +71,7 @@ class Audio(LessonNode):
         self._meter.feed(block)
         self._heard_s = time.monotonic()
         if self.context.ok() and self._publisher.get_subscription_count():
-            self._publisher.publish(to_message(block))
+            self._publisher.publish(sound_message(block))
 
     # ---------------------------------------------------------------- the node's thread
 
@@ -109,7 +80,7 @@ class Audio(LessonNode):
             self._levels.publish(Float32(data=self._meter.dbfs))
 
     def _play(self, message: ByteMultiArray) -> None:
-        sound = from_message(message)
+        sound = sound_of(message)
         if not sound:
             self.say.warn(EMPTY, every_s=_SAY_EVERY_S)
             return
@@ -128,10 +99,5 @@ class Audio(LessonNode):
             self.say.warn(LATE if there else UNPLAYED, every_s=_SAY_EVERY_S, seconds=seconds)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(Audio, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(Audio.main())

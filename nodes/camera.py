@@ -13,25 +13,18 @@ import sys
 import threading
 import time
 from array import array
-from typing import TYPE_CHECKING
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from numpy.typing import NDArray
 from sensor_msgs.msg import Image
 
-from nodes.drivers.camera_source import CameraSource, SourceSetting
-from nodes.drivers.capture import SILENT_S, THREAD, Capture
+from nodes.drivers.capture import SILENT_S, THREAD, CameraSource, Capture
 from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.node import LessonNode
-from nodes.parts.parameters import Choice, Number, Switch, Text, Whole
-from nodes.parts.pictures import CHANNELS, fit
-from nodes.parts.qos import NEWEST
-from nodes.parts.runner import run
+from nodes.parts.messages import CHANNELS, fit
+from nodes.parts.node import NEWEST, Choice, LessonNode, Number, Switch, Text, Whole
 from robot.topics import CAMERA
 from text.i18n import N_
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 _LOOK_EVERY_S = 0.5
 
@@ -45,35 +38,30 @@ class Camera(LessonNode):
     """Publishes from the thread that reads the camera."""
 
     NAME = "camera"
-    SETTINGS = (
-        SourceSetting("source", "0", N_("Camera, video file or stream"), fixed=True),
-        Text("topic", CAMERA, "Where the pictures are published", fixed=True),
-        Number("rate", 10.0, "Pictures a second, at most", low=0.1, high=120.0, unit="Hz"),
-        Whole("width", 640, "Columns", low=16, high=4096, fixed=True),
-        Whole("height", 480, "Rows", low=16, high=4096, fixed=True),
-        Choice("encoding", "bgr8", "Order of colours", choices=("bgr8", "rgb8"), fixed=True),
-        Text("frame_id", "camera_color_optical_frame", "Frame of the pictures", fixed=True),
-        Switch("loop", True, "Whether a file is played again from the start", fixed=True),
+    source = Text(
+        "0", "Camera, video file or stream", fixed=True, or_number=True, form=N_("number, /dev path, file or URL")
     )
+    topic = Text(CAMERA, "Where the pictures are published", fixed=True)
+    rate = Number(10.0, "Pictures a second, at most", low=0.1, high=120.0, unit="Hz")
+    width = Whole(640, "Columns", low=16, high=4096, fixed=True)
+    height = Whole(480, "Rows", low=16, high=4096, fixed=True)
+    encoding = Choice("bgr8", "Order of colours", choices=("bgr8", "rgb8"), fixed=True)
+    frame_id = Text("camera_color_optical_frame", "Frame of the pictures", fixed=True)
+    loop = Switch(True, "Whether a file is played again from the start", fixed=True)
 
     def __init__(self) -> None:
         super().__init__()
-        width, height = int(self.number("width")), int(self.number("height"))
-        encoding = self.text("encoding")
+        width, height = self.width, self.height
+        encoding = self.encoding
         self._message = Image(height=height, width=width, encoding=encoding, step=CHANNELS * width)
-        self._message.header.frame_id = self.text("frame_id")
+        self._message.header.frame_id = self.frame_id
         self._message.data = array("B", bytes(height * width * CHANNELS))
         # The picture is written directly into the message, blue first.
         picture = np.frombuffer(self._message.data, np.uint8).reshape(height, width, CHANNELS)
         self._picture = picture if encoding == "bgr8" else picture[:, :, ::-1]
-        self._publisher = self.create_publisher(Image, self.text("topic"), NEWEST)
+        self._publisher = self.create_publisher(Image, self.topic, NEWEST)
         self._capture = Capture(
-            self.say,
-            CameraSource(self.text("source")),
-            (width, height),
-            lambda: self.number("rate"),
-            self._publish,
-            loop=self.switch("loop"),
+            self.say, CameraSource(self.source), (width, height), lambda: self.rate, self._publish, loop=self.loop
         )
         self._told = (time.monotonic(), 0, 0)
         tell_every_second(self, self._status)
@@ -139,18 +127,17 @@ class Camera(LessonNode):
             "frames_out_per_s": f"{(taken - before[1]) / passed_s:.1f}",
         }
 
-
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    code = run(Camera, args)
-    if any(thread.name == THREAD for thread in threading.enumerate()):
-        # OpenCV is in a read. If it returned while the interpreter shuts down, the process would
-        # crash.
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(code)
-    return code
+    @classmethod
+    def main(cls, args: list[str] | None = None) -> int:
+        code = super().main(args)
+        if any(thread.name == THREAD for thread in threading.enumerate()):
+            # OpenCV is in a read. If it returned while the interpreter shuts down, the process would
+            # crash.
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(code)
+        return code
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(Camera.main())

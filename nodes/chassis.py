@@ -13,45 +13,132 @@ and /diagnostics once a second. The node reconnects by itself. It sends a stop b
 from __future__ import annotations
 
 import math
-import sys
 import threading
 import time
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import Quaternion, TransformStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, JointState
+from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
-from nodes.drivers.chassis_messages import DeadReckoning, battery
-from nodes.drivers.chassis_words import (
+from nodes.drivers.pico import (
     COMMAND_OLD,
     EMERGENCY,
     RELEASED,
     STARTED,
     TOO_FAST,
+    PicoClient,
     StandstillLogger,
     diagnosis,
 )
-from nodes.drivers.pico import PicoClient
+from nodes.parts.commands import FRAME, MAX_WHEEL_SPEED, CommandRefusals, StallDetector
 from nodes.parts.diagnostics import tell_every_second
 from nodes.parts.emergency import PICO, EmergencyStopListener
-from nodes.parts.node import LessonNode
-from nodes.parts.parameters import Number, Text, Whole
-from nodes.parts.periodic_thread import PeriodicThread
-from nodes.parts.qos import DEPTH
-from nodes.parts.refusals import MAX_WHEEL_SPEED, CommandRefusals
-from nodes.parts.runner import run
-from nodes.parts.stall_detector import StallDetector
+from nodes.parts.listeners import ODOM
+from nodes.parts.node import DEPTH, LessonNode, Number, PeriodicThread, Text, Whole
 from robot.joints import DRIVE_JOINTS
-from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
+from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M, turning_radius
 from robot.limits import STEERING, wheel_limits
+from robot.motion.odometry import Pose, advance
 from robot.safety.several import SlowestCommand
 from robot.topics import BATTERY, JOINT_STATES, ODOMETRY, TF, WHEEL_COMMANDS
+from robot.wire.pico import Telemetry
+from robot.words import DriveSetpoint
+from space.transform import quaternion_from_rpy
 
-if TYPE_CHECKING:
-    from diagnostic_msgs.msg import DiagnosticStatus
+_LONGEST_GAP_S = 1.0
+"""After a longer silence the robot's motion is unknown."""
+_SHARPEST_RAD = 1.4
 
-    from robot.wire.pico import Telemetry
+
+class DeadReckoning:
+    """Integrates the motion of the wheels."""
+
+    def __init__(self, wheelbase_m: float, radius_m: float) -> None:
+        self._wheelbase_m, self._radius_m = wheelbase_m, radius_m
+        self._uptime_ms: int | None = None
+        self._angles = [0.0, 0.0]
+        self._odometry = Odometry(header=Header(frame_id=ODOM), child_frame_id=FRAME)
+        self.pose = Pose()
+
+    def take(self, telemetry: Telemetry) -> None:
+        before, self._uptime_ms = self._uptime_ms, telemetry.uptime_ms
+        passed_s = ((telemetry.uptime_ms - before) % 2**32) / 1000 if before is not None else 0.0
+        if passed_s > _LONGEST_GAP_S:
+            return
+        self.pose = advance(self.pose, self._command(telemetry), passed_s, self._wheelbase_m)
+        for side, speed in enumerate((telemetry.left_rad_s, telemetry.right_rad_s)):
+            self._angles[side] += speed * passed_s
+
+    def joints(self, telemetry: Telemetry, stamp: Time) -> JointState:
+        """Return /joint_states: positions and speeds in the order of `DRIVE_JOINTS`."""
+        message = JointState(name=list(DRIVE_JOINTS))
+        message.header.stamp = stamp
+        message.position = [*self._angles, telemetry.steering_rad]
+        message.velocity = [telemetry.left_rad_s, telemetry.right_rad_s, math.nan]
+        return message
+
+    def odometry(self, telemetry: Telemetry, stamp: Time) -> Odometry:
+        """Return /odom: the same message object each time, refilled."""
+        message = self._odometry
+        message.header.stamp = stamp
+        message.pose.pose.position.x = self.pose.x_m
+        message.pose.pose.position.y = self.pose.y_m
+        message.pose.pose.orientation = self._orientation()
+        command = self._command(telemetry)
+        radius_m = turning_radius(command.steering_rad, self._wheelbase_m)
+        message.twist.twist.linear.x = command.speed_m_s
+        message.twist.twist.angular.z = command.speed_m_s / radius_m
+        return message
+
+    def transform(self, stamp: Time) -> TransformStamped:
+        """Return /tf: odom to base_link."""
+        message = TransformStamped()
+        message.header = Header(stamp=stamp, frame_id=ODOM)
+        message.child_frame_id = FRAME
+        moved = message.transform.translation
+        moved.x, moved.y = self.pose.x_m, self.pose.y_m
+        message.transform.rotation = self._orientation()
+        return message
+
+    def _orientation(self) -> Quaternion:
+        x, y, z, w = quaternion_from_rpy(0.0, 0.0, self.pose.heading_rad)
+        return Quaternion(x=x, y=y, z=z, w=w)
+
+    def _command(self, telemetry: Telemetry) -> DriveSetpoint:
+        """Return the robot's actual motion as a drive command."""
+        mean_rad_s = (telemetry.left_rad_s + telemetry.right_rad_s) / 2
+        steering = max(-_SHARPEST_RAD, min(_SHARPEST_RAD, telemetry.steering_rad))
+        return DriveSetpoint(mean_rad_s * self._radius_m, steering)
+
+
+def battery(telemetry: Telemetry, stamp: Time) -> BatteryState:
+    """Return /battery; nan for what is not measured."""
+    message = BatteryState()
+    message.header.stamp = stamp
+    known = telemetry.battery_v is not None
+    message.voltage = telemetry.battery_v if known else math.nan
+    currents = (telemetry.left_a, telemetry.right_a)
+    told = [current for current in currents if current is not None]
+    # The message defines it as negative while discharging.
+    message.current = -sum(told) if told else math.nan
+    for field in ("temperature", "charge", "capacity", "design_capacity", "percentage"):
+        setattr(message, field, math.nan)
+    message.power_supply_status = BatteryState.POWER_SUPPLY_STATUS_DISCHARGING
+    message.power_supply_health = (
+        BatteryState.POWER_SUPPLY_HEALTH_DEAD
+        if "U" in telemetry.flags
+        else BatteryState.POWER_SUPPLY_HEALTH_GOOD
+        if known
+        else BatteryState.POWER_SUPPLY_HEALTH_UNKNOWN
+    )
+    message.present = known
+    return message
+
 
 _STILL = (0.0, 0.0, 0.0)
 _REARMS = frozenset("ELRUHA")
@@ -67,15 +154,13 @@ class ChassisNode(LessonNode):
     """Sends periodically and on each command; publishes from the reader's thread."""
 
     NAME = "chassis"
-    SETTINGS = (
-        Text("port", "/dev/ttyACM0", "Device path; best one in /dev/serial/by-id", fixed=True),
-        Whole("baud", 115_200, "Speed of the port", fixed=True, low=9600, high=921_600),
-        Number("rate", 50.0, "Drive lines a second", low=20.0, high=100.0, unit="Hz"),
-        Number("max_age_s", 1.0, "An older command is a stop", low=0.05, high=60.0, unit="s"),
-        Number("wheelbase", WHEELBASE_M, "Between front and rear axle", fixed=True, low=0.02, high=10.0, unit="m"),
-        Number("wheel_radius", WHEEL_RADIUS_M, "Radius of a rear wheel", fixed=True, low=0.005, high=2.0, unit="m"),
-        MAX_WHEEL_SPEED,
-    )
+    port = Text("/dev/ttyACM0", "Device path; best one in /dev/serial/by-id", fixed=True)
+    baud = Whole(115_200, "Speed of the port", fixed=True, low=9600, high=921_600)
+    rate = Number(50.0, "Drive lines a second", low=20.0, high=100.0, unit="Hz")
+    max_age_s = Number(1.0, "An older command is a stop", low=0.05, high=60.0, unit="s")
+    wheelbase = Number(WHEELBASE_M, "Between front and rear axle", fixed=True, low=0.02, high=10.0, unit="m")
+    wheel_radius = Number(WHEEL_RADIUS_M, "Radius of a rear wheel", fixed=True, low=0.005, high=2.0, unit="m")
+    max_wheel_speed = MAX_WHEEL_SPEED
 
     def __init__(self) -> None:
         super().__init__()
@@ -86,10 +171,10 @@ class ChassisNode(LessonNode):
         self._released_s = -math.inf
         self._stalls = StallDetector()
         self._refusals = CommandRefusals(self)
-        self._wheel_limits = wheel_limits(self.number("wheel_radius"))
+        self._wheel_limits = wheel_limits(self.wheel_radius)
         self._sending = threading.Lock()
-        self._reckoning = DeadReckoning(self.number("wheelbase"), self.number("wheel_radius"))
-        self._pico = PicoClient(self, int(self.number("baud")), self._hear)
+        self._reckoning = DeadReckoning(self.wheelbase, self.wheel_radius)
+        self._pico = PicoClient(self, self.baud, self._hear)
         self._joints = self.quick_publisher(JointState, JOINT_STATES)
         self._odometry = self.quick_publisher(Odometry, ODOMETRY)
         self._transforms = self.quick_publisher(TFMessage, TF)
@@ -99,7 +184,7 @@ class ChassisNode(LessonNode):
         self._commands: SlowestCommand[tuple[float, float, float]] = SlowestCommand()
         obey: Any = self._obey
         self.create_subscription(JointState, WHEEL_COMMANDS, obey, DEPTH)
-        self._pace = PeriodicThread(1.0 / self.number("rate"), self._drive)
+        self._pace = PeriodicThread(1.0 / self.rate, self._drive)
         self.every(_BATTERY_EVERY_S, self._publish_battery)
         tell_every_second(self, self._status)
         self.say.info(STARTED, port=self._pico.link.port, topic=WHEEL_COMMANDS)
@@ -108,7 +193,7 @@ class ChassisNode(LessonNode):
 
     def parameters_changed(self) -> None:
         """Apply the new rate."""
-        self._pace.period_s = 1.0 / self.number("rate")
+        self._pace.period_s = 1.0 / self.rate
 
     def before_end(self) -> None:
         """Leave the wheels stopped, and release the port."""
@@ -137,7 +222,7 @@ class ChassisNode(LessonNode):
             command,
             max(command[:2], key=abs),
             time.monotonic(),
-            within_s=self.number("max_age_s"),
+            within_s=self.max_age_s,
             number=info.get("publication_sequence_number") or 0,
             publishers=self.count_publishers(WHEEL_COMMANDS),
         )
@@ -151,7 +236,7 @@ class ChassisNode(LessonNode):
         steering = position.get(DRIVE_JOINTS[2], math.nan)
         refused = self._refusals.beyond(
             WHEEL_COMMANDS, (left, self._wheel_limits), (right, self._wheel_limits), (steering, STEERING)
-        ) or self._refusals.untimely(WHEEL_COMMANDS, message.header.stamp, self.number("max_age_s"))
+        ) or self._refusals.untimely(WHEEL_COMMANDS, message.header.stamp, self.max_age_s)
         if refused:
             return _STILL
         part = self._part_of(max(abs(left), abs(right)))
@@ -159,7 +244,7 @@ class ChassisNode(LessonNode):
 
     def _part_of(self, asked_rad_s: float) -> float:
         """Return the share of that speed that the motors can reach, 0 to 1; logged if below 1."""
-        most_rad_s = self.number("max_wheel_speed")
+        most_rad_s = self.max_wheel_speed
         if asked_rad_s <= most_rad_s:
             return 1.0
         self.say.warn(TOO_FAST, every_s=5.0, speed=asked_rad_s, fastest=most_rad_s)
@@ -212,9 +297,9 @@ class ChassisNode(LessonNode):
     def _drive(self) -> None:
         away = self._stalls.lasted(_AWAY_S)
         with self._sending:
-            late = away or time.monotonic() - self._commanded_s > self.number("max_age_s")
+            late = away or time.monotonic() - self._commanded_s > self.max_age_s
             if late and self._command[:2] != _STILL[:2]:
-                self.say.warn(COMMAND_OLD, seconds=self.number("max_age_s"))
+                self.say.warn(COMMAND_OLD, seconds=self.max_age_s)
                 self._stand()
             self._send()
         self._standstill.tell(self._pico.telemetry)
@@ -255,10 +340,5 @@ class ChassisNode(LessonNode):
             self._transforms.publish(TFMessage(transforms=[self._reckoning.transform(stamp)]))
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(ChassisNode, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(ChassisNode.main())

@@ -13,7 +13,6 @@ robot/limits.py, or if its stamp is too old or in the future.
 from __future__ import annotations
 
 import math
-import sys
 import time
 from typing import Any
 
@@ -21,15 +20,17 @@ from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 
-from nodes.parts.drive import FRAME, from_message
+from nodes.parts.commands import (
+    FRAME,
+    MAX_WHEEL_SPEED,
+    SLOWEST,
+    CommandRefusals,
+    SolePublisher,
+    StallDetector,
+    from_message,
+)
 from nodes.parts.emergency import EmergencyStopListener
-from nodes.parts.node import LessonNode, change_period
-from nodes.parts.parameters import Number, Text
-from nodes.parts.qos import DEPTH
-from nodes.parts.refusals import MAX_WHEEL_SPEED, CommandRefusals
-from nodes.parts.runner import run
-from nodes.parts.sole_publisher import SLOWEST, SolePublisher
-from nodes.parts.stall_detector import StallDetector
+from nodes.parts.node import DEPTH, LessonNode, Number, Text, change_period
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import STRAIGHT_BELOW_RAD, TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M, WheelSpeeds, wheel_speeds
 from robot.limits import RIM_M_S, SPEED, STEERING, Limits
@@ -68,17 +69,15 @@ class ElectronicDifferential(LessonNode):
     """Publishes wheel speeds for the newest /drive."""
 
     NAME = "electronic_differential"
-    SETTINGS = (
-        Text("drive_topic", DRIVE, "Which commands are obeyed: /drive or /drive_safe", fixed=True),
-        Number("wheelbase", WHEELBASE_M, "Between front and rear axle", low=0.02, high=10.0, unit="m"),
-        Number("track", TRACK_M, "Between the rear wheels", low=0.02, high=10.0, unit="m"),
-        Number("wheel_radius", WHEEL_RADIUS_M, "Radius of a rear wheel", low=0.005, high=2.0, unit="m"),
-        Number("max_speed", SPEED.high, "Faster commands are slowed to it", low=0.01, high=SPEED.high, unit="m/s"),
-        Number("max_steering", STEERING.high, "Limit of the steering", low=0.05, high=STEERING.high, unit="rad"),
-        MAX_WHEEL_SPEED,
-        Number("rate", 2.0, "Repetitions of the command a second", low=0.5, high=100.0, unit="Hz"),
-        Number("max_age_s", 0.0, "A command older than this becomes a stop; 0: never", high=60.0, unit="s"),
-    )
+    drive_topic = Text(DRIVE, "Which commands are obeyed: /drive or /drive_safe", fixed=True)
+    wheelbase = Number(WHEELBASE_M, "Between front and rear axle", low=0.02, high=10.0, unit="m")
+    track = Number(TRACK_M, "Between the rear wheels", low=0.02, high=10.0, unit="m")
+    wheel_radius = Number(WHEEL_RADIUS_M, "Radius of a rear wheel", low=0.005, high=2.0, unit="m")
+    max_speed = Number(SPEED.high, "Faster commands are slowed to it", low=0.01, high=SPEED.high, unit="m/s")
+    max_steering = Number(STEERING.high, "Limit of the steering", low=0.05, high=STEERING.high, unit="rad")
+    max_wheel_speed = MAX_WHEEL_SPEED
+    rate = Number(2.0, "Repetitions of the command a second", low=0.5, high=100.0, unit="Hz")
+    max_age_s = Number(0.0, "A command older than this becomes a stop; 0: never", high=60.0, unit="s")
 
     def __init__(self) -> None:
         super().__init__()
@@ -87,14 +86,14 @@ class ElectronicDifferential(LessonNode):
         self._refusals = CommandRefusals(self)
         self._heard = False
         self._told: DriveSetpoint | None = None
-        topic = self.text("drive_topic")
+        topic = self.drive_topic
         self._publisher = self.create_publisher(JointState, WHEEL_COMMANDS, DEPTH)
         SolePublisher(self, self._publisher.topic_name, own=True, others=SLOWEST)
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
         self._commands: SlowestCommand[DriveSetpoint] = SlowestCommand()
         hear: Any = self._hear
         self.create_subscription(AckermannDriveStamped, topic, hear, DEPTH)
-        self._timer = self.every(1.0 / self.number("rate"), self._repeat)
+        self._timer = self.every(1.0 / self.rate, self._repeat)
         self._deadline = self.every(1.0, self._too_late)
         self._await_next()
         self._gate_look = self.every(_GATE_WITHIN_S, self._miss_gate)
@@ -105,7 +104,7 @@ class ElectronicDifferential(LessonNode):
 
     def parameters_changed(self) -> None:
         """Apply the new rate, and the new chassis with the next command."""
-        change_period(self._timer, 1.0 / self.number("rate"))
+        change_period(self._timer, 1.0 / self.rate)
         self._await_next()
 
     def before_end(self) -> None:
@@ -129,12 +128,12 @@ class ElectronicDifferential(LessonNode):
 
     def _slowest(self, command: DriveSetpoint, info: dict[str, Any]) -> DriveSetpoint:
         """Return what counts if others publish beside the gate; on /drive many may."""
-        topic = self.text("drive_topic")
+        topic = self.drive_topic
         chosen = self._commands.choose(
             command,
             command.speed_m_s,
             time.monotonic(),
-            within_s=self.number("max_age_s") or _LATE_S,
+            within_s=self.max_age_s or _LATE_S,
             number=info.get("publication_sequence_number") or 0,
             publishers=1 if topic == DRIVE else self.count_publishers(topic),
         )
@@ -142,15 +141,15 @@ class ElectronicDifferential(LessonNode):
 
     def _granted(self, message: AckermannDriveStamped) -> DriveSetpoint:
         """Return the command within this chassis's limits, a stop if it is refused."""
-        asked, topic = from_message(message), self.text("drive_topic")
+        asked, topic = from_message(message), self.drive_topic
         refused = self._refusals.beyond(
             topic, (asked.speed_m_s, SPEED), (asked.steering_rad, STEERING)
-        ) or self._refusals.untimely(topic, message.header.stamp, self.number("max_age_s"))
+        ) or self._refusals.untimely(topic, message.header.stamp, self.max_age_s)
         return STOP if refused else self._limited(asked)
 
     def _limited(self, asked: DriveSetpoint) -> DriveSetpoint:
         speed, steering = asked.speed_m_s, asked.steering_rad
-        fastest, sharpest = self.number("max_speed"), self.number("max_steering")
+        fastest, sharpest = self.max_speed, self.max_steering
         speeds, angles = Limits(-fastest, fastest, "m/s"), Limits(-sharpest, sharpest, "rad")
         if not (speeds.allow(speed) and angles.allow(steering)):
             self.say.warn(_TOO_MUCH, every_s=1.0, speed=speed, steering=steering, fastest=fastest, sharpest=sharpest)
@@ -159,8 +158,8 @@ class ElectronicDifferential(LessonNode):
     def _wheels(self) -> WheelSpeeds:
         """Return the wheel speeds for the command, the outer one within its limit."""
         speed, steering = self._command.speed_m_s, self._command.steering_rad
-        asked = wheel_speeds(speed, steering, self.number("wheelbase"), self.number("track"))
-        fastest = min(RIM_M_S, self.number("max_wheel_speed") * self.number("wheel_radius"))
+        asked = wheel_speeds(speed, steering, self.wheelbase, self.track)
+        fastest = min(RIM_M_S, self.max_wheel_speed * self.wheel_radius)
         wheels = asked.slowed_to(fastest)
         if wheels is not asked:
             self.say.warn(_TOO_FAST, every_s=5.0, speed=asked.fastest_m_s, fastest=fastest)
@@ -168,7 +167,7 @@ class ElectronicDifferential(LessonNode):
 
     def _await_next(self) -> None:
         """Allow `max_age_s` from now for the next command."""
-        max_age_s = self.number("max_age_s")
+        max_age_s = self.max_age_s
         if max_age_s > 0:
             change_period(self._deadline, max_age_s)
         else:
@@ -176,8 +175,8 @@ class ElectronicDifferential(LessonNode):
 
     def _held_up(self) -> bool:
         """Whether to ignore messages now, as they may have waited too long."""
-        max_age_s = self.number("max_age_s") or math.inf
-        return self._stalls.lasted(max_age_s + 1.0 / self.number("rate"))
+        max_age_s = self.max_age_s or math.inf
+        return self._stalls.lasted(max_age_s + 1.0 / self.rate)
 
     def _repeat(self) -> None:
         self._held_up()
@@ -190,13 +189,13 @@ class ElectronicDifferential(LessonNode):
     def _too_late(self) -> None:
         self._deadline.cancel()
         if self._command != STOP:
-            self.say.warn(_SILENT, max_age=self.number("max_age_s"))
+            self.say.warn(_SILENT, max_age=self.max_age_s)
             self._command = STOP
             self._publish()
 
     def _miss_gate(self) -> None:
         self._gate_look.cancel()
-        topic = self.text("drive_topic")
+        topic = self.drive_topic
         if not self.count_publishers(topic):
             self.say.warn(_NO_GATE, topic=topic)
 
@@ -215,7 +214,7 @@ class ElectronicDifferential(LessonNode):
         message.header.frame_id = FRAME
         message.name = list(DRIVE_JOINTS)
         message.position = [math.nan, math.nan, self._command.steering_rad]
-        radius_m = self.number("wheel_radius")
+        radius_m = self.wheel_radius
         message.velocity = [wheels.left_m_s / radius_m, wheels.right_m_s / radius_m, math.nan]
         self._publisher.publish(message)
         if self._heard and not _much_the_same(self._command, self._told):
@@ -247,10 +246,5 @@ def _much_the_same(command: DriveSetpoint, told: DriveSetpoint | None) -> bool:
     return faster < _TOLD_M_S and abs(command.steering_rad - told.steering_rad) < _TOLD_RAD
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(ElectronicDifferential, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(ElectronicDifferential.main())

@@ -14,35 +14,61 @@ the controller was away.
 from __future__ import annotations
 
 import math
-import sys
 import time
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 from example_interfaces.srv import AddTwoInts
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.task import Future
 from sensor_msgs.msg import JointState
 
-from nodes.drivers import head_words as words
 from nodes.drivers.servos import WAS_AWAY, ServoClient
 from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.node import LessonNode, change_period
-from nodes.parts.parameters import Number, Whole
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
+from nodes.parts.node import DEPTH, LessonNode, Number, Switch, Text, Whole, change_period
 from robot.joints import HEAD_JOINTS
-from robot.motion.head import turn_ms
+from robot.limits import HEAD_ANGLE, Limits
+from robot.motion.head import HeadJoint, turn_ms
 from robot.topics import HEAD_SERVICE, HEAD_STATE
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from nodes.parts.parameters import Value
+from robot.wire.lsc16 import BAUD, SERVO
+from text.i18n import N_
 
 _SETTLE_S = 0.1
 """A command takes 14 ms on the wire, and a servo lags behind its command."""
+
+_STARTED = N_("The head is ready for {service}")
+_STARTED_AT_PORT = N_(
+    "The head at {port}: {service}; /head_state is the commanded position, as servos do not report theirs"
+)
+_TURNING = N_("Turning the head to pan {pan}°, tilt {tilt}°")
+_DONE = N_("The head is there: pan {pan}°, tilt {tilt}°")
+_WAITING = N_("The head is moving; pan {pan}°, tilt {tilt}° waits for its turn")
+_OUT_OF_RANGE = N_(
+    "Refused: pan {pan}°, tilt {tilt}° — pan must be from {pan_low:g}° to {pan_high:g}°,"
+    " tilt from {tilt_low:g}° to {tilt_high:g}°"
+)
+_BUSY = N_("Refused: pan {pan}°, tilt {tilt}° — {count} requests are waiting already")
+_NO_HEAD = N_("Refused: pan {pan}°, tilt {tilt}° — {reason}")
+
+_SAME_SERVO = N_("pan_servo and tilt_servo are both {pan_servo}; each joint has a servo of its own")
+_NO_ROOM = {
+    "pan": N_("nothing is left between pan_min and pan_max, with pan_trim {pan_trim:g}"),
+    "tilt": N_("nothing is left between tilt_min and tilt_max, with tilt_trim {tilt_trim:g}"),
+}
+
+
+def _servo(default: int, about: str) -> Whole:
+    return Whole(default, about, fixed=True, low=int(SERVO.low), high=int(SERVO.high))
+
+
+def _angle(default: float, about: str) -> Number:
+    return Number(float(default), about, fixed=True, low=HEAD_ANGLE.low, high=HEAD_ANGLE.high, unit="deg")
+
+
+def _trim(about: str) -> Number:
+    return Number(0.0, about, low=-45.0, high=45.0, unit="deg")
 
 
 @dataclass(frozen=True)
@@ -61,17 +87,44 @@ class HeadController(LessonNode):
     """Moves one request at a time."""
 
     NAME = "head_controller"
-    SETTINGS = (
-        Number("move_time", 1.0, "How long a simulated movement takes", high=30.0, unit="s"),
-        Number("rate", 20.0, "/head_state while it moves", low=1.0, high=100.0, unit="Hz"),
-        Number("rest_rate", 1.0, "/head_state while it rests", low=0.1, high=100.0, unit="Hz"),
-        Whole("queue", 4, "Requests that may wait", low=0, high=64),
-        *words.SERVO_SETTINGS,
+    move_time = Number(1.0, "How long a simulated movement takes", high=30.0, unit="s")
+    rate = Number(20.0, "/head_state while it moves", low=1.0, high=100.0, unit="Hz")
+    rest_rate = Number(1.0, "/head_state while it rests", low=0.1, high=100.0, unit="Hz")
+    queue = Whole(4, "Requests that may wait", low=0, high=64)
+    port = Text("", "Port of an LSC-16, as in /dev/serial/by-id; empty: simulated", fixed=True, may_be_empty=True)
+    baud = Whole(BAUD, "Speed of the port", fixed=True, low=9600, high=921_600)
+    speed = Number(90.0, "Speed of the servos, with a port", low=10.0, high=360.0, unit="deg/s")
+    pan_servo = _servo(1, N_("Channel of the pan servo"))
+    pan_min = _angle(HEAD_ANGLE.low, N_("Minimum pan"))
+    pan_max = _angle(HEAD_ANGLE.high, N_("Maximum pan"))
+    pan_trim = _trim(N_("Angle of the pan servo at which the head looks straight ahead"))
+    pan_reversed = Switch(False, "Whether a longer pulse turns the head right", fixed=True)
+    tilt_servo = _servo(2, N_("Channel of the tilt servo"))
+    tilt_min = _angle(HEAD_ANGLE.low, N_("Minimum tilt"))
+    tilt_max = _angle(HEAD_ANGLE.high, N_("Maximum tilt"))
+    tilt_trim = _trim(N_("Angle of the tilt servo at which the head looks straight ahead"))
+    tilt_reversed = Switch(False, "Whether a longer pulse turns the head down", fixed=True)
+    servo_turn = Number(
+        180.0,
+        "Travel of a servo from its shortest to its longest pulse",
+        fixed=True,
+        low=90.0,
+        high=360.0,
+        unit="deg",
     )
+    battery_every_s = Number(
+        1.0,
+        "How often to ask for the voltage, to check the controller; 0: never",
+        fixed=True,
+        low=0.0,
+        high=60.0,
+        unit="s",
+    )
+    battery_low = Number(6.0, "Below this it warns", low=0.0, high=30.0, unit="V")
 
     def __init__(self) -> None:
         super().__init__()
-        self._servos = ServoClient(self) if self.text("port") else None
+        self._servos = ServoClient(self) if self.port else None
         self._pose = self._from = HeadPose(0, 0) if self._servos is None else None
         """None if unknown."""
         self._pulses_us: tuple[int, int] | None = None
@@ -83,15 +136,21 @@ class HeadController(LessonNode):
         self._publisher = self.create_publisher(JointState, HEAD_STATE, DEPTH)
         # A request waits for its movement: it must not block the timer's callback group.
         self.create_service(AddTwoInts, HEAD_SERVICE, self._serve, callback_group=ReentrantCallbackGroup())
-        self._timer = self.every(1.0 / self.number("rest_rate"), self._tick)
+        self._timer = self.every(1.0 / self.rest_rate, self._tick)
         if self._servos is None:
-            self.say.info(words.STARTED, service=HEAD_SERVICE)
+            self.say.info(_STARTED, service=HEAD_SERVICE)
         else:
             self._start(self._servos)
 
-    def contradiction(self, values: Mapping[str, Value]) -> str | None:
+    def contradiction(self, values: Mapping[str, Any]) -> str | None:
         """Refuse two joints at one servo, or a joint without a range."""
-        return words.contradiction(values)
+        if values["pan_servo"] == values["tilt_servo"]:
+            return _SAME_SERVO
+        for name, phrase in _NO_ROOM.items():
+            reach = _joint(values, name).reach
+            if reach.low >= reach.high:
+                return phrase
+        return None
 
     def parameters_changed(self) -> None:
         """Apply the new rates; a new trim applies from the next movement on."""
@@ -105,11 +164,11 @@ class HeadController(LessonNode):
 
     def _start(self, servos: ServoClient) -> None:
         tell_every_second(self, lambda: servos.status(self.get_name()))
-        self.say.info(words.STARTED_AT_PORT, port=servos.link.port, service=HEAD_SERVICE)
+        self.say.info(_STARTED_AT_PORT, port=servos.link.port, service=HEAD_SERVICE)
         servos.link.start()
 
     def _read_joints(self) -> None:
-        self._pan, self._tilt = (words.joint(self._values, name) for name in ("pan", "tilt"))
+        self._pan, self._tilt = (_joint(self.values, name) for name in ("pan", "tilt"))
 
     # ---------------------------------------------------------------- requests
 
@@ -122,17 +181,17 @@ class HeadController(LessonNode):
             self._look_after(self._servos)
             trouble = self._servos.trouble()
             if trouble is not None:
-                self._refuse(words.NO_HEAD, asked, reason=trouble)
+                self._refuse(_NO_HEAD, asked, reason=trouble)
                 return response
-        if len(self._turns) > self.number("queue"):
-            self._refuse(words.BUSY, asked, count=len(self._turns) - 1)
+        if len(self._turns) > self.queue:
+            self._refuse(_BUSY, asked, count=len(self._turns) - 1)
             return response
         arrival = Future()
         self._turns.append((asked, arrival))
         if len(self._turns) == 1:
             self._begin()
         else:
-            self.say.info(words.WAITING, pan=asked.pan, tilt=asked.tilt)
+            self.say.info(_WAITING, pan=asked.pan, tilt=asked.tilt)
         response.sum = int(await arrival)
         return response
 
@@ -140,9 +199,7 @@ class HeadController(LessonNode):
         pan, tilt = self._pan.reach, self._tilt.reach
         if asked.pan in pan and asked.tilt in tilt:
             return True
-        self._refuse(
-            words.OUT_OF_RANGE, asked, pan_low=pan.low, pan_high=pan.high, tilt_low=tilt.low, tilt_high=tilt.high
-        )
+        self._refuse(_OUT_OF_RANGE, asked, pan_low=pan.low, pan_high=pan.high, tilt_low=tilt.low, tilt_high=tilt.high)
         return False
 
     def _refuse(self, phrase: str, asked: HeadPose, **values: object) -> None:
@@ -161,17 +218,17 @@ class HeadController(LessonNode):
         goal = self._turns[0][0]
         self._from, self._began_s = self._pose, time.monotonic()
         if self._servos is None:
-            self._length_s = self.number("move_time")
+            self._length_s = self.move_time
         elif not self._command(self._servos, goal):
             self._give_up(self._servos)
             return
-        self.say.info(words.TURNING, pan=goal.pan, tilt=goal.tilt)
+        self.say.info(_TURNING, pan=goal.pan, tilt=goal.tilt)
 
     def _command(self, servos: ServoClient, goal: HeadPose) -> bool:
         pan, tilt = self._pan, self._tilt
         pan_us, tilt_us = self._pulses_us or (None, None)
         way_deg = max(pan.way_deg(pan_us, goal.pan), tilt.way_deg(tilt_us, goal.tilt))
-        time_ms = turn_ms(way_deg, self.number("speed"))
+        time_ms = turn_ms(way_deg, self.speed)
         self._length_s = time_ms / 1000 + _SETTLE_S
         self._pulses_us = pan.pulse_us(goal.pan), tilt.pulse_us(goal.tilt)
         pairs = zip((pan.servo, tilt.servo), self._pulses_us, strict=True)
@@ -188,7 +245,7 @@ class HeadController(LessonNode):
             return
         reason = servos.trouble() or self.say.text(WAS_AWAY)
         while self._turns:
-            self._refuse(words.NO_HEAD, self._turns[0][0], reason=reason)
+            self._refuse(_NO_HEAD, self._turns[0][0], reason=reason)
             self._answer(arrived=False)
         self._set_pace()
 
@@ -211,12 +268,12 @@ class HeadController(LessonNode):
                 self._pose = self._from.towards(goal, passed_s / self._length_s)
             return
         self._pose = goal
-        self.say.info(words.DONE, pan=goal.pan, tilt=goal.tilt)
+        self.say.info(_DONE, pan=goal.pan, tilt=goal.tilt)
         self._answer(arrived=True)
         self._begin()
 
     def _set_pace(self) -> None:
-        change_period(self._timer, 1.0 / self.number("rate" if self._turns else "rest_rate"))
+        change_period(self._timer, 1.0 / (self.rate if self._turns else self.rest_rate))
 
     def _publish(self) -> None:
         message = JointState()
@@ -227,10 +284,16 @@ class HeadController(LessonNode):
         self._publisher.publish(message)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(HeadController, args)
+def _joint(values: Mapping[str, Any], name: str) -> HeadJoint:
+    """Return the joint that the parameters describe; `name` is pan or tilt."""
+    return HeadJoint(
+        servo=values[f"{name}_servo"],
+        limits=Limits(values[f"{name}_min"], values[f"{name}_max"], "deg"),
+        trim_deg=values[f"{name}_trim"],
+        reversed=values[f"{name}_reversed"],
+        turn_deg=values["servo_turn"],
+    )
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(HeadController.main())

@@ -12,7 +12,6 @@ takes, and `echo_s` more. So only the emergency stop interrupts a robot that tal
 from __future__ import annotations
 
 import math
-import sys
 import threading
 import time
 from typing import TYPE_CHECKING
@@ -22,11 +21,8 @@ from std_msgs.msg import ByteMultiArray, String
 from brain.speech.faults import SpeechError
 from brain.speech.recognisers import BACKENDS, recogniser
 from brain.speech.utterances import CLOSING_S, Utterances
-from nodes.parts.node import LessonNode, NodeUsageError
-from nodes.parts.parameters import Choice, Number, Text, Whole
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
-from nodes.parts.sound import from_message
+from nodes.parts.messages import sound_of
+from nodes.parts.node import DEPTH, Choice, LessonNode, NodeUsageError, Number, Text, Whole
 from robot.sound import RATE_HZ, SAMPLE, text_in
 from robot.topics import HEARD, MICROPHONE, SPEAKER
 from text.i18n import N_
@@ -54,22 +50,20 @@ class Hearing(LessonNode):
     """Cuts the sound in the node's thread and recognises in another."""
 
     NAME = "hearing"
-    SETTINGS = (
-        Choice("backend", "sphinx", N_("What recognises"), choices=BACKENDS, fixed=True),
-        Choice("language", "en", N_("Language of the speech"), choices=("en", "ru"), fixed=True),
-        Text("model", "", N_("Folder of a model, for vosk and sherpa"), fixed=True, may_be_empty=True),
-        Whole("sample_rate", RATE_HZ, "Samples a second", fixed=True, low=8000, high=48_000, unit="Hz"),
-        Number("silence_s", CLOSING_S, N_("Silence that ends an utterance"), fixed=True, low=0.1, high=3.0, unit="s"),
-        Number("echo_s", 0.5, N_("How long the robot's own words are still heard"), low=0.0, high=5.0, unit="s"),
-    )
+    backend = Choice("sphinx", "What recognises", choices=BACKENDS, fixed=True)
+    language = Choice("en", "Language of the speech", choices=("en", "ru"), fixed=True)
+    model = Text("", "Folder of a model, for vosk and sherpa", fixed=True, may_be_empty=True)
+    sample_rate = Whole(RATE_HZ, "Samples a second", fixed=True, low=8000, high=48_000, unit="Hz")
+    silence_s = Number(CLOSING_S, "Silence that ends an utterance", fixed=True, low=0.1, high=3.0, unit="s")
+    echo_s = Number(0.5, "How long the robot's own words are still heard", low=0.0, high=5.0, unit="s")
 
     def __init__(self) -> None:
         super().__init__()
-        self._rate_hz = int(self.number("sample_rate"))
-        backend = self.text("backend")
+        self._rate_hz = self.sample_rate
+        backend = self.backend
         try:
-            ears = recogniser(backend, self.text("language"), self.text("model"))
-            self._utterances = Utterances(self._rate_hz, closing_s=self.number("silence_s"))
+            ears = recogniser(backend, self.language, self.model)
+            self._utterances = Utterances(self._rate_hz, closing_s=self.silence_s)
         except SpeechError as error:
             raise NodeUsageError(_CANNOT, problem=error.sentence) from None
         self._speaking_until_s = -math.inf
@@ -85,17 +79,17 @@ class Hearing(LessonNode):
             self._publisher.publish(String(data=words))
 
     def _hear(self, message: ByteMultiArray) -> None:
-        sound = from_message(message)
+        sound = sound_of(message)
         if text_in(sound) is not None:
             return
-        if time.monotonic() < self._speaking_until_s + self.number("echo_s"):
+        if time.monotonic() < self._speaking_until_s + self.echo_s:
             self._utterances.reset()
             return
         for said in self._utterances.feed(sound):
             self._worker.take(said)
 
     def _speak(self, message: ByteMultiArray) -> None:
-        sound = from_message(message)
+        sound = sound_of(message)
         if text_in(sound) is None:
             # What is published faster than it is played waits.
             now_s = time.monotonic()
@@ -145,10 +139,5 @@ class _Worker:
             self._node.publish(words)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(Hearing, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(Hearing.main())

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-
-from nodes.parts.node import LessonNode
-from nodes.parts.parameters import Number
-from nodes.parts.runner import run
+from nodes.parts.node import LessonNode, Number
 from text.i18n import N_
 
 _AWAKE = N_("Hello! The first node is awake.")
@@ -17,23 +13,18 @@ class HelloNode(LessonNode):
     """Logs how long it has been running."""
 
     NAME = "hello_node"
-    SETTINGS = (Number("period", 1.0, "Time between two messages", low=0.01, high=3600.0, unit="s", fixed=True),)
+    period = Number(1.0, "Time between two messages", low=0.01, high=3600.0, unit="s", fixed=True)
 
     def __init__(self) -> None:
         super().__init__()
         self._count = 0
-        self.every(self.number("period"), self._tick)
+        self.every(self.period, self._tick)
         self.say.info(_AWAKE)
 
     def _tick(self) -> None:
         self._count += 1
-        self.say.info(_COUNT, seconds=self._count * self.number("period"))
-
-
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(HelloNode, args)
+        self.say.info(_COUNT, seconds=self._count * self.period)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(HelloNode.main())

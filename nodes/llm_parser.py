@@ -14,17 +14,13 @@ outcome of each response is published on /llm_result as JSON, one object per mes
 from __future__ import annotations
 
 import json
-import sys
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from std_msgs.msg import String
 
-from nodes.driving.repeat import REPEAT_FOR_S, DriveRepeater
 from nodes.parts.head_client import HeadAnswer, HeadClient
-from nodes.parts.node import LessonNode
-from nodes.parts.parameters import Number
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
+from nodes.parts.node import DEPTH, LessonNode, Number
+from nodes.parts.repeat import REPEAT_FOR_S, DriveRepeater
 from robot.commands.schema import (
     MAX_COMMANDS,
     CommandError,
@@ -37,9 +33,6 @@ from robot.commands.schema import (
 from robot.topics import LLM_RAW_JSON, LLM_RESULT
 from robot.words import DriveSetpoint
 from text.i18n import N_
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 _STARTED = N_("Waiting for JSON on {topic}")
 _THOUGHT = N_('The model thinks: "{thought}" ({count} commands)')
@@ -57,16 +50,14 @@ class LlmParser(LessonNode):
     """Carries out responses that pass the schema."""
 
     NAME = "llm_parser"
-    SETTINGS = (
-        Number("head_timeout", 5.0, "For each answer of the head", low=0.1, high=60.0, unit="s"),
-        REPEAT_FOR_S,
-    )
+    head_timeout = Number(5.0, "For each answer of the head", low=0.1, high=60.0, unit="s")
+    repeat_for_s = REPEAT_FOR_S
 
     def __init__(self) -> None:
         super().__init__()
         self._drive = DriveRepeater(self)
         self._result = self.create_publisher(String, LLM_RESULT, _RESULTS)
-        self._head = HeadClient(self, lambda: self.number("head_timeout"))
+        self._head = HeadClient(self, lambda: self.head_timeout)
         self.create_subscription(String, LLM_RAW_JSON, self._receive, DEPTH)
         self.say.info(_STARTED, topic=LLM_RAW_JSON)
 
@@ -138,10 +129,5 @@ class LlmParser(LessonNode):
         self._result.publish(String(data=json.dumps(report, ensure_ascii=False)))
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(LlmParser, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(LlmParser.main())

@@ -10,18 +10,14 @@ sound: silence, and every `period` seconds what is in the file. The level of the
 from __future__ import annotations
 
 import math
-import sys
 import time
 
 from std_msgs.msg import ByteMultiArray, Float32
 
 from brain.speech.faults import SpeechError
 from brain.speech.sound_file import read_sound
-from nodes.parts.node import LessonNode, NodeUsageError, change_period
-from nodes.parts.parameters import Number, Text
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
-from nodes.parts.sound import from_message, to_message
+from nodes.parts.messages import sound_message, sound_of
+from nodes.parts.node import DEPTH, LessonNode, NodeUsageError, Number, Text, change_period
 from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, mock_level_dbfs, text_in
 from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
 from text.i18n import N_
@@ -47,12 +43,10 @@ class MockAudio(LessonNode):
     """Speaks now and then, and listens."""
 
     NAME = "audio_system"
-    SETTINGS = (
-        Number("period", 10.0, "Time between two phrases; 0: no phrases", high=3600.0, unit="s"),
-        Number("first_after", 3.0, "Time before the first", low=0.1, high=3600.0, unit="s", fixed=True),
-        Text("phrase", "", "What is said; empty: a request to look round", may_be_empty=True),
-        Text("sound_file", "", N_("Sound in place of the phrase: WAV, FLAC or MP3"), fixed=True, may_be_empty=True),
-    )
+    period = Number(10.0, "Time between two phrases; 0: no phrases", high=3600.0, unit="s")
+    first_after = Number(3.0, "Time before the first", low=0.1, high=3600.0, unit="s", fixed=True)
+    phrase = Text("", "What is said; empty: a request to look round", may_be_empty=True)
+    sound_file = Text("", "Sound in place of the phrase: WAV, FLAC or MP3", fixed=True, may_be_empty=True)
 
     def __init__(self) -> None:
         super().__init__()
@@ -67,7 +61,7 @@ class MockAudio(LessonNode):
         self._publisher = self.create_publisher(ByteMultiArray, MICROPHONE, DEPTH)
         self._levels = self.create_publisher(Float32, AUDIO_LEVEL, DEPTH)
         self.create_subscription(ByteMultiArray, SPEAKER, self._play, DEPTH)
-        self._timer = self.every(self.number("first_after"), self._speak)
+        self._timer = self.every(self.first_after, self._speak)
         self.every(LEVEL_S, self._tell_level)
         if self._sound:
             self.every(_BLOCK_S, self._publish_block)
@@ -79,10 +73,10 @@ class MockAudio(LessonNode):
             change_period(self._timer, self._period_s())
 
     def _period_s(self) -> float:
-        return max(self.number("period"), _SHORTEST_S)
+        return max(self.period, _SHORTEST_S)
 
     def _speak(self) -> None:
-        if not self.number("period"):
+        if not self.period:
             return
         if not self._began:
             if not self._has_listener():
@@ -92,18 +86,18 @@ class MockAudio(LessonNode):
             change_period(self._timer, self._period_s())
         if self._sound:
             self._left = self._sound
-            self.say.info(_PLAYED_FILE, path=self.text("sound_file"))
+            self.say.info(_PLAYED_FILE, path=self.sound_file)
             return
-        words = self.text("phrase") or self.say.text(_PHRASE)
-        self._publisher.publish(to_message(words.encode("utf-8", "replace")))
+        words = self.phrase or self.say.text(_PHRASE)
+        self._publisher.publish(sound_message(words.encode("utf-8", "replace")))
         self._said_s, self._words = time.monotonic(), words
         self.say.info(_SAID, words=words)
 
     def _read(self) -> bytes:
-        if not self.text("sound_file"):
+        if not self.sound_file:
             return b""
         try:
-            return read_sound(self.text("sound_file"), RATE_HZ).pcm
+            return read_sound(self.sound_file, RATE_HZ).pcm
         except SpeechError as error:
             raise NodeUsageError(_CANNOT, problem=error.sentence) from None
 
@@ -111,7 +105,7 @@ class MockAudio(LessonNode):
         size = int(RATE_HZ * _BLOCK_S) * SAMPLE
         block, self._left = self._left[:size].ljust(size, b"\0"), self._left[size:]
         self._meter.feed(block)
-        self._publisher.publish(to_message(block))
+        self._publisher.publish(sound_message(block))
 
     def _tell_level(self) -> None:
         if self._sound:
@@ -126,22 +120,17 @@ class MockAudio(LessonNode):
         Checked twice in a row, as the two ends do not discover each other at the same moment.
         """
         listened, self._listened = self._listened, self._publisher.get_subscription_count() > 0
-        patience_s = self.number("first_after") + self.number("period")
+        patience_s = self.first_after + self.period
         overdue = time.monotonic() - self._started_s > patience_s
         return overdue or (listened and self._listened)
 
     def _play(self, message: ByteMultiArray) -> None:
-        sound = from_message(message)
+        sound = sound_of(message)
         if len(sound) > _SHORT and text_in(sound) is None:
             self.say.info(_PLAYED_SOUND, every_s=_SAY_EVERY_S)
         else:
             self.say.info(_PLAYED, words=sound.decode("utf-8", "replace"))
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(MockAudio, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(MockAudio.main())

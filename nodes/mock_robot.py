@@ -10,33 +10,89 @@ not report.
 
 from __future__ import annotations
 
+import array
 import math
 import os
-import sys
 import time
 from pathlib import Path
 
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
+from sensor_msgs.msg import JointState
 
-from nodes.parts.node import LessonNode, NodeUsageError
-from nodes.parts.parameters import Choice, Number, Setting, Text, Whole
-from nodes.parts.qos import DEPTH, LATCHED
-from nodes.parts.runner import run
-from nodes.simulated.device_fault import FAULTS, FINE, NOISE, SILENT, SLOW, UNPLUGGED, FaultyLine
-from nodes.simulated.map_message import occupancy_grid
-from nodes.simulated.motors import MockMotors
-from nodes.simulated.pseudo_terminal import PseudoSerial
-from robot.topics import MAP, MOCK_POSE
+from nodes.parts.node import DEPTH, LATCHED, Choice, LessonNode, NodeUsageError, Number, Text, Whole
+from nodes.simulated.devices import FAULTS, FINE, NOISE, SILENT, SLOW, UNPLUGGED, FaultyLine, PseudoSerial
+from robot.joints import DRIVE_JOINTS
+from robot.topics import MAP, MOCK_MOTORS, MOCK_POSE
 from robot.wire.tfluna import TofFrame, encode
-from robot.world.grid import grid_of
-from robot.world.pico import SimulatedPico
-from robot.world.servos import SimulatedServos
+from robot.world.boards import SimulatedPico, SimulatedServos
+from robot.world.grid import CellMap, grid_of
 from robot.world.world import STEP_S, SimulatedSonar, World
 from space.transform import quaternion_from_rpy
 from text.i18n import N_
 from text.os_words import os_reason
 from text.run_path import run_path
+
+FRAME = "odom"
+"""The simulated robot starts at the origin of its odometry, so one frame is enough."""
+
+
+def occupancy_grid(grid: CellMap, stamp: Time) -> OccupancyGrid:
+    """Put a grid into a message with this stamp."""
+    message = OccupancyGrid()
+    message.header.frame_id = FRAME
+    message.header.stamp = message.info.map_load_time = stamp
+    message.info.resolution = grid.cell_m
+    message.info.height, message.info.width = grid.cells.shape
+    message.info.origin.position.x = grid.x_m
+    message.info.origin.position.y = grid.y_m
+    message.info.origin.orientation.w = 1.0
+    message.data = array.array("b", grid.cells.tobytes())
+    return message
+
+
+_EVERY = 2
+
+
+class MockMotors:
+    """Publishes 50 times a second, while somebody is subscribed.
+
+    `velocity` is the speed of each wheel in rad/s, `position` its total rotation in rad, which
+    includes even the smallest motion between two messages. `effort` is the highest speed that the
+    motor was driven at since the last message, rad/s, 0 while it is off. The last joint is the
+    steering.
+    """
+
+    def __init__(self, node: LessonNode, world: World) -> None:
+        self._node, self._world = node, world
+        self._turned = [0.0, 0.0]
+        self._driven = [0.0, 0.0]
+        self._steps = 0
+        self._publisher = node.create_publisher(JointState, MOCK_MOTORS, DEPTH)
+
+    def step(self) -> None:
+        """Add the motion of one `STEP_S`."""
+        wheels, asked = self._world.wheels, self._world.asked
+        self._turned[0] += wheels.left_rad_s * STEP_S
+        self._turned[1] += wheels.right_rad_s * STEP_S
+        self._driven[0] = max(self._driven[0], asked.left_rad_s, key=abs)
+        self._driven[1] = max(self._driven[1], asked.right_rad_s, key=abs)
+        self._steps += 1
+        if self._steps % _EVERY == 0:
+            if self._publisher.get_subscription_count():
+                self._publish()
+            self._driven = [0.0, 0.0]
+
+    def _publish(self) -> None:
+        wheels = self._world.wheels
+        message = JointState(name=list(DRIVE_JOINTS))
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.position = [*self._turned, wheels.steering_rad]
+        message.velocity = [wheels.left_rad_s, wheels.right_rad_s, 0.0]
+        message.effort = [*self._driven, 0.0]
+        self._publisher.publish(message)
+
 
 DEVICES = ("pico", "tof_front", "tof_rear", "lsc16")
 _BEHIND_S = 0.5
@@ -55,40 +111,36 @@ _FAULT = {
 _COLLISION = N_("The robot ran into something (number {count})")
 
 
-def _fault(device: str, about: str) -> Setting:
-    return Choice(device, FINE, about, choices=FAULTS)
+def _fault(about: str) -> Choice:
+    return Choice(FINE, about, choices=FAULTS)
 
 
 class MockRobot(LessonNode):
     """Steps the simulation, and carries bytes between it and the pseudo-terminals."""
 
     NAME = "mock_robot"
-    SETTINGS = (
-        Text("folder", "", "Where the devices appear; empty: Deck's own", True, may_be_empty=True),
-        _fault("pico", N_("Fault of the Pico")),
-        _fault("tof_front", N_("Fault of the front sonar")),
-        _fault("tof_rear", N_("Fault of the rear sonar")),
-        _fault("lsc16", N_("Fault of the servo controller")),
-        Choice("stalled", "none", "Motors that do not turn", choices=("none", "left", "right", "both")),
-        Choice(
-            "driver_fault", "none", "Motor drivers that report a fault", choices=("none", "left", "right", "both")
-        ),
-        Number("battery", 7.4, "Voltage of the battery", low=0.0, high=30.0, unit="V"),
-        Number("noise", 0.01, "Standard deviation of the sonars", high=1.0, unit="m", fixed=True),
-        Number("dropout", 0.01, "Share of readings without a distance", high=1.0, fixed=True),
-        Whole("seed", 0, "Seed of the random numbers", high=2**31, fixed=True),
-    )
+    folder = Text("", "Where the devices appear; empty: Deck's own", fixed=True, may_be_empty=True)
+    pico = _fault(N_("Fault of the Pico"))
+    tof_front = _fault(N_("Fault of the front sonar"))
+    tof_rear = _fault(N_("Fault of the rear sonar"))
+    lsc16 = _fault(N_("Fault of the servo controller"))
+    stalled = Choice("none", "Motors that do not turn", choices=("none", "left", "right", "both"))
+    driver_fault = Choice("none", "Motor drivers that report a fault", choices=("none", "left", "right", "both"))
+    battery = Number(7.4, "Voltage of the battery", low=0.0, high=30.0, unit="V")
+    noise = Number(0.01, "Standard deviation of the sonars", high=1.0, unit="m", fixed=True)
+    dropout = Number(0.01, "Share of readings without a distance", high=1.0, fixed=True)
+    seed = Whole(0, "Seed of the random numbers", high=2**31, fixed=True)
 
     def __init__(self) -> None:
         super().__init__()
-        noise_m, dropout = self.number("noise"), self.number("dropout")
+        noise_m, dropout = self.noise, self.dropout
         self._world = World(
-            seed=int(self.number("seed")),
+            seed=self.seed,
             front=SimulatedSonar(noise_m=noise_m, dropout=dropout),
             rear=SimulatedSonar(forward=False, noise_m=noise_m, dropout=dropout),
         )
         self._pico, self._servos = SimulatedPico(self._world), SimulatedServos()
-        folder = Path(self.text("folder") or run_path(os.environ) / "devices").expanduser()
+        folder = Path(self.folder or run_path(os.environ) / "devices").expanduser()
         self._lines = self._make_lines(folder)
         self._told: dict[str, str] = dict.fromkeys(DEVICES, FINE)
         self._collisions = 0
@@ -105,16 +157,16 @@ class MockRobot(LessonNode):
     def parameters_changed(self) -> None:
         """Cause or repair the faults."""
         for device in DEVICES:
-            fault = self.text(device)
+            fault = self.values[device]
             if fault != self._told[device]:
                 self._told[device] = fault
                 self._lines[device].set_fault(fault)
                 self.say.warn(_FAULT[fault], device=device)
         sides = {"none": "", "left": "L", "right": "R", "both": "LR"}
-        stalled = sides[self.text("stalled")]
+        stalled = sides[self.stalled]
         self._world.stalled = "L" in stalled, "R" in stalled
-        self._pico.faults = frozenset(sides[self.text("driver_fault")])
-        self._pico.battery_v = self._servos.battery_v = self.number("battery")
+        self._pico.faults = frozenset(sides[self.driver_fault])
+        self._pico.battery_v = self._servos.battery_v = self.battery
 
     def before_end(self) -> None:
         for line in self._lines.values():
@@ -174,10 +226,5 @@ def _tof_frame(metres: float) -> TofFrame:
     return TofFrame(10 if metres < 0 else round(metres * 100), 1000, 30.0)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(MockRobot, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(MockRobot.main())

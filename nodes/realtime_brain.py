@@ -13,7 +13,6 @@ interrupts itself.
 
 from __future__ import annotations
 
-import sys
 import time
 from typing import TYPE_CHECKING
 
@@ -21,26 +20,57 @@ from std_msgs.msg import ByteMultiArray, Float32, String
 
 from brain.faults import FaultKind, ModelError
 from brain.prompt import prompt_file, read_prompt
-from nodes.parts.node import LessonNode, NodeUsageError
-from nodes.parts.parameters import Number, Text, Whole
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
-from nodes.parts.sensor import SensorListener
-from nodes.parts.sound import from_message
+from nodes.parts.listeners import SensorListener
+from nodes.parts.messages import sound_message, sound_of
+from nodes.parts.node import DEPTH, LessonNode, NodeUsageError, Number, Text, Whole
 from nodes.parts.stop_news import StopNews
-from nodes.thinking.model import AskedModel
-from nodes.thinking.playing import PacedSpeaker
+from nodes.thinking.model import AskedModel, BrainState
 from nodes.thinking.senses import Senses
-from nodes.thinking.state import BrainState
 from robot.commands.brain import asks_to_stop, spoken
 from robot.commands.schema import DriveCommand, LlmResponse
 from robot.sound import RATE_HZ, SAMPLE, Resampler, text_in
-from robot.topics import LLM_RAW_JSON, MICROPHONE, SONAR_FRONT
+from robot.topics import LLM_RAW_JSON, MICROPHONE, SONAR_FRONT, SPEAKER
 from text.i18n import N_
 
 if TYPE_CHECKING:
     from brain.budget import TokenUsage
     from brain.realtime import RealtimeTalk, TalkHandlers
+
+BLOCK_S = 0.1
+_AHEAD = 3
+"""Blocks that are published at once at the beginning: what the loudspeaker may be late by."""
+
+
+class PacedSpeaker:
+    """Publishes sound on /audio/speaker_raw at the pace at which it is played: so it can be broken off."""
+
+    def __init__(self, node: LessonNode, rate_hz: int) -> None:
+        self._publisher = node.create_publisher(ByteMultiArray, SPEAKER, DEPTH)
+        self._block = round(rate_hz * BLOCK_S) * SAMPLE
+        self._waiting = bytearray()
+        self._ahead = 0
+        node.every(BLOCK_S, self._tick)
+
+    def play(self, pcm: bytes) -> None:
+        """Have this played after what waits already."""
+        self._waiting += pcm
+        while self._waiting and self._ahead < _AHEAD:
+            self._publish()
+
+    def drop(self) -> None:
+        """Play nothing of what waits."""
+        self._waiting.clear()
+
+    def _tick(self) -> None:
+        self._ahead = max(0, self._ahead - 1)
+        if self._waiting:
+            self._publish()
+
+    def _publish(self) -> None:
+        self._ahead += 1
+        self._publisher.publish(sound_message(bytes(self._waiting[: self._block])))
+        del self._waiting[: self._block]
+
 
 _STARTED = N_("The microphone's sound goes to {model} at {url}, all of it")
 _NO_MODEL = N_("No talk is possible: {problem}")
@@ -60,19 +90,15 @@ class RealtimeBrain(LessonNode):
     """Keeps one talk going."""
 
     NAME = "ai_brain"
-    SETTINGS = (
-        Text("prompt", "", "File with the system prompt; empty: Deck's own", may_be_empty=True),
-        Whole(
-            "sample_rate", RATE_HZ, "Samples a second, of both topics", fixed=True, low=8000, high=96_000, unit="Hz"
-        ),
-        Number("stale_after_s", 2.5, "An older distance is ignored", low=0.1, high=60.0, unit="s"),
-    )
+    prompt = Text("", "File with the system prompt; empty: Deck's own", may_be_empty=True)
+    sample_rate = Whole(RATE_HZ, "Samples a second, of both topics", fixed=True, low=8000, high=96_000, unit="Hz")
+    stale_after_s = Number(2.5, "An older distance is ignored", low=0.1, high=60.0, unit="s")
 
     def __init__(self) -> None:
         super().__init__()
         from brain.realtime import RATE_HZ as TALK_HZ
 
-        rate_hz = int(self.number("sample_rate"))
+        rate_hz = self.sample_rate
         self._up, self._down = Resampler(rate_hz, TALK_HZ), Resampler(TALK_HZ, rate_hz)
         try:
             self._model = AskedModel(self, lambda settings: settings.realtime_model)
@@ -83,7 +109,7 @@ class RealtimeBrain(LessonNode):
         self._json = self.create_publisher(String, LLM_RAW_JSON, DEPTH)
         self._front_m: float | None = None
         self._front_s = 0.0
-        self._senses = Senses(self, self.number("stale_after_s"))
+        self._senses = Senses(self, self.stale_after_s)
         self._talk: RealtimeTalk | None = None
         self._wait_s = _FIRST_WAIT_S
         self._retry = self.every(_FIRST_WAIT_S, self._begin)
@@ -104,7 +130,7 @@ class RealtimeBrain(LessonNode):
 
         self._retry.cancel()
         try:
-            prompt = read_prompt(prompt_file(self.text("prompt"), "brain", self.say.language))
+            prompt = read_prompt(prompt_file(self.prompt, "brain", self.say.language))
         except ModelError as error:
             self._lost(error)
             return
@@ -145,7 +171,7 @@ class RealtimeBrain(LessonNode):
         )
 
     def _sensed(self) -> str:
-        fresh = time.monotonic() - self._front_s <= self.number("stale_after_s")
+        fresh = time.monotonic() - self._front_s <= self.stale_after_s
         return self._senses.situation("", self._front_m if fresh else None).senses()
 
     def _used(self, usage: TokenUsage) -> None:
@@ -186,7 +212,7 @@ class RealtimeBrain(LessonNode):
         self._front_m, self._front_s = message.data, time.monotonic()
 
     def _hear(self, message: ByteMultiArray) -> None:
-        sound, talk = from_message(message), self._talk
+        sound, talk = sound_of(message), self._talk
         if talk is None or not sound:
             return
         if text_in(sound) is None:
@@ -199,10 +225,5 @@ class RealtimeBrain(LessonNode):
             self._model.background.begin(talk.tell(words))
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(RealtimeBrain, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(RealtimeBrain.main())

@@ -21,33 +21,21 @@ at every change, and once a second, what is blocked and why.
 
 from __future__ import annotations
 
-import sys
 import time
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import Float32
 
+from nodes.parts.commands import LOWEST, SolePublisher
 from nodes.parts.emergency import EmergencyStopListener
-from nodes.parts.node import LessonNode, change_period
-from nodes.parts.parameters import Number, Switch, Text
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
-from nodes.parts.sensor import SensorListener
-from nodes.parts.sole_publisher import LOWEST, SolePublisher
-from nodes.safety.distance_sensors import DistanceSensors, shares
-from nodes.safety.gate import CommandGate
-from nodes.safety.snapshot import GateSnapshot
+from nodes.parts.listeners import SensorListener
+from nodes.parts.node import DEPTH, LessonNode, Number, Switch, Text, change_period
+from nodes.safety.gate import CommandGate, DistanceSensor, DistanceSensors, GateSnapshot, SensorResult, shares
 from nodes.safety.words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
 from robot.safety.distance import RangeState, SafetyZone, Verdict, allowed, where
 from robot.topics import COMMAND_SOURCES, SAFETY_STATE, SONAR_FRONT
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from diagnostic_msgs.msg import DiagnosticStatus
-
-    from nodes.safety.distance_sensors import DistanceSensor, SensorResult
 
 _STATE_EVERY_S = _PUBLISHERS_EVERY_S = 1.0
 
@@ -56,30 +44,22 @@ class SafetyStop(LessonNode):
     """Warns of obstacles, and blocks motion if it is the gate."""
 
     NAME = "safety_node"
-    SETTINGS = (
-        Text("front_topic", SONAR_FRONT, "Distance ahead", fixed=True),
-        Text("rear_topic", "", "Distance behind; empty: no sensor", fixed=True, may_be_empty=True),
-        Number("critical_distance", 0.5, "Nearer than this is danger", low=0.01, high=100.0, unit="m"),
-        Number(
-            "slow_distance",
-            1.0,
-            "Slows down between this and critical_distance; never if it is not larger",
-            high=100.0,
-            unit="m",
-        ),
-        Number("stale_after_s", 2.5, "A longer silence of a sonar is danger", low=0.05, high=60.0, unit="s"),
-        Switch("gate", False, "Whether to relay commands to /drive_safe", fixed=True),
-        Text(
-            "sources", " ".join(COMMAND_SOURCES), "Topics of the command sources, highest priority first", fixed=True
-        ),
-        Number("max_age_s", 0.5, "An older command becomes a stop; 0: never", high=60.0, unit="s"),
-        Number("settle_s", 1.0, "How long the gate stays shut after its start", high=10.0, unit="s"),
-        Number("rate", 10.0, "Checks, and repetitions of /drive_safe, a second", low=1.0, high=100.0, unit="Hz"),
+    front_topic = Text(SONAR_FRONT, "Distance ahead", fixed=True)
+    rear_topic = Text("", "Distance behind; empty: no sensor", fixed=True, may_be_empty=True)
+    critical_distance = Number(0.5, "Nearer than this is danger", low=0.01, high=100.0, unit="m")
+    slow_distance = Number(
+        1.0, "Slows down between this and critical_distance; never if it is not larger", high=100.0, unit="m"
     )
+    stale_after_s = Number(2.5, "A longer silence of a sonar is danger", low=0.05, high=60.0, unit="s")
+    gate = Switch(False, "Whether to relay commands to /drive_safe", fixed=True)
+    sources = Text(" ".join(COMMAND_SOURCES), "Topics of the command sources, highest priority first", fixed=True)
+    max_age_s = Number(0.5, "An older command becomes a stop; 0: never", high=60.0, unit="s")
+    settle_s = Number(1.0, "How long the gate stays shut after its start", high=10.0, unit="s")
+    rate = Number(10.0, "Checks, and repetitions of /drive_safe, a second", low=1.0, high=100.0, unit="Hz")
 
     def __init__(self) -> None:
         super().__init__()
-        self._sensors = DistanceSensors(rear=bool(self.text("rear_topic")))
+        self._sensors = DistanceSensors(rear=bool(self.rear_topic))
         self._results: tuple[SensorResult, ...] = self._sensors.results(self._zone)
         self._range_states: tuple[RangeState, ...] = ()
         self._verdict = Verdict.BLOCKED_FORWARD
@@ -88,16 +68,16 @@ class SafetyStop(LessonNode):
         self._state = self.create_publisher(DiagnosticArray, SAFETY_STATE, DEPTH)
         # In this order, which is that of their callbacks: a waiting stop comes first.
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
-        self._listen(self.text("front_topic"), self._see_front, self._sensors.front)
+        self._listen(self.front_topic, self._see_front, self._sensors.front)
         if self._sensors.rear is not None:
-            self._listen(self.text("rear_topic"), self._see_rear, self._sensors.rear)
-        self._gate = CommandGate(self, self._judge, self._reason) if self.switch("gate") else None
-        self._timer = self.every(1.0 / self.number("rate"), self._tick)
-        self.say.info(STARTED, metres=self.number("critical_distance"))
+            self._listen(self.rear_topic, self._see_rear, self._sensors.rear)
+        self._gate = CommandGate(self, self._judge, self._reason) if self.gate else None
+        self._timer = self.every(1.0 / self.rate, self._tick)
+        self.say.info(STARTED, metres=self.critical_distance)
 
     def parameters_changed(self) -> None:
         """Apply the new rate, and judge again by the new distances; publish them at once."""
-        change_period(self._timer, 1.0 / self.number("rate"))
+        change_period(self._timer, 1.0 / self.rate)
         self._judge()
         self._publish_state()
 
@@ -135,7 +115,7 @@ class SafetyStop(LessonNode):
         sensor.see(
             message.data,
             number=info.get("publication_sequence_number") or 0,
-            publishers=self.count_publishers(self.text(topic)),
+            publishers=self.count_publishers(self.values[topic]),
         )
 
     def _emergency_changed(self, active: bool) -> None:
@@ -160,8 +140,8 @@ class SafetyStop(LessonNode):
 
     @property
     def _zone(self) -> SafetyZone:
-        slow_m = self.number("slow_distance") if self.switch("gate") else 0.0
-        return SafetyZone(self.number("critical_distance"), slow_m, self.number("stale_after_s"))
+        slow_m = self.slow_distance if self.gate else 0.0
+        return SafetyZone(self.critical_distance, slow_m, self.stale_after_s)
 
     def _held_up(self) -> bool:
         return self._gate is not None and self._gate.held_up()
@@ -203,10 +183,5 @@ class SafetyStop(LessonNode):
         self._state.publish(message)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(SafetyStop, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(SafetyStop.main())

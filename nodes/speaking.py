@@ -11,7 +11,6 @@ Sound is published in blocks at the pace of speech, a little ahead, so that it c
 from __future__ import annotations
 
 import math
-import sys
 import threading
 import time
 from collections import deque
@@ -21,11 +20,8 @@ from std_msgs.msg import ByteMultiArray, String
 
 from brain.speech.faults import SpeechError
 from brain.speech.voices import BACKENDS, language_of, voice
-from nodes.parts.node import LessonNode, NodeUsageError
-from nodes.parts.parameters import Choice, Text, Whole
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
-from nodes.parts.sound import to_message
+from nodes.parts.messages import sound_message
+from nodes.parts.node import DEPTH, Choice, LessonNode, NodeUsageError, Text, Whole
 from robot.sound import RATE_HZ, SAMPLE
 from robot.topics import SAY, SPEAKER
 from text.i18n import N_
@@ -53,21 +49,19 @@ class Speaking(LessonNode):
     """Takes words in the node's thread and speaks in another."""
 
     NAME = "speaking"
-    SETTINGS = (
-        Choice("backend", "espeak", N_("What speaks"), choices=BACKENDS, fixed=True),
-        Choice("language", AUTO, N_("Language of the words; auto: by their letters"), choices=(AUTO, "en", "ru")),
-        Text("model", "", N_("Voice file, for piper"), fixed=True, may_be_empty=True),
-        Whole("sample_rate", RATE_HZ, "Samples a second", fixed=True, low=8000, high=96_000, unit="Hz"),
-    )
+    backend = Choice("espeak", "What speaks", choices=BACKENDS, fixed=True)
+    language = Choice(AUTO, "Language of the words; auto: by their letters", choices=(AUTO, "en", "ru"))
+    model = Text("", "Voice file, for piper", fixed=True, may_be_empty=True)
+    sample_rate = Whole(RATE_HZ, "Samples a second", fixed=True, low=8000, high=96_000, unit="Hz")
 
     def __init__(self) -> None:
         super().__init__()
-        backend = self.text("backend")
+        backend = self.backend
         try:
-            self._voice: Voice = voice(backend, self.text("model"))
+            self._voice: Voice = voice(backend, self.model)
         except SpeechError as error:
             raise NodeUsageError(_CANNOT, problem=error.sentence) from None
-        self._rate_hz = int(self.number("sample_rate"))
+        self._rate_hz = self.sample_rate
         self._publisher = self.create_publisher(ByteMultiArray, SPEAKER, DEPTH)
         self._waiting: deque[str] = deque()
         self._changed = threading.Condition()
@@ -98,7 +92,7 @@ class Speaking(LessonNode):
             with self._changed:
                 self._changed.wait_for(lambda: self._waiting)
                 words, turn = self._waiting.popleft(), self._turn
-            language = self.text("language")
+            language = self.language
             language = language_of(words) if language == AUTO else language
             try:
                 sound = self._voice.speak(words, language).at(self._rate_hz)
@@ -117,7 +111,7 @@ class Speaking(LessonNode):
                 return
             if not self.context.ok():
                 return
-            self._publisher.publish(to_message(sound.pcm[at * size : (at + 1) * size]))
+            self._publisher.publish(sound_message(sound.pcm[at * size : (at + 1) * size]))
         self._pause(begun_s + sound.seconds, turn)
 
     def _pause(self, until_s: float, turn: int) -> bool:
@@ -127,10 +121,5 @@ class Speaking(LessonNode):
             return self._changed.wait_for(lambda: self._turn != turn, left_s)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(Speaking, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(Speaking.main())

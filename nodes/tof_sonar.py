@@ -9,28 +9,20 @@ Its state goes to /diagnostics once a second, its frames in words to `~/frames`.
 from __future__ import annotations
 
 import math
-import sys
 import time
 from functools import partial
-from typing import TYPE_CHECKING
 
+from diagnostic_msgs.msg import DiagnosticStatus
 from sensor_msgs.msg import Range
 from std_msgs.msg import Float32
 
 from nodes.drivers.serial_link import SerialLink
 from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.node import LessonNode
-from nodes.parts.parameters import Choice, Number, Text, Whole
-from nodes.parts.periodic_thread import PeriodicThread
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
-from robot.frames.tof import TofReader
+from nodes.parts.node import DEPTH, Choice, LessonNode, Number, PeriodicThread, Text, Whole
+from robot.frames.readers import TofReader
 from robot.topics import SONAR_FRONT
 from robot.wire.tfluna import BAUD, Model, TofDecoder
 from text.i18n import N_
-
-if TYPE_CHECKING:
-    from diagnostic_msgs.msg import DiagnosticStatus
 
 _LOOK_EVERY_S = 0.1
 
@@ -43,41 +35,27 @@ class TofSonar(LessonNode):
     """Reads frames on its own thread and publishes them from there."""
 
     NAME = "tof_sonar_front"
-    SETTINGS = (
-        Text("port", "/dev/ttyUSB0", "Device path; best one in /dev/serial/by-id", fixed=True),
-        Whole("baud", BAUD, "Speed of the port", fixed=True, low=9600, high=921_600),
-        Choice(
-            "model", Model.LUNA.value, "Which sensor it is", fixed=True, choices=tuple(model.value for model in Model)
-        ),
-        Text("topic", SONAR_FRONT, "Where the distance is published", fixed=True),
-        Text("frame_id", "sonar_front_link", "Frame of the readings", fixed=True),
-        Whole("every", 2, "Every n-th reading is published", low=1, high=1000),
-        Number(
-            "silent_after_s",
-            0.5,
-            "The sensor counts as silent after this long without a reading",
-            low=0.1,
-            high=10.0,
-            unit="s",
-        ),
+    port = Text("/dev/ttyUSB0", "Device path; best one in /dev/serial/by-id", fixed=True)
+    baud = Whole(BAUD, "Speed of the port", fixed=True, low=9600, high=921_600)
+    model = Choice(Model.LUNA.value, "Which sensor it is", fixed=True, choices=tuple(model.value for model in Model))
+    topic = Text(SONAR_FRONT, "Where the distance is published", fixed=True)
+    frame_id = Text("sonar_front_link", "Frame of the readings", fixed=True)
+    every_ = Whole(2, "Every n-th reading is published", low=1, high=1000)
+    silent_after_s = Number(
+        0.5, "The sensor counts as silent after this long without a reading", low=0.1, high=10.0, unit="s"
     )
 
     def __init__(self) -> None:
         super().__init__()
-        self._model = Model(self.text("model"))
+        self._model = Model(self.model)
         self._decoder = TofDecoder()
         self._skipped = 0
         self._seen_s = time.monotonic()
-        topic = self.text("topic")
+        topic = self.topic
         self._distances = self.create_publisher(Float32, topic, DEPTH)
         self._ranges = self.create_publisher(Range, f"{topic}/range", DEPTH)
         self._link = SerialLink(
-            self,
-            int(self.number("baud")),
-            self._hear,
-            self._begin,
-            self._publish_nothing,
-            partial(TofReader, model=self._model),
+            self, self.baud, self._hear, self._begin, self._publish_nothing, partial(TofReader, model=self._model)
         )
         tell_every_second(self, self._status)
         self._pace = PeriodicThread(_LOOK_EVERY_S, self._look)
@@ -98,7 +76,7 @@ class TofSonar(LessonNode):
         for frame in self._decoder.feed(data):
             self._seen_s = time.monotonic()
             self._skipped += 1
-            if self._skipped >= self.number("every"):
+            if self._skipped >= self.every_:
                 self._skipped = 0
                 self._publish(frame.distance_m(self._model))
 
@@ -119,14 +97,14 @@ class TofSonar(LessonNode):
             range=metres,
         )
         message.header.stamp = self.get_clock().now().to_msg()
-        message.header.frame_id = self.text("frame_id")
+        message.header.frame_id = self.frame_id
         self._ranges.publish(message)
 
     # ---------------------------------------------------------------- at a pace
 
     @property
     def _silent(self) -> bool:
-        return time.monotonic() - self._seen_s > self.number("silent_after_s")
+        return time.monotonic() - self._seen_s > self.silent_after_s
 
     def _look(self) -> None:
         if not self._silent:
@@ -140,7 +118,7 @@ class TofSonar(LessonNode):
             self.say.warn(_SILENT, every_s=10.0, **self._who())
 
     def _who(self) -> dict[str, object]:
-        return {"port": self._link.port, "seconds": self.number("silent_after_s"), "model": self._model.value}
+        return {"port": self._link.port, "seconds": self.silent_after_s, "model": self._model.value}
 
     def _status(self) -> DiagnosticStatus:
         status = self._link.status(self.get_name(), self._decoder.errors, self._decoder.frames)
@@ -150,10 +128,5 @@ class TofSonar(LessonNode):
         return status
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(TofSonar, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(TofSonar.main())

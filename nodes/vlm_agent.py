@@ -10,7 +10,6 @@ none is ever queued. What that takes is published on /brain_state.
 from __future__ import annotations
 
 import json
-import sys
 from typing import TYPE_CHECKING
 
 from rclpy.serialization import deserialize_message
@@ -19,14 +18,10 @@ from std_msgs.msg import String
 
 from brain.faults import ModelError
 from brain.prompt import prompt_file, read_prompt
-from nodes.parts.node import LessonNode, change_period
-from nodes.parts.parameters import Number, Text, Whole
-from nodes.parts.pictures import BadPictureError, jpeg_of
-from nodes.parts.qos import DEPTH
-from nodes.parts.runner import run
-from nodes.parts.sensor import SensorListener
-from nodes.thinking.model import AskedModel
-from nodes.thinking.state import BrainState
+from nodes.parts.listeners import SensorListener
+from nodes.parts.messages import BadPictureError, jpeg_of
+from nodes.parts.node import DEPTH, LessonNode, Number, Text, Whole, change_period
+from nodes.thinking.model import AskedModel, BrainState
 from robot.topics import CAMERA, VLM_DESCRIPTION, VLM_DETECTIONS
 from text.i18n import N_
 
@@ -49,12 +44,10 @@ class VlmAgent(LessonNode):
     """Takes the newest picture, and asks about one at a time."""
 
     NAME = "vlm_agent"
-    SETTINGS = (
-        Text("topic", CAMERA, "Where the pictures come from", fixed=True),
-        Number("period", 5.0, "Time between two looks", low=0.1, high=3600.0, unit="s"),
-        Whole("quality", 80, "Quality of the JPEG", low=1, high=100),
-        Text("prompt", "", "File with the system prompt; empty: Deck's own", may_be_empty=True),
-    )
+    topic = Text(CAMERA, "Where the pictures come from", fixed=True)
+    period = Number(5.0, "Time between two looks", low=0.1, high=3600.0, unit="s")
+    quality = Whole(80, "Quality of the JPEG", low=1, high=100)
+    prompt = Text("", "File with the system prompt; empty: Deck's own", may_be_empty=True)
 
     def __init__(self) -> None:
         super().__init__()
@@ -66,12 +59,12 @@ class VlmAgent(LessonNode):
         self._problem: ModelError | None = None
         self._model = self._made()
         self._state = BrainState(self, self._model)
-        SensorListener(self, Image, self.text("topic"), self._keep, depth=1, raw=True)
-        self._timer = self.every(self.number("period"), self._look)
+        SensorListener(self, Image, self.topic, self._keep, depth=1, raw=True)
+        self._timer = self.every(self.period, self._look)
 
     def parameters_changed(self) -> None:
         """Apply the new period."""
-        change_period(self._timer, self.number("period"))
+        change_period(self._timer, self.period)
 
     def before_end(self) -> None:
         if self._model is not None:
@@ -85,7 +78,7 @@ class VlmAgent(LessonNode):
             self.say.warn(_NO_MODEL, problem=error.words)
             return None
         url = model.settings.base_url
-        self.say.info(_STARTED, topic=self.text("topic"), model=model.name, url=url)
+        self.say.info(_STARTED, topic=self.topic, model=model.name, url=url)
         return model
 
     def _keep(self, serialized: bytes) -> None:
@@ -99,11 +92,11 @@ class VlmAgent(LessonNode):
         if self._model.busy:
             return
         if self._newest is None:
-            self.say.warn(_OLD if self._any else _NONE, every_s=1.0, topic=self.text("topic"))
+            self.say.warn(_OLD if self._any else _NONE, every_s=1.0, topic=self.topic)
             return
         message, self._newest = deserialize_message(self._newest, Image), None
         try:
-            jpeg = jpeg_of(message, int(self.number("quality")))
+            jpeg = jpeg_of(message, self.quality)
         except BadPictureError as error:
             self.say.warn(_BAD, reason=self.say.text(error.phrase, **error.values))
             return
@@ -117,7 +110,7 @@ class VlmAgent(LessonNode):
     async def _question(self, ladder: Ladder, jpeg: bytes) -> Thought[PictureSeen]:
         from brain.looking import look
 
-        prompt = read_prompt(prompt_file(self.text("prompt"), "vlm", self.say.language))
+        prompt = read_prompt(prompt_file(self.prompt, "vlm", self.say.language))
         return await look(ladder, prompt, jpeg)
 
     def _tell(self, thought: Thought[PictureSeen], width: int, height: int) -> None:
@@ -134,10 +127,5 @@ class VlmAgent(LessonNode):
         self.say.warn(_FAILED, problem=error.words)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(VlmAgent, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(VlmAgent.main())

@@ -7,16 +7,12 @@ this machine.
 
 from __future__ import annotations
 
-import sys
-
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image
 
-from nodes.parts.node import LessonNode, change_period
-from nodes.parts.parameters import Number, Text, Whole
-from nodes.parts.pictures import BadPictureError, jpeg_of
-from nodes.parts.runner import run
-from nodes.parts.sensor import SensorListener
+from nodes.parts.listeners import SensorListener
+from nodes.parts.messages import BadPictureError, jpeg_of
+from nodes.parts.node import LessonNode, Number, Text, Whole, change_period
 from robot.topics import CAMERA
 from text.i18n import N_
 
@@ -32,25 +28,23 @@ class VlmAgentStub(LessonNode):
     """Takes the newest picture at a low rate."""
 
     NAME = "vlm_agent"
-    SETTINGS = (
-        Text("topic", CAMERA, "Where the pictures come from", fixed=True),
-        Number("period", 3.0, "Time between two looks", low=0.1, high=3600.0, unit="s"),
-        Whole("quality", 80, "Quality of the JPEG", low=1, high=100),
-    )
+    topic = Text(CAMERA, "Where the pictures come from", fixed=True)
+    period = Number(3.0, "Time between two looks", low=0.1, high=3600.0, unit="s")
+    quality = Whole(80, "Quality of the JPEG", low=1, high=100)
 
     def __init__(self) -> None:
         super().__init__()
         self._newest: bytes | None = None
         """Serialized: decoding ten pictures a second to use one in thirty would be wasteful."""
         self._any = False
-        topic = self.text("topic")
+        topic = self.topic
         SensorListener(self, Image, topic, self._keep, depth=1, raw=True)
-        self._timer = self.every(self.number("period"), self._look)
+        self._timer = self.every(self.period, self._look)
         self.say.info(_STARTED, topic=topic)
 
     def parameters_changed(self) -> None:
         """Apply the new period."""
-        change_period(self._timer, self.number("period"))
+        change_period(self._timer, self.period)
 
     def _keep(self, serialized: bytes) -> None:
         self._newest = serialized
@@ -58,7 +52,7 @@ class VlmAgentStub(LessonNode):
 
     def _look(self) -> None:
         if self._newest is None:
-            self.say.warn(_OLD if self._any else _NONE, topic=self.text("topic"))
+            self.say.warn(_OLD if self._any else _NONE, topic=self.topic)
             return
         message, self._newest = deserialize_message(self._newest, Image), None
         try:
@@ -69,17 +63,12 @@ class VlmAgentStub(LessonNode):
     def _send(self, message: Image) -> None:
         size = {"width": message.width, "height": message.height}
         try:
-            jpeg = jpeg_of(message, int(self.number("quality")))
+            jpeg = jpeg_of(message, self.quality)
         except ImportError:
             self.say.warn(_NO_OPENCV, **size)
             return
         self.say.info(_SENT, size=len(jpeg) / 1000, **size)
 
 
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is asked to end."""
-    return run(VlmAgentStub, args)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(VlmAgentStub.main())

@@ -7,14 +7,11 @@ commands are slowed down to those. To make a robot faster, change this file.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 _ROUNDING = 1e-6
 """Tolerance as a share of the limit: 0.3 is a little more in the 32 bits of a /drive."""

@@ -6,12 +6,9 @@ Sound is PCM: 16-bit little-endian samples, one channel.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from numpy.typing import NDArray
 
 RATE_HZ = 16_000
 """Sample rate for speech."""

@@ -25,7 +25,7 @@ ROOMS = (
 KEYWORDS = (
     *("_", "N_", "ngettext:1,2", "refused", "say"),
     # The descriptions of node parameters.
-    *("Choice:3", "Number:3", "Switch:3", "Text:3", "Whole:3"),
+    *("Choice:2", "Number:2", "Switch:2", "Text:2", "Whole:2"),
 )
 
 

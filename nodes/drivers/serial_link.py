@@ -9,28 +9,162 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import select
 import termios
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
-from typing import TYPE_CHECKING
 
 import serial
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from std_msgs.msg import String
 
-from nodes.drivers.serial_frames import SerialFrames
-from nodes.drivers.serial_reads import SerialReads
-from nodes.drivers.serial_writes import SerialWrites
-from robot.frames.protocols import RawReader
+from nodes.parts.node import LessonNode, change_period
+from robot.frames.protocols import Chunk, FrameBatcher, FrameReader, RawReader, encode
 from text.i18n import N_
 from text.sentences import reason_of
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+FRAMES = "~/frames"
+_LOOK_EVERY_S = 1.0
+"""How often to check whether somebody is subscribed."""
+_TELL_EVERY_S = 0.2
+_MOST_OCTETS = 16_384
+"""Bytes kept per batch: nobody could read the frames of more."""
 
-    from nodes.parts.node import LessonNode
-    from robot.frames.protocols import FrameReader
+
+class SerialFrames:
+    """`~/frames`: the traffic in words, from the node's thread, while somebody is subscribed.
+
+    Without subscribers, bytes are not even kept. See `robot.frames.protocols.encode` for the format.
+    """
+
+    def __init__(self, node: LessonNode, make: Callable[[str], FrameReader]) -> None:
+        """`make` creates a reader of this device's frames for a language."""
+        self._publisher = node.quick_publisher(String, FRAMES)
+        self._batcher = FrameBatcher(make, node.say.language)
+        self._wanted = False
+        self._lock = threading.Lock()
+        self._chunks: list[Chunk] = []
+        self._octets = self._missed = 0
+        self._timer = node.every(_LOOK_EVERY_S, self._look)
+
+    def note(self, way: str, octets: bytes) -> None:
+        """Note bytes that went `in` or `out`. From any thread."""
+        if not self._wanted:
+            return
+        chunk = Chunk(time.time(), way, octets)
+        with self._lock:
+            if self._octets + len(octets) > _MOST_OCTETS:
+                self._missed += len(octets)
+                return
+            self._octets += len(octets)
+            self._chunks.append(chunk)
+
+    def _look(self) -> None:
+        wanted = self._publisher.get_subscription_count() > 0
+        if wanted != self._wanted:
+            self._wanted = wanted
+            self._batcher.restart()
+            self._take()
+            change_period(self._timer, _TELL_EVERY_S if wanted else _LOOK_EVERY_S)
+        elif wanted:
+            self._tell()
+
+    def _tell(self) -> None:
+        chunks, missed = self._take()
+        lines = self._batcher.tell(chunks, time.time(), missed)
+        if lines:
+            self._publisher.publish(String(data=encode(lines)))
+
+    def _take(self) -> tuple[list[Chunk], int]:
+        with self._lock:
+            taken = self._chunks, self._missed
+            self._chunks, self._octets, self._missed = [], 0, 0
+        return taken
+
+
+_WAIT_MS = 100
+"""How long a read may wait before the thread checks whether it should end."""
+_CHUNK = 4096
+_STALE_S = 0.5
+"""After a longer pause the waiting bytes are discarded as outdated."""
+
+
+class SerialReads:
+    """Reads one port from opening until closing: one wait and one read for whatever has come.
+
+    pyserial's own `read` waits and reads once for the first byte and once more for the rest.
+    """
+
+    def __init__(self, port: serial.Serial) -> None:
+        self._port, self._handle = port, port.fileno()
+        self._poll = select.poll()
+        self._poll.register(self._handle, select.POLLIN)
+        self._read_s = time.monotonic()
+
+    def read(self) -> bytes:
+        """Return what has come, nothing after a time-out; raises OSError if the port is gone."""
+        before_s, ready = self._read_s, self._poll.poll(_WAIT_MS)
+        self._read_s = time.monotonic()
+        if self._read_s - before_s > _STALE_S:
+            self._port.reset_input_buffer()
+            return b""
+        if not ready:
+            return b""
+        try:
+            data = os.read(self._handle, _CHUNK)
+        except BlockingIOError:
+            return b""
+        if not data:
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+        return data
+
+
+_WITHIN_S = 0.1
+"""How long a write may wait for room."""
+
+
+class SerialWrites:
+    """Writes to one port, and never half of something: what a full port has cut is finished first.
+
+    pyserial's own `write` does not say how much it has sent before its time-out. What comes next would
+    stick to half a line, and the device would refuse both.
+    """
+
+    def __init__(self, port: serial.Serial) -> None:
+        self._port = port
+        self._rest = b""
+        """The end of what was begun."""
+
+    def write(self, data: bytes) -> bool:
+        """Send; return False if none of it was, since the port takes nothing.
+
+        Of what is begun the rest is sent before anything else. Raises an error of pyserial or
+        OSError if the port is gone.
+        """
+        deadline_s = time.monotonic() + _WITHIN_S
+        self._rest = self._sent(self._rest, deadline_s)
+        if self._rest:
+            return False
+        rest = self._sent(data, deadline_s)
+        if rest == data:
+            return False
+        self._rest = rest
+        return True
+
+    def _sent(self, data: bytes, deadline_s: float) -> bytes:
+        """Send until the deadline; return what is left of it."""
+        handle = self._port.fileno()
+        room = select.poll()
+        room.register(handle, select.POLLOUT)
+        while data and (left_s := deadline_s - time.monotonic()) > 0.0:
+            if room.poll(left_s * 1e3):
+                with contextlib.suppress(BlockingIOError):
+                    data = data[os.write(handle, data) :]
+        return data
+
 
 BAD = (OSError, termios.error, serial.SerialException, TypeError)
 """Errors of pyserial when a cable is pulled; it raises TypeError if its port is closed."""
@@ -78,7 +212,7 @@ class SerialLink:
 
         `frames` creates a reader that puts this device's frames into words of a language.
         """
-        self._say, self.port, self.baud = node.say, node.text("port"), baud
+        self._say, self.port, self.baud = node.say, node.values["port"], baud
         self._heard, self._opened, self._lost = heard, opened, lost
         self.traffic = Traffic()
         self._frames = SerialFrames(node, frames)

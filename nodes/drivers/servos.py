@@ -9,19 +9,14 @@ from __future__ import annotations
 import math
 import threading
 import time
-from typing import TYPE_CHECKING
 
-from diagnostic_msgs.msg import KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes.drivers.serial_link import SerialLink
-from robot.frames.lsc16 import ServoReader
+from nodes.parts.node import LessonNode
+from robot.frames.readers import ServoReader
 from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder, ServoMove, encode
 from text.i18n import N_
-
-if TYPE_CHECKING:
-    from diagnostic_msgs.msg import DiagnosticStatus
-
-    from nodes.parts.node import LessonNode
 
 _MISSED = 3
 """This many missing answers count as silence."""
@@ -47,8 +42,8 @@ class ServoClient:
 
     def __init__(self, node: LessonNode) -> None:
         self._node, self._say = node, node.say
-        self._every_s = node.number("battery_every_s")
-        self.link = SerialLink(node, int(node.number("baud")), self._hear, self._begin, self._forget, ServoReader)
+        self._every_s = node.values["battery_every_s"]
+        self.link = SerialLink(node, node.values["baud"], self._hear, self._begin, self._forget, ServoReader)
         self._decoder = ServoDecoder()
         self._battery: Battery | None = None
         """The newest voltage of this connection."""
@@ -88,7 +83,7 @@ class ServoClient:
             volts = battery.millivolts / 1000
             status.values.append(KeyValue(key="battery_v", value=f"{volts:.2f}"))
             status.message += f"; {self._say.text(_COMMANDED)}"
-            if volts < self._node.number("battery_low"):
+            if volts < self._node.values["battery_low"]:
                 status.level, status.message = status.WARN, self._say.text(_LOW, volts=volts)
         return status
 
@@ -139,5 +134,5 @@ class ServoClient:
                 if self._battery is None:
                     self._say.info(_ANSWERS, volts=frame.millivolts / 1000)
                 self._battery = frame
-                if frame.millivolts < 1000 * self._node.number("battery_low"):
+                if frame.millivolts < 1000 * self._node.values["battery_low"]:
                     self._say.warn(_LOW, every_s=_LOW_EVERY_S, volts=frame.millivolts / 1000)

@@ -24,12 +24,10 @@ import sys
 import threading
 import time
 from collections import deque
+from collections.abc import Callable, Generator, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, Protocol
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator, Sequence
-    from types import ModuleType
+from types import ModuleType
+from typing import Any, NoReturn, Protocol
 
 IN, OUT = "in", "out"
 SAMPLE = 2

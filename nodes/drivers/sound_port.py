@@ -6,23 +6,186 @@ miniaudio runs in a separate process (`sound_device`), restarted for each attemp
 
 from __future__ import annotations
 
+import contextlib
+import errno
+import fcntl
 import os
+import select
 import selectors
+import subprocess
+import sys
 import threading
 import time
+from collections.abc import Callable
 from datetime import datetime
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-from nodes.drivers.sound_child import SoundChild
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
 from nodes.drivers.sound_device import CARDS, IN, OUT
-from nodes.drivers.sound_queue import SoundQueue
-from nodes.drivers.sound_words import CANNOT, LOST, OPENED, OPENING, explain
+from nodes.parts.node import TranslatedLogger
 from robot.sound import SAMPLE
+from text.i18n import N_
+from text.nested import read_json
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+OPENED = {IN: N_("Microphone: {device}, {rate} Hz"), OUT: N_("Speaker: {device}, {rate} Hz")}
+LOST = {IN: N_("Lost the microphone {device}: {problem}"), OUT: N_("Lost the speaker {device}: {problem}")}
+CANNOT = {IN: N_("No microphone: {problem}"), OUT: N_("No speaker: {problem}")}
+SINCE = {
+    IN: N_("microphone {device}, {rate} Hz, for {seconds:.0f} s"),
+    OUT: N_("speaker {device}, {rate} Hz, for {seconds:.0f} s"),
+}
+OFF = N_("off, by the parameter")
+FAULTY = N_("{words}; {faults:.0f} errors a second")
+OPENING = N_("it is being opened")
 
-    from nodes.parts.translated_logger import TranslatedLogger
+EMPTY = N_("An empty message for the speaker")
+ODD = N_("{count} bytes for the speaker, but a sample has two: the last is left out")
+WORDS = N_('The speaker got text instead of sound: "{words}"')
+LATE = N_("The speaker is late: the oldest {seconds:.1f} s of sound are dropped")
+UNPLAYED = N_("There is no speaker now: {seconds:.1f} s of sound are not played")
+
+_PROBLEMS = {
+    "package": N_("miniaudio is not installed; pip install miniaudio"),
+    "library": N_("neither PulseAudio nor ALSA is installed; sudo apt install libasound2"),
+    "missing": N_('no device "{device}"; set the parameter to one of these: {detail}'),
+    "none": N_(
+        "no such sound device; plug it in (arecord -l and aplay -l list them), "
+        "or sudo usermod -aG audio $USER and log in again"
+    ),
+    "busy": N_("it cannot be opened; close the program that uses it (fuser -v /dev/snd/*)"),
+    "gone": N_("it is gone; is it unplugged?"),
+    "silent": N_("no sound moves any more"),
+    "hung": N_("the library of sound does not answer"),
+    "died": N_("the library of sound has died: {detail}"),
+    "other": N_("{detail}"),
+}
+
+
+def explain(say: TranslatedLogger, problem: str, device: str, detail: str) -> str:
+    """Return what is wrong with a device, and the fix."""
+    if problem == "missing" and not (device and detail):
+        problem = "none"
+    return say.text(_PROBLEMS.get(problem, _PROBLEMS["other"]), device=device, detail=detail)
+
+
+class SoundQueue:
+    """Holds at most `most` bytes; thread-safe."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._sound = bytearray()
+        self._lock = threading.Lock()
+
+    def __len__(self) -> int:
+        """Return the number of waiting bytes."""
+        return len(self._sound)
+
+    def put(self, sound: bytes) -> int:
+        """Append sound; return how many bytes were dropped to make room."""
+        with self._lock:
+            self._sound += sound
+            dropped = max(0, len(self._sound) - self._most)
+            del self._sound[:dropped]
+            return dropped
+
+    def take(self, most: int) -> bytes:
+        """Take at most this many bytes from the front."""
+        with self._lock:
+            sound = bytes(self._sound[:most])
+            del self._sound[:most]
+            return sound
+
+    def clear(self) -> None:
+        with self._lock:
+            self._sound.clear()
+
+
+PROGRAM = Path(__file__).with_name("sound_device.py")
+_CHUNK = 65_536
+_LONGEST_LINE = 4096
+_LAST_WAIT_S = 0.2
+
+
+class SoundChild:
+    """Runs from its creation until `close`; raises OSError if it cannot be started."""
+
+    def __init__(self, way: str, device: str, rate_hz: int, block_ms: int) -> None:
+        # It dies with the thread that created it, which must be the one that serves it.
+        self._process = subprocess.Popen(
+            [sys.executable, str(PROGRAM), way, device, str(rate_hz), str(block_ms)],
+            bufsize=0,
+            stdin=subprocess.PIPE if way == OUT else subprocess.DEVNULL,
+            stdout=subprocess.PIPE if way == IN else subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+        )
+        pipe = self._process.stdin if way == OUT else self._process.stdout
+        assert pipe is not None
+        assert self._process.stderr is not None
+        self.sound, self.words = pipe.fileno(), self._process.stderr.fileno()
+        """Non-blocking file descriptors."""
+        if way == OUT:
+            # What is in the pipe can no longer be dropped.
+            fcntl.fcntl(self.sound, fcntl.F_SETPIPE_SZ, select.PIPE_BUF)
+        os.set_blocking(self.sound, False)
+        os.set_blocking(self.words, False)
+        self._line = b""
+        self.last_words = ""
+        """The last line that is not a message: a library's output before it died."""
+
+    def hear(self) -> bytes:
+        """Return sound from the microphone; raises OSError at its end."""
+        with contextlib.suppress(BlockingIOError):
+            data = os.read(self.sound, _CHUNK)
+            if not data:
+                raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
+            return data
+        return b""
+
+    def play(self, sound: bytes) -> bytes:
+        """Send sound to the loudspeaker; return what did not fit. Raises OSError at its end."""
+        with contextlib.suppress(BlockingIOError):
+            return sound[os.write(self.sound, sound) :]
+        return sound
+
+    def messages(self) -> list[dict[str, object]] | None:
+        """Return the messages since the last call, None when there will be no more."""
+        try:
+            data = os.read(self.words, _CHUNK)
+        except BlockingIOError:
+            return []
+        if not data:
+            return None
+        *lines, rest = (self._line + data).split(b"\n")
+        self._line = rest[-_LONGEST_LINE:]
+        return [told for line in lines if (told := self._message(line)) is not None]
+
+    def _message(self, line: bytes) -> dict[str, object] | None:
+        with contextlib.suppress(ValueError):
+            told = read_json(line)
+            if isinstance(told, dict):
+                return told
+        self.last_words = line[:_LONGEST_LINE].decode("utf-8", "replace").strip()
+        return None
+
+    def await_end(self) -> None:
+        """Wait a moment for a process that has closed its pipes."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(_LAST_WAIT_S)
+
+    def close(self) -> None:
+        """Kill the process if need be."""
+        self._process.kill()
+        self.await_end()
+        if self._process.returncode is None:
+            # A hanging device delays even a killed process, which is collected later.
+            threading.Thread(target=self._process.wait, daemon=True).start()
+        if not self.last_words and self._process.returncode:
+            self.last_words = f"exit code {self._process.returncode}"
+        for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
+            if pipe is not None:
+                pipe.close()
+
 
 NOWHERE = "none"
 """The device name that means no device."""
@@ -222,3 +385,52 @@ def _cards() -> bytes:
         return CARDS.read_bytes()
     except OSError:
         return b""
+
+
+class PortStatus:
+    """Makes the message: the device, time connected, bytes and errors per second."""
+
+    def __init__(self, say: TranslatedLogger, name: str, port: SoundPort) -> None:
+        self._say, self._name, self._port = say, name, port
+        self._told = (time.monotonic(), 0, 0)
+
+    def message(self) -> DiagnosticStatus:
+        """Return the current state; rates are those since the last message."""
+        port, now_s = self._port, time.monotonic()
+        counts = port.octets, port.faults
+        passed_s = max(1e-3, now_s - self._told[0])
+        octets, faults = ((new - old) / passed_s for new, old in zip(counts, self._told[1:], strict=True))
+        self._told = (now_s, *counts)
+        level, words = self._state(faults)
+        values = {
+            "port": port.device or port.wanted,
+            "connected": str(port.connected).lower(),
+            "connected_since": port.since,
+            "seconds": f"{now_s - port.since_s:.1f}",
+            "connections": str(port.connections),
+            "reconnects": str(max(0, port.connections - 1)),
+            "bytes_in_per_s": f"{octets if port.way == IN else 0:.0f}",
+            "bytes_out_per_s": f"{0 if port.way == IN else octets:.0f}",
+            "errors_per_s": f"{faults:.1f}",
+            "errors": str(port.faults),
+            "sample_rate": str(port.rate_hz),
+        }
+        return DiagnosticStatus(
+            level=level,
+            name=self._name,
+            message=words,
+            hardware_id=values["port"],
+            values=[KeyValue(key=key, value=value) for key, value in values.items()],
+        )
+
+    def _state(self, faults: float) -> tuple[bytes, str]:
+        port, say = self._port, self._say
+        if not port.wants:
+            return DiagnosticStatus.OK, say.text(OFF)
+        if not port.connected:
+            return DiagnosticStatus.ERROR, say.text(CANNOT[port.way], problem=port.problem)
+        seconds = time.monotonic() - port.since_s
+        words = say.text(SINCE[port.way], device=port.device, rate=port.rate_hz, seconds=seconds)
+        if faults:
+            return DiagnosticStatus.WARN, say.text(FAULTY, words=words, faults=faults)
+        return DiagnosticStatus.OK, words

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
+from nodes.parts.node import LessonNode
 from robot.topics import DIAGNOSTICS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from diagnostic_msgs.msg import DiagnosticStatus
-
-    from nodes.parts.node import LessonNode
 
 _EVERY_S = 1.0
 

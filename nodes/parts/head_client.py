@@ -7,20 +7,15 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from example_interfaces.srv import AddTwoInts
+from rclpy.task import Future
 
+from nodes.parts.node import LessonNode
 from robot.topics import HEAD_SERVICE
 from text.i18n import N_
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rclpy.task import Future
-
-    from nodes.parts.node import LessonNode
 
 APPEAR_S = 1.0
 """How long a missing service may take to appear: discovery is sometimes slow."""

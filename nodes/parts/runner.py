@@ -14,7 +14,8 @@ import os
 import signal
 import sys
 import threading
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from types import FrameType
 
 import rclpy
 from rclpy.exceptions import NameValidationException
@@ -23,13 +24,8 @@ from rclpy.logging import get_logger
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args, try_shutdown
 
-from nodes.parts.node import LessonNode, NodeUsageError
-from nodes.parts.translated_logger import TranslatedLogger
+from nodes.parts.node import LessonNode, NodeUsageError, TranslatedLogger
 from text.i18n import N_, detect
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from types import FrameType
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 GRACE_S = 0.7

@@ -9,30 +9,104 @@ from __future__ import annotations
 import functools
 import math
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
 
-from nodes.parts.drive import from_message, to_message
-from nodes.parts.first_heard import FirstHeard
-from nodes.parts.qos import DEPTH
-from nodes.parts.refusals import CommandRefusals
-from nodes.parts.sole_publisher import SLOWEST, SolePublisher
-from nodes.parts.stall_detector import StallDetector
+from nodes.parts.commands import (
+    SLOWEST,
+    CommandRefusals,
+    FirstHeard,
+    Refusal,
+    SolePublisher,
+    StallDetector,
+    from_message,
+    to_message,
+)
+from nodes.parts.node import DEPTH, LessonNode
 from nodes.safety import words
-from nodes.safety.snapshot import GateSnapshot
 from robot.limits import SPEED, STEERING
-from robot.safety.distance import Shares, Verdict, allowed, gate
-from robot.safety.sources import Sources
+from robot.safety.distance import RangeState, Reading, SafetyZone, Shares, Verdict, allowed, gate, range_state, share
+from robot.safety.several import LowestReading
+from robot.safety.sources import SourceCommand, Sources
 from robot.topics import DRIVE_SAFE, DRIVE_TELEOP
 from robot.words import STOP, DriveSetpoint
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
-    from nodes.parts.node import LessonNode
-    from robot.safety.sources import SourceCommand
+class SensorResult(NamedTuple):
+    """The result of one sensor."""
+
+    place: str
+    """`front` or `rear`."""
+    state: RangeState
+    reading: Reading
+    share: float
+    """The share of the requested speed that is allowed that way, 0 to 1."""
+    too_rare: tuple[str, ...] = ()
+    """Which of several publishers has fallen silent; one of them if there are more."""
+
+
+class DistanceSensor:
+    """The current state of one distance sensor."""
+
+    def __init__(self, place: str) -> None:
+        self._place = place
+        self._readings = LowestReading(time.monotonic())
+
+    def see(self, distance_m: float, *, number: int = 0, publishers: int = 1) -> None:
+        """Add a new reading, its number at its publisher, and how many publishers there are."""
+        self._readings.see(distance_m, time.monotonic(), number=number, publishers=publishers)
+
+    def are(self, publishers: Mapping[bytes, str]) -> None:
+        """Say which publishers there are, by identifier, and the names of their nodes."""
+        self._readings.are(publishers, time.monotonic())
+
+    def result(self, zone: SafetyZone) -> SensorResult:
+        now_s = time.monotonic()
+        reading: Reading = self._readings.reading(now_s, zone.stale_after_s)
+        state = range_state(reading, zone.critical_m, zone.stale_after_s)
+        part = share(reading, zone)
+        if state == RangeState.FREE and not part:
+            # At the critical distance itself, if it slows before that: nothing is let through.
+            state = RangeState.CLOSE
+        too_rare = self._readings.too_rare(now_s, zone.stale_after_s)
+        return SensorResult(self._place, state, reading, part, too_rare)
+
+
+class DistanceSensors:
+    """The sensor in front, and the one behind if there is one."""
+
+    def __init__(self, *, rear: bool) -> None:
+        self.front = DistanceSensor("front")
+        self.rear = DistanceSensor("rear") if rear else None
+
+    def results(self, zone: SafetyZone) -> tuple[SensorResult, ...]:
+        """Return the current result of each, the front first."""
+        return tuple(sensor.result(zone) for sensor in (self.front, self.rear) if sensor is not None)
+
+
+def shares(results: tuple[SensorResult, ...]) -> Shares:
+    """Return the allowed shares each way; without a rear sensor, backing off is unrestricted."""
+    return Shares(*(result.share for result in results))
+
+
+class GateSnapshot(NamedTuple):
+    """The current state of the gate."""
+
+    source: str = ""
+    """The source that drives, empty if none does."""
+    ignored: str = ""
+    """The sources ignored in the last second."""
+    asked_m_s: float = 0.0
+    allowed: float = 1.0
+    """The share of that which passes, 0 to 1; for zero speed, the forward share."""
+    age_s: float | None = None
+    """Age of the newest active command."""
+    refused: Refusal | None = None
+    """Recently refused commands."""
+
 
 _LAST_STOP = Duration(seconds=0.2)
 """How long the last stop may take to reach all subscribers."""
@@ -53,8 +127,8 @@ class CommandGate:
         """
         self._node, self._look, self._reason = node, look, reason
         self._verdict, self._shares = Verdict.STARTING, Shares(0.0, 0.0)
-        names = node.text("sources").replace(",", " ").split()
-        self._sources = Sources(names, node.number("max_age_s"), {DRIVE_TELEOP})
+        names = node.values["sources"].replace(",", " ").split()
+        self._sources = Sources(names, node.values["max_age_s"], {DRIVE_TELEOP})
         self._driver = self._ignored = ""
         self._ignored_s = -math.inf
         self._sent = STOP
@@ -70,12 +144,12 @@ class CommandGate:
     @property
     def starting(self) -> bool:
         """Whether it has just started and may not know of an emergency stop yet."""
-        return self._arrivals.quiet_s < self._node.number("settle_s")
+        return self._arrivals.quiet_s < float(self._node.values["settle_s"])
 
     def held_up(self) -> bool:
         """Whether to ignore messages now, as they may have waited too long."""
-        ages_s = (self._node.number("max_age_s") or math.inf, self._node.number("stale_after_s"))
-        held_up = self._stalls.lasted(min(ages_s) + 1.0 / self._node.number("rate"))
+        ages_s = (self._node.values["max_age_s"] or math.inf, self._node.values["stale_after_s"])
+        held_up = self._stalls.lasted(min(ages_s) + 1.0 / self._node.values["rate"])
         if held_up:
             self._node.say.warn(words.HELD_UP, every_s=1.0)
         return held_up
@@ -92,7 +166,7 @@ class CommandGate:
     def tick(self) -> None:
         """Drop a command that is too old, and repeat what is allowed."""
         now_s = time.monotonic()
-        self._sources.let_age(self._node.number("max_age_s"), now_s)
+        self._sources.let_age(self._node.values["max_age_s"], now_s)
         self._pass_on(self._sources.driving(now_s))
 
     def stop(self) -> None:

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from nodes.parts.translated_logger import TranslatedLogger
+from nodes.parts.node import TranslatedLogger
+from nodes.safety.gate import GateSnapshot, SensorResult
 from robot.safety.distance import RangeState, SafetyZone, Verdict
 from text.i18n import N_
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from nodes.safety.distance_sensors import SensorResult
-    from nodes.safety.snapshot import GateSnapshot
 
 STARTED = N_("Watching the path: closer than {metres:g} m is danger")
 EMERGENCY = N_("EMERGENCY STOP: nothing moves until it is released")

@@ -8,16 +8,17 @@ real one has appeared it never comes back: a real robot's position cannot be inv
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from ackermann_msgs.msg import AckermannDriveStamped
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
+from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
-from nodes.parts.drive import FRAME, from_message
-from nodes.parts.odometry import ODOM
-from nodes.parts.qos import DEPTH
+from nodes.parts.commands import FRAME, from_message
+from nodes.parts.listeners import ODOM
+from nodes.parts.node import DEPTH, LessonNode
 from robot.kinematics import turning_radius
 from robot.limits import SPEED, STEERING, first_excess
 from robot.motion.odometry import Pose, advance
@@ -25,13 +26,6 @@ from robot.topics import ODOMETRY, TF
 from robot.words import STOP
 from space.transform import quaternion_from_rpy
 from text.i18n import N_
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rclpy.publisher import Publisher
-
-    from nodes.parts.node import LessonNode
 
 AUTO, ALWAYS, NEVER = "auto", "always", "never"
 """Not `yes` and `no`: YAML, and thus ROS, reads those as true and false."""

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from brain.prompt import prompt_file, read_prompt
 from brain.situation import Memory, Situation, conversation
-from nodes.thinking.model import AskedModel
-from nodes.thinking.state import BrainState
+from nodes.parts.node import LessonNode
+from nodes.thinking.model import AskedModel, BrainState
 from robot.commands.schema import SpokenResponse, parse_llm
 from text.i18n import N_
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from brain.budget import TokenUsage
     from brain.faults import ModelError
     from brain.ladder import Ladder
     from brain.settings import ModelSettings
     from brain.thinking import Thought
-    from nodes.parts.node import LessonNode
 
 _ASKED = N_("Asking {model}")
 _REPAIRED = N_("{model} answered something invalid, and is asked once more: {problem}")
@@ -71,7 +69,7 @@ class ModelMind:
         self.model.close()
 
     def _sees(self, settings: ModelSettings) -> bool:
-        wish = self._node.text("picture")
+        wish = self._node.values["picture"]
         return wish == "sent" or (wish == "auto" and settings.vision_model is not None)
 
     def _name(self, settings: ModelSettings) -> str:
@@ -80,7 +78,7 @@ class ModelMind:
     async def _question(self, ladder: Ladder, situation: Situation) -> Thought[SpokenResponse]:
         from brain.thinking import think
 
-        prompt = read_prompt(prompt_file(self._node.text("prompt"), "brain", self._say.language))
+        prompt = read_prompt(prompt_file(self._node.values["prompt"], "brain", self._say.language))
         return await think(
             ladder,
             SpokenResponse.model_json_schema(),

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Generic, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float32, String
 
 from brain.situation import Situation, refusal
-from nodes.parts.odometry import OdometryListener
-from nodes.parts.qos import DEPTH
-from nodes.parts.sensor import SensorListener
+from nodes.parts.listeners import OdometryListener, SensorListener
+from nodes.parts.node import DEPTH, LessonNode
 from robot.topics import LLM_RESULT, SAFETY_STATE, SONAR_REAR, VLM_DESCRIPTION
-
-if TYPE_CHECKING:
-    from nodes.parts.node import LessonNode
 
 T = TypeVar("T")
 _GATE_S, _POSE_S, _SEEN_S = 3.0, 2.0, 30.0

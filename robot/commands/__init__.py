@@ -1,5 +1,5 @@
 """Commands to the robot in words or JSON: the schema, and the errors in a text.
 
 Other rooms may import `schema`, the only entry point for an LLM's JSON, `problems`, and `brain`;
-`explain` and `json_places` are internal.
+`json_places` is internal.
 """

@@ -6,13 +6,9 @@ It takes the place of an LLM. It never drives forward without a clear view ahead
 from __future__ import annotations
 
 from enum import Enum
-from typing import TYPE_CHECKING
 
 from robot.safety.distance import RangeState
-from robot.words import STOP, parse_word
-
-if TYPE_CHECKING:
-    from robot.words import DriveSetpoint
+from robot.words import STOP, DriveSetpoint, parse_word
 
 CALL = "voice_command:"
 """Prefix that the mock microphone puts before the words."""

@@ -6,17 +6,13 @@ A message is a template and its arguments, so that a screen can translate it.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
+from robot.commands.json_places import Path
 from text.i18n import N_, translated
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from robot.commands.json_places import Path
 
 TEMPLATES: Mapping[str, str] = MappingProxyType(
     {

@@ -8,14 +8,10 @@ the text stays what it was.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
-from robot.commands.json_places import JsonError, line_column, read
+from robot.commands.json_places import JsonError, PlacedJson, line_column, read
 from robot.commands.problems import CommandError, Problem
 from robot.limits import OF_COMMANDS
-
-if TYPE_CHECKING:
-    from robot.commands.json_places import PlacedJson
 
 THINK, THOUGHT = "<think>", "</think>"
 _FENCE = re.compile(r"(```|~~~)[A-Za-z0-9]*(?=[\s{\[])")

@@ -1,5 +1,4 @@
 """Frames of the serial devices in words, for a person who watches.
 
-Drivers may import `batches`, `protocols` and a device's own module; screens may import `lines` and
-`protocols`.
+Drivers may import both modules, screens `protocols`.
 """

@@ -11,14 +11,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from robot.kinematics import WHEELBASE_M, turning_radius
 from robot.limits import SPEED, STEERING
+from robot.motion.odometry import Point, Pose
 from robot.words import STOP, DriveSetpoint
-
-if TYPE_CHECKING:
-    from robot.motion.odometry import Point, Pose
 
 SPEED_STEP_M_S = 0.05
 STEERING_STEP_RAD = 0.02

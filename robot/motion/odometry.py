@@ -8,12 +8,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from robot.kinematics import WHEELBASE_M, turning_radius
-
-if TYPE_CHECKING:
-    from robot.words import DriveSetpoint
+from robot.words import DriveSetpoint
 
 
 @dataclass(frozen=True)

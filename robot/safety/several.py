@@ -10,13 +10,11 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Generic, TypeVar
 
 from robot.safety.distance import Reading
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
 
 _MOST = 4096
 _LOST = 100

@@ -13,13 +13,10 @@ left to ask for the stop.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from robot.words import DriveSetpoint
+from robot.words import DriveSetpoint
 
 HELD_AGE_S = 0.5
 """A held source sends twenty commands a second."""

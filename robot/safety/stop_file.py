@@ -15,18 +15,32 @@ import fcntl
 import json
 import os
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+
+from platformdirs import user_state_path
 
 from robot.safety.known_stops import KnownStops
-from robot.safety.stop_place import stop_place
 from robot.safety.stop_record import Stop, StopRecord, read_record
 from text.i18n import N_
 from text.nested import read_json
 from text.os_words import os_reason
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+STATE_DIR = "DECK_STATE_DIR"
+"""Environment variable with the folder of Deck's saved state."""
+
+
+def stop_place(domain: int) -> Path:
+    """Return a file in `$DECK_STATE_DIR`, `$XDG_STATE_HOME/deck` or `~/.local/state/deck`.
+
+    Raises:
+        RuntimeError: if this user has no home directory.
+    """
+    chosen = os.environ.get(STATE_DIR)
+    state = Path(chosen) if chosen else user_state_path("deck")
+    return state / "stops" / str(domain)
+
 
 _LONGEST = 8192
 _ALONE_WITHIN_S, _AGAIN_S = 0.05, 0.001

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-from robot.wire.crc import sum8
+from robot.wire.line import sum8
 
 BAUD = 115_200
 SIZE = 9

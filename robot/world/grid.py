@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from robot.world.room import Box, Room
+from robot.world.world import Box, Room
 
 OCCUPIED, FREE, UNKNOWN = 100, 0, -1
 """Cell values of nav_msgs/OccupancyGrid."""

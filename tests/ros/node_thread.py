@@ -19,8 +19,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.logging import LoggingSeverity, get_logger
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from nodes.parts.node import LessonNode
-from nodes.parts.periodic_thread import PeriodicThread
+from nodes.parts.node import LessonNode, PeriodicThread
 from tests.ros.peer import DISCOVERY
 from tests.waiting import wait_until
 
@@ -58,7 +57,7 @@ class NodeThread:
             # Some of its threads end with its process.
             patch.setattr(PeriodicThread, "start", start)
             rclpy.init(args=argv, context=context, domain_id=domain)
-            kind = _node_of(module)
+            kind = node_of(module)
             # An observer of Deck's in this process silences all without a level of their own.
             get_logger(kind.NAME).set_level(LoggingSeverity.INFO)
             self.node: LessonNode = kind()
@@ -107,7 +106,7 @@ class NodeThread:
             self._lines.append(f"[{LEVELS[line.level]}] [{line.name}]: {line.msg}")
 
 
-def _node_of(module: str) -> type[LessonNode]:
+def node_of(module: str) -> type[LessonNode]:
     found = [
         one
         for one in vars(importlib.import_module(module)).values()

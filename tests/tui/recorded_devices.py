@@ -8,9 +8,8 @@ from typing import Any
 
 from graph.data import GraphUpdate, Sample
 from launcher.status import NodeState, NodeStatus
-from robot.frames.batches import Chunk, FrameBatcher
-from robot.frames.lines import FrameLine, encode
-from robot.frames.pico import PicoReader
+from robot.frames.protocols import Chunk, FrameBatcher, FrameLine, encode
+from robot.frames.readers import PicoReader
 from robot.wire import pico as wire_pico
 from robot.wire.pico import Drive, Telemetry
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession

@@ -9,8 +9,7 @@ from robot.kinematics import wheel_speeds
 from robot.motion.odometry import Pose
 from robot.safety.distance import Reading, SafetyZone, Shares, gate, range_state, share, where
 from robot.words import STOP, DriveSetpoint
-from robot.world.room import Box, Room
-from robot.world.world import STEP_S, Wheels, World
+from robot.world.world import STEP_S, Box, Room, Wheels, World
 
 CONTROL_STEPS = 5
 """20 commands a second."""

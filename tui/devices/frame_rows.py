@@ -6,8 +6,7 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from launcher.status import LogLine, Severity
-from robot.frames.lines import MOST_OCTETS, FrameLine
-from robot.frames.protocols import FrameKind
+from robot.frames.protocols import MOST_OCTETS, FrameKind, FrameLine
 from text.i18n import N_, _
 from tui.log_view.rows import LogColumns
 

@@ -10,7 +10,7 @@ from textual.widgets import Static
 
 from graph.diagnostics.book import DiagnosticsBook
 from launcher.status import Severity
-from robot.frames.lines import decode
+from robot.frames.protocols import decode
 from robot.topics import DIAGNOSTICS
 from text import ros2_words
 from text.i18n import N_, _

@@ -121,7 +121,7 @@ class GraphTypeTree(Tree["str | None"], Working):
             # The first use of a package imports it, which takes time.
             found = await asyncio.to_thread(definition, type_name)
         except UnknownTypeError as error:
-            node.add_leaf(Text(plain(localized(error.reason), LONGEST), "italic"))
+            node.add_leaf(Text.styled(plain(localized(error.reason), LONGEST), "italic"))
             return
         for part in found.parts:
             _fill(node, part.fields, part.constants)

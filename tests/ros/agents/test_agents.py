@@ -27,7 +27,7 @@ from launcher.client.client import SupervisorClient, attach, launch
 from launcher.consent import AUDIT_FILE, ConsentAnswer
 from launcher.control.consent import REFUSED_FOR_S
 from launcher.status import NodeState, Severity
-from nodes.parts.stop_reports import named
+from nodes.parts.stop_news import named
 from robot.safety.stop_file import TOPIC, StopFile
 from robot.safety.stop_record import Stop
 from robot.topics import DRIVE_SAFE, LLM_RESULT

@@ -11,11 +11,10 @@ import pytest
 import serial
 
 from nodes.drivers import pico as _pico_client
-from nodes.drivers.chassis_words import StandstillLogger
-from nodes.drivers.pico import SILENT_AFTER_S, PicoClient
+from nodes.drivers.pico import SILENT_AFTER_S, PicoClient, StandstillLogger
 from nodes.drivers.serial_link import SerialLink
-from nodes.parts import translated_logger as _translated_logger
-from nodes.parts.translated_logger import TranslatedLogger
+from nodes.parts import node as _translated_logger
+from nodes.parts.node import TranslatedLogger
 from robot.wire.pico import Telemetry, encode
 from tests.waiting import wait_until
 

@@ -14,9 +14,8 @@ from rclpy.qos import QoSProfile, qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32
 
-from nodes.parts.translated_logger import TranslatedLogger
-from nodes.safety.distance_sensors import DistanceSensor
-from nodes.safety.snapshot import GateSnapshot
+from nodes.parts.node import TranslatedLogger
+from nodes.safety.gate import DistanceSensor, GateSnapshot
 from nodes.safety.words import diagnosis, tell_front
 from robot.safety.distance import SafetyZone, Verdict
 from tests.ros.gate import BEYOND, FRONT, REAR, STAMPS, Gate, drive, stamped, values

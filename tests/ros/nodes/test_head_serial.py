@@ -18,10 +18,9 @@ from example_interfaces.srv import AddTwoInts
 from sensor_msgs.msg import JointState
 from typing_extensions import Self
 
-from nodes.simulated.device_fault import FINE, SILENT, UNPLUGGED, FaultyLine
-from nodes.simulated.pseudo_terminal import PseudoSerial
+from nodes.simulated.devices import FINE, SILENT, UNPLUGGED, FaultyLine, PseudoSerial
 from robot.wire.lsc16 import ServoDecoder, ServoMove
-from robot.world.servos import SimulatedServos
+from robot.world.boards import SimulatedServos
 from tests.ros.devices import set_parameter
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer

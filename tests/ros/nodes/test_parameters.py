@@ -8,7 +8,7 @@ import math
 import os
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import given
@@ -16,15 +16,14 @@ from hypothesis import strategies as st
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 
-from nodes.parts.node import LessonNode
-from nodes.parts.parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
+from nodes.parts.node import BadValueError, Choice, LessonNode, Number, Setting, Switch, Text, Whole
 from tests.ros.node_thread import NodeThread
 from tests.ros.peer import DISCOVERY, ROOT, Peer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-RATE = Number("rate", 1.0, "Readings a second", low=0.1, high=200.0, unit="Hz")
+RATE = Number(1.0, "Readings a second", low=0.1, high=200.0, unit="Hz")
 MODULES = (
     "hello", "mock_sonar", "safety_stop", "head_controller", "ai_driver", "electronic_differential",
     "camera_tf", "mock_camera", "vlm_agent_stub", "vlm_agent", "mock_audio", "audio", "ai_brain",
@@ -33,11 +32,11 @@ MODULES = (
 )  # fmt: skip
 
 
-def settings_of(name: str) -> list[Setting]:
-    found: list[Setting] = []
+def settings_of(name: str) -> list[Setting[Any]]:
+    found: list[Setting[Any]] = []
     for item in vars(importlib.import_module(f"nodes.{name}")).values():
         if isinstance(item, type) and issubclass(item, LessonNode) and item is not LessonNode:
-            found += item.SETTINGS
+            found += item.settings().values()
     return found
 
 
@@ -68,16 +67,16 @@ def test_a_number_is_inside_its_range_or_refused(value: object) -> None:
         (RATE, math.nan),
         (RATE, True),
         (RATE, "1.0"),
-        (Whole("queue", 4, "", low=0, high=8), 2.5),
-        (Whole("queue", 4, "", low=0, high=8), 9),
-        (Whole("queue", 4, "", low=0, high=8), True),
-        (Switch("gate", False, ""), 1),
-        (Text("topic", "/a", ""), ""),
-        (Text("topic", "/a", ""), 5),
-        (Choice("pattern", "a", "", choices=("a", "b")), "c"),
+        (Whole(4, "", low=0, high=8), 2.5),
+        (Whole(4, "", low=0, high=8), 9),
+        (Whole(4, "", low=0, high=8), True),
+        (Switch(False, ""), 1),
+        (Text("/a", ""), ""),
+        (Text("/a", ""), 5),
+        (Choice("a", "", choices=("a", "b")), "c"),
     ],
 )
-def test_nonsense_is_refused(setting: Setting, value: object) -> None:
+def test_nonsense_is_refused(setting: Setting[Any], value: object) -> None:
     with pytest.raises(BadValueError):
         setting.accept(value)
 
@@ -106,8 +105,9 @@ OTHER_STARTS = [
 ]
 STARTS = """
 import importlib, json, sys
+from tests.ros.node_thread import node_of
 for module, words in json.loads(sys.argv[1]):
-    print(importlib.import_module(module).main(words), flush=True)
+    print(node_of(module).main(words), flush=True)
 """
 
 

@@ -59,10 +59,7 @@ def test_the_description_and_what_is_fixed_wait_for_whoever_comes_late(peer: Pee
         fixed = peer.hear("/tf_static", TFMessage, LATCHED)
         wait_until(lambda: described and fixed, "what is latched")
     assert described[0].data == COURSE_ROBOT.read_text()
-    cameras, sonars = (
-        str(next(each.default for each in node_type.SETTINGS if each.name == "frame_id"))
-        for node_type in (MockCamera, TofSonar)
-    )
+    cameras, sonars = (str(node_type.settings()["frame_id"].default) for node_type in (MockCamera, TofSonar))
     assert children(fixed[0]) == {"camera_link", cameras, sonars, "sonar_rear_link"}
 
 

@@ -12,7 +12,7 @@ from std_msgs.msg import ByteMultiArray, Float32, String
 
 from brain.speech.espeak import EspeakVoice
 from brain.speech.server import wav_of
-from nodes.parts.sound import from_message
+from nodes.parts.messages import sound_of
 from robot.sound import RATE_HZ, level_dbfs, text_in
 from tests.ros.node_process import NodeProcess
 from tests.waiting import wait_until
@@ -31,7 +31,7 @@ def spoken(words: str) -> bytes:
 
 def speech_in(messages: list[ByteMultiArray]) -> bytes:
     """What of it is sound, not text."""
-    return b"".join(sound for sound in map(from_message, messages) if text_in(sound) is None)
+    return b"".join(sound for sound in map(sound_of, messages) if text_in(sound) is None)
 
 
 def test_a_spoken_file_drives_the_wheels_and_is_answered_aloud(peer: Peer, ros_domain: int, tmp_path: Path) -> None:

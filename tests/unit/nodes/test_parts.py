@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 import serial
 
-from nodes.drivers.camera_source import CameraSource, SourceKind
-from nodes.drivers.serial_writes import SerialWrites
-from nodes.parts.stall_detector import StallDetector
-from nodes.simulated.pseudo_terminal import PseudoSerial
+from nodes.drivers.capture import CameraSource, SourceKind
+from nodes.drivers.serial_link import SerialWrites
+from nodes.parts.commands import StallDetector
+from nodes.simulated.devices import PseudoSerial
 from tests.waiting import wait_until
 
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from nodes.drivers import sound_child as _sound_child
+from nodes.drivers import sound_port as _sound_child
 from nodes.drivers import sound_port as _sound_port
 from nodes.drivers.sound_device import IN, OUT, choose
 from nodes.drivers.sound_port import SoundPort
-from nodes.parts.translated_logger import TranslatedLogger
+from nodes.parts.node import TranslatedLogger
 from tests.waiting import wait_until
 
 RATE_HZ = 8000

@@ -6,10 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.frames.lsc16 import ServoReader
-from robot.frames.pico import PicoReader
 from robot.frames.protocols import FramePiece, FrameReader
-from robot.frames.tof import TofReader
+from robot.frames.readers import PicoReader, ServoReader, TofReader
 from robot.wire import lsc16 as wire_lsc16
 from robot.wire import pico as wire_pico
 from robot.wire import tfluna as wire_tfluna

@@ -6,8 +6,7 @@ import json
 
 import pytest
 
-from robot.commands.schema import parse_llm
-from robot.commands.so_far import so_far
+from robot.commands.schema import parse_llm, so_far
 
 DRIVE = {"action": "drive", "speed": 0.2, "steering": -0.1}
 LOOK = {"action": "turn_head", "pan": -45, "tilt": 0}

@@ -16,8 +16,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.safety.stop_file import BY_SCREEN, KeptStop, SavedStop, StopFile
-from robot.safety.stop_place import stop_place
+from robot.safety.stop_file import BY_SCREEN, KeptStop, SavedStop, StopFile, stop_place
 from robot.safety.stop_record import MOST_HELD, MOST_RELEASED, Insistence, Stop, StopRecord, read_record
 from tests.waiting import wait_until
 

@@ -11,8 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.wire.crc import crc16
-from robot.wire.line import LONGEST, LineSplitter, unwrap, wrap
+from robot.wire.line import LONGEST, LineSplitter, crc16, unwrap, wrap
 from robot.wire.pico import (
     FLAGS,
     Drive,

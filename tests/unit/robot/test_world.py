@@ -17,9 +17,8 @@ from hypothesis import strategies as st
 from robot.motion.odometry import Pose
 from robot.safety.distance import SafetyZone
 from robot.wire.pico import Drive, Halt, Hello, Message, PicoDecoder, Release, Telemetry, encode
-from robot.world.pico import SimulatedPico
-from robot.world.room import LIVING_ROOM, Box, Room
-from robot.world.world import Body, SimulatedSonar, Wheels, World
+from robot.world.boards import SimulatedPico
+from robot.world.world import LIVING_ROOM, Body, Box, Room, SimulatedSonar, Wheels, World
 from tests.unit.random_driver import RandomDriver, drive, let_pass
 
 EMPTY = Room(Box(0.0, 0.0, 10.0, 10.0))

@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.commands.problems import CommandError
-from robot.commands.schema import LlmResponse, parse_llm
-from robot.commands.so_far import so_far
+from robot.commands.schema import LlmResponse, parse_llm, so_far
 from robot.commands.wrapping import unwrapped
 
 DRIVE = '{"action":"drive","speed":0.2,"steering":0.0}'

@@ -1,18 +1,109 @@
-"""Lines to and from the Pico in words (see docs/pico-protocol.md)."""
+"""Frames of the serial devices in words, in both directions."""
 
 from __future__ import annotations
 
+import math
 import re
 
-from robot.frames.protocols import FrameKind, FramePhrases, FramePiece, noise
-from robot.wire.crc import crc16
-from robot.wire.line import LONGEST, unwrap
+from robot.frames.protocols import FrameKind, FramePhrases, FramePiece, HeadedReader, noise
+from robot.wire.line import LONGEST, crc16, sum8, unwrap
+from robot.wire.lsc16 import ActionComplete, ActionRun, ActionStop, Battery, ServoFrame, ServoMove
+from robot.wire.lsc16 import decode as decode_servos
 from robot.wire.pico import FLAGS, Drive, Halt, Hello, Message, Telemetry, Welcome, parse
+from robot.wire.tfluna import SIZE, Model, TofFrame
+from robot.wire.tfluna import decode as decode_tof
 from text.i18n import N_, translated
+
+_TOF_HEAD = b"\x59\x59"
+_TOF = {
+    "distance": N_("distance {metres:.2f} m"),
+    "far": N_("nothing in range ({centimetres} cm)"),
+    "near": N_("too close to measure ({centimetres} cm)"),
+    "none": N_("no valid reading ({centimetres} cm)"),
+    "rest": N_(", strength {strength}, {celsius:.1f} °C"),
+    "bad": N_("CHECKSUM FAILED: got {told:02X}, expected {counted:02X}"),
+}
+
+
+class TofReader(HeadedReader):
+    """Reads the frames of a sonar; bytes sent to it are shown as noise."""
+
+    def __init__(self, language: str, model: Model = Model.LUNA) -> None:
+        self._words, self._model = FramePhrases(language, _TOF), model
+        super().__init__(language, _TOF_HEAD, _tof_length, self._read)
+
+    def _read(self, octets: bytes) -> FramePiece:
+        frame = decode_tof(octets)
+        if frame is not None:
+            return FramePiece(octets, self._said(frame))
+        said = self._words("bad", told=octets[-1], counted=sum8(octets[:-1]))
+        return FramePiece(octets, said, FrameKind.BAD)
+
+    def _said(self, frame: TofFrame) -> str:
+        metres = frame.distance_m(self._model)
+        key = "distance"
+        if not math.isfinite(metres):
+            key = "none" if math.isnan(metres) else "far" if metres > 0 else "near"
+        first = self._words(key, metres=metres, centimetres=frame.distance_cm)
+        return first + self._words("rest", strength=frame.strength, celsius=frame.temperature_c)
+
+
+def _tof_length(_start: bytes) -> int:
+    return SIZE
+
+
+_SERVO_HEAD = b"\x55\x55"
+_SERVO_LENGTHS = range(2, 54)
+"""Valid values of the third byte: params + 2, with 16 servos at most."""
+_SERVO = {
+    "move": N_("move in {time} ms: {servos}"),
+    "servo": N_("servo {servo} to {pulse} us"),
+    "run": N_("group {group} runs {times} times"),
+    "complete": N_("group {group} has ended ({times} times)"),
+    "stop": N_("group stops"),
+    "ask": N_("battery voltage?"),
+    "battery": N_("battery {volts:.2f} V"),
+    "bad": N_("NOT AN LSC-16 FRAME"),
+}
+
+
+class ServoReader(HeadedReader):
+    """Reads frames to or from the controller."""
+
+    def __init__(self, language: str) -> None:
+        self._words = FramePhrases(language, _SERVO)
+        super().__init__(language, _SERVO_HEAD, _servo_length, self._read)
+
+    def _read(self, octets: bytes) -> FramePiece:
+        frame = decode_servos(octets)
+        if frame is None:
+            return FramePiece(octets, self._words("bad"), FrameKind.BAD)
+        return FramePiece(octets, self._said(frame))
+
+    def _said(self, frame: ServoFrame) -> str:
+        words = self._words
+        if isinstance(frame, ServoMove):
+            pairs = frame.pulses_us
+            servos = ", ".join(words("servo", servo=servo, pulse=pulse) for servo, pulse in pairs)
+            return words("move", time=frame.time_ms, servos=servos)
+        if isinstance(frame, (ActionRun, ActionComplete)):
+            key = "run" if isinstance(frame, ActionRun) else "complete"
+            return words(key, group=frame.group, times=frame.times)
+        if isinstance(frame, Battery):
+            return words("battery", volts=frame.millivolts / 1000)
+        return words("stop" if isinstance(frame, ActionStop) else "ask")
+
+
+def _servo_length(start: bytes) -> int:
+    """Return the bytes of the frame; for an impossible length, the bytes of the header alone."""
+    if len(start) < 3:
+        return 0
+    return start[2] + 2 if start[2] in _SERVO_LENGTHS else len(_SERVO_HEAD)
+
 
 _LINE = re.compile(rb"([^\r\n]*)[\r\n]+")
 _CHECKED = re.compile(rb"\$([^$*]*)\*([0-9A-Fa-f]{4})")
-_PHRASES = {
+_PICO = {
     "hello": N_("hello, protocol {protocol}"),
     "drive": N_("drive left {left:.2f} right {right:.2f} rad/s steering {steering:.2f} rad"),
     "halt": N_("EMERGENCY STOP"),
@@ -35,7 +126,7 @@ class PicoReader:
     """Reads lines to or from the Pico."""
 
     def __init__(self, language: str) -> None:
-        self._language, self._words = language, FramePhrases(language, _PHRASES)
+        self._language, self._words = language, FramePhrases(language, _PICO)
         self._rest = b""
 
     def feed(self, data: bytes) -> list[FramePiece]:

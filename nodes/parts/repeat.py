@@ -7,25 +7,18 @@ commands then has to repeat them; a parameter sets how long one command moves th
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
 
 from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
 
-from nodes.parts.drive import to_message
+from nodes.parts.commands import to_message
 from nodes.parts.emergency import EmergencyStopListener
-from nodes.parts.parameters import Number
-from nodes.parts.qos import DEPTH
+from nodes.parts.node import DEPTH, LessonNode, Number
 from robot.topics import DRIVE
-from robot.words import STOP
+from robot.words import STOP, DriveSetpoint
 from text.i18n import N_
 
-if TYPE_CHECKING:
-    from nodes.parts.node import LessonNode
-    from robot.words import DriveSetpoint
-
 REPEAT_FOR_S = Number(
-    "repeat_for_s",
     0.0,
     "A command is sent 10 times a second for this long, then a stop; 0: it is sent once",
     fixed=True,
@@ -42,7 +35,7 @@ class DriveRepeater:
     """Publishes /drive for a node that has `REPEAT_FOR_S` among its settings."""
 
     def __init__(self, node: LessonNode) -> None:
-        self._node, self._for_s = node, node.number(REPEAT_FOR_S.name)
+        self._node, self._for_s = node, node.values["repeat_for_s"]
         self._publisher = node.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
         self._setpoint, self._until_s = STOP, 0.0
         if self._for_s:

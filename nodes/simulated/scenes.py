@@ -1,4 +1,4 @@
-"""The film of the mock camera: a plain, a sky, a bouncing ball, and a counting caption.
+"""What the simulated camera shows: a small film, or the room around the simulated robot.
 
 Drawn with numpy alone, directly into the bytes of the message: a picture takes well under a
 millisecond, and loading OpenCV just for letters would cost more memory than the whole node.
@@ -7,13 +7,20 @@ millisecond, and loading OpenCV just for letters would cost more memory than the
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+import time
 
 import numpy as np
+from geometry_msgs.msg import PoseStamped
+from numpy.typing import NDArray
+from sensor_msgs.msg import JointState
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+from nodes.parts.node import DEPTH, LessonNode
+from robot.joints import HEAD_PAN, HEAD_TILT
+from robot.motion.odometry import Pose, yaw_from_quaternion
+from robot.topics import HEAD_STATE, MOCK_POSE
+from robot.world.view import CameraPose, RoomView
+from robot.world.world import LIVING_ROOM
+from text.i18n import N_
 
 _SKY_TOP, _SKY_LOW = (96, 148, 224), (196, 220, 244)
 _GROUND_FAR, _GROUND_NEAR = (132, 148, 96), (72, 88, 56)
@@ -111,3 +118,44 @@ class MovingScene:
             spot = picture[top : top + height, left : left + mask.shape[1]]
             spot[mask[: spot.shape[0], : spot.shape[1]]] = colour
             left += step
+
+
+_PATIENCE_S = 3.0
+_NO_POSE = N_("Nobody publishes {topic}: the picture is that of the start (is mock_robot running?)")
+
+
+class RoomScene:
+    """Follows the true pose of the robot, and the head that the camera sits on."""
+
+    def __init__(self, node: LessonNode, height: int, width: int, *, blue_first: bool) -> None:
+        self._say = node.say
+        self._view = RoomView(LIVING_ROOM, height, width, blue_first=blue_first)
+        self._pose, self._pan_rad, self._tilt_rad = Pose(), 0.0, 0.0
+        self._drawn: CameraPose | None = None
+        self._waits_since_s: float | None = time.monotonic()
+        node.create_subscription(PoseStamped, MOCK_POSE, self._take_pose, DEPTH)
+        node.create_subscription(JointState, HEAD_STATE, self._take_head, DEPTH)
+
+    def draw(self, picture: NDArray[np.uint8], _number: int) -> None:
+        """Draw into an array of shape (height, width, 3), always the same one."""
+        since_s = self._waits_since_s
+        if since_s is not None and time.monotonic() - since_s > _PATIENCE_S:
+            self._say.warn(_NO_POSE, every_s=30.0, topic=MOCK_POSE)
+        eye = CameraPose.on(self._pose, self._pan_rad, self._tilt_rad)
+        if eye != self._drawn:
+            # A standing robot keeps its picture.
+            self._view.draw(picture, eye)
+            self._drawn = eye
+
+    def _take_pose(self, message: PoseStamped) -> None:
+        place, turn = message.pose.position, message.pose.orientation
+        pose = Pose(place.x, place.y, yaw_from_quaternion(turn.x, turn.y, turn.z, turn.w))
+        if pose.is_finite:
+            self._pose, self._waits_since_s = pose, None
+
+    def _take_head(self, message: JointState) -> None:
+        angles = dict(zip(message.name, message.position, strict=False))
+        # A head with an unknown direction counts as looking straight ahead.
+        looks = angles.get(HEAD_PAN, 0.0), angles.get(HEAD_TILT, 0.0)
+        if all(map(math.isfinite, looks)):
+            self._pan_rad, self._tilt_rad = looks

@@ -1,17 +1,14 @@
-"""sensor_msgs/Image to numpy, without cv_bridge."""
+"""Pictures and sound in messages, to numpy and bytes, and back."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
+from sensor_msgs.msg import Image
+from std_msgs.msg import ByteMultiArray
 
 from text.i18n import N_
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from sensor_msgs.msg import Image
 
 CHANNELS = 3
 _BAD_ENCODING = N_("encoding {encoding}, but only bgr8 and rgb8 are understood")
@@ -73,3 +70,13 @@ def fit(picture: NDArray[np.uint8], into: NDArray[np.uint8]) -> None:
     scaled = cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA)
     into[:] = 0
     into[top : top + height, left : left + width] = scaled.reshape(height, width, -1)
+
+
+def sound_message(sound: bytes) -> ByteMultiArray:
+    """Return samples (signed, 16 bit, little-endian, mono) as ROS wants them: each byte a bytes of its own."""
+    return ByteMultiArray(data=[sound[at : at + 1] for at in range(len(sound))])
+
+
+def sound_of(message: ByteMultiArray) -> bytes:
+    """Return the samples of a message, as `sound_message` takes them."""
+    return b"".join(message.data)

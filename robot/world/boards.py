@@ -1,13 +1,10 @@
-"""The Pico of the simulated robot: the firmware's rules, applied to the wheels of a `World`.
-
-A test keeps its behaviour equal to that of `firmware/pico2/control.py`.
-"""
+"""The boards of the simulated robot: the Pico, and the servo controller."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from robot.limits import STEERING, first_excess, wheel_limits
+from robot.wire.lsc16 import CENTRE_US, Battery, BatteryRequest, ServoDecoder, ServoMove
+from robot.wire.lsc16 import encode as encode_servos
 from robot.wire.pico import (
     PROTOCOL,
     SEQUENCES,
@@ -23,10 +20,7 @@ from robot.wire.pico import (
     Welcome,
     encode,
 )
-from robot.world.world import STEP_S, Wheels
-
-if TYPE_CHECKING:
-    from robot.world.world import World
+from robot.world.world import STEP_S, Wheels, World
 
 FIRMWARE = "simulated"
 _STEP_MS, _WATCHDOG_MS = round(STEP_S * 1000), round(WATCHDOG_S * 1000)
@@ -36,7 +30,10 @@ _NEEDS_RELEASE = frozenset("ELRUH")
 
 
 class SimulatedPico:
-    """Obeys lines; advance its time together with that of its world."""
+    """The firmware's rules, applied to the wheels of a `World`; advance its time together with that.
+
+    A test keeps its behaviour equal to that of `firmware/pico2/control.py`.
+    """
 
     def __init__(self, world: World) -> None:
         self.world = world
@@ -162,3 +159,34 @@ class SimulatedPico:
     def _say(self, message: FromPico) -> None:
         self._out += encode(message)
         self._sequence = (self._sequence + 1) % SEQUENCES
+
+
+class SimulatedServos:
+    """Servos that move at the commanded pace."""
+
+    def __init__(self) -> None:
+        self.battery_v = 7.4
+        self._decoder = ServoDecoder()
+        self._now_s = 0.0
+        self._moves: dict[int, tuple[float, float, float, float]] = {}
+        """Servo to start and end pulse in us, start time and duration in seconds."""
+
+    def feed(self, data: bytes) -> bytes:
+        """Take bytes from the computer; return the answer, usually empty."""
+        answer = b""
+        for frame in self._decoder.feed(data):
+            if isinstance(frame, ServoMove):
+                for servo, pulse_us in frame.pulses_us:
+                    start = self.pulse_us(servo)
+                    self._moves[servo] = (start, pulse_us, self._now_s, frame.time_ms / 1000)
+            elif isinstance(frame, BatteryRequest):
+                answer += encode_servos(Battery(round(self.battery_v * 1000)))
+        return answer
+
+    def advance(self, seconds: float) -> None:
+        self._now_s += seconds
+
+    def pulse_us(self, servo: int) -> float:
+        start, goal, began_s, length_s = self._moves.get(servo, (CENTRE_US, CENTRE_US, 0.0, 0.0))
+        passed_s = self._now_s - began_s
+        return goal if passed_s >= length_s else start + (goal - start) * passed_s / length_s
