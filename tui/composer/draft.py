@@ -20,8 +20,7 @@ from brain.faults import FaultKind, ModelError
 from brain.prompt import prompt_file, read_prompt
 from brain.settings import load
 from launcher.status import LogLine, Severity
-from robot.commands.schema import MAX_BYTES, CommandError, parse_llm
-from robot.commands.so_far import so_far
+from robot.commands.schema import MAX_BYTES, CommandError, parse_llm, so_far
 from text.i18n import _, language, localized, ngettext
 from text.plain import plain
 from text.run_path import RUN_ID, run_folder
