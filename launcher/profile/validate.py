@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from launcher.profile.field_marks import AsText, marked
 from launcher.profile.model import NodeDocument, ProfileDocument, ReadyDocument
-from launcher.profile.steps.checks import KINDS, FrameDocument, kind_of
+from launcher.profile.steps.checks import KINDS, kind_of
 from launcher.profile.steps.model import StepDocument, ValueDocument
 from text.sentences import say
 from text.suggestions import did_you_mean
@@ -209,8 +209,6 @@ def _model(where: Where, tree: Branch) -> type[BaseModel]:
         return ValueDocument
     if where[:1] != ("steps",):
         return ProfileDocument
-    if where[-1] == "transform":
-        return FrameDocument
     if len(where) == 2:
         return StepDocument
     here = find(tree, where)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from launcher.profile.steps.checks import CheckDocument, EndsCheck, FieldCheck, LogCheck, PublishCheck, kind_of
+from launcher.profile.steps.checks import CheckDocument, FieldCheck, LogCheck, NodeCheck, PublishCheck, kind_of
 from launcher.profile.steps.draw import draw
 from launcher.profile.steps.expressions import ExpressionError, evaluate, expressions
 from text.sentences import say
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from launcher.profile.steps.model import ValueDocument
     from text.yaml_tree import Branch, Where
 
-PASSIVE = ("field", "log", "nothing", "python", "image", "rate")
+PASSIVE = ("field", "log", "python", "topic")
 """What may stand in `then`: what only looks."""
 
 
@@ -65,9 +65,9 @@ def _check_checks(
 ) -> None:
     for index, check in enumerate(checks):
         where = (*above, index)
-        if isinstance(check, (LogCheck, EndsCheck)):
+        if isinstance(check, LogCheck) or (isinstance(check, NodeCheck) and check.ends is not None):
             kind = str(kind_of(check))
-            name = str(getattr(check, kind))
+            name = str(getattr(check, kind)).lstrip("/")
             if name not in nodes:
                 here = (*where, kind)
                 message = say("there is no node {name!r}", name=name)
