@@ -13,7 +13,7 @@ from cli.options import add_domain, add_seed, at_once, folder, seconds
 from course.folder.folder import folder_of
 from course.grade.formats import CLASSROOM50, FORMATS, look, message, remarks, title, writer_of
 from course.grade.grades import GradeState
-from course.grade.grading import WITHIN_S, Domains, Terms, grade_all
+from course.grade.grading import WITHIN_S, Terms, grade_all
 from course.grade.submission import check_gradable, default_folder, submissions
 from course.grade.walls import bubblewrap_for
 from course.lessons.catalog import find_lesson
@@ -145,13 +145,13 @@ def _bags(folder: str | None, chosen: Sequence[Submission]) -> Path | None:
     return Path(folder)
 
 
-def _domains(options: Namespace) -> Domains:
+def _domains(options: Namespace) -> Sequence[int]:
     """Return the domain that was asked for, or any; raises UsageError if several would share it."""
     if options.domain is None:
-        return Domains()
+        return ()
     if options.jobs > 1:
         raise UsageError(say("--domain is for one job at a time: leave out --jobs"))
-    return Domains([options.domain])
+    return [options.domain]
 
 
 def _writable(name: str) -> Path:
@@ -188,7 +188,7 @@ def _bubblewrap(lesson: LessonFolder) -> str:
 
 
 async def _graded(
-    terms: Terms, chosen: Sequence[Submission], room: tuple[int, Domains], report: _GradeReport
+    terms: Terms, chosen: Sequence[Submission], room: tuple[int, Sequence[int]], report: _GradeReport
 ) -> list[Grade]:
     """Grade them, as many at once as there is room; return the grades in the folders' order."""
     grades: dict[int, Grade] = {}

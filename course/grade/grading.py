@@ -7,9 +7,8 @@ import hashlib
 import shutil
 import tempfile
 import time
-from collections import deque
 from contextlib import aclosing
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -56,44 +55,24 @@ class Terms:
     """The program that makes walls, see `course.grade.walls`; empty: nothing is confined."""
 
 
-@dataclass
-class Domains:
-    """ROS domains that nobody else is in, each used as late again as can be."""
-
-    fixed: Sequence[int] = ()
-    """Those to be used; empty: whichever are unused."""
-    _in_use: set[int] = field(default_factory=set)
-    _recent: deque[int] = field(default_factory=lambda: deque(maxlen=20))
-
-    def take(self) -> int:
-        """Return one that is not in use."""
-        candidates = self.fixed or unused_domains(64)
-        free = [each for each in candidates if each not in self._in_use]
-        fresh = [each for each in free if each not in self._recent]
-        chosen = (fresh or free or list(candidates))[0]
-        self._in_use.add(chosen)
-        self._recent.append(chosen)
-        return chosen
-
-    def give_back(self, domain: int) -> None:
-        """Let it be used again."""
-        self._in_use.discard(domain)
-
-
 async def grade_all(
     terms: Terms,
     chosen: Sequence[Submission],
     *,
     jobs: int = 1,
-    domains: Domains | None = None,
+    domains: Sequence[int] = (),
     on_step: Callable[[Submission, StepGrade], object] = lambda _submission, _step: None,
 ) -> AsyncGenerator[tuple[int, Grade], None]:
     """Grade folders, so many at once; yield each grade as it comes, with its folder's number.
 
     All folders, and the lesson's starter, are read before anything is run: what one learner's nodes do to the files
     of another, where nothing keeps them from it, is not judged.
+
+    `domains`: the ROS domains to do it in, each used as late again as can be; none: some that nobody is in.
     """
-    domains = domains or Domains()
+    free: asyncio.Queue[int] = asyncio.Queue()
+    for domain in domains or unused_domains(64):
+        free.put_nowait(domain)
     check_gradable(terms.lesson)
     starter = await asyncio.to_thread(Files.read, terms.lesson.starter)
     read = [await asyncio.to_thread(_read, one.folder) for one in chosen]
@@ -108,7 +87,7 @@ async def grade_all(
         async with space:
             if not isinstance(files, Files):
                 return number, _not_graded(terms, submission, files)
-            return number, await _Grading(terms, submission, (starter, files), domains, on_step, apart).grade()
+            return number, await _Grading(terms, submission, (starter, files), free, on_step, apart).grade()
 
     tasks = [asyncio.ensure_future(one(number)) for number in range(len(chosen))]
     try:
@@ -154,7 +133,7 @@ class _Grading:
         terms: Terms,
         submission: Submission,
         files: tuple[Files, Files],
-        domains: Domains,
+        domains: asyncio.Queue[int],
         on_step: Callable[[Submission, StepGrade], object],
         apart: Sequence[Path],
     ) -> None:
@@ -207,11 +186,11 @@ class _Grading:
                 self._on_step(self._submission, step)
             return replace(self._grade, steps=steps, notes=())
         for attempt in range(1, ATTEMPTS + 1):
-            domain = self._domains.take()
+            domain = await self._domains.get()
             try:
                 grade, again = await self._in_domain(domain)
             finally:
-                self._domains.give_back(domain)
+                self._domains.put_nowait(domain)
             if not again or attempt == ATTEMPTS:
                 break
         return replace(grade, seconds=time.monotonic() - self._began_s)

@@ -63,6 +63,11 @@ class Observation:
 MET = Observation(met=True)
 
 
+def missed(seen: str, look: str = "", *, final: bool = False) -> Observation:
+    """Return what has been seen instead of what should be."""
+    return Observation(met=False, seen=seen, final=final, look=look)
+
+
 @dataclass(frozen=True)
 class Crash:
     """The end of a process by a mistake."""

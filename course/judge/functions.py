@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from course.judge.evidence import MET, Observation
+from course.judge.evidence import MET, Observation, missed
 from course.judge.missing import dead_nodes, no_messages
 from launcher.profile.steps.checks import PublishCheck, PythonCheck
+from robot.topics import TF_STATIC
 from text.i18n import decimal
 from text.sentences import InLanguages, say
 
@@ -75,12 +76,12 @@ def load(folder: Path, named: str) -> Callable[[SeenMessages], object]:
     return found
 
 
-async def python(check: PythonCheck, evidence: Evidence, since_s: float, within_s: float) -> Observation:
+async def python(check: PythonCheck, evidence: Evidence, since_s: float) -> Observation:
     """Whatever the function says; it is asked again whenever something comes."""
     function = evidence.functions.get(check.python) or await _loaded(evidence.folder, check.python)
     if check.over is not None:
         await evidence.until(lambda: None, check.over)
-    deadline_s = asyncio.get_running_loop().time() + within_s
+    deadline_s = asyncio.get_running_loop().time() + check.within
     while True:
         said = await _asked(function, check, evidence, since_s)
         if said is None:
@@ -98,7 +99,8 @@ async def _asked(
     seen = SeenMessages(
         messages={
             topic: [
-                (each.time_s, each.value) for each in evidence.messages(topic, since_s or evidence.fresh_s(topic))
+                (each.time_s, each.value)
+                for each in evidence.messages(topic, since_s or evidence.fresh_s(topic, latched=topic == TF_STATIC))
             ]
             for topic in check.topics
         },
@@ -188,7 +190,7 @@ def _complaint(said: object, check: PythonCheck, evidence: Evidence) -> Observat
         if row is None or not row.publishers:
             return no_messages(evidence, topic, type_name)
     seen = InLanguages(_with_commas(said)) if isinstance(said, dict) else str(said)
-    return Observation(met=False, seen=seen, look=dead_nodes(evidence))
+    return missed(seen, dead_nodes(evidence))
 
 
 def _with_commas(texts: Mapping[str, str]) -> dict[str, str]:

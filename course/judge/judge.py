@@ -14,13 +14,13 @@ from course.judge.evidence import MET, Evidence, Observation
 from course.judge.functions import LessonFaultError
 from course.judge.kinds import expected, judged, topics_of
 from course.judge.missing import dead_nodes
-from course.judge.unasked import UnaskedFailures, start_anew
+from course.judge.unasked import UnaskedFailures, ends, start_anew
 from course.results import CheckResult, LessonResult, State, StepResult
 from graph.data import Interest
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.observer import Observer
-from launcher.profile.steps.checks import EndsCheck, kind_of
+from launcher.profile.steps.checks import LOOK_AGAIN_S
 from launcher.profile.steps.draw import draw
 from launcher.profile.steps.expressions import filled
 from launcher.status import NodeState
@@ -42,10 +42,8 @@ NAMED_WITHIN_S = 1.5
 """After this, a node need not have the name of the profile, or not run in the process started."""
 FOUND_WITHIN_S = 10.0
 """A node is not waited for any longer: a program need not have one."""
-AGAIN_S = 2.0
+AGAIN_S = LOOK_AGAIN_S
 """How long a failed step rests before it is judged again, if nothing happens."""
-REST_S = {"publish": 5.0, "service": 5.0, "parameter": 5.0, "action": 60.0, "ends": 3600.0}
-"""The same after a check that does something: it must not play with the robot all the time."""
 IDLE_S = 5.0
 """The same where a node was not at work: it may be at any time."""
 
@@ -206,8 +204,7 @@ class Judge:
         """Wait until a node is started, or until it is time to look again."""
         failed = len([c for c in shown.checks if c.state is State.PASSED]) if shown else 0
         checks = self.steps[shown.id].checks if shown else ()
-        kind = kind_of(checks[failed]) if failed < len(checks) else None
-        longest_s = REST_S.get(str(kind), AGAIN_S)
+        longest_s = checks[failed].rest_s if failed < len(checks) else AGAIN_S
         if shown is not None and len(shown.checks) > len(checks):
             longest_s = IDLE_S
         until_s = time.monotonic() + longest_s
@@ -244,7 +241,7 @@ class Judge:
         idle: CheckResult | None = None
         done = 0
         for check in checks:
-            if isinstance(check, EndsCheck):
+            if ends(check):
                 # Afterwards it is another process, which has done nothing yet.
                 idle = await ask(everybody)
             if idle is not None:
@@ -255,7 +252,7 @@ class Judge:
             done += 1
             on_check(StepResult(step.id, meanwhile, step.points, (*found, *more)))
         all_hold = done == len(found)
-        asked = isinstance(checks[min(done, len(found) - 1)], EndsCheck)
+        asked = ends(checks[min(done, len(found) - 1)])
         if not asked and (all_hold or found[done].state is not State.UNJUDGED):
             idle = await ask(everybody if all_hold else ran)
         return _concluded(step, found, done, idle)

@@ -1,83 +1,67 @@
-"""Which function judges which kind of check, and what a check expects, in a sentence."""
+"""The kinds of checks in one table: how each is judged, what it needs to see, and what it expects, in a sentence."""
 
 from __future__ import annotations
 
+import asyncio
 import re
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from course.judge import calls, gates, in_graph, messages, processes, transforms
-from course.judge.evidence import MET, Observation
+from course.judge import acting, looking
+from course.judge.evidence import MET, Observation, missed
 from course.judge.fields import shown
 from course.judge.functions import python
 from course.judge.missing import nobody_subscribes
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.requests import Publish
-from launcher.profile.steps.checks import (
-    KINDS,
-    ActionCheck,
-    CheckDocument,
-    FieldCheck,
-    GateCheck,
-    LogCheck,
-    NoPublisherCheck,
-    NothingCheck,
-    PublishCheck,
-    PythonCheck,
-    TransformCheck,
-    kind_of,
-)
+from launcher.profile.steps.checks import KINDS as MODELS
+from launcher.profile.steps.checks import FieldCheck, LogCheck, PublishCheck, PythonCheck, TopicCheck, kind_of
 from text.sentences import InLanguages, reason_of, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from course.judge.evidence import Evidence
+    from launcher.profile.steps.checks import ActionCheck, CheckDocument, NodeCheck
 
-LOOKS: Mapping[str, Callable[[Any, Evidence, float], Observation | None]] = {
-    "topic": in_graph.topic,
-    "subscription": in_graph.subscription,
-    "qos": in_graph.qos,
-    "rate": messages.rate,
-    "field": messages.field,
-    "image": messages.image,
-    "nothing": messages.nothing,
-    "log": processes.log,
-    "transform": transforms.transform,
-}
-"""Checks that only look, at what has come since a time; 0: since the nodes were started."""
-CALLS: Mapping[str, Callable[[Any, Evidence], Any]] = {
-    "node": in_graph.node,
-    "gate": gates.gate,
-    "service": calls.service,
-    "action": calls.action,
-    "parameter": calls.parameter,
-    "ends": processes.ends,
-    "no_publisher": in_graph.no_publisher,
-}
-"""Checks that do something, and wait for what comes of it, or that look for a time of their own."""
 SUBSCRIBED_S = 3.0
 """How long the judge waits for its own subscriptions before it publishes."""
 
 
+class Kind(NamedTuple):
+    """One kind of check."""
+
+    template: Callable[[Any], str]
+    """The template of the sentence that says what a check expects; its names are those of the check's fields."""
+    look: Callable[[Any, Evidence, float], Observation | None] | None = None
+    """Look at what has come since a time; 0: since the nodes were started."""
+    act: Callable[[Any, Evidence], Any] | None = None
+    """Do something, and wait for what comes of it, for a time of its own."""
+    topics: Callable[[Any], set[str]] = lambda _check: set()
+    """The topics whose messages it needs to see."""
+
+
 async def judged(check: CheckDocument, evidence: Evidence, since_s: float = 0.0) -> Observation:
     """Judge a check, for as long as it may take."""
-    kind = str(kind_of(check))
+    kind = KINDS[str(kind_of(check))]
     if isinstance(check, PythonCheck):
-        return await python(check, evidence, since_s, check.within)
-    if isinstance(check, PublishCheck):
-        return await _published(check, evidence)
-    if kind in CALLS:
-        found: Observation = await CALLS[kind](check, evidence)
+        return await python(check, evidence, since_s)
+    if kind.act is not None:
+        found: Observation = await kind.act(check, evidence)
         return found
-    if isinstance(check, NothingCheck):
-        since_s = since_s or time.time()
-        return await evidence.until(lambda: messages.nothing(check, evidence, since_s), check.for_s + 1)
-    within_s = check.within
-    if kind in ("rate", "image"):
-        within_s = max(within_s, getattr(check, "over", 2.0) + 2)
-    return await evidence.until(lambda: LOOKS[kind](check, evidence, since_s), within_s)
+    look, within_s = kind.look, check.within
+    assert look is not None, kind
+    if isinstance(check, TopicCheck):
+        if check.silent is not None or check.only is not None:
+            since_s = since_s or time.time()
+        within_s = max(within_s, (check.over + 2) if check.rate else 0.0, (check.silent or looking.ABSENT_S) + 1)
+    return await evidence.until(lambda: look(check, evidence, since_s), within_s)
+
+
+def topics_of(check: CheckDocument) -> set[str]:
+    """Return the topics whose messages a check needs to see."""
+    return KINDS[str(kind_of(check))].topics(check)
 
 
 async def _published(check: PublishCheck, evidence: Evidence) -> Observation:
@@ -94,6 +78,16 @@ async def _published(check: PublishCheck, evidence: Evidence) -> Observation:
     return observation
 
 
+async def _hears(check: PublishCheck, evidence: Evidence) -> None:
+    """Wait until the judge itself is subscribed to what is to follow."""
+
+    def hears() -> Observation | None:
+        rows = [row for topic in topics_of(check) if (row := evidence.topic(topic)) and row.publishers]
+        return MET if all(row.measured for row in rows) else None
+
+    await evidence.until(hears, SUBSCRIBED_S)
+
+
 def _unanswered(check: PublishCheck, evidence: Evidence, since_s: float) -> bool:
     """Whether a topic that is published by somebody has carried nothing since then.
 
@@ -103,8 +97,7 @@ def _unanswered(check: PublishCheck, evidence: Evidence, since_s: float) -> bool
     nodes = {f"/{name}" for name in evidence.nodes}
     if asked is not None and any(end.node in nodes for end in asked.published_by):
         return True
-    topics = {topic for follows in check.then for topic in topics_of(follows)}
-    rows = [row for name in topics if (row := evidence.topic(name)) and row.publishers]
+    rows = [row for name in topics_of(check) if (row := evidence.topic(name)) and row.publishers]
     return any(not evidence.messages(row.name, since_s) for row in rows)
 
 
@@ -124,116 +117,58 @@ async def _followed(check: PublishCheck, evidence: Evidence, began_s: float) -> 
 
 
 async def _sent(check: PublishCheck, evidence: Evidence) -> Observation:
-    import asyncio
-
     sending = evidence.observer.ask(Publish(check.publish, check.type, check.message))
     try:
         heard = await asyncio.wrap_future(sending)
     except (FieldError, UnknownTypeError):
         raise
     except Exception as error:  # noqa: BLE001 - the graph refuses it
-        return Observation(met=False, seen=reason_of(error))
+        return missed(reason_of(error))
     if heard:
         return MET
     row = evidence.topic(check.publish)
     types = tuple(dict.fromkeys(end.type_name for end in row.subscribed_by)) if row else ()
     if types and types != (check.type,):
-        return Observation(
-            met=False,
-            seen=say(
+        return missed(
+            say(
                 "{topic} is subscribed to as {found}, not as {wanted}",
                 topic=check.publish,
                 found=", ".join(types),
                 wanted=check.type,
-            ),
+            )
         )
-    if row and row.subscribed_by:
-        end = row.subscribed_by[0]
-        return Observation(
-            met=False,
-            seen=say(
-                "{node} subscribes to {topic} in vain; its QoS: {reliability}, {durability}",
-                node=end.node,
-                topic=check.publish,
-                reliability=end.reliability,
-                durability=end.durability,
-            ),
-            look=say("The QoS of a subscription must not ask for more than publishers offer."),
-        )
-    return nobody_subscribes(evidence, check.publish)
-
-
-async def _hears(check: PublishCheck, evidence: Evidence) -> None:
-    """Wait until the judge itself is subscribed to what is to follow."""
-    topics = {topic for follows in check.then for topic in topics_of(follows)}
-
-    def hears() -> Observation | None:
-        rows = [row for topic in topics if (row := evidence.topic(topic)) and row.publishers]
-        return MET if all(row.measured for row in rows) else None
-
-    await evidence.until(hears, SUBSCRIBED_S)
-
-
-def topics_of(check: CheckDocument) -> set[str]:
-    """Return the topics whose messages a check needs to see."""
-    kind = kind_of(check)
-    if isinstance(check, PublishCheck):
-        return {topic for follows in check.then for topic in topics_of(follows)}
-    if isinstance(check, PythonCheck):
-        return set(check.topics)
-    if isinstance(check, TransformCheck):
-        return set(transforms.TOPICS)
-    if isinstance(check, GateCheck):
-        return {check.gate, check.distance}
-    return {getattr(check, kind)} if kind in ("rate", "field", "image", "nothing") else set()
+    if not row or not row.subscribed_by:
+        return nobody_subscribes(evidence, check.publish)
+    end = row.subscribed_by[0]
+    return missed(
+        say(
+            "{node} subscribes to {topic} in vain; its QoS: {reliability}, {durability}",
+            node=end.node,
+            topic=check.publish,
+            reliability=end.reliability,
+            durability=end.durability,
+        ),
+        say("The QoS of a subscription must not ask for more than publishers offer."),
+    )
 
 
 def expected(check: CheckDocument) -> str:
     """Return what a check expects, in a sentence."""
     if check.what:
         return InLanguages(check.what)
-    if isinstance(check, FieldCheck):
-        return _expected_field(check)
+    about: dict[str, Any] = {name: _shown(value) for name, value in check if name not in ("look", "what", "within")}
     if isinstance(check, PublishCheck):
-        return say(
-            "when {message} is published on {topic}: {then}",
-            message=shown(check.message),
-            topic=check.publish,
-            then=expected(check.then[0]),
-        )
-    kind = str(kind_of(check))
-    about: dict[str, Any] = {
-        name.removesuffix("_nodes").removesuffix("_node"): _shown(value)
-        for name, value in check
-        if name not in ("look", "what", "within")
-    }
-    if isinstance(check, ActionCheck):
-        return say(_expected_end(check), **about)
-    if isinstance(check, NoPublisherCheck) and check.except_nodes:
-        names = check.except_nodes
-        about["except"] = names if isinstance(names, str) else ", ".join(names)
-        return say("nobody but {except} publishes {no_publisher}", **about)
-    if isinstance(check, LogCheck):
-        about["matches"] = _plainly(check.matches)
+        about["then"] = expected(check.then[0])
+    if isinstance(check, (LogCheck, FieldCheck)) and check.matches is not None:
+        # As a learner reads a regular expression: without what only makes it one.
+        about["matches"] = re.sub(r"\\([^A-Za-z0-9])", r"\1", check.matches)
+    if isinstance(check, FieldCheck) and check.between is not None:
+        about["low"], about["high"] = map(shown, check.between)
+    if isinstance(check, TopicCheck) and check.only:
+        about["only"] = ", ".join(check.only)
     if isinstance(check, PythonCheck):
         about["python"] = check.python.partition(":")[2].replace("_", " ")
-    return say(WORDS[kind], **about)
-
-
-def _expected_end(check: ActionCheck) -> str:
-    """Return the template of what an action must do with a goal."""
-    if not check.accepted:
-        return say("{action} refuses the goal {goal}").template
-    if check.cancel:
-        return say("{action} lets the goal {goal} be cancelled").template
-    if check.result:
-        return say("{action} carries out the goal {goal}, with the result {result}").template
-    return WORDS["action"]
-
-
-def _plainly(pattern: str) -> str:
-    """Return a regular expression as a learner reads it: without what only makes it one."""
-    return re.sub(r"\\([^A-Za-z0-9])", r"\1", pattern)
+    return say(KINDS[str(kind_of(check))].template(check), **about)
 
 
 def _shown(value: object) -> str:
@@ -242,35 +177,66 @@ def _shown(value: object) -> str:
     return shown(value) if value is not None else "-"
 
 
-def _expected_field(check: FieldCheck) -> str:
-    words: dict[str, Any] = {"path": check.path, "topic": check.field}
+def _of_topic(check: TopicCheck) -> str:
+    if check.silent is not None:
+        return say("nothing comes on {topic}").template
+    if check.only is not None:
+        return (
+            say("nobody but {only} publishes {topic}") if check.only else say("nobody publishes {topic}")
+        ).template
+    if check.rate is not None:
+        return say("{topic} comes {rate} times a second").template
+    return say("{topic} is published as {type}").template
+
+
+def _of_field(check: FieldCheck) -> str:
     if check.between is not None:
-        low, high = map(shown, check.between)
-        return say("{path} of {topic} is between {low} and {high}", low=low, high=high, **words)
+        return say("{path} of {field} is between {low} and {high}").template
     if check.matches is not None:
-        return say("{path} of {topic} has {pattern}", pattern=_plainly(check.matches), **words)
-    if check.changes is not None:
-        template = say("{path} of {topic} differs from message to message").template
-        return say(template if check.changes else say("{path} of {topic} stays the same").template, **words)
-    return say("{path} of {topic} is {value}", value=shown(check.equals), **words)
+        return say("{path} of {field} has {matches}").template
+    if check.changes is None:
+        return say("{path} of {field} is {equals}").template
+    if check.changes:
+        return say("{path} of {field} differs from message to message").template
+    return say("{path} of {field} stays the same").template
 
 
-WORDS = {
-    "node": say("the node {node} is in the graph").template,
-    "topic": say("{topic} is published as {type}").template,
-    "subscription": say("{by} subscribes to {subscription}").template,
-    "image": say("{image} carries pictures").template,
-    "rate": say("{rate} comes {between} times a second").template,
-    "qos": say("the QoS of {qos} is {reliability}, {durability}").template,
-    "service": say("{service}, asked {request}, answers {response}").template,
-    "action": say("{action} takes the goal {goal}").template,
-    "nothing": say("nothing comes on {nothing}").template,
-    "parameter": say("{of} has the parameter {parameter}").template,
-    "transform": say("{transform} is known to tf").template,
-    "log": say("{log} logs {matches}").template,
-    "ends": say("{ends} ends on Ctrl-C with exit code {code}").template,
-    "no_publisher": say("nobody publishes {no_publisher}").template,
-    "gate": say("only {from} publishes {gate}, and it stops before an obstacle").template,
-    "python": say("a check of this lesson: {python}").template,
+def _of_action(check: ActionCheck) -> str:
+    if not check.accepted:
+        return say("{action} refuses the goal {goal}").template
+    if check.cancel:
+        return say("{action} lets the goal {goal} be cancelled").template
+    if check.result:
+        return say("{action} carries out the goal {goal}, with the result {result}").template
+    return say("{action} takes the goal {goal}").template
+
+
+def _of_node(check: NodeCheck) -> str:
+    if check.ends is not None:
+        return say("{node} ends on Ctrl-C with exit code {ends}").template
+    return say("the node {node} is in the graph").template
+
+
+def _words(template: str) -> Callable[[CheckDocument], str]:
+    return lambda _check: template
+
+
+KINDS: Mapping[str, Kind] = {
+    "node": Kind(_of_node, act=acting.node),
+    "topic": Kind(
+        _of_topic, looking.topic, topics=lambda check: {check.topic} if check.rate or check.silent else set()
+    ),
+    "subscription": Kind(_words(say("{by} subscribes to {subscription}").template), looking.subscription),
+    "field": Kind(_of_field, looking.field, topics=lambda check: {check.field}),
+    "service": Kind(_words(say("{service}, asked {request}, answers {response}").template), act=acting.service),
+    "action": Kind(_of_action, act=acting.action),
+    "publish": Kind(
+        _words(say("when {message} is published on {publish}: {then}").template),
+        act=_published,
+        topics=lambda check: {topic for follows in check.then for topic in topics_of(follows)},
+    ),
+    "parameter": Kind(_words(say("{of} has the parameter {parameter}").template), act=acting.parameter),
+    "log": Kind(_words(say("{log} logs {matches}").template), looking.log),
+    "python": Kind(_words(say("a check of this lesson: {python}").template), topics=lambda check: set(check.topics)),
 }
-assert {*WORDS, "field", "publish"} == set(KINDS)
+assert set(KINDS) == set(MODELS)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from course.judge.evidence import Observation
+from course.judge.evidence import missed
 from graph.data import Trouble
 from launcher.status import NodeState
 from text.sentences import say
 from text.suggestions import nearest
 
 if TYPE_CHECKING:
-    from course.judge.evidence import Evidence
+    from course.judge.evidence import Evidence, Observation
 
+_COMPARE = say("Compare the name of the topic letter by letter.")
 _DOWN = (NodeState.FAILED, NodeState.BACKOFF, NodeState.EXITED)
 
 
@@ -39,45 +40,32 @@ def dead_nodes(evidence: Evidence) -> str:
 
 def no_topic(evidence: Evidence, topic: str) -> Observation:
     """Say that nobody publishes a topic, and what there is instead."""
-    others = [row.name for row in evidence.update.topics if row.publishers and row.name != topic]
-    meant = nearest(topic, others)
+    meant = nearest(topic, [row.name for row in evidence.update.topics if row.publishers and row.name != topic])
     if meant:
-        return Observation(
-            met=False,
-            seen=say("nobody publishes {topic}, but {meant} is published", topic=topic, meant=meant),
-            look=say("Compare the name of the topic letter by letter."),
-        )
-    return Observation(
-        met=False,
-        seen=say("nobody publishes {topic}", topic=topic),
-        look=dead_nodes(evidence)
-        or say("Is create_publisher called in __init__, and is the name of the topic right?"),
+        return missed(say("nobody publishes {topic}, but {meant} is published", topic=topic, meant=meant), _COMPARE)
+    return missed(
+        say("nobody publishes {topic}", topic=topic),
+        dead_nodes(evidence) or say("Is create_publisher called in __init__, and is the name of the topic right?"),
     )
 
 
 def nobody_subscribes(evidence: Evidence, topic: str) -> Observation:
     """Say that nobody subscribes to a topic, and what there is instead."""
-    others = [row.name for row in evidence.update.topics if row.subscribed_by and row.name != topic]
-    meant = nearest(topic, others)
+    meant = nearest(topic, [row.name for row in evidence.update.topics if row.subscribed_by and row.name != topic])
     if meant:
-        return Observation(
-            met=False,
-            seen=say("nobody subscribes to {topic}, but {meant} is subscribed to", topic=topic, meant=meant),
-            look=say("Compare the name of the topic letter by letter."),
-        )
-    return Observation(
-        met=False,
-        seen=say("nobody subscribes to {topic}", topic=topic),
-        look=dead_nodes(evidence) or say("Is create_subscription called in __init__, with the right name?"),
+        seen = say("nobody subscribes to {topic}, but {meant} is subscribed to", topic=topic, meant=meant)
+        return missed(seen, _COMPARE)
+    return missed(
+        say("nobody subscribes to {topic}", topic=topic),
+        dead_nodes(evidence) or say("Is create_subscription called in __init__, with the right name?"),
     )
 
 
 def wrong_type(topic: str, wanted: str, found: tuple[str, ...]) -> Observation:
     """Say that a topic has another type than it should."""
-    return Observation(
-        met=False,
-        seen=say("{topic} has the type {found}, not {wanted}", topic=topic, found=", ".join(found), wanted=wanted),
-        look=say("Compare the import of the message and the type in create_publisher."),
+    return missed(
+        say("{topic} has the type {found}, not {wanted}", topic=topic, found=", ".join(found), wanted=wanted),
+        say("Compare the import of the message and the type in create_publisher."),
     )
 
 
@@ -90,9 +78,8 @@ def no_messages(evidence: Evidence, topic: str, type_name: str) -> Observation:
     if type_name and published and published != (type_name,):
         return wrong_type(topic, type_name, published)
     if row.trouble in (Trouble.QOS_MISMATCH, Trouble.UNKNOWN_TYPE):
-        return Observation(met=False, seen=row.detail)
-    return Observation(
-        met=False,
-        seen=say("no message has come on {topic}", topic=topic),
-        look=dead_nodes(evidence) or say("Is publish called? By a timer, or in the callback?"),
+        return missed(row.detail)
+    return missed(
+        say("no message has come on {topic}", topic=topic),
+        dead_nodes(evidence) or say("Is publish called? By a timer, or in the callback?"),
     )

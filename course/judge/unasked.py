@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 
 from course.judge.at_work import learners_nodes, not_at_work, trouble
 from course.judge.evidence import MET, Observation
-from launcher.profile.steps.checks import EndsCheck
+from launcher.profile.steps.checks import NodeCheck
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from course.judge.evidence import Evidence
     from course.results import CheckResult, StepResult
+    from launcher.profile.steps.checks import CheckDocument
     from launcher.profile.steps.model import StepDocument
 
 BEGUN_WITHIN_S = 20.0
@@ -50,7 +51,7 @@ class UnaskedFailures:
         failed = self._failed()
         if len(result.checks) > len(step.checks):
             failed += [one for one in learners_nodes(step, self._evidence) if one not in failed]
-        elif any(isinstance(check, EndsCheck) for check in step.checks):
+        elif any(map(ends, step.checks)):
             return  # They were told to end.
         await self._try(failed)
 
@@ -99,6 +100,11 @@ class UnaskedFailures:
             if idle is not None:
                 self._found[name] = idle
         self._seen_until_s = time.time()
+
+
+def ends(check: CheckDocument) -> bool:
+    """Whether a check asks a node to end."""
+    return isinstance(check, NodeCheck) and check.ends is not None
 
 
 async def start_anew(names: Iterable[str], evidence: Evidence) -> None:

@@ -34,8 +34,9 @@ steps:
     file: talker.py
     needs: [topic]
     checks:
-      - rate: /chatter
-        between: [1.7, 2.3]
+      - topic: /chatter
+        type: std_msgs/msg/String
+        rate: [1.7, 2.3]
 """
 _PROFILE = """\
 title: {en: My lesson, ru: Мой урок}

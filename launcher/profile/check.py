@@ -12,7 +12,7 @@ from launcher.profile.model import Profile
 from launcher.profile.modules import is_installed, likely_names
 from launcher.profile.node import LONGEST_NODE_NAME, NODE_NAME, Node, Ready, is_file
 from launcher.profile.reading import Problems, file_of, files_beside
-from launcher.profile.steps.checks import CheckDocument, EndsCheck, FieldCheck, LogCheck, PublishCheck, kind_of
+from launcher.profile.steps.checks import CheckDocument, FieldCheck, LogCheck, NodeCheck, PublishCheck, kind_of
 from launcher.profile.steps.draw import draw
 from launcher.profile.steps.expressions import Drawn, ExpressionError, evaluate, expressions
 from launcher.profile.steps.model import ValueDocument
@@ -21,7 +21,7 @@ from text.sentences import say
 from text.suggestions import did_you_mean
 from text.yaml_tree import Where, empty, find, place_of
 
-PASSIVE = ("field", "log", "nothing", "python", "image", "rate")
+PASSIVE = ("field", "log", "python", "topic")
 """What may stand in `then`: what only looks."""
 
 
@@ -170,9 +170,9 @@ def _check_checks(
 ) -> None:
     for index, check in enumerate(checks):
         where = (*above, index)
-        if isinstance(check, (LogCheck, EndsCheck)):
+        if isinstance(check, LogCheck) or (isinstance(check, NodeCheck) and check.ends is not None):
             kind = str(kind_of(check))
-            name = str(getattr(check, kind))
+            name = str(getattr(check, kind)).lstrip("/")
             if name not in nodes:
                 message = say("there is no node {name!r}", name=name)
                 problems.at((*where, kind), message, did_you_mean(name, nodes))

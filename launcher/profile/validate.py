@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 from launcher.profile.model import AgentsDocument, Profile
 from launcher.profile.node import AsText, Document, Given, Node, Ready, marked
 from launcher.profile.reading import Problems
-from launcher.profile.steps.checks import KINDS, FrameDocument, kind_of
+from launcher.profile.steps.checks import KINDS, kind_of
 from launcher.profile.steps.model import StepDocument, ValueDocument
 from text.sentences import say
 from text.suggestions import did_you_mean
@@ -195,8 +195,7 @@ def _model(where: Where, tree: Branch) -> type[BaseModel]:
         return Ready if where[-1] == "ready" else Node
     if above == "steps" and len(where) > 2:
         here = find(tree, where)
-        kind = kind_of(None if here is None else plain(here)) or "node"
-        return FrameDocument if where[-1] == "transform" else KINDS[kind]
+        return KINDS[kind_of(None if here is None else plain(here)) or "node"]
     return _BY_KEY.get(above, Profile)
 
 

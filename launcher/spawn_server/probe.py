@@ -12,12 +12,14 @@ types, and null as long as that is not known.
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import select
 import time
+from collections import deque
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from text.nested import read_json
 
@@ -25,8 +27,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rclpy.node import Node
-
-    from launcher.spawn_server.message_rates import MessageRates
 
 EAGER_S = 10.0
 """It checks often for this long, because a start is in progress."""
@@ -39,8 +39,81 @@ CLASHES_S = 0.25
 KNOWN_AFTER_S = 1.5
 """By then it has found who was there before it: before, a topic may seem to have one type only."""
 HIDDEN = "_"
+COUNTED = 5
+"""A rate is computed over this many recent messages."""
+KEPT = 50
+"""Most messages between two checks; a camera sends one every 30 to 100 ms."""
 ENOUGH = 0.9
 """Fraction of the required rate that is enough: a 5 Hz timer never quite reaches 5 Hz."""
+
+
+class ArrivalRate:
+    """Counts the messages of one topic; all times are unix seconds."""
+
+    def __init__(self) -> None:
+        self._sent_s: deque[float] = deque(maxlen=COUNTED)
+        self._received_s: deque[float] = deque(maxlen=COUNTED)
+
+    def add(self, sent_s: float, received_s: float) -> None:
+        """Count a message; `sent_s` is by its publisher's clock, 0 if the middleware hides it."""
+        self._sent_s.append(sent_s)
+        self._received_s.append(received_s)
+
+    def hz(self, now_s: float) -> float:
+        """Return messages per second; 0 until enough have arrived to compute it.
+
+        Messages that were held up arrive together, and a publisher that has fallen silent does not
+        keep its former rate: the longest of the times that they took counts.
+        """
+        if len(self._received_s) < COUNTED:
+            return 0.0
+        first_s, last_s = self._received_s[0], self._received_s[-1]
+        due_s = now_s - (last_s - first_s) / (COUNTED - 1)
+        lasted_s = max(max(last_s, due_s) - first_s, max(self._sent_s) - min(self._sent_s))
+        return (COUNTED - 1) / lasted_s if lasted_s > 0 else 0.0
+
+
+class _Counter:
+    def __init__(self, node: Node, topic: str, kind: type[Any]) -> None:
+        from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+        # This receives from reliable and best-effort publishers.
+        quality = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._subscription = node.create_subscription(kind, topic, lambda _message: None, quality, raw=True)
+        self._rate = ArrivalRate()
+
+    def rate_hz(self) -> float:
+        """Current messages per second; 0 until enough have arrived to compute it."""
+        subscription = self._subscription
+        while True:
+            with subscription.handle:
+                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+            if taken is None:
+                break
+            info = taken[1]
+            self._rate.add(info["source_timestamp"] / 1e9, info["received_timestamp"] / 1e9)
+        return self._rate.hz(time.time())
+
+
+class MessageRates:
+    """Counts the messages of each topic from the first request for it on."""
+
+    def __init__(self, node: Node) -> None:
+        """`node`: the node that subscribes."""
+        self._node = node
+        self._counters: dict[tuple[str, str], _Counter] = {}
+
+    def rate_hz(self, topic: str, type_name: str) -> float | None:
+        """Return messages per second, None if their type is not installed."""
+        counter = self._counters.get((topic, type_name))
+        if counter is None:
+            package, _, name = type_name.partition("/msg/")
+            try:
+                kind = getattr(importlib.import_module(f"{package}.msg"), name)
+            except (ImportError, AttributeError):
+                return None
+            counter = self._counters[topic, type_name] = _Counter(self._node, topic, kind)
+        return counter.rate_hz()
 
 
 class _Wanted(NamedTuple):
@@ -79,8 +152,6 @@ def probe(argv: Sequence[str]) -> None:
 
     import rclpy
     from rclpy.signals import SignalHandlerOptions
-
-    from launcher.spawn_server.message_rates import MessageRates
 
     conditions = [_Wanted(*fields) for fields in read_json(argv[0])]
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)

@@ -11,7 +11,8 @@ request, the new process's stdin (optional), stdout and stderr. The answer is a 
 node is forked by an intermediate process that exits, so that it becomes a child of the supervisor.
 
 When the socket is closed the supervisor is gone, and this process, which outlives it, ends
-everything it has left running (`launcher.spawn_server.cleanup`).
+everything it has left running: the nodes died with the supervisor (PDEATHSIG), but their children and what left the
+nodes' groups did not.
 """
 
 from __future__ import annotations
@@ -25,14 +26,16 @@ import socket
 import sys
 from typing import TYPE_CHECKING, Any
 
-from launcher.processes.table import RUN_MARK, read_process
-from launcher.spawn_server.cleanup import end_survivors
+from launcher.processes.abandoned import end_all
+from launcher.processes.table import RUN_MARK, processes, read_marks, read_process
 from launcher.spawn_server.node import ENDING, ForkSpec, become
 from launcher.spawn_server.preload import Preload
 from text.nested import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
+
+    from launcher.processes.table import Process
 
 MAX_FDS = 4
 COLLECT_EVERY_S = 0.05
@@ -161,7 +164,19 @@ def serve(link: socket.socket, supervisor: int, packages: Iterable[str], *, cold
     if task is not None:
         task()
     else:
-        end_survivors(os.environ[RUN_MARK], server.groups)
+        run_id, groups = os.environ[RUN_MARK], frozenset(server.groups)
+        end_all(lambda: survivors(run_id, groups))
+
+
+def survivors(run_id: str, groups: frozenset[int]) -> list[Process]:
+    """Return the remaining processes of a run, without this one."""
+    return [
+        process
+        for process in processes()
+        if process.pid != os.getpid()
+        and not process.zombie
+        and (process.group in groups or (read_marks(process.pid) or {}).get(RUN_MARK) == run_id)
+    ]
 
 
 def main() -> None:

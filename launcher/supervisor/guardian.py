@@ -9,19 +9,15 @@ from __future__ import annotations
 
 import os
 import signal
-import time
 from typing import TYPE_CHECKING, NoReturn
 
-from launcher.processes.abandoned import KILLED_AFTER_S, LEFT_AFTER_S
+from launcher.processes.abandoned import end_all
 from launcher.processes.prctl import become_subreaper
-from launcher.processes.signal import send
 from launcher.processes.table import GUARDIAN_NAME, processes
 from launcher.processes.title import show_name, show_title
 
 if TYPE_CHECKING:
     from launcher.processes.table import Process
-
-_LOOK_EVERY_S = 0.05
 
 
 def fork_under_guardian() -> None:
@@ -47,28 +43,12 @@ def _guard(supervisor: int) -> NoReturn:
     os.chdir("/")
     while os.wait()[0] != supervisor:
         pass
-    _end_all()
+    end_all(_descendants)
     os._exit(0)
 
 
-def _end_all() -> None:
-    began = time.monotonic()
-    told: set[int] = set()
-    while left := _descendants():
-        elapsed = time.monotonic() - began
-        if elapsed > LEFT_AFTER_S:
-            return
-        for process in left:
-            if elapsed >= KILLED_AFTER_S:
-                send(process, signal.SIGKILL)
-            elif process.pid not in told:
-                send(process, signal.SIGINT, signal.SIGCONT)
-        told.update(process.pid for process in left)
-        _reap()
-        time.sleep(_LOOK_EVERY_S)
-
-
 def _descendants() -> list[Process]:
+    _reap()
     children: dict[int, list[Process]] = {}
     for process in processes():
         children.setdefault(process.parent, []).append(process)

@@ -2,8 +2,10 @@
 
 import math
 
-DRIVE, ODOM, SONAR = "/drive", "/odom", "/sensor/sonar_front"
+DRIVE, SAFE, ODOM, SONAR = "/drive", "/drive_safe", "/odom", "/sensor/sonar_front"
 STILL = 1e-3
+SETTLE_S, STOP_BELOW_M = 0.3, 0.5
+"""How long the gate may take to react, and to what."""
 STEADY_S, LATE_S = 0.5, 0.2
 """How long before a word the measurements must agree, and after it: some arrive late."""
 
@@ -124,4 +126,22 @@ def stands_before_the_wall(seen):
             "en": "the robot came nearer than 0.2 m",
             "ru": "робот подъехал ближе чем на 0.2 м",
         }
+    return None
+
+
+def nothing_before_the_wall(seen):
+    """Tell whether the gate lets no forward speed through while the sonar says that a wall is near."""
+    distances = [(when, message["data"]) for when, message in seen.messages[SONAR]]
+    if not distances or not seen.messages[SAFE]:
+        return {"en": "no distances or no commands came", "ru": "не пришли расстояния или команды"}
+    for when, message in seen.messages[SAFE]:
+        speed = message["drive"]["speed"]
+        # What the sonar said before the gate had to have reacted, and since then.
+        known = [metres for said, metres in distances if said <= when - SETTLE_S][-1:]
+        since = [metres for said, metres in distances if when - SETTLE_S < said <= when]
+        if speed > STILL and known and max(known + since) < STOP_BELOW_M:
+            return {
+                "en": f"/drive_safe lets {speed:.2f} m/s through with an obstacle nearer than {STOP_BELOW_M} m",
+                "ru": f"/drive_safe пропускает {speed:.2f} м/с, хотя препятствие ближе {STOP_BELOW_M} м",
+            }
     return None

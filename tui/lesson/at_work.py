@@ -15,7 +15,7 @@ from course.lessons.catalog import next_lesson
 from course.progress.files import state_of
 from course.progress.progress import Progress, load_progress, noted
 from course.results import State, StepResult
-from launcher.profile.steps.checks import kind_of
+from launcher.profile.steps.checks import LOOK_AGAIN_S
 from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import host_of
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from tui.session.messages import SessionChanged
     from tui.session.ports import JudgeLink
 
-ACTS = frozenset({"publish", "service", "action", "parameter", "ends"})
 """Checks that do something to the nodes: not done again for a change of a file alone."""
 
 
@@ -183,7 +182,7 @@ class LessonAtWork:
         return [
             step.id
             for step in steps
-            if self.was_right(step.id) is not None and not any(str(kind_of(check)) in ACTS for check in step.checks)
+            if self.was_right(step.id) is not None and not any(check.rest_s > LOOK_AGAIN_S for check in step.checks)
         ]
 
     def _take(self, event: JudgeEvent) -> None:

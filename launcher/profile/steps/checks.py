@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, Union
 
-from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
+from pydantic import BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
 
 from launcher.profile.node import Document, RosName, Texts, TypeName, refuse
 from launcher.profile.steps.expressions import PLACE, written
@@ -16,6 +16,9 @@ from text.sentences import say
 
 WITHIN_S = 5.0
 LONGEST_S = 600.0
+LOOK_AGAIN_S = 2.0
+"""How long a check that only looks rests before it is judged again."""
+_REST_S = {"PublishCheck": 5.0, "ServiceCheck": 5.0, "ParameterCheck": 5.0, "ActionCheck": 60.0}
 PYTHON = re.compile(r"([A-Za-z_][\w-]*\.py):([A-Za-z_]\w*)")
 
 
@@ -39,6 +42,10 @@ def _pattern(value: object) -> object:
     return value
 
 
+def _several(value: object) -> object:
+    return [value] if isinstance(value, str) else value
+
+
 def _function(value: object) -> object:
     if isinstance(value, str) and not PYTHON.fullmatch(value):
         raise refuse(say("{value!r} is not a function; write checks.py:name", value=value))
@@ -51,7 +58,6 @@ Number = Annotated[
     WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string", "pattern": r"^\$\{.*\}$"}]}),
 ]
 Range = Annotated[tuple[Number, Number], Field(strict=False)]
-Vector = Annotated[tuple[Number, Number, Number], Field(strict=False)]
 Pattern = Annotated[str, BeforeValidator(_pattern)]
 Seconds = Annotated[float, Field(gt=0, le=LONGEST_S)]
 Times = Annotated[int, Field(ge=1, le=1000)]
@@ -64,20 +70,39 @@ class CheckDocument(Document):
     what: Texts = Field({}, description="What is expected, if it can be said better, by language.")
     look: Texts = Field({}, description="Where to look when it fails, by language.")
 
+    @property
+    def rest_s(self) -> float:
+        """How long it rests after it has failed: what does something must not play with the robot all the time."""
+        return _REST_S.get(type(self).__name__, LOOK_AGAIN_S)
+
 
 class NodeCheck(CheckDocument):
-    """A node is in the graph."""
+    """A node is in the graph, and ends when it is asked to."""
 
     node: RosName = Field(description="This node is in the ROS graph: `/sonar_front`.")
+    ends: int | None = Field(
+        None, description="It ends when it is asked to, with this exit code; it has to be a node of the profile."
+    )
+    signal: Literal["SIGINT", "SIGTERM"] = Field("SIGINT", description="With ends: how it is asked.")
+
+    @property
+    def rest_s(self) -> float:
+        return LOOK_AGAIN_S if self.ends is None else 3600.0
 
 
 class TopicCheck(CheckDocument):
-    """Somebody publishes a topic."""
+    """Somebody publishes a topic, at a rate; or nobody does."""
 
     topic: RosName = Field(description="Somebody publishes this topic.")
     type: TypeName = Field(description="By this type: `std_msgs/msg/Float32`.")
     by: RosName | None = Field(None, description="The publisher is this node.")
     publishers: int | None = Field(None, ge=1, le=100, description="So many publishers.")
+    rate: Range | None = Field(None, description="At least and at most so many messages a second: `[0.8, 1.2]`.")
+    over: Seconds = Field(3.0, description="With rate: measured over so many seconds.")
+    only: Annotated[tuple[RosName, ...], BeforeValidator(_several)] | None = Field(
+        None, strict=False, description="Nobody publishes it but this node, or these, which need not."
+    )
+    silent: Seconds | None = Field(None, description="No message comes for so many seconds.")
 
 
 class SubscriptionCheck(CheckDocument):
@@ -86,14 +111,6 @@ class SubscriptionCheck(CheckDocument):
     subscription: RosName = Field(description="Somebody subscribes to this topic.")
     by: RosName | None = Field(None, description="The subscriber is this node.")
     type: TypeName | None = Field(None, description="By this type.")
-
-
-class RateCheck(CheckDocument):
-    """Messages arrive so many times a second."""
-
-    rate: RosName = Field(description="Messages arrive on this topic at a rate.")
-    between: Range = Field(description="At least and at most so many a second: `[0.8, 1.2]`.")
-    over: Seconds = Field(3.0, description="Measured over so many seconds.")
 
 
 class FieldCheck(CheckDocument):
@@ -108,16 +125,6 @@ class FieldCheck(CheckDocument):
     changes: bool | None = Field(None, description="It is not the same in all messages.")
     matches: Pattern | None = Field(None, description="Its text has this regular expression.")
     messages: Times = Field(1, description="So many messages, each of which must comply.")
-
-
-class QosCheck(CheckDocument):
-    """The QoS of publishers or subscriptions."""
-
-    qos: RosName = Field(description="The QoS of this topic.")
-    of: Literal["publisher", "subscription"] = Field("publisher", description="Whose: publisher or subscription.")
-    by: RosName | None = Field(None, description="Only this node's.")
-    reliability: Literal["reliable", "best_effort"] | None = None
-    durability: Literal["volatile", "transient_local"] | None = None
 
 
 class ServiceCheck(CheckDocument):
@@ -154,16 +161,6 @@ class PublishCheck(CheckDocument):
     then: tuple[Check, ...] = Field(strict=False, min_length=1, description="What must be seen after that.")
 
 
-class NothingCheck(CheckDocument):
-    """For a while no message comes on a topic."""
-
-    model_config = ConfigDict(populate_by_name=True)
-
-    nothing: RosName = Field(description="No message comes on this topic.")
-    type: TypeName = Field(description="Its type.")
-    for_s: Seconds = Field(1.0, alias="for", description="For so many seconds.")
-
-
 class ParameterCheck(CheckDocument):
     """A parameter of a node."""
 
@@ -181,24 +178,6 @@ class ParameterCheck(CheckDocument):
     refuses: Any = Field(None, description="It refuses this value.")
 
 
-class FrameDocument(Document):
-    """The place of one frame in another, in metres and degrees."""
-
-    model_config = ConfigDict(populate_by_name=True)
-
-    from_frame: str = Field(alias="from", description="The frame that is the reference.")
-    to: str = Field(description="The frame whose place is asked.")
-
-
-class TransformCheck(CheckDocument):
-    """A transform between two frames."""
-
-    transform: FrameDocument = Field(description="There is a transform: `{from: a, to: b}`.")
-    translation: Vector | None = Field(None, description="It moves by this, in metres.")
-    rotation_rpy: Vector | None = Field(None, description="It turns by this, in radians.")
-    tolerance: Number = Field(0.001, description="Metres and radians it may differ by.")
-
-
 class LogCheck(CheckDocument):
     """A node logs a line."""
 
@@ -206,49 +185,6 @@ class LogCheck(CheckDocument):
     matches: Pattern = Field(description="It has this regular expression.")
     level: Literal["debug", "info", "warn", "error", "fatal"] | None = Field(None, description="With this severity.")
     lines: Times = Field(1, description="So many such lines.")
-
-
-class EndsCheck(CheckDocument):
-    """A node ends when it is asked to."""
-
-    ends: str = Field(description="This node of the profile ends when it is asked to.")
-    signal: Literal["SIGINT", "SIGTERM"] = "SIGINT"
-    code: int = Field(0, description="With this exit code.")
-
-
-class ImageCheck(CheckDocument):
-    """Images on a topic."""
-
-    image: RosName = Field(description="Images come on this topic.")
-    width: int | None = Field(None, ge=1, le=100_000)
-    height: int | None = Field(None, ge=1, le=100_000)
-    encoding: str | None = None
-    rate: Range | None = Field(None, description="So many a second.")
-    changes: bool | None = Field(None, description="They are not all the same.")
-
-
-class NoPublisherCheck(CheckDocument):
-    """Nobody publishes a topic."""
-
-    model_config = ConfigDict(populate_by_name=True)
-
-    no_publisher: RosName = Field(description="Nobody publishes this topic.")
-    except_nodes: RosName | list[RosName] | None = Field(
-        None, alias="except", description="But this node may, or these."
-    )
-
-
-class GateCheck(CheckDocument):
-    """The safety gate is the only road to the wheels, and keeps them still before an obstacle."""
-
-    model_config = ConfigDict(populate_by_name=True)
-
-    gate: RosName = Field(description="The topic of the gate: `/drive_safe`.")
-    from_node: RosName = Field(alias="from", description="The only node that may publish it.")
-    distance: RosName = Field(description="The topic of the distance, a Float32 in metres.")
-    stop_below: Number = Field(description="Nearer than this, no forward speed may pass.")
-    settle: float = Field(0.3, ge=0, le=5, description="Seconds that the gate has to react.")
-    over: Seconds = Field(8.0, description="Watched for so many seconds.")
 
 
 class PythonCheck(CheckDocument):
@@ -265,23 +201,15 @@ KINDS: dict[str, type[CheckDocument]] = {
     "node": NodeCheck,
     "topic": TopicCheck,
     "subscription": SubscriptionCheck,
-    "image": ImageCheck,
-    "rate": RateCheck,
     "field": FieldCheck,
-    "qos": QosCheck,
     "service": ServiceCheck,
     "action": ActionCheck,
     "publish": PublishCheck,
-    "nothing": NothingCheck,
     "parameter": ParameterCheck,
-    "transform": TransformCheck,
     "log": LogCheck,
-    "ends": EndsCheck,
-    "no_publisher": NoPublisherCheck,
-    "gate": GateCheck,
     "python": PythonCheck,
 }
-"""The kinds of checks by their key; `image` before `rate`, which is also a key of its own."""
+"""The kinds of checks by their key."""
 
 
 def kind_of(check: object) -> str | None:

@@ -5,22 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import rclpy
-from ackermann_msgs.msg import AckermannDriveStamped
 from deck_interfaces.action import DriveToPoint
 from example_interfaces.srv import AddTwoInts
-from geometry_msgs.msg import TransformStamped
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
 from std_msgs.msg import Float32, String
-from tf2_msgs.msg import TFMessage
 
 PERIOD_S = 0.1
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 HASTY = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
@@ -38,11 +34,7 @@ class Actor(Node):
         self.near = self.create_publisher(Float32, "/near", 10)
         self.image = self.create_publisher(Image, "/image", 10)
         self.still = self.create_publisher(Image, "/still", 10)
-        self.shut = self.create_publisher(AckermannDriveStamped, "/shut", 10)
-        self.open = self.create_publisher(AckermannDriveStamped, "/open", 10)
         self.answer = self.create_publisher(String, "/answer", 10)
-        self.tf = self.create_publisher(TFMessage, "/tf_static", LATCHED)
-        self.tf.publish(TFMessage(transforms=[frame("base", "arm", 0.1), frame("arm", "eye", 0.2)]))
         self.create_subscription(String, "/ask", self.on_ask, 10)
         self.second = self.create_publisher(String, "/second", 10)
         self.create_subscription(String, "/ask_twice", self.on_ask_twice, 10)
@@ -72,10 +64,6 @@ class Actor(Node):
         self.still.publish(picture)
         picture.data = bytes([self.count % 256] * 6)
         self.image.publish(picture)
-        self.shut.publish(AckermannDriveStamped())
-        moving = AckermannDriveStamped()
-        moving.drive.speed = 0.4
-        self.open.publish(moving)
 
     def on_set(self, parameters: list[Any]) -> SetParametersResult:
         bad = any(each.name == "limit" and each.value < 0 for each in parameters)
@@ -112,15 +100,6 @@ class Actor(Node):
             return DriveToPoint.Result(reached=False, message="cancelled")
         handle.succeed()
         return DriveToPoint.Result(reached=True, message="there")
-
-
-def frame(parent: str, child: str, x: float) -> TransformStamped:
-    """A frame that is so far ahead of another."""
-    made = TransformStamped()
-    made.header.frame_id, made.child_frame_id = parent, child
-    made.transform.translation.x = x
-    made.transform.rotation.w = 1.0
-    return made
 
 
 def main() -> None:

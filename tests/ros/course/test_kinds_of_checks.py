@@ -117,7 +117,7 @@ async def _judged(lesson: LessonFolder, domain: int) -> dict[str, CheckResult]:
 
 def _all_heard(judge: Judge) -> bool:
     """Whether the actor is at work, and what was to end has: a loaded machine takes its time."""
-    topics = ("/count", "/same", "/near", "/image", "/still", "/shut", "/open", "/tf_static")
+    topics = ("/count", "/same", "/near", "/image", "/still")
     heard = all(judge.evidence.messages(topic, 0.0) for topic in topics)
     actions = [row.name for row in judge.evidence.update.actions]
     ended = not judge.evidence.nodes["flash"].state.alive

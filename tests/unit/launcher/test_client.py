@@ -25,7 +25,7 @@ from launcher.faults.crash import refused_arguments
 from launcher.faults.explain import explained
 from launcher.logs.packing import pack_line
 from launcher.logs.ring import LogRing
-from launcher.spawn_server.arrival_rate import COUNTED, ArrivalRate
+from launcher.spawn_server.probe import COUNTED, ArrivalRate
 from launcher.status import LogLine, NodeState, NodeStatus, Severity, Stray
 from tests.dying_supervisor import HELLO, DyingSupervisor
 

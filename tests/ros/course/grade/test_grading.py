@@ -10,7 +10,7 @@ from pathlib import Path
 import yaml
 
 from course.grade.grades import Grade, GradeState
-from course.grade.grading import Domains, Terms, grade_all
+from course.grade.grading import Terms, grade_all
 from launcher.processes.table import command_line, process_numbers
 from tests.deck_process import DeckProcess
 from tests.ros.course.grade.lessons import TALKER, handed_in, log_lesson, topic_lesson
@@ -24,7 +24,7 @@ async def test_two_at_once_do_not_meet_and_are_recorded(tmp_path: Path, ros_doma
     right, wrong = (TALKER.replace("{topic}", name) for name in ("/chatter", "/chater"))
     chosen = handed_in(lesson, tmp_path / "class", anna=right, boris=wrong)
     terms = Terms(lesson, seed=5, bags=tmp_path / "bags")
-    domains = Domains([ros_domain, other_domain])
+    domains = [ros_domain, other_domain]
     grades: dict[str, Grade] = {}
     async for _number, grade in grade_all(terms, chosen, jobs=2, domains=domains):
         grades[grade.student] = grade

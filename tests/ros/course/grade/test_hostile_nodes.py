@@ -9,7 +9,7 @@ import pytest
 
 from course.grade import limits
 from course.grade.grades import Grade, GradeState
-from course.grade.grading import Domains, Terms, grade_all
+from course.grade.grading import Terms, grade_all
 from course.grade.walls import bubblewrap_for
 from launcher.processes.table import command_line, process_numbers
 from tests.conftest import take
@@ -73,7 +73,7 @@ def graded(domain_pool: DomainPool, tmp_path_factory: pytest.TempPathFactory) ->
     texts = {name: text.replace("MARK", MARK) for name, text in TEXTS.items()}
     submitted = handed_in(lesson, place / "class", **texts)
     (place / "class" / "hangs" / "lesson.yaml").write_text(OWN_PROFILE)
-    domains = Domains([take(domain_pool) for _ in range(AT_ONCE)])
+    domains = [take(domain_pool) for _ in range(AT_ONCE)]
 
     async def grade() -> dict[str, Grade]:
         terms = Terms(lesson, within_s=WITHIN_S, bubblewrap=bubblewrap_for(lesson))
@@ -85,7 +85,7 @@ def graded(domain_pool: DomainPool, tmp_path_factory: pytest.TempPathFactory) ->
             patch.setattr(limits, "PROCESSES", FEW_PROCESSES)
             return asyncio.run(grade())
     finally:
-        domain_pool.let_go(*domains.fixed)
+        domain_pool.let_go(*domains)
 
 
 def test_a_good_one_gets_its_points_beside_all_others(graded: dict[str, Grade]) -> None:

@@ -125,8 +125,8 @@ HEAD = "nodes: {sonar: {exec: [x]}}\nvalues: {near_m: {between: [0.1, 0.4], digi
 BAD = {
     "a kind misspelt": ("  - {id: a, checks: [{nod: /a}]}",
      ["4:22: steps[0].checks[0]: no kind of check is named here (did you mean node?)"]),
-    "a key misspelt": ("  - {id: a, checks: [{rate: /a, between: [1, 2], ovr: 1}]}",
-     ["4:50: steps[0].checks[0].ovr: unknown key (did you mean over?)"]),
+    "a key misspelt": ("  - {id: a, checks: [{log: sonar, matches: x, levl: info}]}",
+     ["4:47: steps[0].checks[0].levl: unknown key (did you mean level?)"]),
     "a key of what follows misspelt": (
         (
             "  - id: a\n    checks:\n      - publish: /a\n        type: std_msgs/msg/Bool\n"
@@ -168,8 +168,7 @@ BAD = {
         "  - {id: a, checks: [{publish: /a, type: std_msgs/msg/Bool, then: [{node: /a}]}]}",
         [
             (
-                "4:68: steps[0].checks[0].then[0]: only these can follow: field, log, nothing, "
-                "python, image, rate"
+                "4:68: steps[0].checks[0].then[0]: only these can follow: field, log, python, topic"
             )
         ],
     ),
@@ -189,23 +188,15 @@ def test_every_kind_is_read_by_its_own_key(tmp_path: Path) -> None:
         + "".join(
             f"      - {{{check}}}\n"
             for check in (
-                "node: /a",
-                "topic: /a, type: std_msgs/msg/Bool, by: /b",
+                "node: sonar, ends: 0",
+                "topic: /a, type: std_msgs/msg/Bool, by: /b, rate: [1, '${near_m * 10}']",
                 "subscription: /a, by: /b",
-                "image: /a, rate: [1, 2]",
-                "rate: /a, between: [1, '${near_m * 10}']",
                 "field: /a, type: std_msgs/msg/Bool, path: data, equals: true",
-                "qos: /a, reliability: reliable",
                 "service: /a, type: std_srvs/srv/Trigger, response: {success: true}",
                 "action: /a, type: a_msgs/action/Go, cancel: true",
-                "publish: /a, type: a/msg/B, then: [{nothing: /b, type: a/msg/B, for: 2}]",
-                "nothing: /a, type: std_msgs/msg/Bool",
+                "publish: /a, type: a/msg/B, then: [{topic: /b, type: a/msg/B, silent: 2}]",
                 "parameter: p, of: /a, type: double",
-                "transform: {from: a, to: b}, translation: [0.15, 0, 0.25]",
                 "log: sonar, matches: x",
-                "ends: sonar",
-                "no_publisher: /a, except: /b",
-                "gate: /a, from: /b, distance: /c, stop_below: 0.5",
                 "python: checks.py:f, topics: {/a: std_msgs/msg/Bool}",
             )
         )
