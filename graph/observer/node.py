@@ -16,7 +16,7 @@ from graph.calls.services import Calls
 from graph.data import GraphUpdate, Interest
 from graph.frames.book import FRAME_TOPICS, FrameBook
 from graph.frames.reading import TF_MESSAGE
-from graph.messages.decoding import decoder
+from graph.messages.definitions import decoder
 from graph.observer.taps import Taps
 from graph.publishing.dead_man_switch import DeadManSwitch
 from graph.publishing.outbox import Outbox

@@ -23,7 +23,7 @@ from graph.calls.goal_life import GoalLife
 from graph.calls.lifecycle import managed
 from graph.calls.lifecycle_exchange import CHANGE_WITHIN_S, ChangeFacts, change
 from graph.data import ANSWER_WITHIN_S, Goal, GoalStatus, ServiceRow, Value
-from graph.messages.dated import Draft
+from graph.messages.making import Draft
 from graph.observer.node import ObserverNode
 from graph.observer.process import ObserverLoop
 from graph.observer.requests import Hold, LetGo, Order, Publish, Request, StartPublishing, StopPublishingAll
