@@ -21,14 +21,14 @@ from graph.observer.taps import Taps
 from graph.publishing.dead_man_switch import DeadManSwitch
 from graph.publishing.outbox import Outbox
 from graph.publishing.publications import RepeatedPublications
-from graph.scan.scan import Scan, Signature, is_complete, scan, signature
+from graph.scan import Scan, Signature, is_complete, scan, signature
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from graph.data import ActionRow, FrameRow, NodeRow, Sample, ServiceRow, Value
     from graph.ros import Ros
-    from graph.scan.endpoints import TopicEnds
+    from graph.scan import TopicEnds
 
 PENDING_S = 0.01
 """How often calls and messages under way are polled."""

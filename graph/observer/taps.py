@@ -18,8 +18,7 @@ from graph.observer.tap import FOLLOWED, LARGE_TYPES, Tap, first_depth
 from graph.observer.troubles import Diagnosis, quiet, structural
 from graph.pictures.source import THINNED, host_of, is_away, picture_source, raw_from_afar, to_see
 from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
-from graph.scan.endpoints import TopicEnds
-from graph.scan.scan import Scan
+from graph.scan import Scan, TopicEnds
 from text.ros_names import TF_STATIC
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from graph.messages.types import UnknownTypeError
     from graph.qos_compatibility import Mismatch
-    from graph.scan.endpoints import TopicEnds
+    from graph.scan import TopicEnds
 
 MOST_PAIRS = 5
 """Pairs that are described in words; the rest are only counted."""

@@ -11,7 +11,7 @@ from graph.messages.dated import Draft, draft
 from graph.messages.types import load_message
 from graph.qos import RELIABLE, TRANSIENT_LOCAL, Qos, profile, to_be_heard
 from graph.ros import ONLY_LISTENING
-from graph.scan.endpoints import subscriptions
+from graph.scan import subscriptions
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rclpy.publisher import Publisher
 
     from graph.data import Value
-    from graph.scan.endpoints import TopicEnds
+    from graph.scan import TopicEnds
 
 MATCH_WITHIN_S = 1.0
 """How long a new publisher waits for its subscribers."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rclpy.publisher import Publisher
 
     from graph.data import Value
-    from graph.scan.endpoints import TopicEnds
+    from graph.scan import TopicEnds
 
 LEAST_HZ = 0.1
 MOST_HZ = 100.0

@@ -11,7 +11,7 @@ from graph.housekeeping import is_hidden
 from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.qos import to_hear
 from graph.recording.tap import RecordingTap
-from graph.scan.endpoints import full_name
+from graph.scan import full_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

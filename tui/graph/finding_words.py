@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from graph.findings.finding import FindingLevel
-from graph.findings.lasting import LastingFindings
+from graph.findings.rules import LastingFindings
 from launcher.status import NodeState
 from text.i18n import N_, _
 from tui import clock
