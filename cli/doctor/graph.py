@@ -15,7 +15,7 @@ from graph.housekeeping import is_housekeeping
 from launcher.processes.interrupts import run
 from text.i18n import N_, _, localized
 from text.plain import plain
-from tui.session.norms import NORMS
+from tui.session.bypass import NORMS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

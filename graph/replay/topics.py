@@ -13,9 +13,8 @@ from graph.frames.book import FRAME_TOPICS, FrameBook
 from graph.frames.reading import TF_MESSAGE
 from graph.messages.stamps import frame_id
 from graph.messages.types import not_decoded
-from graph.observer.rates import QUIET_S, RateMeter
-from graph.observer.timing import Arrival
-from graph.observer.troubles import quiet
+from graph.observer.rates import QUIET_S, Arrival, RateMeter
+from graph.observer.taps import quiet
 from graph.qos import TRANSIENT_LOCAL
 from text.ros_names import TF_STATIC
 

@@ -9,7 +9,7 @@ from graph.findings.rules import LastingFindings
 from launcher.status import NodeState
 from text.i18n import N_, _
 from tui import clock
-from tui.session.norms import NORMS
+from tui.session.bypass import NORMS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

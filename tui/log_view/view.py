@@ -24,7 +24,7 @@ from tui.log_view.palette import PALETTE_CLASSES, PALETTE_CSS
 from tui.log_view.ring import LineRing
 from tui.log_view.rows import columns_for, text_of
 from tui.log_view.tail import Tail
-from tui.session.history import KEPT_LINES
+from tui.session.past import KEPT_LINES
 from tui.widgets.one_style import OneStyle
 
 if TYPE_CHECKING:

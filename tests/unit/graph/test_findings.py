@@ -13,11 +13,11 @@ from graph.diagnostics import STALE_S, DiagnosticsBook, StatusLevel, tree
 from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, GraphFinding, meant
 from graph.findings.rules import CHANGING_S, LastingFindings, examine
 from graph.messages.types import UnknownTypeError
-from graph.observer.troubles import quiet, structural
+from graph.observer.taps import quiet, structural
 from graph.qos import Qos, to_be_heard, to_hear
 from graph.qos_compatibility import mismatches
 from graph.scan import TopicEnds
-from tui.session.norms import NORMS
+from tui.session.bypass import NORMS
 
 FLOAT, STRING, RANGE = "std_msgs/msg/Float32", "std_msgs/msg/String", "sensor_msgs/msg/Range"
 ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
