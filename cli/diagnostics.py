@@ -10,9 +10,7 @@ from cli.commands import command
 from cli.observing import FOUND_S, domain_view, tell_that_it_takes_time
 from cli.options import add_graph, add_json, seconds
 from graph.data import GraphUpdate
-from graph.diagnostics.book import DiagnosticsBook
-from graph.diagnostics.reading import StatusLevel
-from graph.diagnostics.tree import tree
+from graph.diagnostics import DiagnosticsBook, StatusLevel, tree
 from launcher.errors import UsageError
 from robot.topics import DIAGNOSTICS
 from text.i18n import N_, _
@@ -24,8 +22,7 @@ if TYPE_CHECKING:
 
     from cli.commands import Parser
     from cli.observing import DomainView
-    from graph.diagnostics.book import StatusRecord
-    from graph.diagnostics.tree import TreeRow
+    from graph.diagnostics import StatusRecord, TreeRow
 
 LOOKS = {
     StatusLevel.OK: (N_("ok"), GREEN),

@@ -97,7 +97,7 @@ class DomainView:
 
     def refuse_empty(self, update: GraphUpdate) -> None:
         """Raise UsageError if nobody but Deck's own observers is in the domain."""
-        from graph.findings.names import is_deck
+        from graph.findings.finding import is_deck
 
         if all(is_deck(node.name) for node in update.nodes):
             words = (

@@ -20,7 +20,7 @@ from launcher.status import NodeState, Severity
 from text.i18n import LocalizedFloat, _, localized, ngettext
 from text.output import BOLD, DIM, PREFIX_COLOURS, RED, YELLOW, Paint, json_text, table
 from text.plain import plain
-from tui.session.hardware_words import hardware_words
+from tui.session.words import hardware_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

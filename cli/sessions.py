@@ -11,7 +11,7 @@ from cli.stop_in_force import stop_is_kept
 from text.i18n import _, decimal, localized, pick
 from text.output import BOLD, DIM, RED, Paint, table, write
 from text.plain import plain
-from tui.session.hardware_words import hardware_words
+from tui.session.words import hardware_words
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence

@@ -23,7 +23,7 @@ from graph.pictures.pixels import ImageError
 from graph.pictures.source import THINNED, host_of, to_see
 from graph.qos import BEST_EFFORT, Qos, profile
 from graph.ros import open_ros
-from graph.scan.endpoints import TopicEnds, publishers
+from graph.scan import TopicEnds, publishers
 from text.nested import read_json
 
 if TYPE_CHECKING:

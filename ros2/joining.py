@@ -13,7 +13,7 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from graph.participants.roll import Roll
+from graph.participants import Roll
 from graph.ros import PEERS, RANGE, announcing
 from launcher.domain.participants import LocalParticipants
 from ros2.ending import was_interrupted

@@ -22,7 +22,7 @@ from text.sentences import say
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from graph.participants.roll import Attendance
+    from graph.participants import Attendance
     from launcher.domain.participants import LocalParticipant
     from text.sentences import Words
 

@@ -10,12 +10,12 @@ from cli.doctor.finding import Finding, fail, warn
 from cli.observing import FOUND_S, LOOK_S, domain_view, tell_that_it_takes_time
 from graph.data import GraphUpdate
 from graph.findings.finding import FORGOTTEN_S, FindingLevel
-from graph.findings.lasting import LastingFindings
+from graph.findings.rules import LastingFindings
 from graph.housekeeping import is_housekeeping
 from launcher.processes.interrupts import run
 from text.i18n import N_, _, localized
 from text.plain import plain
-from tui.session.norms import NORMS
+from tui.session.bypass import NORMS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

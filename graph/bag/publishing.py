@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from graph.data import NAMELESS
 from graph.messages.types import UnknownTypeError, load_message
 from graph.qos import Qos, profile
-from graph.scan.endpoints import full_name
+from graph.scan import full_name
 from text.sentences import say
 
 if TYPE_CHECKING:

@@ -1,7 +1,7 @@
 """Exchanges with nodes, each through the node's own services, any number at once, non-blocking.
 
-An exchange is a generator: it yields requests, is sent the answers as trees, and knows neither
-time nor ROS. This module delivers the requests, and says in words why there is no answer.
+An exchange is a generator: it yields requests, is sent the answers as trees, and knows neither time nor ROS. This
+module delivers the requests, and says in words why there is no answer.
 """
 
 from __future__ import annotations
@@ -13,13 +13,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graph.data import CallResult
+from graph.inner_states import LOG_LEVELS, LevelResult
+from text.i18n import N_
 from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
+    from concurrent.futures import Future
 
     from graph.calls.services import Calls
     from graph.data import NodeRow, ServiceRow, Value
+
 
 FOUND_WITHIN_S = 1.0
 """How long a node or its services may take to be discovered before they are reported missing."""
@@ -174,3 +178,71 @@ def _gone(running: _RunningExchange) -> str:
     if running.was_there:
         return say("{node} has left the graph", node=running.node)
     return say("there is no node {node} in the graph", node=running.node)
+
+
+LEVEL_SERVICES = ServiceSet(
+    {
+        "get_logger_levels": "rcl_interfaces/srv/GetLoggerLevels",
+        "set_logger_levels": "rcl_interfaces/srv/SetLoggerLevels",
+    },
+    N_(
+        "{node} does not let others change its log level; its program has to allow that: "
+        "super().__init__(..., enable_logger_service=True), in C++ "
+        "NodeOptions().enable_logger_service(true)"
+    ),
+)
+DEFAULT = LOG_LEVELS["info"]
+"""Of a logger whose level nobody has set, if there is no other default."""
+
+
+class LoggerLevels:
+    """The requests about log levels."""
+
+    def __init__(self, exchanges: Exchanges) -> None:
+        """Ask through `exchanges`, which reports every failure in words."""
+        self._exchanges = exchanges
+
+    def ask(self, node: str, level: str | None, timeout_s: float, future: Future[LevelResult]) -> None:
+        """Read the level of a node's own logger, once it was set to one of `LOG_LEVELS` if one is given."""
+        node = full_name(node)
+        found: list[str] = []
+        logger = logger_of(node)
+        exchange = read_level(logger, found) if level is None else write_level(logger, LOG_LEVELS[level], found)
+
+        def end(error: str) -> None:
+            refused = error or (found[1] if len(found) > 1 else "")
+            future.set_result(LevelResult(node, found[0] if found else "", refused))
+
+        self._exchanges.begin(node, exchange, LEVEL_SERVICES, timeout_s, end)
+
+
+def logger_of(node: str) -> str:
+    """Return the name of a node's own logger: `arm.gripper` for `/arm/gripper`."""
+    return node.strip("/").replace("/", ".")
+
+
+def read_level(logger: str, found: list[str]) -> Exchange:
+    """Put the level in effect into `found`: that of the logger, or of the next one above it."""
+    parts = logger.split(".")
+    names = [".".join(parts[:count]) for count in range(len(parts), -1, -1)]
+    answer = yield NodeRequest("get_logger_levels", {"names": names})
+    found[:] = [_named(next(filter(None, map(_level, answer["levels"])), DEFAULT))]
+
+
+def write_level(logger: str, level: int, found: list[str]) -> Exchange:
+    """Set the level; put the one in effect then into `found`, and why it was refused after it."""
+    wanted: dict[str, Value] = {"name": logger, "level": level}
+    answer = yield NodeRequest("set_logger_levels", {"levels": [wanted]})
+    results = answer["results"]
+    yield from read_level(logger, found)
+    if not results or not results[0]["successful"]:
+        reason = str(results[0]["reason"]) if results else ""
+        found.append(reason or say("the node refuses it and gives no reason"))
+
+
+def _level(told: Mapping[str, Any]) -> int:
+    return int(told["level"])
+
+
+def _named(level: int) -> str:
+    return next((name for name, number in LOG_LEVELS.items() if number == level), str(level))

@@ -1,40 +1,126 @@
-"""The lifecycles of all nodes that have one: followed live, and changed.
+"""The lifecycles of all nodes that have one, followed live and changed; and what containers of components hold.
 
-A node publishes its transitions, whoever asked for them, but neither the state before that nor what
-is possible then; so each node is asked when it appears, after a transition, and once in a while.
+A node publishes its transitions, whoever asked for them, but neither the state before that nor what is possible then;
+so each node is asked when it appears, after a transition, and once in a while.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from graph.calls.exchanges import full_name
-from graph.calls.lifecycle_exchange import (
-    GET_STATE,
-    GET_STATE_TYPE,
-    SERVICES,
-    ChangeFacts,
-    LifecycleFacts,
-    change,
-    read,
-    why_not,
-)
+from graph.calls.exchanges import NodeRequest, ServiceSet, full_name
 from graph.data import ANSWER_WITHIN_S
-from graph.inner_states import LifecycleRow, TransitionResult
+from graph.inner_states import ComponentRow, ContainerRow, LifecycleRow, TransitionResult
 from graph.messages.types import load_message
+from text.i18n import N_
+from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Generator, Iterable, Mapping
     from concurrent.futures import Future
 
     from rclpy.node import Node
     from rclpy.subscription import Subscription
 
-    from graph.calls.exchanges import Exchanges
+    from graph.calls.exchanges import Exchange, Exchanges
     from graph.data import NodeRow, ServiceRow
+
+
+CHANGE_WITHIN_S = 20.0
+"""How long a transition may take; a driver that looks for its camera takes its time."""
+INNER_FROM = 10
+"""Numbers of transitions that a node makes by itself. Source: lifecycle_msgs/msg/Transition."""
+GET_STATE = "get_state"
+GET_STATE_TYPE = "lifecycle_msgs/srv/GetState"
+SERVICES = ServiceSet(
+    {
+        GET_STATE: GET_STATE_TYPE,
+        "get_available_transitions": "lifecycle_msgs/srv/GetAvailableTransitions",
+        "change_state": "lifecycle_msgs/srv/ChangeState",
+    },
+    N_("{node} has no lifecycle: it is an ordinary node, at work as long as it runs"),
+)
+
+
+@dataclass
+class LifecycleFacts:
+    """What a node has told."""
+
+    state: str = ""
+    transitions: dict[str, int] = field(default_factory=dict)
+    """Those possible in this state, with their numbers."""
+
+
+@dataclass
+class ChangeFacts:
+    """What came of a transition."""
+
+    before: LifecycleFacts = field(default_factory=LifecycleFacts)
+    after: LifecycleFacts = field(default_factory=LifecycleFacts)
+    success: bool | None = None
+    """The node's answer; None if it was not asked, since the transition is not possible."""
+
+
+def read(facts: LifecycleFacts) -> Exchange:
+    """Read state and possible transitions into `facts`."""
+    answer = yield NodeRequest(GET_STATE, {})
+    facts.state = str(answer["current_state"]["label"])
+    answer = yield NodeRequest("get_available_transitions", {})
+    facts.transitions = dict(_outer(answer))
+
+
+def change(transition: str, facts: ChangeFacts) -> Exchange:
+    """Ask for a transition by its name, if it is possible now; what comes of it is in `facts`."""
+    yield from read(facts.before)
+    number = facts.before.transitions.get(transition)
+    if number is None:
+        facts.after = facts.before
+        return
+    answer = yield NodeRequest("change_state", {"transition": {"id": number, "label": transition}}, CHANGE_WITHIN_S)
+    facts.success = bool(answer["success"])
+    yield from read(facts.after)
+
+
+def why_not(node: str, transition: str, facts: ChangeFacts, *, erred: bool) -> str:
+    """Say why a transition was not done, empty if it was.
+
+    `erred`: the node was seen to process an error meanwhile, which its answer does not tell.
+    """
+    before, after = facts.before, facts.after
+    if facts.success:
+        return ""
+    words = {"node": node, "transition": transition, "state": after.state, "before": before.state}
+    if facts.success is None:
+        if not before.transitions:
+            return say("{node} is {state}: nothing leads out of that state", **words)
+        possible = ", ".join(before.transitions)
+        return say(
+            "{node} is {state}: {transition} is not possible there, only {possible}", possible=possible, **words
+        )
+    if after.state == "finalized" and transition != "shutdown":
+        return say(
+            "{transition} failed with an error that {node} could not recover from: it is "
+            "finalized, and has to be restarted; its log may say why",
+            **words,
+        )
+    if erred or after.state != before.state:
+        return say(
+            "{transition} failed with an error in {node}, which is now {state}; its log may say "
+            "why, but rclpy itself logs no exception raised there",
+            **words,
+        )
+    return say("{node} refuses to {transition} and stays {state}; its log may say why", **words)
+
+
+def _outer(answer: Mapping[str, Any]) -> Generator[tuple[str, int], None, None]:
+    for each in answer["available_transitions"]:
+        number = int(each["transition"]["id"])
+        if number < INNER_FROM:
+            yield str(each["transition"]["label"]), number
+
 
 EVENT = "transition_event"
 EVENT_TYPE = "lifecycle_msgs/msg/TransitionEvent"
@@ -161,3 +247,83 @@ def managed(services: Iterable[ServiceRow]) -> set[str]:
         and GET_STATE_TYPE in row.type_names
         and row.name.removesuffix(f"/{GET_STATE}") in row.nodes
     }
+
+
+LIST_NODES = "_container/list_nodes"
+LIST_NODES_TYPE = "composition_interfaces/srv/ListNodes"
+CONTAINER_SERVICES = ServiceSet({LIST_NODES: LIST_NODES_TYPE}, N_("{node} holds no components"))
+LIST_AGAIN_S = 10.0
+"""A component that makes no node of its own is noticed after this long."""
+
+
+@dataclass
+class _Asked:
+    row: ContainerRow
+    asking: bool = False
+    again: bool = True
+    next_s: float = 0.0
+
+
+class Containers:
+    """The containers of the graph."""
+
+    def __init__(self, exchanges: Exchanges) -> None:
+        """Ask through `exchanges`, which reports every failure in words."""
+        self._exchanges = exchanges
+        self._asked: dict[str, _Asked] = {}
+        self._nodes: frozenset[str] = frozenset()
+
+    def rows(self) -> tuple[ContainerRow, ...]:
+        """Return a row for each container, sorted by name."""
+        return tuple(asked.row for _, asked in sorted(self._asked.items()))
+
+    def tune(self, nodes: Iterable[NodeRow], services: Iterable[ServiceRow]) -> None:
+        """Keep exactly the containers of this graph."""
+        there = containers(services)
+        for name in self._asked.keys() - there:
+            del self._asked[name]
+        for name in there - self._asked.keys():
+            self._asked[name] = _Asked(ContainerRow(name))
+        names = frozenset(row.name for row in nodes)
+        if names != self._nodes:
+            self._nodes = names
+            for asked in self._asked.values():
+                asked.again = True
+
+    def look(self) -> None:
+        for name, asked in self._asked.items():
+            if not asked.asking and (asked.again or time.monotonic() >= asked.next_s):
+                self._ask(name, asked)
+
+    def _ask(self, name: str, asked: _Asked) -> None:
+        asked.asking, asked.again = True, False
+        found: list[ComponentRow] = []
+
+        def end(error: str) -> None:
+            asked.asking = False
+            asked.next_s = time.monotonic() + LIST_AGAIN_S
+            if error:
+                asked.row = replace(asked.row, error=error)
+            else:
+                asked.row = ContainerRow(name, tuple(found))
+
+        self._exchanges.begin(name, read_components(found), CONTAINER_SERVICES, ANSWER_WITHIN_S, end)
+
+
+def containers(services: Iterable[ServiceRow]) -> set[str]:
+    """Return the full names of the containers."""
+    return {
+        row.name.removesuffix(f"/{LIST_NODES}")
+        for row in services
+        if row.name.endswith(f"/{LIST_NODES}") and LIST_NODES_TYPE in row.type_names
+    }
+
+
+def read_components(found: list[ComponentRow]) -> Exchange:
+    """Put what a container holds into `found`, sorted by number."""
+    answer: Mapping[str, Any] = yield NodeRequest(LIST_NODES, {})
+    ids = [int(number) for number in answer["unique_ids"]]
+    names = [str(name) for name in answer["full_node_names"]]
+    found += sorted(
+        (ComponentRow(number, name) for number, name in zip(ids, names, strict=True)), key=lambda row: row.unique_id
+    )

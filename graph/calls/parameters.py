@@ -3,18 +3,108 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from graph.calls.exchanges import full_name
-from graph.calls.parameters_exchange import SERVICES, read, write
-from graph.data import ParametersResult, SetResult
+from graph.calls.exchanges import NodeRequest, ServiceSet, full_name
+from graph.data import ParameterRow, ParametersResult, SetResult
+from text.i18n import N_
+from text.sentences import say
+from text.suggestions import no_number
+from text.yaml_scalars import meaning
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Generator, Mapping, Sequence
     from concurrent.futures import Future
 
-    from graph.calls.exchanges import Exchanges
+    from graph.calls.exchanges import Exchange, Exchanges
     from graph.data import ParameterRow, Value
+
+
+SERVICES = ServiceSet(
+    {
+        "list_parameters": "rcl_interfaces/srv/ListParameters",
+        "describe_parameters": "rcl_interfaces/srv/DescribeParameters",
+        "get_parameters": "rcl_interfaces/srv/GetParameters",
+        "set_parameters": "rcl_interfaces/srv/SetParameters",
+    },
+    N_("{node} has no parameter services: it has just appeared, or was started without them"),
+)
+AT_ONCE = 200
+"""Parameters in one request: a node with thousands of them must fit into its messages."""
+
+
+def read(rows: list[ParameterRow]) -> Exchange:
+    """Read all parameters into `rows`, which is sorted by name when this ends."""
+    listed = yield NodeRequest("list_parameters", {"depth": 0})
+    names = sorted(set(listed["result"]["names"]))
+    descriptors = yield from _describe(names)
+    values = yield from _of_each("get_parameters", "values", names)
+    rows += [row(name, descriptors[name], values.get(name)) for name in names if name in descriptors]
+
+
+def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Exchange:
+    """Set parameters, keeping their types; each that is not accepted is put into `refused`."""
+    descriptors = yield from _describe(list(wanted))
+    made: dict[str, Value] = {}
+    for name, value in wanted.items():
+        word, tree = _made(descriptors.get(name), value)
+        if tree is None:
+            refused[name] = word
+        else:
+            made[name] = {"name": name, "value": tree}
+    for some in _batches(list(made)):
+        answer = yield NodeRequest("set_parameters", {"parameters": [made[name] for name in some]})
+        results = answer["results"]
+        for name, result in zip(some, results, strict=False):
+            if not result["successful"]:
+                refused[name] = result["reason"] or say("the node refuses it and gives no reason")
+        for name in some[len(results) :]:
+            refused[name] = say("the node's answer does not mention it")
+
+
+def _made(descriptor: Mapping[str, Any] | None, value: Value) -> tuple[str, dict[str, Value] | None]:
+    """Return why the value does not fit, or the tree of its ParameterValue."""
+    if descriptor is None:
+        return say("the node has no such parameter"), None
+    if descriptor["read_only"]:
+        return say("it is read-only: it can be set only when the node starts"), None
+    type_name = type_of(descriptor)
+    try:
+        return "", carried(type_name, value)
+    except WrongValueError as error:
+        # A dynamically typed parameter keeps its type if the value fits.
+        return _made_anew(value) if descriptor["dynamic_typing"] else (error.words, None)
+
+
+def _made_anew(value: Value) -> tuple[str, dict[str, Value] | None]:
+    try:
+        return "", carried("not_set", value)
+    except WrongValueError as error:
+        return error.words, None
+
+
+def _describe(names: list[str]) -> Generator[NodeRequest, Mapping[str, Any], dict[str, Any]]:
+    return (yield from _of_each("describe_parameters", "descriptors", names))
+
+
+def _of_each(service: str, field: str, names: list[str]) -> Generator[NodeRequest, Mapping[str, Any], dict[str, Any]]:
+    """Ask for something about each parameter; those that the node does not have are left out."""
+    found: dict[str, Any] = {}
+    parts = list(_batches(names))
+    while parts:
+        some = parts.pop(0)
+        answers = (yield NodeRequest(service, {"names": some}))[field]
+        if len(answers) == len(some):
+            found.update(zip(some, answers, strict=True))
+        elif len(some) > 1:
+            # One parameter that does not exist, or has no value, empties the answer for all.
+            middle = len(some) // 2
+            parts[:0] = [some[:middle], some[middle:]]
+    return found
+
+
+def _batches(names: Sequence[str]) -> list[list[str]]:
+    return [list(names[start : start + AT_ONCE]) for start in range(0, len(names), AT_ONCE)]
 
 
 class ParameterCalls:
@@ -47,3 +137,204 @@ class ParameterCalls:
             self._exchanges.begin(node, write(values, refused), SERVICES, timeout_s, end)
         else:
             end("")
+
+
+TYPES = (
+    "not_set",
+    "bool",
+    "integer",
+    "double",
+    "string",
+    "byte_array",
+    "bool_array",
+    "integer_array",
+    "double_array",
+    "string_array",
+)
+"""By their numbers (source: rcl_interfaces/msg/ParameterType)."""
+INTEGERS = range(-(2**63), 2**63)
+SHOWN = 40
+"""Characters of a wrong value that an error repeats."""
+
+
+class WrongValueError(ValueError):
+    """A value does not fit its parameter; `words` and str() say what was expected and given."""
+
+    def __init__(self, words: str) -> None:
+        """Store the reason, made by `text.sentences.say`."""
+        super().__init__(words)
+        self.words = words
+
+
+def row(name: str, descriptor: Mapping[str, Any], carried: Mapping[str, Any] | None) -> ParameterRow:
+    """Return one parameter from the trees of its ParameterDescriptor and its ParameterValue.
+
+    A parameter that was declared but never given a value has its declared type and no value.
+    """
+    value = plain(carried) if carried is not None else None
+    type_name = TYPES[carried["type"]] if carried is not None and value is not None else ""
+    ranges = [*descriptor["floating_point_range"], *descriptor["integer_range"]]
+    least, greatest, step = (
+        (float(ranges[0]["from_value"]), float(ranges[0]["to_value"]), float(ranges[0]["step"]))
+        if ranges
+        else (None, None, None)
+    )
+    return ParameterRow(
+        name,
+        type_name or type_of(descriptor),
+        value,
+        descriptor["description"],
+        descriptor["additional_constraints"],
+        descriptor["read_only"],
+        least,
+        greatest,
+        step or None,
+    )
+
+
+def type_of(descriptor: Mapping[str, Any]) -> str:
+    """Return the type that a parameter was declared with; `not_set` if any type will do."""
+    number = descriptor["type"]
+    return TYPES[number] if number in range(len(TYPES)) else TYPES[0]
+
+
+def plain(carried: Mapping[str, Any]) -> Value | None:
+    """Return the plain value that the tree of a ParameterValue carries; None if it has none."""
+    number = carried["type"]
+    if number not in range(1, len(TYPES)):
+        return None
+    value: Value = carried[f"{TYPES[number]}_value"]
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def carried(type_name: str, value: Value) -> dict[str, Value]:
+    """Return the tree of the ParameterValue of this type for a value that a person gave.
+
+    An integer is accepted for a double, and the text of a value for the value. For `not_set` the
+    type is that of the value. Raises WrongValueError if it does not fit.
+    """
+    if type_name == TYPES[0]:
+        type_name = _type_for(value)
+    made = _READERS[type_name](value)
+    return {"type": TYPES.index(type_name), f"{type_name}_value": made}
+
+
+def _type_for(value: Value) -> str:
+    if isinstance(value, (bytes, bytearray)):
+        return "byte_array"
+    for kind, name in ((bool, "bool"), (int, "integer"), (float, "double"), (str, "string")):
+        if isinstance(value, kind):
+            return name
+    elements = _elements(value)
+    if not elements:
+        raise WrongValueError(say("an empty list has no type, and the parameter has none either"))
+    names = {_type_for(each) for each in elements}
+    if names == {"integer", "double"}:
+        return "double_array"
+    if len(names) > 1 or f"{min(names)}_array" not in TYPES:
+        raise WrongValueError(say("expected a list of values of one type, got {value}", value=_shown(value)))
+    return f"{names.pop()}_array"
+
+
+def _bool(value: Value) -> bool:
+    meant = _meant(value)
+    if not isinstance(meant, bool):
+        raise WrongValueError(say("expected true or false, got {value}", value=_shown(value)))
+    return meant
+
+
+def _integer(value: Value) -> int:
+    number = _meant(value)
+    if isinstance(number, float) and number.is_integer():
+        number = int(number)
+    if isinstance(number, bool) or not isinstance(number, int):
+        raise WrongValueError(say("expected a whole number, got {value}", value=_shown(value)))
+    if number not in INTEGERS:
+        raise WrongValueError(say("{value} is too large for a 64-bit integer", value=_shown(value)))
+    return number
+
+
+def _double(value: Value) -> float:
+    meant = _meant(value)
+    if isinstance(meant, bool) or not isinstance(meant, (int, float)):
+        raise WrongValueError(no_number(value, _shown(value)))
+    try:
+        return float(meant)
+    except OverflowError:
+        raise WrongValueError(say("{value} is too large for a double", value=_shown(value))) from None
+
+
+def _meant(value: Value) -> Value | None:
+    """Return a single value; text that was typed means what it would mean in YAML."""
+    return meaning(value.strip()) if isinstance(value, str) else value
+
+
+def _string(value: Value) -> str:
+    if isinstance(value, (bool, int, float)):
+        words = say("expected a string, got {value}: put it in quotes", value=_shown(value))
+        raise WrongValueError(words)
+    if not isinstance(value, str):
+        raise WrongValueError(say("expected a string, got {value}", value=_shown(value)))
+    if "\0" in value:
+        raise WrongValueError(say("a ROS string cannot hold the character NUL"))
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise WrongValueError(say("{value} is not valid Unicode", value=_shown(value))) from None
+    return value
+
+
+def _bytes(value: Value) -> bytes:
+    if isinstance(value, (bytes, bytearray)):
+        return bytes(value)
+    numbers = [_integer(each) for each in _elements(value)]
+    if not all(0 <= number <= 255 for number in numbers):
+        raise WrongValueError(say("expected bytes, 0 to 255, got {value}", value=_shown(value)))
+    return bytes(numbers)
+
+
+def _list_of(one: Callable[[Value], Value]) -> Callable[[Value], Value]:
+    return lambda value: [one(each) for each in _elements(value)]
+
+
+def _elements(value: Value) -> list[Value]:
+    if isinstance(value, str):
+        value = _parsed(value)
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if not isinstance(value, (list, tuple)):
+        raise WrongValueError(say("expected a list, such as [1, 2], got {value}", value=_shown(value)))
+    return list(value)
+
+
+def _parsed(text: str) -> Value:
+    from graph.messages.yaml_text import value_of
+    from text.yaml_faults import YamlError
+
+    try:
+        value: Value = value_of(text)
+    except YamlError as error:
+        if text.lstrip().startswith("["):
+            raise WrongValueError(error.message) from None
+        return text
+    return value
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return say("nothing")
+    text = repr(value)
+    return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"
+
+
+_READERS: dict[str, Callable[[Value], Value]] = {
+    "bool": _bool,
+    "integer": _integer,
+    "double": _double,
+    "string": _string,
+    "byte_array": _bytes,
+    "bool_array": _list_of(_bool),
+    "integer_array": _list_of(_integer),
+    "double_array": _list_of(_double),
+    "string_array": _list_of(_string),
+}

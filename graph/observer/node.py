@@ -5,12 +5,10 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from graph.calls.components import Containers
-from graph.calls.exchanges import Exchanges
+from graph.calls.exchanges import Exchanges, LoggerLevels
 from graph.calls.goals import Goals
 from graph.calls.goals_seen import SeenGoals
-from graph.calls.lifecycle import Lifecycles
-from graph.calls.logger_levels import LoggerLevels
+from graph.calls.lifecycle import Containers, Lifecycles
 from graph.calls.parameters import ParameterCalls
 from graph.calls.services import Calls
 from graph.data import GraphUpdate, Interest
@@ -19,16 +17,15 @@ from graph.frames.reading import TF_MESSAGE
 from graph.messages.definitions import decoder
 from graph.observer.taps import Taps
 from graph.publishing.dead_man_switch import DeadManSwitch
-from graph.publishing.outbox import Outbox
-from graph.publishing.publications import RepeatedPublications
-from graph.scan.scan import Scan, Signature, is_complete, scan, signature
+from graph.publishing.outbox import Outbox, RepeatedPublications
+from graph.scan import Scan, Signature, is_complete, scan, signature
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from graph.data import ActionRow, FrameRow, NodeRow, Sample, ServiceRow, Value
     from graph.ros import Ros
-    from graph.scan.endpoints import TopicEnds
+    from graph.scan import TopicEnds
 
 PENDING_S = 0.01
 """How often calls and messages under way are polled."""

@@ -1,10 +1,10 @@
-"""Deck's subscriptions, and the rows and samples that result."""
+"""Deck's subscriptions, and the rows and samples that result; why a topic shows nothing, in words."""
 
 from __future__ import annotations
 
 import time
 from collections import Counter
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -15,19 +15,78 @@ from graph.heavy_types import IMAGES
 from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.observer.rates import QUIET_S
 from graph.observer.tap import FOLLOWED, LARGE_TYPES, Tap, first_depth
-from graph.observer.troubles import Diagnosis, quiet, structural
 from graph.pictures.source import THINNED, host_of, is_away, picture_source, raw_from_afar, to_see
 from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
-from graph.scan.endpoints import TopicEnds
-from graph.scan.scan import Scan
+from graph.qos_compatibility import mismatches
+from graph.scan import Scan, TopicEnds
 from text.ros_names import TF_STATIC
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
     from rclpy.node import Node
 
     from graph.frames.book import FrameBook
+    from graph.messages.types import UnknownTypeError
+    from graph.qos_compatibility import Mismatch
+    from graph.scan import TopicEnds
+
+
+MOST_PAIRS = 5
+"""Pairs that are described in words; the rest are only counted."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """A trouble, or a remark if there is none, with its details."""
+
+    trouble: Trouble | None = None
+    detail: str = ""
+    facts: Mapping[str, str] = field(default_factory=dict)
+
+
+def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | None) -> Diagnosis:
+    """Return what is wrong with the topic, regardless of its messages.
+
+    `shown_type` is the type that Deck decodes, `unknown` why it cannot.
+    """
+    if unknown is not None:
+        return Diagnosis(
+            Trouble.UNKNOWN_TYPE,
+            unknown.reason,
+            {"type": unknown.type_name, "package": unknown.package, "reason": unknown.reason, **unknown.install},
+        )
+    if not ends.everyone_publishing:
+        return Diagnosis(Trouble.NO_PUBLISHER, "nobody publishes this topic")
+    found = mismatches(ends.everyone_publishing, ends.subscribers)
+    if found:
+        return _misfit(found)
+    if len(ends.type_names) > 1:
+        types = ", ".join(ends.type_names)
+        return Diagnosis(
+            None,
+            f"peers disagree about the type: {types}; shown is {shown_type}",
+            {"types": types, "shown": shown_type},
+        )
+    return Diagnosis()
+
+
+def _misfit(found: Sequence[Mismatch]) -> Diagnosis:
+    """Return all incompatible pairs in words, and the first one as facts."""
+    # Two identical endpoints of one node give the same sentence.
+    told = list(dict.fromkeys(found))
+    more = len(told) - MOST_PAIRS
+    words = [f"{pair.what} {pair.mend}" for pair in told[:MOST_PAIRS]]
+    words += [f"(and {more} more pairs)"] if more > 0 else []
+    others = {"more": str(len(told) - 1)} if len(told) > 1 else {}
+    return Diagnosis(Trouble.QOS_MISMATCH, " ".join(words), told[0].facts() | others)
+
+
+def quiet(seconds: float, *, ever: bool) -> Diagnosis:
+    """Return that nothing has come for `seconds`; `ever` says whether anything came before."""
+    since = "" if ever else ", and never before"
+    return Diagnosis(Trouble.QUIET, f"no data for {seconds:.0f} s{since}", {"seconds": f"{seconds:.0f}"})
+
 
 LINGER_S = 30.0
 """How long a subscription is kept that nobody wants any more: whoever changes tabs comes back."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from graph.data import EndpointInfo
-    from graph.scan.endpoints import TopicEnds
+    from graph.scan import TopicEnds
 
 THINNED = "/_deck/compressed"
 """Added to the name of a topic: where Deck's own relay offers its pictures, small and few."""
@@ -23,7 +23,7 @@ OFFERED = (THINNED, "/compressed")
 """What the names of such offers end with, the best first; the second is image_transport's."""
 HOST_BYTES = 4
 """Of the identifier of an endpoint: its vendor and its host, two bytes each. Source: see
-`graph.scan.endpoints`."""
+`graph.scan`."""
 
 
 def picture_source(topic: str, topics: Mapping[str, TopicEnds]) -> str:

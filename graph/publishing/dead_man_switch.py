@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rclpy.publisher import Publisher
 
     from graph.data import Value
-    from graph.scan.endpoints import TopicEnds
+    from graph.scan import TopicEnds
 
 logger = logging.getLogger(__name__)
 

@@ -22,7 +22,7 @@ from graph.messages.types import UnknownTypeError, load_message, not_subscribed
 from graph.observer.tap import LARGE_TYPES
 from graph.qos import Qos, profile, to_hear
 from graph.recording.writer import NANOSECONDS, BagTopic, Message, qos_offer
-from graph.scan.endpoints import full_name
+from graph.scan import full_name
 from text.sentences import say
 
 if TYPE_CHECKING:

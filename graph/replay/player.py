@@ -14,9 +14,8 @@ from graph.frames.reading import TF_MESSAGE
 from graph.messages.definitions import bag_decoder, begins_with_header
 from graph.messages.stamps import frame_id
 from graph.messages.types import UnknownTypeError, not_decoded
-from graph.observer.rates import QUIET_S, WINDOW_S, RateMeter
-from graph.observer.timing import Arrival
-from graph.observer.troubles import quiet
+from graph.observer.rates import QUIET_S, WINDOW_S, Arrival, RateMeter
+from graph.observer.taps import quiet
 from graph.qos import TRANSIENT_LOCAL
 from text.ros_names import TF_STATIC
 

@@ -81,7 +81,7 @@ def written_value(name: str, text: str) -> ParameterValue:
     """Return the value that a word means, as YAML or else as it stands; RuntimeError if no parameter can have it."""
     from rcl_interfaces.msg import ParameterValue
 
-    from graph.calls.parameters_values import WrongValueError, carried
+    from graph.calls.parameters import WrongValueError, carried
 
     try:
         given = value_of(text)
@@ -174,7 +174,7 @@ def dump(args: argparse.Namespace) -> int | str | None:
     """Print the file, which `--ros-args --params-file` takes."""
     import yaml
 
-    from graph.calls.parameters_exchange import read
+    from graph.calls.parameters import read
 
     rows: list[ParameterRow] = []
     with joined(args) as me:

@@ -6,6 +6,7 @@ It is as quick as the test's own imports, and what a test patches holds for it, 
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import threading
 from multiprocessing import Pipe
@@ -39,7 +40,9 @@ class _Thread:
         try:
             ObserverLoop(self._end).run()
         finally:
-            self._end.close()
+            # Whoever listens at either end hears of it.
+            with socket.socket(fileno=os.dup(self._end.fileno())) as end:
+                end.shutdown(socket.SHUT_RDWR)
 
 
 class ObserverThread(ObserverProcess):

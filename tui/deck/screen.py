@@ -31,8 +31,8 @@ from tui.log_view.view import LogView
 from tui.panels.panel import row_of
 from tui.panels.panel_grid import PanelGrid
 from tui.session.messages import SessionChanged
-from tui.session.node_command import node_command
 from tui.session.past import SONARS
+from tui.session.words import node_command
 from tui.teleop.actions import TELEOP_ACTIONS, open_teleop
 from tui.teleop.dock import TeleopDock
 from tui.widgets.fault_words import fault_lines

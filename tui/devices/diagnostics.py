@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 from textual.containers import Horizontal, Vertical
 
-from graph.diagnostics.reading import StatusLevel
-from graph.diagnostics.tree import tree
+from graph.diagnostics import StatusLevel, tree
 from text.i18n import _, language
 from text.plain import plain
 from tui import clock
@@ -20,8 +19,7 @@ if TYPE_CHECKING:
 
     from textual.app import ComposeResult
 
-    from graph.diagnostics.book import DiagnosticsBook, StatusRecord
-    from graph.diagnostics.tree import TreeRow
+    from graph.diagnostics import DiagnosticsBook, StatusRecord, TreeRow
 
 TIME = 8
 """Cells of a time of day."""

@@ -10,8 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from graph.data import TopicRow
-    from graph.diagnostics.book import DiagnosticsBook, StatusRecord
-    from graph.diagnostics.reading import DiagnosticStatus
+    from graph.diagnostics import DiagnosticsBook, DiagnosticStatus, StatusRecord
 
 STALE_S = 3.0
 """A driver that has been silent for this long is stale: each reports once a second."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 from textual import on, work
 from textual.widgets import Static
 
-from graph.diagnostics.book import DiagnosticsBook
+from graph.diagnostics import DiagnosticsBook
 from launcher.status import Severity
 from robot.frames.protocols import decode
 from robot.topics import DIAGNOSTICS

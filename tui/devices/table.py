@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from graph.diagnostics.reading import StatusLevel
+from graph.diagnostics import StatusLevel
 from text.figures import whole
 from text.i18n import N_, _
 from text.plain import plain

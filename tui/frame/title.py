@@ -12,8 +12,8 @@ from tui.emergency.gate import rare_words
 from tui.emergency.state import held_reason
 from tui.emergency.words import stop_words
 from tui.frame.actions.app import TABS, emergency_release
-from tui.session.hardware_words import hardware_words
 from tui.session.watching import robot_nodes
+from tui.session.words import hardware_words
 
 if TYPE_CHECKING:
     from launcher.status import SessionInfo

@@ -6,13 +6,13 @@ import asyncio
 from typing import TYPE_CHECKING, NamedTuple
 
 from graph.findings.finding import FindingLevel, GraphFinding
-from graph.findings.lasting import LastingFindings
+from graph.findings.rules import LastingFindings
 from graph.housekeeping import is_housekeeping
 from launcher.status import NodeState
 from text.i18n import N_, _, localized
 from tui import clock
 from tui.graph.places import LISTED, GraphKind
-from tui.session.norms import NORMS
+from tui.session.bypass import NORMS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -28,8 +28,8 @@ from tui.lesson.judged import judged_lines, where_lessons_are
 from tui.lesson.place import put
 from tui.lesson.reading import drawn
 from tui.session.messages import SessionChanged
-from tui.session.node_command import node_command
 from tui.session.requests import OpenRequest
+from tui.session.words import node_command
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult

@@ -10,7 +10,7 @@ from text.i18n import N_, _, ngettext
 from text.plain import plain
 from tui.actions import Announce, bindings
 from tui.dialogs.dialog import Dialog
-from tui.session.started_words import started_words
+from tui.session.words import started_words
 
 if TYPE_CHECKING:
     from textual.binding import BindingType

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from launcher.status import LogLine, Severity
 from text.i18n import localized
 from text.plain import plain
-from tui.session.history import KEPT_LINES
+from tui.session.past import KEPT_LINES
 
 LONGEST_TEXT = 16_384
 """Characters kept of one line; the file has the whole line."""

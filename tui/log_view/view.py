@@ -33,7 +33,7 @@ from tui.log_view.rows import (
     text_of,
 )
 from tui.log_view.tail import Tail
-from tui.session.history import KEPT_LINES
+from tui.session.past import KEPT_LINES
 from tui.widgets.one_style import OneStyle
 
 if TYPE_CHECKING:

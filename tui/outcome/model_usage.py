@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from graph.diagnostics.reading import statuses
+from graph.diagnostics import statuses
 from text.figures import figure, whole
 from text.i18n import _
 from text.plain import plain

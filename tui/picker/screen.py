@@ -22,9 +22,8 @@ from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import BREAKPOINTS, HEIGHTS
 from tui.frame.title_bar import TitleBar
-from tui.session.hardware_words import hardware_words
 from tui.session.requests import WatchRequest
-from tui.session.started_words import started_words
+from tui.session.words import hardware_words, started_words
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 

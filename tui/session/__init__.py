@@ -3,5 +3,5 @@
 The screen reaches the supervisor and the ROS graph only through the two ports (`ports`). Only
 `feed.Feed` sends messages to screens, which it knows as `feed.SessionScreen`. Every folder of the
 screen may use the plain data here and the words for it; the command line uses `requests` and
-`hardware_words`.
+`words`.
 """

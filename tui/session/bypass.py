@@ -1,9 +1,9 @@
-"""Publishers that bypass the gate and the differential, or speak for a sonar of the gate.
+"""Publishers that bypass the gate and the differential, or speak for a sonar of the gate; and what is normal.
 
-The nodes of the session may publish anything that their profile says. Any other publisher on these
-topics bypasses the gate, and so does a second publisher with the name of one of them. If the
-session has no such node of Deck's, the owner of the topic is unknown; then only two publishers are
-reported, and so it is with the distances, of which the gate takes the lowest.
+The nodes of the session may publish anything that their profile says. Any other publisher on these topics bypasses
+the gate, and so does a second publisher with the name of one of them. If the session has no such node of Deck's, the
+owner of the topic is unknown; then only two publishers are reported, and so it is with the distances, of which the
+gate takes the lowest.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from graph.data import NAMELESS
-from robot.topics import DRIVE_SAFE, SONAR_FRAMES, WHEEL_COMMANDS
+from graph.findings.finding import GraphNorms
+from robot.safety.moving_topics import SOLE, moves
+from robot.topics import DRIVE_SAFE, MAY_WAIT, OF_MANY, SONAR_FRAMES, WHEEL_COMMANDS
 from text.i18n import _
 from text.plain import plain
 
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate, TopicRow
     from launcher.status import NodeStatus
+
+
+NORMS = GraphNorms(moves, SOLE, OF_MANY, MAY_WAIT)
+
 
 OURSELVES = "Deck"
 """Stands for what is published from this screen at a rate."""

@@ -16,13 +16,9 @@ from graph.data import Interest
 from graph.observer.requests import StopCommanding
 from launcher.consent import Agents
 from text.i18n import _
-from tui.session.history import KEPT_LINES, LogHistory
-from tui.session.inbox import GraphInbox
 from tui.session.messages import AgentsChanged, GraphChanged, LogArrived, SessionChanged, StatusChanged
-from tui.session.outside import Outside
-from tui.session.past import FLOW_TOPICS, SONARS, Past
-from tui.session.rosout import TOPIC as ROSOUT
-from tui.session.rosout import RosoutReader
+from tui.session.outside import ROSOUT, Outside, RosoutReader
+from tui.session.past import FLOW_TOPICS, KEPT_LINES, SONARS, GraphInbox, LogHistory, Past, ended_nodes, silent_graph
 from tui.session.watching import WATCH
 
 if TYPE_CHECKING:
@@ -192,9 +188,6 @@ class Feed:
             await asyncio.to_thread(graph.stop)
 
     def _show_ended(self, nodes: Mapping[str, NodeStatus]) -> None:
-        # Not needed for the first frame.
-        from tui.session.ended import ended_nodes, silent_graph
-
         self._ended_nodes = ended_nodes(nodes, self.ended)
         self._tell_status(frozenset(nodes))
         if self.update is not None:

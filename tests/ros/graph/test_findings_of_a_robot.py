@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from graph.findings.lasting import LastingFindings
+from graph.findings.rules import LastingFindings
 from tests.deck_process import DeckProcess
 from tests.ros.observing import Watcher
 from tests.waiting import wait_until
-from tui.session.norms import NORMS
+from tui.session.bypass import NORMS
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -21,7 +21,7 @@ from tests.waiting import until
 from tui.emergency.control import EmergencyControl
 from tui.emergency.state import FOLLOWED, listeners
 from tui.emergency.words import stop_words
-from tui.session.inbox import GraphInbox
+from tui.session.past import GraphInbox
 
 WITHIN_S = 30.0
 NODE = "/electronic_differential"

@@ -46,7 +46,7 @@ from tui.logs.screen import LogsScreen
 from tui.panels.head import HeadView
 from tui.panels.wheels import WheelsView
 from tui.picker.screen import PickerScreen
-from tui.session.inbox import GraphInbox
+from tui.session.past import GraphInbox
 from tui.session.ports import SessionLink
 from tui.session.requests import OpenRequest
 from tui.topics.screen import TopicsScreen

@@ -9,19 +9,15 @@ from typing import Any
 import pytest
 
 from graph.data import ActionRow, EndpointInfo, GraphUpdate, NodeRow, Sample, ServiceRow, TopicRow, Trouble
-from graph.diagnostics.book import STALE_S, DiagnosticsBook
-from graph.diagnostics.reading import StatusLevel
-from graph.diagnostics.tree import tree
-from graph.findings.examining import examine
-from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, GraphFinding
-from graph.findings.lasting import CHANGING_S, LastingFindings
-from graph.findings.names import meant
+from graph.diagnostics import STALE_S, DiagnosticsBook, StatusLevel, tree
+from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, GraphFinding, meant
+from graph.findings.rules import CHANGING_S, LastingFindings, examine
 from graph.messages.types import UnknownTypeError
-from graph.observer.troubles import quiet, structural
+from graph.observer.taps import quiet, structural
 from graph.qos import Qos, to_be_heard, to_hear
 from graph.qos_compatibility import mismatches
-from graph.scan.endpoints import TopicEnds
-from tui.session.norms import NORMS
+from graph.scan import TopicEnds
+from tui.session.bypass import NORMS
 
 FLOAT, STRING, RANGE = "std_msgs/msg/Float32", "std_msgs/msg/String", "sensor_msgs/msg/Range"
 ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
@@ -184,7 +180,7 @@ def test_nodes_with_one_name_are_told_by_their_processes_or_by_what_a_node_has_o
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     here = ["3", "4"]
-    monkeypatch.setattr("graph.findings.publishers.os.listdir", lambda _path: here)
+    monkeypatch.setattr("graph.findings.rules.os.listdir", lambda _path: here)
     twice = topic("/rosout", "/twin /twin /other", kind="rcl_interfaces/msg/Log")
     rows = (NodeRow("/twin", processes=(3,)), NodeRow("/other", processes=(4, 5)), NodeRow("/one"))
     findings = found(twice, nodes=rows)

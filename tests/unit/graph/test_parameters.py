@@ -10,8 +10,8 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from graph.calls.parameters import TYPES, WrongValueError, carried
 from graph.calls.parameters_file import dump, load
-from graph.calls.parameters_values import TYPES, WrongValueError, carried
 from graph.data import ParameterRow
 from text.yaml_faults import YamlError
 

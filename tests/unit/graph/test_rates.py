@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graph.messages.stamps import delay_s
-from graph.observer.rates import RateMeter
-from graph.observer.timing import Arrival
+from graph.observer.rates import Arrival, RateMeter
 
 T0 = 1_700_000_000.0
 

@@ -15,20 +15,18 @@ from deck_interfaces.action import DriveToPoint
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graph.calls import goal_life as goals_life
-from graph.calls import logger_levels
+from graph.calls import goals as goals_life
 from graph.calls.action_client import GoalAnswers
-from graph.calls.exchanges import Exchange, NodeRequest
-from graph.calls.goal_life import GoalLife
-from graph.calls.lifecycle import managed
-from graph.calls.lifecycle_exchange import CHANGE_WITHIN_S, ChangeFacts, change
+from graph.calls.exchanges import Exchange, NodeRequest, read_level
+from graph.calls.goals import GoalLife
+from graph.calls.lifecycle import CHANGE_WITHIN_S, ChangeFacts, change, managed
 from graph.data import ANSWER_WITHIN_S, Goal, GoalStatus, ServiceRow, Value
 from graph.messages.making import Draft
 from graph.observer.node import ObserverNode
 from graph.observer.process import ObserverLoop
 from graph.observer.requests import Hold, LetGo, Order, Publish, Request, StartPublishing, StopPublishingAll
 from graph.publishing.dead_man_switch import CommandRepeater, HeldCommand
-from graph.publishing.publications import LATE_S, _Repeated
+from graph.publishing.outbox import LATE_S, _Repeated
 from graph.qos import RELIABLE, VOLATILE, Qos
 
 BOOL, STOP = "std_msgs/msg/Bool", {"data": True}
@@ -175,12 +173,12 @@ def test_only_a_node_that_serves_its_state_by_the_right_type_is_managed() -> Non
 def test_the_level_in_effect_is_that_of_the_next_logger_above() -> None:
     found: list[str] = []
     told = [{"name": name, "level": number} for name, number in (("a.b", 0), ("a", 40), ("", 20))]
-    (asked, *_) = talk(logger_levels.read("a.b", found), {"levels": told})
+    (asked, *_) = talk(read_level("a.b", found), {"levels": told})
     assert asked.value == {"names": ["a.b", "a", ""]}
     assert found == ["error"]
-    talk(logger_levels.read("a", found), {"levels": [{"name": "a", "level": 0}]})
+    talk(read_level("a", found), {"levels": [{"name": "a", "level": 0}]})
     assert found == ["info"]
-    talk(logger_levels.read("a", found), {"levels": [{"name": "a", "level": 25}]})
+    talk(read_level("a", found), {"levels": [{"name": "a", "level": 25}]})
     assert found == ["25"]
 
 

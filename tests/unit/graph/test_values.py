@@ -19,8 +19,8 @@ from graph.messages.condition import ConditionError, MessageFilter
 from graph.messages.fields import FieldType, parse
 from graph.messages.types import UnknownTypeError, load_message, load_service
 from graph.messages.yaml_text import is_cut, read_message, to_yaml
-from graph.observer.troubles import structural
-from graph.scan.endpoints import TopicEnds
+from graph.observer.taps import structural
+from graph.scan import TopicEnds
 from text.yaml_faults import YamlError
 from text.yaml_tree import plain
 

@@ -7,7 +7,7 @@ import struct
 
 import pytest
 
-from graph.participants.roll import Attendance
+from graph.participants import Attendance
 from launcher.domain.participants import LocalParticipant
 from ros2 import presence
 from ros2.presence import Missing, missing, words

@@ -10,7 +10,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from graph.calls.parameters_values import WrongValueError, carried
+from graph.calls.parameters import WrongValueError, carried
 from graph.messages.yaml_text import read_message
 from launcher.profile.reading import Problems
 from launcher.profile.reading import read_yaml as read_profile

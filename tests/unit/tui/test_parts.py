@@ -15,7 +15,7 @@ from robot.limits import SPEED, STEERING
 from robot.words import STOP, DriveSetpoint
 from tui.actions.layouts import on_all_layouts
 from tui.recording.recording import RecordingLimit, read_limit
-from tui.session.rosout import TOPIC, RosoutReader
+from tui.session.outside import ROSOUT, RosoutReader
 from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, Move, Teleop, TeleopLimits
 from tui.teleop.route import RATE_HZ, command
 from tui.terminal.bandwidth import OVER_SSH, SAVED_S, Bandwidth, default_limit
@@ -95,7 +95,7 @@ def test_a_limit_is_read_in_both_languages(text: str, limit: RecordingLimit) -> 
 
 
 def message(**value: Any) -> Sample:
-    return Sample(TOPIC, "rcl_interfaces/msg/Log", 1000.0, 0.0, 100, value)
+    return Sample(ROSOUT, "rcl_interfaces/msg/Log", 1000.0, 0.0, 100, value)
 
 
 def log(text: str, name: str = "talker", level: int = 20) -> Sample:

@@ -9,7 +9,7 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Static
 
-from graph.publishing.publications import LEAST_HZ, MOST_HZ
+from graph.publishing.outbox import LEAST_HZ, MOST_HZ
 from text.i18n import _, decimal
 from text.plain import plain
 from tui.widgets.field import Field
