@@ -12,8 +12,8 @@ import time
 from collections import deque
 from typing import TYPE_CHECKING, NamedTuple
 
-from launcher.control.protocol import VERSION, encode
 from launcher.control.socket import connect
+from launcher.wire import VERSION, encode
 from robot.safety.stop_file import BY_SCREEN, StopFile
 from robot.safety.stop_record import Stop
 from text.nested import read_json

@@ -8,16 +8,12 @@ slow client costs nothing, and one that catches up is up to date at once.
 from __future__ import annotations
 
 import heapq
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from typing import Any
 
-from launcher.control.protocol import pack_status
-from launcher.logs.packing import pack_line
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from launcher.logs.ring import LogRing
-    from launcher.status import NodeStatus
+from launcher.events import LogEvent, StatusEvent, pack_event
+from launcher.logs.ring import LogRing
+from launcher.status import NodeStatus
 
 MAX_LINES = 200
 """Most lines of one node in one batch."""
@@ -42,9 +38,9 @@ class ClientFeed:
         """Return the message about changed nodes, None if there are none."""
         if not self._changed:
             return None
-        nodes = [pack_status(statuses[name]) for name in self._changed]
+        nodes = tuple(statuses[name] for name in self._changed)
         self._changed.clear()
-        return {"event": "status", "nodes": nodes}
+        return pack_event(StatusEvent(nodes))
 
     def log_news(self) -> dict[str, Any] | None:
         """Return the next batch of lines, None if there are none."""
@@ -62,4 +58,4 @@ class ClientFeed:
             return None
         # A node's own lines always stay in order, whatever their time stamps say.
         batch = heapq.merge(*news, key=lambda line: line.time_s)
-        return {"event": "log", "lines": [pack_line(line) for line in batch], "skipped": skipped}
+        return pack_event(LogEvent(tuple(batch), skipped))

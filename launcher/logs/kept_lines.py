@@ -8,7 +8,7 @@ from collections import deque
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
-from launcher.logs.packing import pack_line, unpack_line
+from launcher.status import LogLine, pack_line, unpack_line
 from text.nested import read_json
 
 if TYPE_CHECKING:

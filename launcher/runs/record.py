@@ -14,17 +14,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.control.protocol import pack_session, unpack_session
 from launcher.control.socket import SOCKET_NAME
 from launcher.private_files import make_folder, open_file, open_own_folder, remove_files
 from launcher.run_id import supervisor_runs
+from launcher.status import SessionInfo
+from launcher.wire import pack, unpack
 from text.nested import read_json
 from text.run_path import MODEL_USAGE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from launcher.status import SessionInfo
 
 RECORD_NAME = "session.json"
 _DRAFT_NAME = f"{RECORD_NAME}.new"
@@ -56,7 +56,7 @@ class RunRecord:
     def write(self) -> None:
         make_folder(self.folder)
         fields = {
-            "session": pack_session(self.session),
+            "session": pack(self.session),
             "nodes": self.nodes,
             "processes": self.processes,
             "drives": self.drives,
@@ -89,7 +89,7 @@ def read_record(folder: Path) -> RunRecord | None:
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
         fields = read_json((folder / RECORD_NAME).read_text(encoding="utf-8"))
         processes = {str(node): (int(pid), int(started)) for node, (pid, started) in fields["processes"].items()}
-        session = unpack_session(fields["session"])
+        session = unpack(SessionInfo, fields["session"])
         drives = bool(fields.get("drives"))
         return RunRecord(folder, session, tuple(fields["nodes"]), processes, drives)
     return None
