@@ -15,7 +15,7 @@ from text.run_path import run_path
 
 if TYPE_CHECKING:
     from cli.doctor.finding import Finding
-    from launcher.runs.found import FoundSupervisor
+    from launcher.runs.record import FoundSupervisor
 
 LEAST_FREE = 200 * 10**6
 """Bytes to keep free for logs; these are rotated but may still grow to a limit."""
@@ -40,7 +40,7 @@ class RunFacts:
 
 def collect() -> RunFacts:
     from launcher.client.client import running
-    from launcher.runs.found import supervisors_everywhere
+    from launcher.runs.record import supervisors_everywhere
     from launcher.runs.strays import find_strays
 
     try:

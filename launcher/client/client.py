@@ -39,8 +39,7 @@ from launcher.run_id import supervisor_of
 from launcher.rundir import log_dir, run_dir
 from launcher.serial_ports import serial_ports
 from launcher.status import unpack_line
-from launcher.supervisor.dependencies import stop_waves
-from launcher.supervisor.plan import plan_of
+from launcher.supervisor.plan import plan_of, stop_waves
 from launcher.supervisor.words import who
 from launcher.wire import MAX_MESSAGE_BYTES, VERSION, encode, pack, unpack
 from text.nested import read_json

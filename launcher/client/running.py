@@ -15,8 +15,7 @@ from launcher.processes.table import NODE_MARK, RUN_MARK, Process, processes, re
 from launcher.profile.catalog import fitting, is_path
 from launcher.run_id import living_supervisor, supervisor_of
 from launcher.rundir import found_run_dir
-from launcher.runs.found import supervisors
-from launcher.runs.record import RunRecord, read_records
+from launcher.runs.record import RunRecord, read_records, supervisors
 from launcher.supervisor.words import who
 from text.run_path import OWN_RUN_DIR
 from text.sentences import Words, say

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import asyncio
+import heapq
 import os
 import socket
 import struct
 import time
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
 from launcher.control.consent import ConsentDesk, TooManyError, TooSoonError
-from launcher.control.feed import ClientFeed
 from launcher.control.requests import AgentRequests, BadRequestError, requests_of, serve
 from launcher.errors import StillRunningError, UnknownNodeError
-from launcher.events import AgentsEvent, ClosedEvent, Event, Hello, StraysEvent, UnguardedEvent, pack_event
+from launcher.events import (
+    AgentsEvent,
+    ClosedEvent,
+    Event,
+    Hello,
+    LogEvent,
+    StatusEvent,
+    StraysEvent,
+    UnguardedEvent,
+    pack_event,
+)
 from launcher.logs.ring import LogRing
 from launcher.processes.confinement import is_confined, is_elsewhere
 from launcher.status import NodeStatus, Severity, Stray
@@ -23,6 +33,52 @@ from launcher.wire import MAX_REQUEST_BYTES, VERSION, encode, pack
 from text.nested import read_json
 from text.packing import pack_text
 from text.sentences import say
+
+MAX_LINES = 200
+"""Most lines of one node in one batch."""
+MAX_CHARS = 64 * 1024
+"""Most characters of one node's lines in one batch, not counting its first line."""
+
+
+class ClientFeed:
+    """The updates for one client."""
+
+    def __init__(self, rings: Mapping[str, LogRing]) -> None:
+        """Begin with lines that are written from now on; older ones are history."""
+        self._rings = rings
+        self._seen = {name: ring.last_seq for name, ring in rings.items()}
+        self._changed: dict[str, None] = {}
+
+    def status_changed(self, names: Iterable[str]) -> None:
+        """Mark the statuses of these nodes to be sent."""
+        self._changed.update(dict.fromkeys(names))
+
+    def status_news(self, statuses: Mapping[str, NodeStatus]) -> dict[str, Any] | None:
+        """Return the message about changed nodes, None if there are none."""
+        if not self._changed:
+            return None
+        nodes = tuple(statuses[name] for name in self._changed)
+        self._changed.clear()
+        return pack_event(StatusEvent(nodes))
+
+    def log_news(self) -> dict[str, Any] | None:
+        """Return the next batch of lines, None if there are none."""
+        news = []
+        skipped = {}
+        for name, ring in self._rings.items():
+            missed = ring.last_seq - self._seen[name]
+            if missed:
+                lines = ring.after(self._seen[name], MAX_LINES, MAX_CHARS)
+                self._seen[name] = ring.last_seq
+                news.append(lines)
+                if missed > len(lines):
+                    skipped[name] = missed - len(lines)
+        if not news:
+            return None
+        # A node's own lines always stay in order, whatever their time stamps say.
+        batch = heapq.merge(*news, key=lambda line: line.time_s)
+        return pack_event(LogEvent(tuple(batch), skipped))
+
 
 LOG_PERIOD_S = 0.1
 STATUS_DELAY_S = 0.01

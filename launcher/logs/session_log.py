@@ -8,10 +8,9 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from launcher.faults.telling import told_in
-from launcher.logs.rcutils import SeverityParser
+from launcher.logs.lines import SeverityParser, plain_text
 from launcher.logs.reader import PipeReader
 from launcher.logs.ring import LogRing
-from launcher.logs.text import plain_text
 from launcher.status import LogLine, Severity
 from text.plain import plain
 from text.sentences import say

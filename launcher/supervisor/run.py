@@ -19,19 +19,17 @@ from pydantic import Field
 from launcher.control.requests import BadRequestError, request
 from launcher.control.server import Client, ControlServer
 from launcher.domain.discovery import why_open
-from launcher.domain.ports import other_users
+from launcher.domain.participants import other_users
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.events import Hello
-from launcher.logs.files import LogFiles
-from launcher.logs.folder import make_log_folder, prune_runs
+from launcher.logs.files import LogFiles, make_log_folder, prune_runs
 from launcher.logs.session_log import AGENT, DECK, SessionLog
 from launcher.private_files import open_file
 from launcher.processes.exit import Reaper
 from launcher.processes.members import Members
 from launcher.processes.owner import who_runs, who_words
 from launcher.processes.stop import end_all
-from launcher.runs.found import supervisors
-from launcher.runs.record import RunRecord, exclusively
+from launcher.runs.record import RunRecord, exclusively, supervisors
 from launcher.runs.run_folder import RunFolder
 from launcher.runs.shared_domain import Neighbour, free_domain, rival
 from launcher.runs.strays import end_strays, find_strays, forget_ended_runs

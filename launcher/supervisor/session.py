@@ -13,8 +13,8 @@ from launcher.faults.stuck import stuck_in
 from launcher.faults.telling import fault_in
 from launcher.processes.usage import UsageMeter
 from launcher.status import NodeState, Severity
-from launcher.supervisor.dependencies import stop_waves, with_needs
 from launcher.supervisor.node import SupervisedNode
+from launcher.supervisor.plan import stop_waves, with_needs
 from launcher.supervisor.readiness import LifecycleWaits, Readiness, clash_of
 from launcher.supervisor.words import who
 from text.sentences import say

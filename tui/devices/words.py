@@ -120,8 +120,6 @@ def _lessons_with_drivers() -> tuple[str, ...]:
             nodes = load_profile(entry.path).nodes.values()
         except LauncherError:
             continue
-        if any(
-            node.run in DRIVERS or (node.run == HEAD and "port" in node.params) for node in nodes
-        ):
+        if any(node.run in DRIVERS or (node.run == HEAD and "port" in node.params) for node in nodes):
             found.append(entry.name)
     return tuple(found)

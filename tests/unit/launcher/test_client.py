@@ -16,7 +16,7 @@ from launcher.client import inbox as client_inbox
 from launcher.client.client import SupervisorClient, attach
 from launcher.client.inbox import Inbox, newer
 from launcher.consent import Approval, ConsentAnswer
-from launcher.control.feed import MAX_LINES, ClientFeed
+from launcher.control.server import MAX_LINES, ClientFeed
 from launcher.errors import ConnectionLostError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent, pack_event
 from launcher.faults.crash import refused_arguments
