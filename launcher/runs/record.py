@@ -15,15 +15,16 @@ import os
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
+from launcher.consent import AgentRules
 from launcher.control.socket import SOCKET_NAME
 from launcher.private_files import make_folder, open_file, open_own_folder, remove_files
 from launcher.processes.table import SUPERVISOR_MARK, own_number, process_numbers, read_marks, read_process
 from launcher.run_id import is_of_supervisor, supervisor_of, supervisor_runs
-from launcher.status import SessionInfo
-from launcher.wire import pack, unpack
+from launcher.status import SessionInfo, Who
 from text.nested import read_json
 from text.run_path import MODEL_USAGE, OWN_RUN_DIR
 
@@ -57,7 +58,7 @@ class RunRecord:
     def write(self) -> None:
         make_folder(self.folder)
         fields = {
-            "session": pack(self.session),
+            "session": asdict(self.session),
             "nodes": self.nodes,
             "processes": self.processes,
             "drives": self.drives,
@@ -90,10 +91,27 @@ def read_record(folder: Path) -> RunRecord | None:
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
         fields = read_json((folder / RECORD_NAME).read_text(encoding="utf-8"))
         processes = {str(node): (int(pid), int(started)) for node, (pid, started) in fields["processes"].items()}
-        session = unpack(SessionInfo, fields["session"])
+        session = _session(fields["session"])
         drives = bool(fields.get("drives"))
         return RunRecord(folder, session, tuple(fields["nodes"]), processes, drives)
     return None
+
+
+def _session(fields: dict[str, Any]) -> SessionInfo:
+    """Return the session that `dataclasses.asdict` was given.
+
+    Not by pydantic, for which a stop from a shell would have to wait.
+    """
+    discovery, rules = fields["discovery"], fields.get("agents", {})
+    lists = {name: tuple(rules[name]) for name in ("publish", "call") if name in rules}
+    read = {
+        "panels": tuple(fields["panels"]),
+        "discovery": discovery if isinstance(discovery, str) else tuple(discovery),
+        "started_by": Who(**fields["started_by"]),
+        # A session that an older Deck has started has none.
+        "agents": AgentRules(**{**rules, **lists}),
+    }
+    return SessionInfo(**{**fields, **read})
 
 
 @contextlib.contextmanager

@@ -10,16 +10,13 @@ from __future__ import annotations
 import os
 import signal
 import time
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from launcher.processes.abandoned import KILLED_AFTER_S, LEFT_AFTER_S
 from launcher.processes.prctl import become_subreaper
 from launcher.processes.signal import send
-from launcher.processes.table import GUARDIAN_NAME, processes
+from launcher.processes.table import GUARDIAN_NAME, Process, processes
 from launcher.processes.title import show_name, show_title
-
-if TYPE_CHECKING:
-    from launcher.processes.table import Process
 
 _LOOK_EVERY_S = 0.05
 
