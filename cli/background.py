@@ -14,9 +14,8 @@ from cli.sessions import as_json, show, silent_as_json, silent_words
 from cli.shared_domain import in_own_domain
 from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.client import client
-from launcher.client.hung_supervisor import kill_supervisor, left_of, nodes_of
-from launcher.client.log_history import newer
-from launcher.client.running import find_running
+from launcher.client.inbox import newer
+from launcher.client.running import find_running, kill_supervisor, left_of, nodes_of
 from launcher.errors import (
     AlreadyRunningError,
     ConnectionLostError,

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import course
 from course.protocol import MOST_BYTES, unpack_step
 from course.results import StepResult
-from launcher.control.protocol import encode
+from launcher.wire import encode
 from text.nested import read_json
 from text.packing import unpack_text
 from text.sentences import say

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from launcher.wire import Sentence
+
 AUDIT_FILE = "agents.jsonl"
 """In the log folder of a run: what agents have called, one JSON object a line."""
 ALLOWED_FOR_S = 300.0
@@ -84,7 +86,7 @@ class Question:
     number: int
     agent: str
     """Its name, as it gives it itself."""
-    lines: tuple[str, ...]
+    lines: tuple[Sentence, ...]
     """What it would do, in sentences: the most important one first."""
     until_s: float
     """Unix time at which it counts as refused."""

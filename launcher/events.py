@@ -1,13 +1,27 @@
-"""The events that a client of the supervisor receives, one plain class for each kind."""
+"""What a supervisor says to its clients of itself: a greeting, and then events."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from launcher.consent import Agents
-from launcher.status import LogLine, NodeStatus, Stray
+from launcher.status import NodeStatus, SentLine, SessionInfo, Stray
+from launcher.wire import VERSION, Sentence, pack, unpack
+
+
+@dataclass(frozen=True)
+class Hello:
+    """What it says first: how everything is now."""
+
+    session: SessionInfo
+    nodes: tuple[NodeStatus, ...]
+    strays: tuple[Stray, ...] = ()
+    agents: Agents = field(default_factory=Agents)
+    unguarded: bool = False
+    """Whether it has lost its guardian."""
+    deck: int = VERSION
 
 
 @dataclass(frozen=True)
@@ -21,7 +35,7 @@ class StatusEvent:
 class LogEvent:
     """A batch of lines, bounded for each node."""
 
-    lines: tuple[LogLine, ...]
+    lines: tuple[SentLine, ...]
     skipped: Mapping[str, int] = field(default_factory=dict)
     """Node to the number of its lines that this batch leaves out; the log file has them all."""
 
@@ -49,7 +63,27 @@ class UnguardedEvent:
 class ClosedEvent:
     """The session has ended, or the supervisor is gone; no event follows."""
 
-    reason: str
+    reason: Sentence
 
 
 Event: TypeAlias = StatusEvent | LogEvent | StraysEvent | AgentsEvent | UnguardedEvent | ClosedEvent
+_KINDS: dict[str, type[Event]] = {
+    "status": StatusEvent,
+    "log": LogEvent,
+    "strays": StraysEvent,
+    "agents": AgentsEvent,
+    "unguarded": UnguardedEvent,
+    "closed": ClosedEvent,
+}
+
+
+def pack_event(event: Event) -> dict[str, Any]:
+    """Return the message that tells an event."""
+    name = next(name for name, kind in _KINDS.items() if type(event) is kind)
+    return {"event": name, **pack(event)}
+
+
+def unpack_event(message: Mapping[str, Any]) -> Event | None:
+    """Return the event of a message; None if it tells none that is known. Raises ValueError."""
+    kind = _KINDS.get(message.get("event", ""))
+    return None if kind is None else unpack(kind, message)

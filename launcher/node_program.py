@@ -58,10 +58,11 @@ def run(name: str) -> None:
 
     if "/" in name:
         # Not imported: the learner may have a `launcher` of his own.
-        runpy.run_path(f"{OURS}/byte_fields.py")["allow"]()
+        changes = runpy.run_path(f"{OURS}/rclpy_changes.py")
+        changes["allow_bytes"]()
         tells = sys.excepthook is _report_and_tell
         if tells:
-            runpy.run_path(f"{OURS}/node_names.py")["keep"](name)
+            changes["keep_names"](name)
         _watch(name.rpartition("/")[0], tells=tells)
         runpy.run_path(name, run_name="__main__")
     else:

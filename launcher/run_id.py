@@ -7,12 +7,8 @@ from __future__ import annotations
 
 import os
 import time
-from typing import TYPE_CHECKING
 
-from launcher.processes.table import read_process
-
-if TYPE_CHECKING:
-    from launcher.processes.table import Process
+from launcher.processes.table import Process, read_process
 
 
 def new_run_id() -> str:

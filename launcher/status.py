@@ -6,10 +6,14 @@ every CPU figure in percent of one core.
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Annotated, Any
 
 from launcher.consent import DEFAULT_RULES, AgentRules
+from launcher.wire import Sent, Sentence
+from text.packing import pack_text, unpack_text
 from text.sentences import Words, say
 
 NOT_READY = "not ready"
@@ -91,9 +95,9 @@ class NodeFault:
     """From 1; 0 if unknown, as is the next."""
     column: int = 0
     source_line: str = ""
-    exception: str = ""
+    exception: Sentence = ""
     """As Python words it: `NameError: name 'x' is not defined`."""
-    meaning: str = ""
+    meaning: Sentence = ""
     """A sentence for a beginner; empty if there is none for it."""
 
     @property
@@ -119,7 +123,7 @@ class NodeStatus:
     command: str
     """The program, for display: `nodes.mock_sonar`, or the command line of an `exec:`."""
     state: NodeState
-    detail: str = ""
+    detail: Sentence = ""
     """Why it is in this state, in words: what it is waiting for, or how it ended."""
     pid: int | None = None
     uptime_s: float | None = None
@@ -188,6 +192,26 @@ class LogLine:
     source: str = "stderr"
     """`stdout`, `stderr`, `deck` for the supervisor's own lines about the node, or `agent` for what
     is said about agents."""
+
+
+def pack_line(line: LogLine) -> list[Any]:
+    """Return a log line as JSON, in a short form: many are sent, and kept."""
+    text = pack_text(line.text) if isinstance(line.text, Words) else line.text
+    return [line.node, line.seq, line.time_s, line.severity.rank, text, line.logger, line.source]
+
+
+_BY_RANK = {severity.rank: severity for severity in Severity}
+
+
+def unpack_line(fields: list[Any]) -> LogLine:
+    """Return the log line that `pack_line` was given."""
+    node, seq, time_s, rank, text, logger, source = fields
+    # Thousands of lines are kept, and these are the same in most of them.
+    node, logger, source = map(sys.intern, (node, logger, source))
+    return LogLine(node, seq, time_s, _BY_RANK[rank], unpack_text(text), logger, source)
+
+
+SentLine = Annotated[LogLine, Sent(pack_line, unpack_line)]
 
 
 @dataclass(frozen=True)

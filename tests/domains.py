@@ -7,7 +7,7 @@ import os
 import socket
 from pathlib import Path
 
-from launcher.domain.ports import udp_sockets
+from launcher.domain.participants import udp_sockets
 
 DOMAINS = range(1, 102)
 """Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""

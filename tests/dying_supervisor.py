@@ -8,19 +8,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from launcher.consent import Agents
-from launcher.control.protocol import VERSION, encode, pack_agents, pack_session, pack_status
 from launcher.control.socket import listen
+from launcher.events import Hello
 from launcher.status import NodeState, NodeStatus, SessionInfo
+from launcher.wire import encode, pack
 
 HELLO = encode(
-    {
-        "deck": VERSION,
-        "session": pack_session(SessionInfo("run-1", "/p/02.yaml", "02-sonar-safety")),
-        "nodes": [pack_status(NodeStatus("sonar", "x", NodeState.READY))],
-        "strays": [],
-        "agents": pack_agents(Agents()),
-    }
+    pack(Hello(SessionInfo("run-1", "/p/02.yaml", "02-sonar-safety"), (NodeStatus("sonar", "x", NodeState.READY),)))
 )
 
 

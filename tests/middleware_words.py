@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from launcher.logs.rcutils import NEXT_PORT
+from launcher.logs.lines import NEXT_PORT
 
 
 def own_words(text: str) -> str:

@@ -476,7 +476,7 @@ LEAST_FREE = 200 * 10**6
 def runs() -> Iterator[Finding]:
     """Look at Deck's directories, running sessions, and remains of earlier runs."""
     from launcher.client.client import running
-    from launcher.runs.found import supervisors_everywhere
+    from launcher.runs.record import supervisors_everywhere
     from launcher.runs.strays import find_strays
 
     try:

@@ -19,9 +19,9 @@ from course.lessons.lesson import LessonFolder
 from course.protocol import MOST_BYTES, pack_step
 from course.results import State, StepResult
 from launcher.client.client import attach
-from launcher.control.protocol import encode
 from launcher.errors import LauncherError
 from launcher.profile.steps.draw import new_seed
+from launcher.wire import encode
 from text.nested import read_json
 from text.packing import pack_text
 from text.sentences import reason_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 from launcher.domain.domain import LAST_SAFE_DOMAIN, default_domain
-from launcher.runs.found import supervisors
+from launcher.runs.record import supervisors
 
 
 def unused_domains(count: int) -> list[int]:

@@ -9,23 +9,11 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from launcher.client.hung_supervisor import kill_supervisor, left_behind, left_of
-from launcher.client.inbox import Inbox
-from launcher.client.log_history import newer
-from launcher.client.running import find_running, running_records
+from launcher.client.inbox import Inbox, newer
+from launcher.client.running import find_running, kill_supervisor, left_behind, left_of, running_records
 from launcher.client.start import StartingSupervisor
 from launcher.client.stop_road import StopRoad
 from launcher.consent import Agents, ConsentVerdict
-from launcher.control.protocol import (
-    MAX_MESSAGE_BYTES,
-    VERSION,
-    encode,
-    pack_stray,
-    unpack_agents,
-    unpack_session,
-    unpack_status,
-    unpack_stray,
-)
 from launcher.control.socket import connect
 from launcher.errors import (
     ConnectionLostError,
@@ -35,15 +23,24 @@ from launcher.errors import (
     UnknownNodeError,
     UsageError,
 )
-from launcher.events import LogEvent
-from launcher.logs.packing import unpack_line
+from launcher.events import (
+    AgentsEvent,
+    ClosedEvent,
+    Event,
+    Hello,
+    LogEvent,
+    StatusEvent,
+    StraysEvent,
+    UnguardedEvent,
+    unpack_event,
+)
 from launcher.processes.table import read_process
 from launcher.run_id import supervisor_of
 from launcher.rundir import log_dir, run_dir
 from launcher.serial_ports import serial_ports
-from launcher.supervisor.dependencies import stop_waves
-from launcher.supervisor.plan import plan_of
+from launcher.status import unpack_line
 from launcher.supervisor.words import who
+from launcher.wire import MAX_MESSAGE_BYTES, VERSION, encode, pack, unpack
 from text.nested import read_json
 from text.packing import pack_text, unpack_text
 from text.sentences import say
@@ -52,7 +49,6 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterable, Sequence
 
     from launcher.consent import Approval, ConsentAnswer
-    from launcher.events import Event
     from launcher.processes.table import Process
     from launcher.profile.load import Profile
     from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
@@ -104,6 +100,8 @@ async def launch(
     """
     supervisor = supervisor or StartingSupervisor()
     try:
+        from launcher.supervisor.plan import plan_of  # With pydantic, for which others need not wait.
+
         folders = {"run_dir": str(run_dir()), "log_dir": str(log_dir())}
         read = await asyncio.to_thread(_read, profile, hardware, tuple(overrides), domain)
         plan = plan_of(read, **folders, foreground=foreground, node_lang=node_lang, within=within)
@@ -206,43 +204,38 @@ async def _first_line(reader: asyncio.StreamReader, supervisor: int) -> bytes:
         reading.cancel()
 
 
-async def _greeted(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, folder: Path) -> dict[str, Any]:
+async def _greeted(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, folder: Path) -> Hello:
     """Announce our protocol version; return the greeting of a supervisor with the same version."""
     try:
         writer.write(encode({"deck": VERSION}))
-        hello: dict[str, Any] = read_json(await _first_line(reader, supervisor_of(folder.name)))
+        said: dict[str, Any] = read_json(await _first_line(reader, supervisor_of(folder.name)))
+        if said.get("deck") == VERSION:
+            return unpack(Hello, said)
     except asyncio.TimeoutError as problem:
         raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
     except (OSError, ValueError) as problem:
         raise ConnectionLostError(say("the supervisor does not answer")) from problem
-    if hello.get("deck") != VERSION:
-        raise ProtocolError(
-            say(
-                "the running session belongs to another version of Deck ({theirs}, this "
-                "is {ours}); use that version to stop it",
-                theirs=hello.get("deck"),
-                ours=VERSION,
-            )
+    raise ProtocolError(
+        say(
+            "the running session belongs to another version of Deck ({theirs}, this "
+            "is {ours}); use that version to stop it",
+            theirs=said.get("deck"),
+            ours=VERSION,
         )
-    return hello
+    )
 
 
 class SupervisorClient:
     """A connection to a supervisor; made by `launch` and `attach`."""
 
     def __init__(
-        self,
-        hello: dict[str, Any],
-        reader: asyncio.StreamReader,
-        writer: asyncio.StreamWriter,
-        lifeline: int,
-        folder: Path,
+        self, hello: Hello, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, lifeline: int, folder: Path
     ) -> None:
         """`lifeline` is a descriptor that keeps a foreground session alive, or -1.
 
         `folder` has the session's socket.
         """
-        self.session: SessionInfo = unpack_session(hello["session"])
+        self.session = hello.session
         self.own = lifeline >= 0
         """Whether this client started the session, in the foreground: it ends with this client."""
         self.nodes: dict[str, NodeStatus] = {}
@@ -251,8 +244,7 @@ class SupervisorClient:
         """Processes that an earlier run left behind, kept up to date."""
         self.agents = Agents()
         """The agents, and what they ask for, kept up to date."""
-        # An older Deck does not say.
-        self.unguarded = bool(hello.get("unguarded", False))
+        self.unguarded = hello.unguarded
         """Whether the supervisor has lost its guardian, kept up to date."""
         self.emergency_stop = StopRoad(folder, self.session.domain)
         """Gives (True) or releases (False) the emergency stop without the middleware, on any thread
@@ -265,9 +257,8 @@ class SupervisorClient:
         self._next_id = 1
         self._closed = asyncio.Event()
         self._parting: asyncio.Task[Words] | None = None
-        self._hear({"event": "status", "nodes": hello["nodes"]})
-        self._hear({"event": "strays", "strays": hello["strays"]})
-        self._hear({"event": "agents", "agents": hello["agents"]})
+        for event in (StatusEvent(hello.nodes), StraysEvent(hello.strays), AgentsEvent(hello.agents)):
+            self._take(event)
         self._listening = asyncio.create_task(self._listen())
 
     async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
@@ -336,7 +327,7 @@ class SupervisorClient:
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """End these processes of an earlier run; return when they have ended."""
-        await self._ask("stop_strays", strays=[pack_stray(stray) for stray in strays])
+        await self._ask("stop_strays", strays=[pack(stray) for stray in strays])
 
     async def attend(self) -> None:
         """Say that a person at this screen can answer the questions of agents."""
@@ -384,6 +375,8 @@ class SupervisorClient:
         if self._closed.is_set():
             await self.aclose()
             return
+        from launcher.supervisor.plan import stop_waves
+
         waves = len(stop_waves(self.nodes, {name: one.needs for name, one in self.nodes.items()}))
         patient_s = HEARD_WITHIN_S + waves * STOPPED_WITHIN_S
         asked = self._ask("shutdown", now=now)
@@ -454,32 +447,28 @@ class SupervisorClient:
 
     def _end(self) -> None:
         self._closed.set()
-        self._inbox.close(GONE)
+        self._inbox.put(ClosedEvent(GONE))
         for future in self._replies.values():
             if not future.done():
                 future.set_exception(ConnectionLostError(say("the session has ended")))
 
     def _hear(self, message: dict[str, Any]) -> None:
-        event = message.get("event")
-        if event == "status":
-            nodes = [unpack_status(fields) for fields in message["nodes"]]
-            self.nodes.update((node.name, node) for node in nodes)
-            self._inbox.put_nodes(nodes)
-        elif event == "log":
-            self._inbox.put_lines(map(unpack_line, message["lines"]), message["skipped"])
-        elif event == "strays":
-            self.strays = tuple(unpack_stray(fields) for fields in message["strays"])
-            self._inbox.put_strays(self.strays)
-        elif event == "agents":
-            self.agents = unpack_agents(message["agents"])
-            self._inbox.put_agents(self.agents)
-        elif event == "unguarded":
-            self.unguarded = True
-            self._inbox.put_unguarded()
-        elif event == "closed":
-            self._inbox.close(unpack_text(message["reason"]))
+        event = unpack_event(message)
+        if event is not None:
+            self._take(event)
         elif "reply" in message:
             self._take_reply(message)
+
+    def _take(self, event: Event) -> None:
+        if isinstance(event, StatusEvent):
+            self.nodes.update((node.name, node) for node in event.nodes)
+        elif isinstance(event, StraysEvent):
+            self.strays = event.strays
+        elif isinstance(event, AgentsEvent):
+            self.agents = event.agents
+        elif isinstance(event, UnguardedEvent):
+            self.unguarded = True
+        self._inbox.put(event)
 
     def _take_reply(self, message: dict[str, Any]) -> None:
         future = self._replies.get(message["reply"])

@@ -4,19 +4,14 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from typing import TYPE_CHECKING
+from collections.abc import AsyncIterator, Mapping
 
-from launcher.events import AgentsEvent, ClosedEvent, LogEvent, StatusEvent, StraysEvent, UnguardedEvent
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Iterable, Mapping
-
-    from launcher.consent import Agents
-    from launcher.events import Event
-    from launcher.status import LogLine, NodeStatus, Stray
+from launcher.events import AgentsEvent, ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent, UnguardedEvent
+from launcher.status import LogLine, NodeStatus
 
 MAX_LINES = 10_000
 """Most lines kept unread; beyond that the oldest are dropped and counted as skipped."""
+_ORDER = (StatusEvent, LogEvent, StraysEvent, AgentsEvent, UnguardedEvent)
 
 
 class Inbox:
@@ -26,43 +21,25 @@ class Inbox:
         self._nodes: dict[str, NodeStatus] = {}
         self._lines: deque[LogLine] = deque()
         self._skipped: dict[str, int] = {}
-        self._strays: tuple[Stray, ...] | None = None
-        self._agents: Agents | None = None
-        self._unguarded = False
+        self._newest: dict[type[Event], Event] = {}
+        """Of the events that replace each other."""
         self._closed: ClosedEvent | None = None
         self._filled = asyncio.Event()
 
-    def put_nodes(self, nodes: Iterable[NodeStatus]) -> None:
-        """Add statuses; a newer one replaces the older one of the same node."""
-        self._nodes.update((node.name, node) for node in nodes)
-        self._filled.set()
-
-    def put_lines(self, lines: Iterable[LogLine], skipped: Mapping[str, int]) -> None:
-        """Add log lines, and the number of lines per node that were left out before them."""
-        for name, count in skipped.items():
-            self._skip(name, count)
-        self._lines.extend(lines)
-        while len(self._lines) > MAX_LINES:
-            self._skip(self._lines.popleft().node, 1)
-        self._filled.set()
-
-    def put_strays(self, strays: tuple[Stray, ...]) -> None:
-        self._strays = strays
-        self._filled.set()
-
-    def put_agents(self, agents: Agents) -> None:
-        self._agents = agents
-        self._filled.set()
-
-    def put_unguarded(self) -> None:
-        """Add that the guardian is lost."""
-        self._unguarded = True
-        self._filled.set()
-
-    def close(self, reason: str) -> None:
-        """Mark the end: nothing follows. Of several reasons the first counts."""
-        if self._closed is None:
-            self._closed = ClosedEvent(reason)
+    def put(self, event: Event) -> None:
+        """Add an event; after the first `ClosedEvent` nothing follows."""
+        if isinstance(event, StatusEvent):
+            self._nodes.update((node.name, node) for node in event.nodes)
+        elif isinstance(event, LogEvent):
+            for name, count in event.skipped.items():
+                self._skip(name, count)
+            self._lines.extend(event.lines)
+            while len(self._lines) > MAX_LINES:
+                self._skip(self._lines.popleft().node, 1)
+        elif isinstance(event, ClosedEvent):
+            self._closed = self._closed or event
+        else:
+            self._newest[type(event)] = event
         self._filled.set()
 
     async def events(self) -> AsyncIterator[Event]:
@@ -78,21 +55,32 @@ class Inbox:
                 return
 
     def _take(self) -> list[Event]:
-        events: list[Event] = []
         if self._nodes:
-            events.append(StatusEvent(tuple(self._nodes.values())))
+            self._newest[StatusEvent] = StatusEvent(tuple(self._nodes.values()))
         if self._lines or self._skipped:
-            events.append(LogEvent(tuple(self._lines), self._skipped))
-        if self._strays is not None:
-            events.append(StraysEvent(self._strays))
-        if self._agents is not None:
-            events.append(AgentsEvent(self._agents))
-        if self._unguarded:
-            events.append(UnguardedEvent())
-        self._nodes, self._lines, self._skipped = {}, deque(), {}
-        self._strays = self._agents = None
-        self._unguarded = False
+            self._newest[LogEvent] = LogEvent(tuple(self._lines), self._skipped)
+        events = [self._newest[kind] for kind in _ORDER if kind in self._newest]
+        self._nodes, self._lines, self._skipped, self._newest = {}, deque(), {}, {}
         return events
 
     def _skip(self, name: str, count: int) -> None:
         self._skipped[name] = self._skipped.get(name, 0) + count
+
+
+def newer(event: LogEvent, known: Mapping[str, int]) -> LogEvent:
+    """Return the event without the lines that are already known.
+
+    Args:
+        event: lines, numbered without gaps per node, and how many were left out
+        known: node to the number of its newest known line; all earlier ones are known too
+    """
+    lines = tuple(line for line in event.lines if line.seq > known.get(line.node, 0))
+    first: dict[str, int] = {}
+    for line in lines:
+        first.setdefault(line.node, line.seq)
+    # The lines left out come right before the first one; if there is none, all are known.
+    missing = {
+        node: min(count, first.get(node, 0) - 1 - known[node]) if node in known else count
+        for node, count in event.skipped.items()
+    }
+    return LogEvent(lines, {node: count for node, count in missing.items() if count > 0})

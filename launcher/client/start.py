@@ -92,8 +92,9 @@ class StartingSupervisor:
         """
         import asyncio
 
-        from launcher.control.protocol import unpack_session
         from launcher.errors import AlreadyRunningError, RunDirError, StartError
+        from launcher.status import SessionInfo
+        from launcher.wire import unpack
         from text.packing import unpack_text
         from text.sentences import say
 
@@ -115,7 +116,7 @@ class StartingSupervisor:
             if "no_room" in answer:
                 raise RunDirError(unpack_text(answer["no_room"]))
             if "running" in answer:
-                session = unpack_session(answer["running"])
+                session = unpack(SessionInfo, answer["running"])
                 raise AlreadyRunningError(session, answer["run_dir"], answer["down"], answer["free"])
             return Path(answer["folder"]), os.dup(stdin.fileno())
         finally:

@@ -10,16 +10,14 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import NamedTuple
 
-from launcher.control.protocol import VERSION, encode
 from launcher.control.socket import connect
+from launcher.wire import VERSION, encode
 from robot.safety.stop_file import BY_SCREEN, StopFile
 from robot.safety.stop_record import Stop
 from text.nested import read_json
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 ANSWERED_WITHIN_S = 0.3
 

@@ -1,4 +1,4 @@
-"""The control socket: its protocol, and the supervisor's end.
+"""The control socket, and the supervisor's end of it.
 
-The client uses `protocol` and `socket`, the supervisor `server`; `feed` belongs to the server.
+The client uses `socket`, the supervisor `server`; the protocol is `launcher.wire`.
 """

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from launcher.consent import (
     ALLOWED_FOR_S,
@@ -24,9 +24,6 @@ from launcher.consent import (
 )
 from launcher.status import Severity
 from text.sentences import Words, say
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable
 
 MAX_AGENTS = 16
 MAX_QUESTIONS = 4

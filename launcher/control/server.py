@@ -3,41 +3,82 @@
 from __future__ import annotations
 
 import asyncio
+import heapq
 import os
-import re
 import socket
 import struct
 import time
+from collections.abc import Callable, Coroutine, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any
 
-from launcher.control.agent_requests import AGENT_OPS, serve_agents
-from launcher.control.bad_request import BadRequestError
 from launcher.control.consent import ConsentDesk, TooManyError, TooSoonError
-from launcher.control.feed import ClientFeed
-from launcher.control.protocol import (
-    MAX_HISTORY_CHARS,
-    MAX_HISTORY_LINES,
-    MAX_REQUEST_BYTES,
-    VERSION,
-    encode,
-    pack_agents,
-    pack_session,
-    pack_status,
-    pack_stray,
-    unpack_stray,
-)
+from launcher.control.requests import AgentRequests, BadRequestError, requests_of, serve
 from launcher.errors import StillRunningError, UnknownNodeError
-from launcher.logs.packing import pack_line
+from launcher.events import (
+    AgentsEvent,
+    ClosedEvent,
+    Event,
+    Hello,
+    LogEvent,
+    StatusEvent,
+    StraysEvent,
+    UnguardedEvent,
+    pack_event,
+)
+from launcher.logs.ring import LogRing
+from launcher.status import NodeStatus, Severity, Stray
+from launcher.wire import MAX_REQUEST_BYTES, VERSION, encode, pack
 from text.nested import read_json
 from text.packing import pack_text
 from text.sentences import say
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+MAX_LINES = 200
+"""Most lines of one node in one batch."""
+MAX_CHARS = 64 * 1024
+"""Most characters of one node's lines in one batch, not counting its first line."""
 
-    from launcher.logs.ring import LogRing
-    from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
+
+class ClientFeed:
+    """The updates for one client."""
+
+    def __init__(self, rings: Mapping[str, LogRing]) -> None:
+        """Begin with lines that are written from now on; older ones are history."""
+        self._rings = rings
+        self._seen = {name: ring.last_seq for name, ring in rings.items()}
+        self._changed: dict[str, None] = {}
+
+    def status_changed(self, names: Iterable[str]) -> None:
+        """Mark the statuses of these nodes to be sent."""
+        self._changed.update(dict.fromkeys(names))
+
+    def status_news(self, statuses: Mapping[str, NodeStatus]) -> dict[str, Any] | None:
+        """Return the message about changed nodes, None if there are none."""
+        if not self._changed:
+            return None
+        nodes = tuple(statuses[name] for name in self._changed)
+        self._changed.clear()
+        return pack_event(StatusEvent(nodes))
+
+    def log_news(self) -> dict[str, Any] | None:
+        """Return the next batch of lines, None if there are none."""
+        news = []
+        skipped = {}
+        for name, ring in self._rings.items():
+            missed = ring.last_seq - self._seen[name]
+            if missed:
+                lines = ring.after(self._seen[name], MAX_LINES, MAX_CHARS)
+                self._seen[name] = ring.last_seq
+                news.append(lines)
+                if missed > len(lines):
+                    skipped[name] = missed - len(lines)
+        if not news:
+            return None
+        # A node's own lines always stay in order, whatever their time stamps say.
+        batch = heapq.merge(*news, key=lambda line: line.time_s)
+        return pack_event(LogEvent(tuple(batch), skipped))
+
 
 LOG_PERIOD_S = 0.1
 STATUS_DELAY_S = 0.01
@@ -54,66 +95,28 @@ A client that greets at once is heard before this many others can connect: async
 time.
 """
 GREETED_WITHIN_S = 10.0
-MODULE = re.compile(r"nodes\.[a-z][a-z0-9_]*")
-"""A node of Deck."""
 MAX_REQUESTS = 100
 """Most requests of one client that are served at the same time."""
-
-
-class Controlled(Protocol):
-    """The operations that the supervisor offers to clients."""
-
-    info: SessionInfo
-    strays: tuple[Stray, ...]
-    unguarded: bool
-
-    def statuses(self) -> Mapping[str, NodeStatus]:
-        """Return the current status of every node."""
-
-    def rings(self) -> Mapping[str, LogRing]:
-        """Return every node's log."""
-
-    def history(self, node: str | None, limit: int) -> Sequence[LogLine]:
-        """Return the newest lines of one node or of all."""
-
-    def start(self, names: Iterable[str]) -> None:
-        """Start nodes; raises `UnknownNodeError`."""
-
-    async def stop(self, names: Iterable[str], *, now: bool) -> None:
-        """Stop nodes; raises `UnknownNodeError`, and `StillRunningError` if they do not end."""
-
-    def restart(self, names: Iterable[str]) -> None:
-        """Restart nodes; raises `UnknownNodeError`."""
-
-    def exchange(self, name: str, program: str | None) -> None:
-        """Run this file or module in the place of a node's program, or again that itself (None).
-
-        Raises `UnknownNodeError`.
-        """
-
-    async def stop_strays(self, strays: Iterable[Stray]) -> None:
-        """End these processes that an earlier run left behind."""
-
-    def tell_of_agents(self, severity: Severity, words: str) -> None:
-        """Add a line about an agent to the log."""
-
-    async def emergency_stop(self, said_ns: int) -> str:
-        """Give an emergency stop, known by that time; return why it could not be."""
-
-    async def emergency_release(self, said_ns: int) -> str:
-        """Release the emergency stops from before that time; return why they could not be."""
-
-    def shut_down(self, asked_by: int, *, now: bool) -> None:
-        """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""
 
 
 class ControlServer:
     """Serves every client of one session."""
 
-    def __init__(self, controlled: Controlled) -> None:
-        self._controlled = controlled
-        self.consent = ConsentDesk(self._agents_changed, controlled.tell_of_agents)
-        self._clients: dict[_Client, None] = {}
+    def __init__(
+        self,
+        serves: object,
+        hello: Callable[[], Hello],
+        rings: Callable[[], Mapping[str, LogRing]],
+        tell_of_agents: Callable[[Severity, str], None],
+    ) -> None:
+        """`serves` has the requests about nodes, see `requests_of`; `hello` says how everything is.
+
+        `rings` has every node's log; `tell_of_agents` adds a line about an agent to the log.
+        """
+        self._hello, self._rings = hello, rings
+        self.consent = ConsentDesk(self._agents_changed, tell_of_agents)
+        self._requests = requests_of(serves, AgentRequests(self.consent, tell_of_agents))
+        self._clients: dict[Client, None] = {}
         """In the order in which they connected."""
         self._server: asyncio.AbstractServer | None = None
         self._loop = asyncio.get_running_loop()
@@ -140,19 +143,22 @@ class ControlServer:
             wait = max(self._last_log + LOG_PERIOD_S - self._loop.time(), STATUS_DELAY_S)
             self._log_timer = self._loop.call_later(wait, self._tell_lines)
 
-    def strays_changed(self) -> None:
-        news = {"event": "strays", "strays": [pack_stray(one) for one in self._controlled.strays]}
-        for client in self._clients:
-            client.tell(news)
+    def strays_changed(self, strays: tuple[Stray, ...]) -> None:
+        self._tell_all(StraysEvent(strays))
 
     def guardian_lost(self) -> None:
-        for client in self._clients:
-            client.tell({"event": "unguarded"})
+        self._tell_all(UnguardedEvent())
 
     def _agents_changed(self) -> None:
-        news = {"event": "agents", "agents": pack_agents(self.consent.state)}
+        self._tell_all(AgentsEvent(self.consent.state))
+
+    def _tell_all(self, event: Event) -> None:
+        news = pack_event(event)
         for client in self._clients:
             client.tell(news)
+
+    def _statuses(self) -> Mapping[str, NodeStatus]:
+        return {status.name: status for status in self._hello().nodes}
 
     async def close(self, reason: str) -> None:
         """Tell every client how the session ended, and disconnect."""
@@ -162,7 +168,7 @@ class ControlServer:
         self._tell_statuses()
         self._tell_lines()
         for client in tuple(self._clients):
-            client.tell({"event": "closed", "reason": pack_text(reason)})
+            client.tell(pack_event(ClosedEvent(reason)))
             client.writer.close()
         pending = [client.task for client in self._clients if client.task is not None]
         if pending:
@@ -170,7 +176,7 @@ class ControlServer:
 
     def _tell_statuses(self) -> None:
         self._status_timer = None
-        statuses = self._controlled.statuses()
+        statuses = self._statuses()
         for client in self._clients:
             if client.takes_more():
                 client.tell(client.feed.status_news(statuses))
@@ -181,7 +187,7 @@ class ControlServer:
         behind = False
         for client in tuple(self._clients):
             if client.takes_more():
-                client.tell(client.feed.status_news(self._controlled.statuses()))
+                client.tell(client.feed.status_news(self._statuses()))
                 client.tell(client.feed.log_news())
             else:
                 behind = True
@@ -195,19 +201,10 @@ class ControlServer:
         if strange or not self._has_room():
             writer.close()
             return
-        client = _Client(writer, ClientFeed(self._controlled.rings()))
+        client = Client(writer, ClientFeed(self._rings()))
         client.task = asyncio.current_task()
         client.pid = pid
-        client.tell(
-            {
-                "deck": VERSION,
-                "session": pack_session(self._controlled.info),
-                "nodes": [pack_status(one) for one in self._controlled.statuses().values()],
-                "strays": [pack_stray(one) for one in self._controlled.strays],
-                "agents": pack_agents(self.consent.state),
-                "unguarded": self._controlled.unguarded,
-            }
-        )
+        client.tell(pack(replace(self._hello(), agents=self.consent.state)))
         self._clients[client] = None
         try:
             await self._converse(client, reader)
@@ -228,7 +225,7 @@ class ControlServer:
             client.writer.transport.abort()
         return True
 
-    async def _converse(self, client: _Client, reader: asyncio.StreamReader) -> None:
+    async def _converse(self, client: Client, reader: asyncio.StreamReader) -> None:
         while True:
             try:
                 within_s = None if client.greeted else GREETED_WITHIN_S
@@ -254,10 +251,10 @@ class ControlServer:
             # A client that does not read its answers need not send more requests.
             await client.writer.drain()
 
-    async def _serve(self, client: _Client, request: dict[str, Any]) -> None:
+    async def _serve(self, client: Client, request: dict[str, Any]) -> None:
         request_id = request.get("id")
         try:
-            result = await self._answer(request, client)
+            result = await serve(self._requests, client, request)
         except UnknownNodeError as error:
             client.refuse(request_id, "unknown_node", str(error), name=error.name, known=error.known)
         except StillRunningError as error:
@@ -278,54 +275,11 @@ class ControlServer:
             raise
         else:
             # A client that reads the reply must already have the resulting status.
-            client.tell(client.feed.status_news(self._controlled.statuses()))
+            client.tell(client.feed.status_news(self._statuses()))
             client.tell({"reply": request_id, "result": result})
 
-    async def _answer(self, request: dict[str, Any], client: _Client) -> object:
-        op = request.get("op")
-        if isinstance(op, str) and op in AGENT_OPS:
-            tell = self._controlled.tell_of_agents
-            return await serve_agents(self.consent, client, request, tell)
-        return await self._serve_nodes(request, client.pid)
 
-    async def _serve_nodes(self, request: dict[str, Any], asked_by: int) -> object:
-        controlled = self._controlled
-        op = request.get("op")
-        if op == "start":
-            controlled.start(_names(request))
-        elif op == "restart":
-            controlled.restart(_names(request))
-        elif op == "stop":
-            await controlled.stop(_names(request), now=request.get("now") is True)
-        elif op == "exchange":
-            controlled.exchange(*_exchange(request))
-        elif op == "history":
-            return self._history(request)
-        elif op == "emergency_stop":
-            _check(await controlled.emergency_stop(_said_ns(request)))
-        elif op == "emergency_release":
-            _check(await controlled.emergency_release(_said_ns(request)))
-        elif op == "stop_strays":
-            await controlled.stop_strays(_strays(request))
-        elif op == "shutdown":
-            controlled.shut_down(asked_by, now=request.get("now") is True)
-        else:
-            raise BadRequestError(say("unknown request {op!r}", op=op))
-        return None
-
-    def _history(self, request: dict[str, Any]) -> list[Any]:
-        node, limit = request.get("node"), request.get("limit")
-        if not isinstance(node, (str, type(None))):
-            raise BadRequestError(say("node: expected a name, found {x!r}", x=node))
-        if node is not None and node not in self._controlled.rings():
-            raise UnknownNodeError(node, self._controlled.statuses())
-        if not isinstance(limit, int) or limit < 0:
-            raise BadRequestError(say("limit: expected a whole number, found {x!r}", x=limit))
-        lines = self._controlled.history(node, min(limit, MAX_HISTORY_LINES))
-        return [pack_line(line) for line in _newest(lines, MAX_HISTORY_CHARS)]
-
-
-class _Client:
+class Client:
     """One connection."""
 
     def __init__(
@@ -408,49 +362,3 @@ def _check_version(request: dict[str, Any]) -> None:
         raise BadRequestError(
             say("this supervisor speaks version {ours}, not {theirs}", ours=VERSION, theirs=version)
         )
-
-
-def _said_ns(request: dict[str, Any]) -> int:
-    said_ns = request.get("said_ns", time.time_ns())
-    if not isinstance(said_ns, int) or not 0 < said_ns < 1 << 62:
-        raise BadRequestError(say("said_ns: expected a time, found {x!r}", x=said_ns))
-    return said_ns
-
-
-def _check(problem: str) -> None:
-    if problem:
-        raise BadRequestError(say("the emergency stop on disk cannot be changed: {problem}", problem=problem))
-
-
-def _newest(lines: Sequence[LogLine], max_chars: int) -> Sequence[LogLine]:
-    for position in range(len(lines) - 1, -1, -1):
-        max_chars -= len(lines[position].text)
-        if max_chars < 0:
-            return lines[position + 1 :]
-    return lines
-
-
-def _names(request: dict[str, Any]) -> list[str]:
-    names = request.get("nodes", [])
-    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        raise BadRequestError(say("nodes: expected a list of names"))
-    return names
-
-
-def _exchange(request: dict[str, Any]) -> tuple[str, str | None]:
-    node, program = request.get("node"), request.get("run")
-    if not isinstance(node, str):
-        raise BadRequestError(say("node: expected a name, found {x!r}", x=node))
-    if program is None:
-        return node, None
-    if not isinstance(program, str) or not (os.path.isabs(program) or MODULE.fullmatch(program)):  # noqa: PTH117
-        words = say("run: expected an absolute path or a module, found {x!r}", x=program)
-        raise BadRequestError(words)
-    return node, program
-
-
-def _strays(request: dict[str, Any]) -> list[Stray]:
-    try:
-        return [unpack_stray(fields) for fields in request["strays"]]
-    except (TypeError, ValueError, KeyError):
-        raise BadRequestError(say("strays: expected a list of strays")) from None

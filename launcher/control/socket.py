@@ -11,11 +11,8 @@ import os
 import socket
 import stat
 import struct
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
+from collections.abc import Iterator
+from pathlib import Path
 
 SOCKET_NAME = "control.sock"
 TAKEN_WITHIN_S = 10

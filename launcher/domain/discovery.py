@@ -15,15 +15,10 @@ the announcements of a whole class would add up.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, MutableMapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, MutableMapping
-
-    from text.sentences import Words
+from text.sentences import Words, say
 
 PROFILES = Path(__file__).resolve().parents[2] / "graph" / "fastdds.xml"
 OF_PEERS = PROFILES.with_name("fastdds_peers.xml")

@@ -8,13 +8,11 @@ that asks for a free one, so domains 1 to 101 are safe; 232 is the last one that
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, TypeAlias, Union
+from collections.abc import Mapping
+from typing import TypeAlias, Union
 
 from launcher.errors import DomainError
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 Discovery: TypeAlias = Union[str, "tuple[str, ...]"]
 """`localhost`, `subnet`, or the addresses of static peers."""

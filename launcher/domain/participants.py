@@ -1,25 +1,79 @@
-"""The DDS participants of a ROS domain on this machine, as the kernel shows them.
+"""The DDS participants of a ROS domain on this machine, whoever's they are, as the kernel shows them.
 
-A participant listens on two UDP ports that follow from the domain and from its number (RTPS 2.5,
-9.6.2.3): an even one for discovery, and the next for data. A single port says nothing: any program's
-socket may have it by chance; nor does a pair into which others write and that nobody reads: whoever
-is forked by a program with a participant inherits its sockets, and keeps them when it is gone.
+DDS derives its ports from the domain (RTPS 2.2, 9.6.1.1): 250 of them, from 7400 + 250 * domain on.
+A participant listens on two of them that follow from its number (RTPS 2.5, 9.6.2.3): an even one for
+discovery, and the next for data. A single port says nothing: any program's socket may have it by chance;
+nor does a pair into which others write and that nobody reads: whoever is forked by a program with a
+participant inherits its sockets, and keeps them when it is gone.
 """
 
 from __future__ import annotations
 
+import os
 import time
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import psutil
 
-from launcher.domain.ports import PORTS_OF_A_DOMAIN, Socket, first_port, udp_sockets
+from launcher.processes.owner import user_name
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+FIRST_PORT, PORTS_OF_A_DOMAIN = 7400, 250
+_TABLES = ("/proc/net/udp", "/proc/net/udp6")
+_NOBODY = "0000"
+"""The port at the other end of a socket that hears everybody."""
+
+
+@dataclass(frozen=True)
+class Socket:
+    """A UDP socket of this machine, as /proc/net/udp has it."""
+
+    port: int
+    uid: int
+    inode: int
+    is_listening: bool
+    """Whether it is not connected to anybody."""
+    unread: int = 0
+    """Bytes that have arrived and that nobody has taken."""
+
+
+def first_port(domain: int) -> int:
+    """Return the first port of a domain."""
+    return FIRST_PORT + PORTS_OF_A_DOMAIN * domain
+
+
+def other_users(domain: int, us: int | None = None) -> tuple[str, ...]:
+    """Return the names of users other than `us` (default: this one) with ports of the domain."""
+    ours = os.getuid() if us is None else us
+    found = owners(udp_sockets(), domain)
+    return tuple(sorted(user_name(uid) for uid in found - {ours}))
+
+
+def owners(sockets: Iterable[Socket], domain: int) -> set[int]:
+    """Return the uids that own ports of this domain."""
+    ports = range(first_port(domain), first_port(domain) + PORTS_OF_A_DOMAIN)
+    return {socket.uid for socket in sockets if socket.port in ports}
+
+
+def udp_sockets() -> Iterator[Socket]:
+    """Yield the UDP sockets of this machine, or of this container; none if the kernel is silent."""
+    for table in _TABLES:
+        try:
+            lines = Path(table).read_text(encoding="ascii").splitlines()[1:]
+        except OSError:
+            continue
+        yield from map(read_socket, lines)
+
+
+def read_socket(line: str) -> Socket:
+    """Read a line of /proc/net/udp."""
+    fields = line.split()
+    here, there = (fields[number].rpartition(":")[2] for number in (1, 2))
+    unread = int(fields[4].rpartition(":")[2], 16)
+    return Socket(int(here, 16), int(fields[7]), int(fields[9]), there == _NOBODY, unread)
+
 
 FIRST_DISCOVERY = 10
 """Discovery port of the first participant, relative to the domain's first port."""

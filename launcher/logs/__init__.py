@@ -1,5 +1,5 @@
 """The output of nodes: read from their pipes, split into lines, kept in memory, written to files.
 
-Other packages use `session_log` for a whole session, `reader` for a pipe, `ring`, `files` and
-`folder`; the parsing of lines (`lines`, `rcutils`, `text`) is internal.
+Other packages use `session_log` for a whole session, `reader` for a pipe, `ring` and `files`; `lines` is
+internal.
 """

@@ -7,12 +7,9 @@ import contextlib
 import fcntl
 import os
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from launcher.logs.lines import IDLE_S, LineAssembler, RawLine
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 CHUNK = 64 * 1024
 PIPE_BYTES = 256 * 1024

@@ -5,22 +5,17 @@ from __future__ import annotations
 import heapq
 import sys
 import time
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable
+from typing import Any
 
 from launcher.faults.telling import told_in
-from launcher.logs.rcutils import SeverityParser
+from launcher.logs.files import LogFiles
+from launcher.logs.lines import RawLine, SeverityParser, plain_text
 from launcher.logs.reader import PipeReader
 from launcher.logs.ring import LogRing
-from launcher.logs.text import plain_text
 from launcher.status import LogLine, Severity
 from text.plain import plain
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from launcher.logs.files import LogFiles
-    from launcher.logs.lines import RawLine
 
 DECK = "deck"
 """The node name under which the supervisor logs about itself, and the `source` of its lines."""

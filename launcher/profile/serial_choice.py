@@ -7,16 +7,11 @@ reported and the user chooses.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from launcher.serial_ports import BRIDGES, PICO
+from launcher.serial_ports import BRIDGES, PICO, SerialPort
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from launcher.serial_ports import SerialPort
 
 AUTO = "auto"
 KINDS: Mapping[str, tuple[str, ...]] = {

@@ -7,13 +7,10 @@ A tiny subset of Python expressions, parsed by `ast` and never executed: `hardwa
 from __future__ import annotations
 
 import ast
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from text.sentences import say
 from text.suggestions import did_you_mean
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 HARDWARE = ("mock", "real")
 NAMES: Mapping[str, tuple[str, ...]] = {"hardware": HARDWARE}

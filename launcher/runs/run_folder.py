@@ -3,7 +3,7 @@
 In /run/user it is removed when the user logs out, and people move or clean up files. So the
 supervisor checks it regularly, creates it again, in a place of last resort if necessary, and holds
 it open under a fixed descriptor, through which it can be found in /proc wherever it is
-(`launcher.runs.found`).
+(`launcher.runs.record`).
 """
 
 from __future__ import annotations

@@ -11,8 +11,7 @@ from launcher.domain.domain import LAST_SAFE_DOMAIN
 from launcher.errors import DomainTakenError
 from launcher.processes.owner import who_words
 from launcher.run_id import supervisor_of
-from launcher.runs.found import supervisors
-from launcher.runs.record import RunRecord
+from launcher.runs.record import RunRecord, supervisors
 from launcher.status import SessionInfo
 from text.run_path import OWN_RUN_DIR
 from text.sentences import say
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from launcher.profile.load import Profile
-    from launcher.runs.found import FoundSupervisor
+    from launcher.runs.record import FoundSupervisor
     from text.sentences import Words
 
 

@@ -10,7 +10,8 @@ import asyncio
 import os
 import signal
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 
 from launcher.processes.signal import send
 from launcher.processes.table import (
@@ -18,6 +19,7 @@ from launcher.processes.table import (
     NODE_MARK,
     RUN_MARK,
     TICKS_PER_S,
+    Process,
     boot_time_s,
     command_line,
     processes,
@@ -28,12 +30,6 @@ from launcher.run_id import supervisor_runs
 from launcher.runs.record import read_records
 from launcher.status import Stray
 from text.run_path import OWN_RUN_DIR
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from pathlib import Path
-
-    from launcher.processes.table import Process
 
 _SAME_START_S = 1.5
 """Tolerance: the kernel gives its boot time to the second, and it drifts with the clock."""

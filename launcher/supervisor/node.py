@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from launcher.processes.table import Process
     from launcher.processes.usage import Usage
     from launcher.profile.node import Node
-    from launcher.supervisor.node_context import NodeContext, RunningProcess
+    from launcher.supervisor.readying import NodeContext, RunningProcess
 
 USAGE = 2
 """Exit code of a program that rejects its arguments; Deck's nodes use it for parameters."""

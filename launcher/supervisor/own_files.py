@@ -11,14 +11,10 @@ from __future__ import annotations
 import asyncio
 import os
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Mapping
 
 from launcher.faults.source import look_at, modules_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from launcher.status import NodeFault
+from launcher.status import NodeFault
 
 QUIET_S = 0.5
 """From the last write to the restart."""

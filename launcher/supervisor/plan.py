@@ -1,15 +1,14 @@
 """The plan for a supervisor, so that it does not have to read profiles itself.
 
 The client reads and validates the profile while the supervisor is already starting, and passes it
-the plan as one line of JSON.
+the plan as one line of JSON. The order in which nodes start and stop is here as well.
 """
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
 
 from pydantic import BaseModel, ConfigDict
 
@@ -17,14 +16,11 @@ from launcher.consent import AgentRules
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
 from launcher.faults import CHECK_FIELDS
+from launcher.profile.model import Profile
 from launcher.profile.node import Node
 from launcher.ros_tools import ros_tools, without_wheels
 from launcher.status import SessionInfo
 from text.nested import read_json
-
-if TYPE_CHECKING:
-    # It brings the steps of lessons with it, which a supervisor has no use for.
-    from launcher.profile.model import Profile
 
 Changes = dict[str, str | None]
 """Changes to the supervisor's environment; None unsets."""
@@ -137,3 +133,34 @@ def _foreign_env(program: str) -> Changes:
     """Return changes for a foreign program; `ros2` is found as in `deck shell`."""
     tools = ros_tools(os.environ) if program == "ros2" else {}
     return {**without_wheels(os.environ), **tools}
+
+
+def with_needs(names: Iterable[str], needs: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return `names` and everything they need, directly or not, in starting order."""
+    ordered: list[str] = []
+
+    def visit(name: str) -> None:
+        if name not in ordered:
+            for needed in needs.get(name, ()):
+                visit(needed)
+            ordered.append(name)
+
+    for name in names:
+        visit(name)
+    return ordered
+
+
+def stop_waves(names: Iterable[str], needs: Mapping[str, Sequence[str]]) -> list[list[str]]:
+    """Group `names` so that none is stopped before the others that need it."""
+    left = list(names)
+    waves = []
+    while left:
+        still_needed = {other for name in left for other in _all_needs(name, needs)}
+        wave = [name for name in left if name not in still_needed]
+        waves.append(wave)
+        left = [name for name in left if name in still_needed]
+    return waves
+
+
+def _all_needs(name: str, needs: Mapping[str, Sequence[str]]) -> set[str]:
+    return set(with_needs([name], needs)) - {name}

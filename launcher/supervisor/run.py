@@ -6,37 +6,42 @@ import asyncio
 import contextlib
 import json
 import os
+import re
 import signal
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Annotated, Any
 
-from launcher.control.protocol import MAX_MESSAGE_BYTES, encode, pack_session
-from launcher.control.server import ControlServer
+from pydantic import Field
+
+from launcher.control.requests import BadRequestError, request
+from launcher.control.server import Client, ControlServer
 from launcher.domain.discovery import why_open
-from launcher.domain.ports import other_users
-from launcher.errors import StillRunningError
-from launcher.logs.files import LogFiles
-from launcher.logs.folder import make_log_folder, prune_runs
+from launcher.domain.participants import other_users
+from launcher.errors import StillRunningError, UnknownNodeError
+from launcher.events import Hello
+from launcher.logs.files import LogFiles, make_log_folder, prune_runs
 from launcher.logs.session_log import AGENT, DECK, SessionLog
 from launcher.private_files import open_file
 from launcher.processes.exit import Reaper
 from launcher.processes.members import Members
 from launcher.processes.owner import who_runs, who_words
 from launcher.processes.stop import end_all
-from launcher.runs.found import supervisors
-from launcher.runs.record import RunRecord, exclusively
+from launcher.runs.record import RunRecord, exclusively, supervisors
 from launcher.runs.run_folder import RunFolder
-from launcher.runs.shared_domain import free_domain, rival
+from launcher.runs.shared_domain import Neighbour, free_domain, rival
 from launcher.runs.strays import end_strays, find_strays, forget_ended_runs
 from launcher.spawn_server.spawner import Spawner, SpawnError, SpawnRequest
-from launcher.status import Severity, Stray
+from launcher.spawn_server.start import SpawnServerHandle
+from launcher.status import LogLine, NodeFault, Severity, Stray, pack_line
 from launcher.supervisor.own_files import OwnFiles
 from launcher.supervisor.plan import Plan
 from launcher.supervisor.process import Orphans, ProcessLauncher, ProcessScan, helping
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
+from launcher.wire import MAX_MESSAGE_BYTES, encode, pack
 from robot.safety.stop_file import BY_SCREEN, StopFile
 from robot.safety.stop_record import Stop
 from text.os_words import os_reason
@@ -44,14 +49,13 @@ from text.packing import pack_text
 from text.run_path import OWN_RUN_DIR
 from text.sentences import Words, say
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from launcher.logs.ring import LogRing
-    from launcher.runs.shared_domain import Neighbour
-    from launcher.spawn_server.start import SpawnServerHandle
-    from launcher.status import LogLine, NodeFault, NodeStatus
-
+MAX_HISTORY_LINES = 20_000
+MAX_HISTORY_CHARS = 8 << 20
+"""Most characters of a history; of a longer one only the newest lines are sent."""
+MODULE = re.compile(r"nodes\.[a-z][a-z0-9_]*")
+"""A node of Deck."""
+SaidNs = Annotated[int, Field(gt=0, lt=1 << 62)]
+"""Unix time."""
 LAST_WORDS = "supervisor"
 """Name of the log with the supervisor's own output, above all its tracebacks."""
 HURRIED_S = 5.0
@@ -123,7 +127,7 @@ def _claim(run_folder: RunFolder, plan: Plan) -> bool:
 def _refusal(other: Neighbour, free: int) -> dict[str, object]:
     elsewhere = other.purpose != os.environ.get(OWN_RUN_DIR, "")
     return {
-        "running": pack_session(other.record.session),
+        "running": pack(other.record.session),
         "run_dir": other.run_dir if elsewhere else "",
         "down": other.down if elsewhere else "deck down",
         "free": free,
@@ -150,8 +154,21 @@ def _keep_last_words(folder: Path) -> None:
     os.close(words)
 
 
+def _check(problem: str) -> None:
+    if problem:
+        raise BadRequestError(say("the emergency stop on disk cannot be changed: {problem}", problem=problem))
+
+
+def _newest(lines: Sequence[LogLine], max_chars: int) -> Sequence[LogLine]:
+    for position in range(len(lines) - 1, -1, -1):
+        max_chars -= len(lines[position].text)
+        if max_chars < 0:
+            return lines[position + 1 :]
+    return lines
+
+
 class Supervisor:
-    """One run, from start to end; implements `Controlled` for the requests of clients."""
+    """One run, from start to end."""
 
     def __init__(self, plan: Plan, run_folder: RunFolder, spawn_server: SpawnServerHandle) -> None:
         self.info = run_folder.record.session
@@ -167,7 +184,9 @@ class Supervisor:
             self._spawner.go_cold()
         self._spawner.preload(plan.packages)
         self._files = LogFiles(Path(self.info.log_dir), self._log_failed)
-        self.control = ControlServer(self)
+        self.control = ControlServer(
+            self, self._hello, lambda: self._log.rings, lambda severity, words: self._log.say(AGENT, severity, words)
+        )
         self._log = SessionLog((node.name for node in plan.nodes), self._files, self.control.lines_came)
         scan = ProcessScan(Members(self.info.run_id))
         launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._log)
@@ -217,67 +236,73 @@ class Supervisor:
         self._run_folder.remove()
         await self.control.close(self._reason)
 
-    # Requests of clients.
+    def _hello(self) -> Hello:
+        nodes = tuple(node.status() for node in self._session.nodes.values())
+        return Hello(self.info, nodes, self.strays, unguarded=self.unguarded)
 
-    def statuses(self) -> Mapping[str, NodeStatus]:
-        """Return the current status of every node."""
-        return {name: node.status() for name, node in self._session.nodes.items()}
+    # Requests of clients; where nodes are named, they raise `UnknownNodeError`.
 
-    def rings(self) -> Mapping[str, LogRing]:
-        """Return every node's log."""
-        return self._log.rings
-
-    def history(self, node: str | None, limit: int) -> Sequence[LogLine]:
+    @request
+    def history(self, _client: Client, node: str | None, limit: Annotated[int, Field(ge=0)]) -> list[Any]:
         """Return the newest lines of one node or of all."""
-        return self._log.newest(node, limit)
+        if node is not None and node not in self._log.rings:
+            raise UnknownNodeError(node, self._session.nodes)
+        lines = self._log.newest(node, min(limit, MAX_HISTORY_LINES))
+        return [pack_line(line) for line in _newest(lines, MAX_HISTORY_CHARS)]
 
-    def start(self, names: Iterable[str]) -> None:
-        """Start nodes; raises `UnknownNodeError`."""
+    @request
+    def start(self, _client: Client, nodes: tuple[str, ...] = ()) -> None:
         if not self._end.is_set():
-            self._session.start(names)
+            self._session.start(nodes)
 
-    async def stop(self, names: Iterable[str], *, now: bool) -> None:
-        """Stop nodes; raises `UnknownNodeError`."""
-        await self._session.stop(names, now=now)
+    @request
+    async def stop(self, _client: Client, nodes: tuple[str, ...] = (), now: bool = False) -> None:  # noqa: FBT
+        """Stop nodes; raises `StillRunningError` if they do not end."""
+        await self._session.stop(nodes, now=now)
 
-    def restart(self, names: Iterable[str]) -> None:
-        """Restart nodes; raises `UnknownNodeError`."""
+    @request
+    def restart(self, _client: Client, nodes: tuple[str, ...] = ()) -> None:
         if not self._end.is_set():
-            self._session.restart(names)
+            self._session.restart(nodes)
 
-    def exchange(self, name: str, program: str | None) -> None:
-        """Run another program in the place of a node's own, or its own; `UnknownNodeError`."""
+    @request
+    def exchange(self, _client: Client, node: str, run: str | None = None) -> None:
+        """Run this file or module in the place of a node's program, or again that itself (None)."""
+        if run is not None and not (os.path.isabs(run) or MODULE.fullmatch(run)):  # noqa: PTH117
+            raise BadRequestError(say("run: expected an absolute path or a module, found {x!r}", x=run))
         if not self._end.is_set():
-            self._session.exchange(name, program)
+            self._session.exchange(node, run)
             self._own_files.look_again()
 
     def _saved(self, name: str, fault: NodeFault | None) -> None:
         if not self._end.is_set():
             self._session.saved(name, fault)
 
-    async def stop_strays(self, strays: Iterable[Stray]) -> None:
+    @request
+    async def stop_strays(self, _client: Client, strays: tuple[Stray, ...]) -> None:
         """End these processes that an earlier run left behind."""
         await end_strays(strays)
         self._find_strays()
 
-    def tell_of_agents(self, severity: Severity, words: str) -> None:
-        """Add a line about an agent to the log."""
-        self._log.say(AGENT, severity, words)
+    @request
+    async def emergency_stop(self, _client: Client, said_ns: SaidNs | None = None) -> None:
+        """Give an emergency stop by the file that the nodes watch."""
+        stop = Stop(time.time_ns() if said_ns is None else said_ns)
+        _check(await asyncio.to_thread(self._stop_file.give, stop, BY_SCREEN))
 
-    async def emergency_stop(self, said_ns: int) -> str:
-        """Give an emergency stop by the file that the nodes watch; return why it could not be."""
-        return await asyncio.to_thread(self._stop_file.give, Stop(said_ns), BY_SCREEN)
+    @request
+    async def emergency_release(self, _client: Client, said_ns: SaidNs | None = None) -> None:
+        """Release what was given before this time in the same way."""
+        said_ns = time.time_ns() if said_ns is None else said_ns
+        _check(await asyncio.to_thread(self._stop_file.release, said_ns))
 
-    async def emergency_release(self, said_ns: int) -> str:
-        """Release what was given before this time in the same way; return why it could not be."""
-        return await asyncio.to_thread(self._stop_file.release, said_ns)
-
-    def shut_down(self, asked_by: int, *, now: bool) -> None:
-        """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""
-        if asked_by == self.info.started_by.pid:
+    @request
+    def shutdown(self, client: Client, now: bool = False) -> None:  # noqa: FBT
+        """Begin to stop all nodes and then the supervisor."""
+        if client.pid == self.info.started_by.pid:
             reason = say("stopped")
         else:
-            reason = say("ended from elsewhere: {who}", who=who_words(who_runs(asked_by)))
+            reason = say("ended from elsewhere: {who}", who=who_words(who_runs(client.pid)))
         self._finish(reason, now=now or self._end.is_set())
 
     # Events.
@@ -396,7 +421,7 @@ class Supervisor:
         forget_ended_runs(run_dir, strays)
         if strays != self.strays:
             self.strays = strays
-            self.control.strays_changed()
+            self.control.strays_changed(strays)
 
     def _prune_logs(self) -> None:
         prune_runs(Path(self.info.log_dir).parent)

@@ -3,33 +3,26 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
-from launcher.clock import MonotonicClock
+from launcher.clock import Clock, MonotonicClock
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.crash import crash_of, refused_arguments, warning_in
 from launcher.faults.source import look_at, spun_in_turn, unspun
 from launcher.faults.stuck import stuck_in
 from launcher.faults.telling import fault_in
+from launcher.logs.session_log import SessionLog
+from launcher.processes.table import Process
 from launcher.processes.usage import UsageMeter
-from launcher.status import NodeState, Severity
-from launcher.supervisor.dependencies import stop_waves, with_needs
+from launcher.profile.node import Node, Ready
+from launcher.status import LogLine, NodeFault, NodeState, Severity
 from launcher.supervisor.node import SupervisedNode
-from launcher.supervisor.readiness import LifecycleWaits, Readiness, clash_of
+from launcher.supervisor.plan import Plan, stop_waves, with_needs
+from launcher.supervisor.process import NodeProcess, ProcessLauncher
+from launcher.supervisor.readiness import Clash, LifecycleWaits, Readiness, Seen, clash_of
 from launcher.supervisor.words import who
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from launcher.clock import Clock
-    from launcher.logs.session_log import SessionLog
-    from launcher.processes.table import Process
-    from launcher.profile.node import Node, Ready
-    from launcher.status import LogLine, NodeFault
-    from launcher.supervisor.plan import Plan
-    from launcher.supervisor.process import NodeProcess, ProcessLauncher
-    from launcher.supervisor.readiness import Clash, Seen
 
 USAGE_EVERY_S = 2.0
 
@@ -156,10 +149,9 @@ class Session:
                     node.halted(_halted_of(members.get(name, ())))
                     self._on_change(name)
 
-    # The `NodeContext` of the nodes.
+    # The `NodeContext` of the nodes, which says what these do.
 
     async def launch(self, plan: Node) -> NodeProcess:
-        """Start a node's process; raises `SpawnError`."""
         if plan.name in self.processes:
             # It may have died without notice, and a probe that saw it alive still sees it.
             self._readiness.renew()
@@ -173,15 +165,10 @@ class Session:
         return process
 
     async def ready(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
-        """Return once the condition holds; `tell` gets other states.
-
-        Raises `UnwatchableError`, and `NotBroughtUpError` for a lifecycle.
-        """
         waits = self._lifecycles if condition.lifecycle else self._readiness
         await waits.until(condition, tell)
 
     def missing(self, plan: Node) -> str:
-        """Say which needed nodes are not ready yet; empty if all are."""
         absent = [self.nodes[name] for name in plan.needs if not self.nodes[name].serves]
         if not absent:
             return ""
@@ -191,7 +178,6 @@ class Session:
         return self.log.last_words(name)
 
     def crash(self, plan: Node) -> NodeFault | None:
-        """Return what the last output of a learner's own node tells of its end."""
         told = self._faults.get(plan.name)
         if told is not None:
             return told
@@ -252,7 +238,6 @@ class Session:
                 node.clashes(clash_of(f"/{name}", node.plan.file, clashes))
 
     def ended_early(self, plan: Node) -> NodeFault | None:
-        """Return why a learner's own node has ended without an error; None if it was to."""
         return unspun(plan.file)
 
     def own_files(self) -> dict[str, str]:
@@ -264,7 +249,6 @@ class Session:
         self.nodes[name].saved(fault)
 
     def say(self, name: str, severity: Severity, words: str) -> None:
-        """Add a line about the node to its log."""
         self.log.say(name, severity, words)
 
     def changed(self, name: str, state: NodeState) -> None:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from launcher.processes.exit import UNSEEN
+from launcher.processes.exit import UNSEEN, Exit
+from launcher.processes.table import Process
 from launcher.status import HALTED, NodeFault
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from launcher.processes.exit import Exit
-    from launcher.processes.table import Process
+    # Clients list processes by `who`, and need no pydantic for it.
     from launcher.profile.node import Node, Ready
     from launcher.supervisor.readiness import Seen
 

@@ -9,16 +9,12 @@ import ast
 import math
 import operator
 import re
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias
 
 from text.i18n import LANGUAGES, decimal
-from text.sentences import say
+from text.sentences import Words, say
 from text.suggestions import did_you_mean
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from text.sentences import Words
 
 Drawn: TypeAlias = "str | int | float"
 PLACE = re.compile(r"\$\{([^{}]*)\}")

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from launcher.client.client import attach, running
-from launcher.control.protocol import VERSION
 from launcher.control.socket import connect
 from launcher.errors import AlreadyRunningError, ConnectionLostError
 from launcher.events import ClosedEvent, StatusEvent
 from launcher.rundir import run_dir
 from launcher.status import NodeState
+from launcher.wire import VERSION
 from tests.ros.supervised import SLEEPER, Launch, running_pid, until_state
 from tests.waiting import until
 

@@ -15,7 +15,7 @@ import pytest
 from launcher.client.client import attach, running
 from launcher.events import ClosedEvent
 from launcher.processes.table import command_line, read_process
-from launcher.runs.found import supervisors, supervisors_everywhere
+from launcher.runs.record import supervisors, supervisors_everywhere
 from launcher.runs.strays import find_strays
 from launcher.status import NodeState, Stray
 from tests.ros.supervised import (

@@ -14,19 +14,17 @@ import pytest
 from launcher.client import client as client_module
 from launcher.client import inbox as client_inbox
 from launcher.client.client import SupervisorClient, attach
-from launcher.client.inbox import Inbox
-from launcher.client.log_history import newer
+from launcher.client.inbox import Inbox, newer
 from launcher.consent import Approval, ConsentAnswer
-from launcher.control.feed import MAX_LINES, ClientFeed
-from launcher.control.protocol import encode
+from launcher.control.server import MAX_LINES, ClientFeed
 from launcher.errors import ConnectionLostError
-from launcher.events import ClosedEvent, LogEvent, StatusEvent
+from launcher.events import ClosedEvent, LogEvent, StatusEvent, pack_event
 from launcher.faults.crash import refused_arguments
 from launcher.faults.explain import explained
-from launcher.logs.packing import pack_line
 from launcher.logs.ring import LogRing
 from launcher.spawn_server.probe import COUNTED, ArrivalRate
 from launcher.status import LogLine, NodeState, NodeStatus, Severity, Stray
+from launcher.wire import encode
 from tests.dying_supervisor import HELLO, DyingSupervisor
 
 MOST = 1000
@@ -36,12 +34,12 @@ async def test_news_that_nobody_takes_are_merged_and_counted(monkeypatch: pytest
     monkeypatch.setattr(client_inbox, "MAX_LINES", MOST)
     inbox = Inbox()
     for state in (NodeState.STARTING, NodeState.READY):
-        inbox.put_nodes([NodeStatus("sonar", "x", state)])
+        inbox.put(StatusEvent((NodeStatus("sonar", "x", state),)))
     for number in range(3 * MOST // 100):
         first = 100 * number + 1
-        lines = [LogLine("sonar", first + i, 0.0, Severity.INFO, "x") for i in range(100)]
-        inbox.put_lines(lines, {"sonar": 1})
-    inbox.close("over")
+        lines = tuple(LogLine("sonar", first + i, 0.0, Severity.INFO, "x") for i in range(100))
+        inbox.put(LogEvent(lines, {"sonar": 1}))
+    inbox.put(ClosedEvent("over"))
     status, log, closed = [event async for event in inbox.events()]
     assert isinstance(status, StatusEvent)
     assert [node.state for node in status.nodes] == [NodeState.READY]
@@ -53,7 +51,7 @@ async def test_news_that_nobody_takes_are_merged_and_counted(monkeypatch: pytest
 
 
 LINE = LogLine("sonar", 1, 0.0, Severity.INFO, "x")
-NEWS = encode({"event": "log", "lines": [pack_line(LINE)], "skipped": {}})
+NEWS = encode(pack_event(LogEvent((LINE,))))
 GONE = ClosedEvent(client_module.GONE)
 
 REQUESTS: dict[str, Callable[[SupervisorClient], Awaitable[object]]] = {

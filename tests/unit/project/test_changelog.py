@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from pathlib import Path
 
-from launcher.control.protocol import VERSION
+from launcher.wire import VERSION
 
 TEXT = (Path(__file__).parents[3] / "CHANGELOG.md").read_text(encoding="utf-8")
 

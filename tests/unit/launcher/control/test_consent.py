@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 
 import pytest
 
 from launcher.consent import Agents, Approval, ConsentAnswer, ConsentVerdict, Question
-from launcher.control.agent_requests import serve_agents
-from launcher.control.bad_request import BadRequestError
 from launcher.control.consent import ConsentDesk, TooSoonError
+from launcher.control.requests import AgentRequests, BadRequestError, requests_of, serve
 from tests.waiting import until
 from text.sentences import say
 
@@ -29,6 +29,10 @@ async def asked(made: ConsentDesk) -> tuple[asyncio.Task[ConsentVerdict], Questi
     asking = asyncio.create_task(made.ask(AGENT, "k", LINES))
     questions = await until(lambda: made.state.questions[before:], "a question")
     return asking, questions[0]
+
+
+async def serve_agents(made: ConsentDesk, client: str, message: Mapping[str, object]) -> None:
+    await serve(requests_of(AgentRequests(made, lambda *_: None)), client, message)
 
 
 async def test_without_a_screen_nothing_is_allowed() -> None:
@@ -124,11 +128,11 @@ async def test_nobody_answers_for_themselves() -> None:
     made = desk()
     for request in ({"op": "attend"}, {"op": "answer", "question": 1, "answer": "once"}):
         with pytest.raises(BadRequestError):
-            await serve_agents(made, AGENT, request, lambda *_: None)
-    await serve_agents(made, SCREEN, {"op": "attend"}, lambda *_: None)
+            await serve_agents(made, AGENT, request)
+    await serve_agents(made, SCREEN, {"op": "attend"})
     join = {"op": "join", "key": "k", "name": "x", "approval": "ask"}
     with pytest.raises(BadRequestError):
-        await serve_agents(made, SCREEN, join, lambda *_: None)
+        await serve_agents(made, SCREEN, join)
 
 
 @pytest.mark.parametrize(
@@ -148,7 +152,7 @@ async def test_nobody_answers_for_themselves() -> None:
 )
 async def test_nonsense_is_refused(request_: dict[str, object]) -> None:
     with pytest.raises(BadRequestError):
-        await serve_agents(desk(), AGENT, request_, lambda *_: None)
+        await serve_agents(desk(), AGENT, request_)
 
 
 async def test_whoever_was_refused_leaves_the_person_alone_for_longer_each_time() -> None:

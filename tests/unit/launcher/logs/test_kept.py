@@ -8,10 +8,8 @@ from pathlib import Path
 import pytest
 
 from launcher.logs import files as logs_files
-from launcher.logs.files import LogFiles
-from launcher.logs.folder import MARK, make_log_folder, prune_runs
-from launcher.logs.kept_lines import BLOCK_LINES, KeptLines
-from launcher.logs.ring import LogRing
+from launcher.logs.files import MARK, LogFiles, make_log_folder, prune_runs
+from launcher.logs.ring import BLOCK_LINES, KeptLines, LogRing
 from launcher.run_id import new_run_id
 from launcher.status import LogLine, Severity
 from text.sentences import Words, say

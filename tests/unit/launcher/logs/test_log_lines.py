@@ -6,9 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from launcher.logs.lines import IDLE_S, MAX_LINE_BYTES, LineAssembler, RawLine
-from launcher.logs.rcutils import AT_ONCE_S, SeverityParser
-from launcher.logs.text import plain_text
+from launcher.logs.lines import AT_ONCE_S, IDLE_S, MAX_LINE_BYTES, LineAssembler, RawLine, SeverityParser, plain_text
 from launcher.status import Severity
 
 

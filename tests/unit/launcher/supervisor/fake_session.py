@@ -61,7 +61,7 @@ class FakeProcess:
 
 
 class FakeSession:
-    """Fits `launcher.supervisor.node_context.NodeContext`."""
+    """Fits `launcher.supervisor.readying.NodeContext`."""
 
     def __init__(self) -> None:
         self.clock = ManualClock()

@@ -11,9 +11,8 @@ import pytest
 
 from launcher.profile.node import Node
 from launcher.status import NodeState, Severity
-from launcher.supervisor.dependencies import stop_waves, with_needs
 from launcher.supervisor.own_files import OwnFiles
-from launcher.supervisor.plan import plan_of
+from launcher.supervisor.plan import plan_of, stop_waves, with_needs
 from launcher.supervisor.restart_policy import (
     CRASH_WINDOW_S,
     LAST_DELAY_S,
