@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from text.i18n import N_
 
 if TYPE_CHECKING:
-    from tui.devices.reading import Device
+    from tui.devices.drivers import Device
     from tui.session.feed import Feed
     from tui.session.ports import GraphLink
 
@@ -42,17 +42,15 @@ class SimulatedTrouble:
 
 
 UNPLUGGED = SimulatedTrouble(
-    *("unplugged", "fine"), *(N_("{device}: the cable is pulled."), N_("{device}: the cable is plugged in again."))
+    "unplugged", "fine", N_("{device}: the cable is pulled."), N_("{device}: the cable is plugged in again.")
 )
 NOISE = SimulatedTrouble(
-    *("noise", "fine"), *(N_("{device}: there is noise on the line."), N_("{device}: the noise is gone."))
+    "noise", "fine", N_("{device}: there is noise on the line."), N_("{device}: the noise is gone.")
 )
 SILENCE = SimulatedTrouble(
-    *("silent", "fine"), *(N_("{device}: it has gone silent."), N_("{device}: it sends data again."))
+    "silent", "fine", N_("{device}: it has gone silent."), N_("{device}: it sends data again.")
 )
-BATTERY = SimulatedTrouble(
-    *(5.8, 7.4), *(N_("The battery has 5.8 V."), N_("The battery has 7.4 V.")), *("battery", POWERED)
-)
+BATTERY = SimulatedTrouble(5.8, 7.4, N_("The battery has 5.8 V."), N_("The battery has 7.4 V."), "battery", POWERED)
 
 
 def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:

@@ -47,7 +47,7 @@ class GraphScreen(DeckScreen):
 
     tab: ClassVar[str] = "graph"
     AUTO_FOCUS: ClassVar[str] = "GraphList"
-    parts: ClassVar[tuple[str, ...]] = ("GraphDetail",)
+    parts: ClassVar[tuple[str, ...]] = ("#graph-detail",)
     about: ClassVar[str] = N_(
         "Nodes with what they publish, hear, serve and call; services to be called, actions to "
         "be sent goals, types down to their fields; findings are what is wrong, with what to do "

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING
 from launcher.errors import LauncherError
 from launcher.profile.defaults import FOLDERS_OWN
 from text.i18n import language
-from tui.lifecycle.replay import replayed
-from tui.panels.registry import PANELS
+from tui.panels.registry import PANELS, panels_for
 from tui.session.requests import Lesson, Score, Task
-from tui.session.watching import watched
+from tui.session.watching import NodelessLink, watched
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -38,6 +37,8 @@ OF_SCREEN = ("tui.deck.screen", "tui.widgets.half_blocks")
 """Modules that show a lesson, besides its panels."""
 OF_STOP = ("launcher.client.running", "launcher.client.stop_road")
 """Modules of the stop's road to supervisors: whoever presses it does not wait for them."""
+REPLAY = "replay"
+"""Shown in place of the hardware."""
 
 
 class LiveOpener:
@@ -259,3 +260,20 @@ def _lesson(entry: ProfileEntry, task: Task | None) -> Lesson:
         task=task,
         error=entry.error,
     )
+
+
+def replayed(replay: Replay) -> NodelessLink:
+    """Return the session of a recording, which its observer plays."""
+    from launcher.status import SessionInfo
+
+    bag = replay.bag
+    session = SessionInfo(
+        run_id=REPLAY,
+        profile=str(bag.path),
+        name=bag.name,
+        title={"en": bag.name},
+        hardware=REPLAY,
+        panels=panels_for({topic.name for topic in bag.topics}),
+        foreground=False,
+    )
+    return NodelessLink(session)
