@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from text.i18n import N_
 from tui.actions.action import Announce, actions_of
-from tui.devices.trouble import BATTERY, NOISE, SILENCE, UNPLUGGED, SimulatedTrouble
+from tui.devices.drivers import BATTERY, NOISE, SILENCE, UNPLUGGED, SimulatedTrouble
 
 if TYPE_CHECKING:
     from tui.devices.screen import DevicesScreen

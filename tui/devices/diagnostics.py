@@ -87,7 +87,6 @@ class DiagnosticsView(Horizontal):
         return self.query_one("#facts", Rows)
 
     def redraw(self) -> None:
-        """Show the current state of the book."""
         wanted = (self._book.revision, language())
         if wanted != self._drawn:
             self._drawn = wanted

@@ -1,9 +1,11 @@
-"""The drivers that report their state on /diagnostics: in a table, in words, and why nothing is shown."""
+"""The drivers that report their state on /diagnostics: in a table, in words, and trouble made for them."""
 
 from __future__ import annotations
 
+import asyncio
 import re
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from graph.diagnostics.book import DiagnosticsBook
     from graph.diagnostics.reading import DiagnosticStatus
     from tui.session.feed import Feed
+    from tui.session.ports import GraphLink
 
 STALE_S = 3.0
 """A driver that has been silent for this long is stale: each reports once a second."""
@@ -74,7 +77,6 @@ class Device:
 
 
 def devices_of(book: DiagnosticsBook) -> list[Device]:
-    """Return the drivers that have reported, sorted by name."""
     devices = [Device(record.status, book.heard_s(record)) for record in book.records[:MOST]]
     return sorted(devices, key=lambda device: device.report.name)
 
@@ -105,7 +107,6 @@ class DevicesTable(Rows):
 
 
 def _columns(width: int, now_s: float) -> list[tuple[Column, Callable[[Device], Cell]]]:
-    """Return the columns that have room in a screen of this width, and what stands in them."""
     wide, home = width >= 160, width >= 100
     name, port, since = (24, 44, 19) if wide else (18, 20, 8) if home else (15, 0, 8)
     columns: list[tuple[Column, Callable[[Device], Cell]]] = [
@@ -150,7 +151,6 @@ def _since(device: Device, width: int) -> Cell:
 
 
 def _figure(device: Device, key: str) -> Cell:
-    """A number as it was reported."""
     value = device.number(key)
     return NOTHING if value is None else Cell(grouped(value))
 
@@ -166,7 +166,6 @@ def _errors(device: Device) -> Cell:
 
 
 def grouped(value: float) -> str:
-    """A whole number with blanks between thousands."""
     return f"{value:,.0f}".replace(",", "\N{NO-BREAK SPACE}")
 
 
@@ -264,3 +263,67 @@ def lessons_with_drivers() -> tuple[str, ...]:
         if runs & {*DRIVERS, HEAD}:
             found.append(entry.name)
     return tuple(found)
+
+
+ROBOT = "nodes.mock_robot"
+"""It has trouble by parameters of its node, set as `ros2 param` does; their values are its own."""
+LINES = frozenset({"pico", "tof_front", "tof_rear", "lsc16"})
+"""Its pseudo-terminals, and the parameters for the trouble of each."""
+POWERED = frozenset({"pico", "lsc16"})
+"""The devices that measure the battery."""
+_REAL = PurePosixPath("/dev")
+
+
+@dataclass(frozen=True)
+class SimulatedTrouble:
+    """The values of a parameter with and without the trouble."""
+
+    wrong: str | float
+    fine: str | float
+    told: str
+    """Sentence with {device}, marked by `N_`."""
+    over: str
+    """The same for when it is cleared; it names only this trouble, as there may be others."""
+    parameter: str = ""
+    """Empty: the parameter named after the device."""
+    devices: frozenset[str] = LINES
+    """Devices that can have it."""
+
+
+UNPLUGGED = SimulatedTrouble(
+    "unplugged", "fine", N_("{device}: the cable is pulled."), N_("{device}: the cable is plugged in again.")
+)
+NOISE = SimulatedTrouble(
+    "noise", "fine", N_("{device}: there is noise on the line."), N_("{device}: the noise is gone.")
+)
+SILENCE = SimulatedTrouble(
+    "silent", "fine", N_("{device}: it has gone silent."), N_("{device}: it sends data again.")
+)
+BATTERY = SimulatedTrouble(5.8, 7.4, N_("The battery has 5.8 V."), N_("The battery has 7.4 V."), "battery", POWERED)
+
+
+def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:
+    """Return the full name of the simulated robot's node, and which of its lines the device is.
+
+    None for a device that is not simulated, and while the robot is not in the graph.
+    """
+    if device is None or feed.graph is None or feed.replay is not None or feed.update is None:
+        return None
+    port = PurePosixPath(device.port)
+    if port.name not in LINES or _REAL in port.parents:
+        return None
+    robots = {name for name, node in feed.nodes.items() if node.command == ROBOT}
+    names = [row.name for row in feed.update.nodes if row.name.rpartition("/")[2] in robots]
+    return (names[0], port.name) if names else None
+
+
+async def switch(graph: GraphLink, node: str, device: str, trouble: SimulatedTrouble) -> tuple[bool, str]:
+    """Cause the trouble, or clear it; return whether it is present now, or why that failed."""
+    name = trouble.parameter or device
+    read = await asyncio.wrap_future(graph.parameters(node))
+    now = next((row.value for row in read.parameters if row.name == name), None)
+    if read.error or now is None:
+        return False, read.error or name
+    made = now != trouble.wrong
+    done = await asyncio.wrap_future(graph.set_parameters(node, {name: trouble.wrong if made else trouble.fine}))
+    return made, done.error or done.refused.get(name, "")

@@ -17,7 +17,7 @@ from text import ros2_words
 from text.i18n import N_, _
 from tui import clock
 from tui.actions import bindings
-from tui.devices import drivers, trouble
+from tui.devices import drivers
 from tui.devices.actions import DEVICES_ACTIONS
 from tui.devices.diagnostics import DiagnosticsView, worst_of
 from tui.devices.drivers import Device, DevicesTable
@@ -79,7 +79,6 @@ class DevicesScreen(DeckScreen):
         """Lessons with drivers; None until they are needed."""
 
     def compose_body(self) -> ComposeResult:
-        """The table, the report of the chosen driver, and its frames or why there are none."""
         yield Static(id="devices-empty", markup=False)
         yield TabLine()
         yield DevicesTable()
@@ -105,7 +104,6 @@ class DevicesScreen(DeckScreen):
 
     @property
     def has_diagnostics(self) -> bool:
-        """Whether anybody has said anything on /diagnostics."""
         return bool(self._diagnostics.records)
 
     @property
@@ -115,7 +113,6 @@ class DevicesScreen(DeckScreen):
 
     @property
     def only_bad(self) -> bool:
-        """Whether good frames are hidden."""
         return self.pane.view.log_filter.minimum is not Severity.DEBUG
 
     def follow_topics(self) -> set[str]:
@@ -146,7 +143,6 @@ class DevicesScreen(DeckScreen):
         self._look()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Update the words for when there is no driver yet."""
         del message
         self._look()
 
@@ -167,7 +163,6 @@ class DevicesScreen(DeckScreen):
         self._look()
 
     def on_resize(self) -> None:
-        """Fit the columns to the new width."""
         self.call_after_refresh(self._look)
 
     @on(Rows.Highlighted, "DevicesTable")
@@ -202,7 +197,6 @@ class DevicesScreen(DeckScreen):
     # Actions
 
     async def ros2_command(self) -> str:
-        """Return what prints the reports of the drivers."""
         return ros2_words.echo(DIAGNOSTICS) if self.has_diagnostics else ""
 
     def show_tree(self, shown: bool) -> None:
@@ -218,7 +212,6 @@ class DevicesScreen(DeckScreen):
         return self.query_one(DiagnosticsView).names if self.shows_tree else self.table
 
     def next_way(self) -> None:
-        """Switch between both directions, in, and out."""
         ways = [None, *(_(word) for word in WAYS.values())]
         self._show_way(ways[(ways.index(self.pane.view.log_filter.only) + 1) % len(ways)])
 
@@ -226,13 +219,11 @@ class DevicesScreen(DeckScreen):
         self.pane.view.log_filter = replace(self.pane.view.log_filter, only=way)
 
     def toggle_bad(self) -> None:
-        """Show only noise and bad frames, or all."""
         minimum = Severity.DEBUG if self.only_bad else Severity.WARN
         self.pane.view.log_filter = replace(self.pane.view.log_filter, minimum=minimum)
         self.refresh_bindings()
 
     def toggle_hex(self) -> None:
-        """Show readable bytes in hex, or as text."""
         self.frames.as_hex = not self.frames.as_hex
         self._lay_frames()
         self.refresh_bindings()
@@ -244,15 +235,15 @@ class DevicesScreen(DeckScreen):
     @property
     def simulated(self) -> tuple[str, str] | None:
         """The simulated robot's node and the chosen one of its lines; None for a real device."""
-        return trouble.simulated(self.chosen, self.feed)
+        return drivers.simulated(self.chosen, self.feed)
 
     @work(group="trouble")
-    async def switch_trouble(self, which: trouble.SimulatedTrouble) -> None:
+    async def switch_trouble(self, which: drivers.SimulatedTrouble) -> None:
         """Cause this trouble on the chosen device or clear it, and say which."""
         found, graph = self.simulated, self.feed.graph
         if found is None or graph is None:
             return
-        made, error = await trouble.switch(graph, *found, which)
+        made, error = await drivers.switch(graph, *found, which)
         told = _(which.told if made else which.over).format(device=found[1])
         self.notify(error or told, severity="error" if error else "information", markup=False)
 

@@ -73,7 +73,6 @@ class FlowScreen(DeckScreen):
         """Unix time (of the recording in a replay) before which nothing was collected."""
 
     def compose_body(self) -> ComposeResult:
-        """Lanes above, the chains, the chosen step below."""
         yield Static(id="flow-lanes", markup=False)
         yield Static(id="flow-empty", markup=False)
         yield Rows(id="flow-view")
@@ -100,18 +99,15 @@ class FlowScreen(DeckScreen):
         return None if found is None else found[1]
 
     def follow_topics(self) -> set[str]:
-        """All topics that may take part, once this screen has been opened."""
         return set(TOPICS)
 
     def past_topics(self) -> set[str]:
-        """The same since the session began."""
         return set(TOPICS)
 
     def on_mount(self) -> None:
         self._show()
 
     def on_resize(self) -> None:
-        """Show the columns that have room."""
         self.call_after_refresh(self._show)
 
     def on_session_changed(self, message: SessionChanged) -> None:
@@ -165,7 +161,6 @@ class FlowScreen(DeckScreen):
     # Actions
 
     async def ros2_command(self) -> str:
-        """Return what prints the topic of the chosen step, or the log of its node."""
         step = self.chosen_step
         if step is None or step.lane is Lane.AGENT:
             return ""
@@ -174,7 +169,6 @@ class FlowScreen(DeckScreen):
         return ros2_words.log_of(step.source)
 
     def neighbour(self, step: int) -> Chain | None:
-        """The chain this many places below the chosen one."""
         chains, chosen = list(self.chains), self.chosen_chain
         at = chains.index(chosen) + step if chosen in chains and chosen is not None else -1
         return chains[at] if 0 <= at < len(chains) else None
@@ -195,11 +189,9 @@ class FlowScreen(DeckScreen):
         self._show()
 
     def action_lane(self, lane: str) -> None:
-        """Show or hide a lane that was clicked."""
         self.toggle_lane(Lane(lane))
 
     def show_all(self) -> None:
-        """Hide only the logs of other nodes."""
         self._hidden = {Lane.LOG}
         self._show()
 

@@ -106,7 +106,6 @@ def nothing_yet(topics: Collection[str], command_key: str, *, recorded: bool) ->
 
 
 def columns(width: int) -> list[Column]:
-    """Return the columns for this width; on a narrow screen without the node that published."""
     source, by = (16, 0) if width < NARROW else (18, 18) if width < WIDE else (24, 26)
     delays = [Column(_("delay"), 10, right=True), Column(_("step"), 10, right=True)]
     return [*delays, Column(_("source"), source), *([Column(_("node"), by)] if by else []), Column(_("content"))]

@@ -75,7 +75,6 @@ class ActionPane(AskPane):
         return (Column("", 8), Column("", 13), Column("", 8), Column("")), [_row(goal) for goal in self.goals]
 
     def answer(self) -> Answer:
-        """Return the result of the chosen goal, or its newest feedback."""
         goal = self.chosen
         if goal is None:
             way_out = _("{key} sends what is filled in.").format(key=self.submit_key)
@@ -97,7 +96,6 @@ class ActionPane(AskPane):
         return ros2_words.send_goal(self.name_shown, type_name, value)
 
     def ros2_info(self) -> str:
-        """Return what tells who serves it."""
         return ros2_words.action_info(self.name_shown)
 
     def ask(self, type_name: str, value: Mapping[str, Any]) -> None:
@@ -115,7 +113,6 @@ class ActionPane(AskPane):
         self.redraw()
 
     def redraw(self) -> None:
-        """Show the goals, and choose the one that was just sent."""
         super().redraw()
         if self._sent_newest in [goal.number for goal in self.goals if isinstance(goal, Goal)]:
             self.asked_rows.choose(str(self._sent_newest))

@@ -176,7 +176,6 @@ class TypePane(GraphPane):
         return self.query_one(GraphTypeTree)
 
     def ros2_command(self) -> str:
-        """Return what shows its definition."""
         return ros2_words.interface(self.name_shown) if self.name_shown else ""
 
     def show_name(self, name: str) -> None:
@@ -185,7 +184,6 @@ class TypePane(GraphPane):
         super().show_name(name)
 
     def redraw(self) -> None:
-        """Show its users, and if there is no tree, why."""
         if not self.name_shown or not self.is_mounted:
             return
         self.query_one(NameHead).show(self.name_shown)
@@ -199,7 +197,6 @@ class TypePane(GraphPane):
             words.show(_("this type cannot be inspected"), localized(self._failure))
 
     def relabel(self) -> None:
-        """Redraw in the current language."""
         if self._definition is not None:
             self.fields.show_definition(self._definition)
         self.redraw()

@@ -74,7 +74,6 @@ class DomainTakenScreen(Dialog[DomainAnswer]):
         return _("Domain {domain} is in use").format(domain=self.taken.domain)
 
     def words(self) -> Content:
-        """Say who is there, what that means, and which domain is free."""
         taken = self.taken
         means = _("Both have nodes of the same name, or both drive: one domain is not enough.")
         if taken.can_share:

@@ -7,20 +7,24 @@ takes time. rclpy is imported by the observer's process alone.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
+import sys
 from importlib import import_module
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+import tui
 from launcher.errors import LauncherError
 from launcher.profile.defaults import FOLDERS_OWN
 from text.i18n import language
+from text.nested import read_json
 from tui.panels.registry import PANELS, panels_for
-from tui.session.requests import Lesson, Score, Task
+from tui.session.requests import Lesson, Score, Task, WholeGrade
 from tui.session.watching import NodelessLink, watched
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from pathlib import Path
 
     from course.lessons.lesson import LessonFolder
     from course.progress.progress import Progress
@@ -31,7 +35,7 @@ if TYPE_CHECKING:
     from launcher.profile.load import Profile
     from launcher.status import SessionInfo
     from tui.session.ports import GraphLink, JudgeLink, SessionLink
-    from tui.session.requests import OpenRequest, ReplayRequest, WholeGrade
+    from tui.session.requests import OpenRequest, ReplayRequest
 
 OF_SCREEN = ("tui.deck.screen", "tui.widgets.half_blocks")
 """Modules that show a lesson, besides its panels."""
@@ -136,8 +140,6 @@ class LiveOpener:
 
     async def grade(self, lesson: LessonFolder, folder: Path) -> WholeGrade:
         """Have a learner's folder graded, which takes a while."""
-        from tui.lifecycle.graded import graded
-
         return await graded(lesson, folder)
 
 
@@ -277,3 +279,40 @@ def replayed(replay: Replay) -> NodelessLink:
         foreground=False,
     )
     return NodelessLink(session)
+
+
+_PASSED = "passed"
+_COULD_NOT = "could not be judged"
+
+
+async def graded(lesson: LessonFolder, folder: Path) -> WholeGrade:
+    """Grade a folder by `deck grade`; whatever goes wrong is said in the result. The session goes on meanwhile."""
+    grading = await asyncio.create_subprocess_exec(
+        *(sys.executable, "-m", "tui", "grade", str(lesson.path), str(folder), "--format", "json"),
+        cwd=Path(tui.__file__).parent.parent,
+        stdin=asyncio.subprocess.DEVNULL,
+        stdout=asyncio.subprocess.PIPE,
+        stderr=asyncio.subprocess.PIPE,
+        env={**os.environ, "DECK_LANG": language()},
+        # Ctrl-C in the terminal is meant for the screen.
+        start_new_session=True,
+    )
+    try:
+        out, errors = await grading.communicate()
+    finally:
+        if grading.returncode is None:
+            with contextlib.suppress(ProcessLookupError):
+                grading.terminate()
+            await grading.wait()
+    try:
+        return _grade(read_json(out)["grades"][0])
+    except (ValueError, KeyError, IndexError, TypeError):
+        last = errors.decode(errors="replace").strip().splitlines()[-1:]
+        return WholeGrade(0, lesson.points, {}, "".join(last))
+
+
+def _grade(grade: dict[str, Any]) -> WholeGrade:
+    steps = [step for step in grade["steps"] if step["state"] != _PASSED]
+    failed = {step["id"]: step["message"] for step in steps if step["state"] != _COULD_NOT}
+    reason = next((step["message"] for step in steps if step["state"] == _COULD_NOT), "")
+    return WholeGrade(grade["points"], grade["max_points"], failed, reason)

@@ -62,7 +62,6 @@ class Outcome(VerticalScroll, can_focus=True):
             self._draw()
 
     def on_resize(self) -> None:
-        """Give the text a column of its own if there is room."""
         self._draw()
 
     def notify_style_update(self) -> None:

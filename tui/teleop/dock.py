@@ -60,6 +60,5 @@ class TeleopDock:
             self._panel.release()
 
     def words_changed(self) -> None:
-        """Redraw in the current language."""
         if self._panel is not None:
             self._panel.words_changed()
