@@ -22,7 +22,7 @@ from tui.graph.pane import EmptyNotice, GraphList, GraphPane
 from tui.graph.parameters import PARAMETER_EVENTS
 from tui.graph.places import LISTED, TITLES, GraphKind, GraphPlace, PlaceHistory
 from tui.graph.service import ServicePane
-from tui.graph.type import GraphTypeTree, TypePane
+from tui.graph.type import TypePane
 from tui.widgets.field import Field
 from tui.widgets.rows import Rows
 from tui.widgets.tab_line import TabEntry, TabLine
@@ -270,10 +270,6 @@ class GraphScreen(DeckScreen):
         place = GraphPlace.of_key(message.key)
         if place is not None:
             await self.go(place)
-
-    @on(GraphTypeTree.TypeWanted)
-    async def _type_wanted(self, message: GraphTypeTree.TypeWanted) -> None:
-        await self.go(GraphPlace(GraphKind.TYPE, message.type_name))
 
     @on(TabLine.Selected)
     def _selected(self, message: TabLine.Selected) -> None:
