@@ -185,7 +185,7 @@ class LogPane(Vertical, Working):
     def __init__(self, view: LogView) -> None:
         """Put the status line below `view`, with the line for questions between them."""
         super().__init__()
-        self.view = view
+        self.view, self.prompt = view, LogPrompt()
         self.save_folder = ""
         """Where files are saved unless the user gives another folder."""
         self._lines: Sequence[str] = ()
@@ -193,12 +193,8 @@ class LogPane(Vertical, Working):
 
     def compose(self) -> ComposeResult:
         yield self.view
-        yield LogPrompt()
+        yield self.prompt
         yield LogBar()
-
-    @property
-    def prompt(self) -> LogPrompt:
-        return self.query_one(LogPrompt)
 
     @on(LogView.StateChanged)
     def _show_state(self) -> None:
