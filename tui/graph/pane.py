@@ -8,7 +8,7 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Static
 
-from text.i18n import _
+from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import Host, host_of
 from tui.graph.index import GraphEntry
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from textual.widget import Widget
 
     from graph.data import GraphUpdate
+    from tui.session.feed import Feed
 
 LONGEST = 300
 """Characters of a text that are shown."""
@@ -131,6 +132,38 @@ def ended(words: str, room: int) -> str:
         return words
     tail = (room - 1) * 2 // 3
     return words[: room - 1 - tail] + "…" + (words[-tail:] if tail else "")
+
+
+def why_empty(feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str) -> tuple[str, str]:
+    """Return headline and advice for a list that shows none of `listed`."""
+    update = feed.update
+    if feed.link is None:
+        return _("no lesson is running"), ""
+    if update is None:
+        return _("reading the graph"), _("Nodes are starting.")
+    if update.error:
+        return feed.blind, localized(update.error)
+    if any(not entry.housekeeping for entry in listed):
+        return _("nothing matches the filter"), _("Escape in the filter shows all again.")
+    if listed:
+        return _("only what ROS itself needs is here"), _("{key} shows it.").format(key=all_key)
+    return {
+        GraphKind.NODE: (
+            _("no node in this domain"),
+            _("Nodes of another domain number, or of another computer while discovery is localhost, are not seen."),
+        ),
+        GraphKind.SERVICE: (_("nobody serves a service"), _("Start a node that does: head_controller is one.")),
+        GraphKind.ACTION: (_("nobody serves an action"), _("Start a node that does: drive_to_point is one.")),
+        GraphKind.TYPE: (_("no type is in use"), _("Types are those of topics, services and actions.")),
+        GraphKind.FINDING: (
+            _("no findings"),
+            _(
+                "Checked: publishers that fight, types that do not agree, QoS, topics and services without "
+                "a source, names that nearly match, nodes with one name, clocks. While this list is open, "
+                "every topic is measured: lost messages, foreign stamps and silence show up, too."
+            ),
+        ),
+    }[kind]
 
 
 class GraphPane(Vertical, Working):

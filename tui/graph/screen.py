@@ -16,9 +16,9 @@ from tui.graph.action import ActionPane
 from tui.graph.actions import GRAPH_ACTIONS, show_everything
 from tui.graph.ask import AskPane
 from tui.graph.finding import FindingPane, goal_of
-from tui.graph.index import LOOKS, GraphIndex, failures_of, why_empty
+from tui.graph.index import LOOKS, GraphIndex, failures_of
 from tui.graph.node import NodePane
-from tui.graph.pane import EmptyNotice, GraphList, GraphPane
+from tui.graph.pane import EmptyNotice, GraphList, GraphPane, why_empty
 from tui.graph.parameters import PARAMETER_EVENTS
 from tui.graph.places import LISTED, TITLES, GraphKind, GraphPlace, PlaceHistory
 from tui.graph.service import ServicePane
