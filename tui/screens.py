@@ -100,11 +100,7 @@ DIALOGS = (
     "tui.bags.listing",
     "tui.dialogs.choice",
     "tui.help.screen",
-    "tui.lifecycle.domain_taken",
-    "tui.lifecycle.end_session",
-    "tui.lifecycle.refused",
-    "tui.lifecycle.stopping",
-    "tui.lifecycle.strays",
+    "tui.lifecycle.dialogs",
     "tui.tour.screen",
 )
 """Modules that define actions of their own, imported when first shown."""

@@ -37,7 +37,7 @@ from tests.waiting import until
 from tui import clock
 from tui.app import DeckApp
 from tui.composer.screen import ComposerScreen
-from tui.devices import words as devices_words
+from tui.devices import drivers
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
 from tui.graph.places import GraphKind, GraphPlace
@@ -223,7 +223,7 @@ def _everywhere_the_same(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Non
     """Folders of nobody, a clock that stands, and no budget that goes by another."""
     for name in ("DECK_COURSE", "XDG_STATE_HOME", "XDG_CACHE_HOME"):
         monkeypatch.setenv(name, str(tmp_path))
-    monkeypatch.setattr(devices_words, "_lessons_with_drivers", lambda: ("robot",))
+    monkeypatch.setattr(drivers, "lessons_with_drivers", lambda: ("robot",))
     monkeypatch.setattr(clock, "steady", lambda: 1.0)
     monkeypatch.setattr(ComposerScreen, "_show_budget", lambda _screen: None)
 

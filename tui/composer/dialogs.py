@@ -10,9 +10,8 @@ from textual.content import Content
 
 from text.i18n import N_, _
 from text.plain import plain, plain_lines
-from tui.actions import Announce, bindings
 from tui.dialogs.choice import ChoiceScreen
-from tui.dialogs.dialog import Dialog
+from tui.dialogs.dialog import Dialog, answers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -75,23 +74,18 @@ def templates_dialog() -> ChoiceScreen:
     return ChoiceScreen(lambda: _("Templates"), lambda: _("They replace what stands in the editor."), choices)
 
 
-action: Announce[PromptDialog] = Announce()
-
 LONGEST = 64 * 1024
 """Characters of a part that are shown: as many as a prompt may have."""
 KIB = 1024
 _BASE64_SHARE = 3 / 4
 
 
-@action("composer.prompt_close", "escape", N_("Close"), N_("Back to the Composer."), footer=True, palette=False)
-def close_prompt(dialog: PromptDialog) -> None:
-    dialog.dismiss(None)
-
-
 class PromptDialog(Dialog[None]):
     """The last request that went out: every message, word for word, and the form of the answer."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(close_prompt)
+    BINDINGS: ClassVar[list[BindingType]] = answers(
+        ("composer.prompt_close", "escape", N_("Close"), N_("Back to the Composer."), None)
+    )
     DEFAULT_CSS: ClassVar[str] = "PromptDialog #dialog { width: 110; }"
 
     def __init__(self, models: AskedModels) -> None:

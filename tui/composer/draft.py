@@ -114,7 +114,6 @@ class Draft(Vertical, Working):
         await self.models.close()
 
     def relabel(self) -> None:
-        """Redraw in the current language."""
         self.verdict.redraw()
         self.read_settings()
         self._changed()

@@ -147,7 +147,6 @@ class JsonVerdict(Vertical):
         return () if self._shown is None or self._shown[2] else self._shown[0]
 
     def redraw(self) -> None:
-        """Say it in the current language."""
         if self._shown is None:
             return
         problems, commands, coming = self._shown

@@ -208,7 +208,6 @@ class ComposerScreen(DeckScreen):
             self._say()
 
     async def ros2_command(self) -> str:
-        """Return what publishes the text once."""
         return ros2_words.pub(LLM_RAW_JSON, TYPE, {"data": self.draft.editor.text})
 
     def choose_template(self) -> None:

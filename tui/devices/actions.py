@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.i18n import N_
-from tui.actions.action import Announce, actions_of
-from tui.devices.trouble import BATTERY, NOISE, SILENCE, UNPLUGGED, SimulatedTrouble
+from tui.actions.action import REGISTRY, Announce
+from tui.devices.drivers import BATTERY, NOISE, SILENCE, UNPLUGGED, SimulatedTrouble
+from tui.log_view.actions import folding, pausing, searching, taking
 
 if TYPE_CHECKING:
     from tui.devices.screen import DevicesScreen
@@ -44,18 +45,7 @@ def _with_driver(screen: DevicesScreen) -> bool | None:
     return bool(screen.chosen)
 
 
-@action(
-    "devices.pause",
-    "p",
-    N_("Pause"),
-    N_("Pause while frames come in, or follow the newest again."),
-    footer=True,
-    anywhere=True,
-    when=_with_driver,
-    label=lambda screen: N_("Pause") if screen.pane.view.following else N_("Resume"),
-)
-def pause_frames(screen: DevicesScreen) -> None:
-    screen.pane.view.toggle_following()
+pausing("devices.pause", _with_driver)
 
 
 @action(
@@ -101,17 +91,7 @@ def in_hex(screen: DevicesScreen) -> None:
     screen.toggle_hex()
 
 
-@action(
-    "devices.fold",
-    "w",
-    N_("Wrap"),
-    N_("Wrap long lines, or show one row of each: left and right shift it."),
-    footer=True,
-    anywhere=True,
-    when=_with_driver,
-)
-def fold_frames(screen: DevicesScreen) -> None:
-    screen.pane.view.set_fold(not screen.pane.view.fold)
+folding("devices", _with_driver)
 
 
 @action(
@@ -127,60 +107,8 @@ def clear_frames(screen: DevicesScreen) -> None:
     screen.clear_frames()
 
 
-@action(
-    "devices.copy",
-    "y",
-    N_("Copy"),
-    N_("Copy the selected lines to the clipboard of your terminal."),
-    footer=True,
-    when=_with_driver,
-)
-def copy_frames(screen: DevicesScreen) -> None:
-    screen.pane.copy()
-
-
-@action(
-    "devices.save",
-    "W",
-    N_("Write"),
-    N_("Write the selected lines to a file, or all lines shown if none is selected."),
-    means="write to a file",
-    footer=True,
-    when=_with_driver,
-)
-def save_frames(screen: DevicesScreen) -> None:
-    screen.pane.save()
-
-
-@action(
-    "devices.search",
-    "slash,ctrl+f",
-    N_("Search"),
-    N_("Find text in the frames as you type; Escape ends it."),
-    means="find",
-    priority=True,
-    anywhere=True,
-    when=lambda screen: _with_driver(screen) and not screen.pane.prompt.kind,
-)
-def search_frames(screen: DevicesScreen) -> None:
-    screen.pane.search()
-
-
-@action("devices.next", "n", N_("Next"), N_("Go to the next frame found."), means="next", when=_with_driver)
-def next_frame(screen: DevicesScreen) -> None:
-    screen.pane.find(1)
-
-
-@action(
-    "devices.previous",
-    "N",
-    N_("Previous"),
-    N_("Go to the previous frame found."),
-    means="previous",
-    when=_with_driver,
-)
-def previous_frame(screen: DevicesScreen) -> None:
-    screen.pane.find(-1)
+taking("devices", _with_driver)
+searching("devices", _with_driver)
 
 
 def _may_have(screen: DevicesScreen, trouble: SimulatedTrouble) -> bool:
@@ -189,49 +117,28 @@ def _may_have(screen: DevicesScreen, trouble: SimulatedTrouble) -> bool:
     return found is not None and found[1] in trouble.devices
 
 
-@action(
-    "devices.unplug",
-    "U",
-    N_("Pull cable"),
+def _making(id: str, key: str, trouble: SimulatedTrouble, title: str, tooltip: str) -> None:
+    footer = trouble is UNPLUGGED
+
+    @action(id, key, title, tooltip, footer=footer, when=lambda screen: _may_have(screen, trouble))
+    def switch(screen: DevicesScreen) -> None:
+        screen.switch_trouble(trouble)
+
+
+_making(
+    *("devices.unplug", "U", UNPLUGGED, N_("Pull cable")),
     N_("Simulated robot: unplug the selected device; press again to plug it in."),
-    footer=True,
-    when=lambda screen: _may_have(screen, UNPLUGGED),
 )
-def unplug(screen: DevicesScreen) -> None:
-    screen.switch_trouble(UNPLUGGED)
-
-
-@action(
-    "devices.noise",
-    "Z",
-    N_("Noise"),
+_making(
+    *("devices.noise", "Z", NOISE, N_("Noise")),
     N_("Simulated robot: noise on the line of the selected device; press again to end it."),
-    when=lambda screen: _may_have(screen, NOISE),
 )
-def noise(screen: DevicesScreen) -> None:
-    screen.switch_trouble(NOISE)
-
-
-@action(
-    "devices.silence",
-    "H",
-    N_("Silence"),
+_making(
+    *("devices.silence", "H", SILENCE, N_("Silence")),
     N_("Simulated robot: silence the selected device; press again to undo."),
-    when=lambda screen: _may_have(screen, SILENCE),
 )
-def silence(screen: DevicesScreen) -> None:
-    screen.switch_trouble(SILENCE)
-
-
-@action(
-    "devices.battery",
-    "B",
-    N_("Low battery"),
+_making(
+    *("devices.battery", "B", BATTERY, N_("Low battery")),
     N_("Simulated robot: the battery of Pico and servos is weak; press again to charge it."),
-    when=lambda screen: _may_have(screen, BATTERY),
 )
-def low_battery(screen: DevicesScreen) -> None:
-    screen.switch_trouble(BATTERY)
-
-
-DEVICES_ACTIONS = actions_of(__name__)
+DEVICES_ACTIONS = [each for id, each in REGISTRY.items() if id.startswith("devices.")]

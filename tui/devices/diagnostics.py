@@ -10,21 +10,15 @@ from graph.diagnostics import StatusLevel, tree
 from text.i18n import _, language
 from text.plain import plain
 from tui import clock
-from tui.devices.table import STATES
+from tui.devices.drivers import STATES
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from textual.app import ComposeResult
 
     from graph.diagnostics import DiagnosticsBook, StatusRecord, TreeRow
 
-TIME = 8
-"""Cells of a time of day."""
-STATE = 14
-"""Cells of a level in words."""
 MOST_NAME = 24
 
 
@@ -34,46 +28,26 @@ def level_cell(level: StatusLevel) -> Cell:
     return Cell(_(words), meaning)
 
 
-class DiagnosticsTree(Rows):
-    """Names, indented, each with the sign of the worst below it."""
-
-    def __init__(self) -> None:
-        super().__init__(header=False)
-
-    def show_tree(self, rows: Sequence[TreeRow]) -> None:
-        self.show([Column("")], [self._row(row) for row in rows])
-
-    @staticmethod
-    def _row(row: TreeRow) -> Row:
-        words, meaning = STATES[row.level]
-        sign = _(words)[0]
-        said = "" if row.record is None or row.level is StatusLevel.OK else row.record.status.message
-        name = f"{'  ' * row.depth}{sign} {plain(row.label)}"
-        return Row(row.key, (Cell(f"{name}  {said}" if said else name, meaning),))
+def _tree_row(row: TreeRow) -> Row:
+    """A name, indented, with the sign of the worst below it."""
+    sign, meaning = level_cell(row.level)
+    said = "" if row.record is None or row.level is StatusLevel.OK else f"  {row.record.status.message}"
+    return Row(row.key, (Cell(f"{'  ' * row.depth}{sign[0]} {plain(row.label)}{said}", meaning),))
 
 
-class StatusFacts(Rows):
+def _fact_rows(record: StatusRecord) -> list[Row]:
     """The values of a status, and when its level has changed."""
-
-    def __init__(self) -> None:
-        super().__init__(header=False)
-
-    def show_record(self, record: StatusRecord | None) -> None:
-        """Show this status; None shows nothing."""
-        if record is None:
-            self.show([Column("")], [])
-            return
-        values = record.status.values
-        width = min(MOST_NAME, max(map(len, values), default=0)) or MOST_NAME
-        rows = [Row("", (Cell(_("History"), "dim"),))]
-        for number, change in reversed(list(enumerate(record.history))):
-            told = f"{clock.time_of_day(change.at_s)}  {level_cell(change.level).text}"
-            words = f"{told}  {plain(change.message)}"
-            rows.append(Row(f"change {number}", (Cell(words, level_cell(change.level).meaning),)))
-        if values:
-            rows.append(Row("", (Cell(_("Values"), "dim"),)))
-        rows += [Row(f"value {key}", (Cell(plain(key), "dim"), Cell(plain(value)))) for key, value in values.items()]
-        self.show([Column("", width), Column("")], rows)
+    rows = [Row("", (Cell(_("History"), "dim"),))]
+    for number, change in reversed(list(enumerate(record.history))):
+        level, meaning = level_cell(change.level)
+        words = f"{clock.time_of_day(change.at_s)}  {level}  {plain(change.message)}"
+        rows.append(Row(f"change {number}", (Cell(words, meaning),)))
+    values = record.status.values
+    if values:
+        rows.append(Row("", (Cell(_("Values"), "dim"),)))
+    return rows + [
+        Row(f"value {key}", (Cell(plain(key), "dim"), Cell(plain(value)))) for key, value in values.items()
+    ]
 
 
 class DiagnosticsView(Horizontal):
@@ -82,7 +56,7 @@ class DiagnosticsView(Horizontal):
     DEFAULT_CSS = """
     DiagnosticsView {
         height: 1fr; display: none;
-        DiagnosticsTree { width: 40%; }
+        #tree { width: 40%; }
         #status { width: 1fr; height: 1fr; border-left: solid $panel; }
     }
     """
@@ -96,22 +70,26 @@ class DiagnosticsView(Horizontal):
         """Revision of the book, and language."""
 
     def compose(self) -> ComposeResult:
-        yield DiagnosticsTree()
+        yield Rows(header=False, id="tree")
         with Vertical(id="status"):
             yield NameHead()
-            yield StatusFacts()
+            yield Rows(header=False, id="facts")
 
     @property
-    def names(self) -> DiagnosticsTree:
-        return self.query_one(DiagnosticsTree)
+    def names(self) -> Rows:
+        return self.query_one("#tree", Rows)
+
+    @property
+    def facts(self) -> Rows:
+        """The values of the chosen status, and when its level has changed."""
+        return self.query_one("#facts", Rows)
 
     def redraw(self) -> None:
-        """Show the current state of the book."""
         wanted = (self._book.revision, language())
         if wanted != self._drawn:
             self._drawn = wanted
             self._rows = tree(self._book.records)
-            self.names.show_tree(self._rows)
+            self.names.show([Column("")], [_tree_row(row) for row in self._rows])
             self.show_chosen()
 
     def show_chosen(self) -> None:
@@ -119,7 +97,7 @@ class DiagnosticsView(Horizontal):
         row = next((one for one in self._rows if one.key == self.names.chosen), None)
         if row is None:
             return
-        head, facts = self.query_one(NameHead), self.query_one(StatusFacts)
+        head, rows, width = self.query_one(NameHead), [], 0
         state = level_cell(row.level).text
         if row.record is None:
             below = sum(one.record is not None and one.path[: len(row.path)] == row.path for one in self._rows)
@@ -128,7 +106,9 @@ class DiagnosticsView(Horizontal):
             status = row.record.status
             own = level_cell(row.record.level).text
             head.show(status.name, f"{own} · {status.message}", status.hardware)
-        facts.show_record(row.record)
+            rows = _fact_rows(row.record)
+            width = min(MOST_NAME, max(map(len, status.values), default=0)) or MOST_NAME
+        self.facts.show([Column("", width), Column("")] if width else [Column("")], rows)
 
 
 def worst_of(book: DiagnosticsBook) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -16,16 +17,15 @@ from text import ros2_words
 from text.i18n import N_, _
 from tui import clock
 from tui.actions import bindings
-from tui.devices import trouble as device_trouble
-from tui.devices import words
+from tui.devices import drivers
 from tui.devices.actions import DEVICES_ACTIONS
-from tui.devices.diagnostics import DiagnosticsTree, DiagnosticsView, StatusFacts, worst_of
+from tui.devices.diagnostics import DiagnosticsView, worst_of
+from tui.devices.drivers import Device, DevicesTable
 from tui.devices.frame_rows import KEPT, WAYS, FrameRows, frame_columns
-from tui.devices.reading import Device, device_of, devices_of, frames_topic
-from tui.devices.table import DevicesTable
 from tui.frame.screen import DeckScreen
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
+from tui.widgets.rows import Rows
 from tui.widgets.tab_line import TabEntry, TabLine
 
 if TYPE_CHECKING:
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate, Sample
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
-    from tui.widgets.rows import Rows
 
 DRIVERS, TREE = "drivers", "tree"
 """The tabs."""
@@ -80,7 +79,6 @@ class DevicesScreen(DeckScreen):
         """Lessons with drivers; None until they are needed."""
 
     def compose_body(self) -> ComposeResult:
-        """The table, the report of the chosen driver, and its frames or why there are none."""
         yield Static(id="devices-empty", markup=False)
         yield TabLine()
         yield DevicesTable()
@@ -102,11 +100,10 @@ class DevicesScreen(DeckScreen):
         if not self.is_mounted or self.shows_tree:
             return None
         record = self._diagnostics.get(self.table.chosen)
-        return None if record is None else device_of(self._diagnostics, record)
+        return None if record is None else Device(record.status, self._diagnostics.heard_s(record))
 
     @property
     def has_diagnostics(self) -> bool:
-        """Whether anybody has said anything on /diagnostics."""
         return bool(self._diagnostics.records)
 
     @property
@@ -116,7 +113,6 @@ class DevicesScreen(DeckScreen):
 
     @property
     def only_bad(self) -> bool:
-        """Whether good frames are hidden."""
         return self.pane.view.log_filter.minimum is not Severity.DEBUG
 
     def follow_topics(self) -> set[str]:
@@ -147,7 +143,6 @@ class DevicesScreen(DeckScreen):
         self._look()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Update the words for when there is no driver yet."""
         del message
         self._look()
 
@@ -168,25 +163,24 @@ class DevicesScreen(DeckScreen):
         self._look()
 
     def on_resize(self) -> None:
-        """Fit the columns to the new width."""
         self.call_after_refresh(self._look)
 
-    @on(DevicesTable.Highlighted)
+    @on(Rows.Highlighted, "DevicesTable")
     def _chosen_changed(self) -> None:
         self._look()
         self.refresh_bindings()
 
-    @on(DevicesTable.Opened)
+    @on(Rows.Opened, "DevicesTable")
     def _go_to_frames(self) -> None:
         self.pane.view.focus()
 
-    @on(DiagnosticsTree.Highlighted)
+    @on(Rows.Highlighted, "#tree")
     def _status_chosen(self) -> None:
         self.query_one(DiagnosticsView).show_chosen()
 
-    @on(DiagnosticsTree.Opened)
+    @on(Rows.Opened, "#tree")
     def _go_to_facts(self) -> None:
-        self.query_one(StatusFacts).focus()
+        self.query_one(DiagnosticsView).facts.focus()
 
     @on(TabLine.Selected)
     def _tab_chosen(self, message: TabLine.Selected) -> None:
@@ -203,7 +197,6 @@ class DevicesScreen(DeckScreen):
     # Actions
 
     async def ros2_command(self) -> str:
-        """Return what prints the reports of the drivers."""
         return ros2_words.echo(DIAGNOSTICS) if self.has_diagnostics else ""
 
     def show_tree(self, shown: bool) -> None:
@@ -216,10 +209,9 @@ class DevicesScreen(DeckScreen):
 
     @property
     def _list(self) -> Rows:
-        return self.query_one(DiagnosticsTree) if self.shows_tree else self.table
+        return self.query_one(DiagnosticsView).names if self.shows_tree else self.table
 
     def next_way(self) -> None:
-        """Switch between both directions, in, and out."""
         ways = [None, *(_(word) for word in WAYS.values())]
         self._show_way(ways[(ways.index(self.pane.view.log_filter.only) + 1) % len(ways)])
 
@@ -227,13 +219,11 @@ class DevicesScreen(DeckScreen):
         self.pane.view.log_filter = replace(self.pane.view.log_filter, only=way)
 
     def toggle_bad(self) -> None:
-        """Show only noise and bad frames, or all."""
         minimum = Severity.DEBUG if self.only_bad else Severity.WARN
         self.pane.view.log_filter = replace(self.pane.view.log_filter, minimum=minimum)
         self.refresh_bindings()
 
     def toggle_hex(self) -> None:
-        """Show readable bytes in hex, or as text."""
         self.frames.as_hex = not self.frames.as_hex
         self._lay_frames()
         self.refresh_bindings()
@@ -245,16 +235,16 @@ class DevicesScreen(DeckScreen):
     @property
     def simulated(self) -> tuple[str, str] | None:
         """The simulated robot's node and the chosen one of its lines; None for a real device."""
-        return device_trouble.simulated(self.chosen, self.feed)
+        return drivers.simulated(self.chosen, self.feed)
 
     @work(group="trouble")
-    async def switch_trouble(self, trouble: device_trouble.SimulatedTrouble) -> None:
+    async def switch_trouble(self, which: drivers.SimulatedTrouble) -> None:
         """Cause this trouble on the chosen device or clear it, and say which."""
         found, graph = self.simulated, self.feed.graph
         if found is None or graph is None:
             return
-        made, error = await device_trouble.switch(graph, *found, trouble)
-        told = _(trouble.told if made else trouble.over).format(device=found[1])
+        made, error = await drivers.switch(graph, *found, which)
+        told = _(which.told if made else which.over).format(device=found[1])
         self.notify(error or told, severity="error" if error else "information", markup=False)
 
     # Display
@@ -280,14 +270,14 @@ class DevicesScreen(DeckScreen):
         # Without its parts it is just being opened or closed.
         if not self.query(DevicesTable) or self.feed.front is not self:
             return
-        devices, now_s = devices_of(self._diagnostics), clock.now()
+        devices, now_s = drivers.devices_of(self._diagnostics), clock.now()
         for widget in (self.table, self.query_one("#devices-chosen"), self.pane):
             widget.display = bool(devices) and not self.shows_tree
         self._show_tabs(len(devices), now_s)
         empty = self.query_one("#devices-empty", Static)
         empty.display = not devices
         if not devices:
-            empty.update("\n".join(words.nobody(self.feed, self._update, self._lessons or ())))
+            empty.update("\n".join(drivers.nobody(self.feed, self._update, self._lessons or ())))
             if self._lessons is None:
                 self._lessons = ()
                 self.run_worker(self._find_lessons())
@@ -304,11 +294,10 @@ class DevicesScreen(DeckScreen):
         self._diagnostics.look(now_s)
         tabs = self.query_one(TabLine)
         tabs.display = bool(devices)
-        words, drivers = _("Diagnostics"), _("Drivers")
         told = len(self._diagnostics.records)
         entries = (
-            TabEntry(DRIVERS, f"{drivers} {devices}"),
-            TabEntry(TREE, f"{words} {told}", worst_of(self._diagnostics)),
+            TabEntry(DRIVERS, _("Drivers") + f" {devices}"),
+            TabEntry(TREE, _("Diagnostics") + f" {told}", worst_of(self._diagnostics)),
         )
         tabs.show_tabs(TREE if self.shows_tree else DRIVERS, entries)
 
@@ -316,7 +305,7 @@ class DevicesScreen(DeckScreen):
         device = self.chosen
         if device is None:
             return
-        topic = frames_topic(device, () if self._update is None else self._update.topics)
+        topic = drivers.frames_topic(device, () if self._update is None else self._update.topics)
         if device.report.name != self._shown_name:
             self._shown_name = device.report.name
             self.clear_frames()
@@ -324,8 +313,8 @@ class DevicesScreen(DeckScreen):
             self._topic = topic
             self.topics_changed()
         whole = self.query_one("#devices-chosen", Static)
-        whole.update(words.whole(device, now_s, self.size.width - 2))
-        self._say_why_empty(words.no_frames(device, topic, now_s))
+        whole.update(drivers.report_words(device, now_s, self.size.width - 2))
+        self._say_why_empty(drivers.no_frames(device, topic, now_s))
 
     def _say_why_empty(self, why: str) -> None:
         view = self.pane.view
@@ -335,5 +324,5 @@ class DevicesScreen(DeckScreen):
                 view.refresh()
 
     async def _find_lessons(self) -> None:
-        self._lessons = await words.lessons_with_drivers()
+        self._lessons = await asyncio.to_thread(drivers.lessons_with_drivers)
         self._look()

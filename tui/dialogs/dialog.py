@@ -12,7 +12,7 @@ from textual.widgets import Static
 
 from text.i18n import N_
 from text.plain import plain
-from tui.actions import Acting, Announce, bindings
+from tui.actions import Acting, Action, Announce, bindings
 from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.widgets.working import Working
@@ -91,3 +91,16 @@ class Dialog(ModalScreen[Answer], Acting, Working):
         """Show the text for the current state, in the current language."""
         self.query_one("#dialog").border_title = Content(plain(self.title_words()))
         self.query_one("#dialog-text", Static).update(self.words())
+
+
+def answers(*rows: tuple[str, str, str, str, object]) -> list[BindingType]:
+    """Return bindings of keys that close a dialog: of each the id, key, title, tooltip and answer."""
+    return bindings(*(_answer(*row) for row in rows))
+
+
+def _answer(id: str, key: str, title: str, tooltip: str, answer: object) -> Action[Dialog[Any]]:
+    @action(id, key, title, tooltip, footer=True, palette=False)
+    def close(dialog: Dialog[Any]) -> None:
+        dialog.dismiss(answer)
+
+    return close

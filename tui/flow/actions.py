@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from text.i18n import N_
 from tui.actions.action import Announce, actions_of
+from tui.flow.chains import Lane
 
 if TYPE_CHECKING:
     from tui.flow.screen import FlowScreen
@@ -95,20 +96,7 @@ def show_all_lanes(screen: FlowScreen) -> None:
     anywhere=True,
 )
 def other_logs(screen: FlowScreen) -> None:
-    screen.toggle_logs()
-
-
-@action(
-    "flow.scale",
-    "A",
-    N_("Scale"),
-    N_("Stretch the first milliseconds on the time axis, or make it linear."),
-    means="time axis",
-    footer=True,
-    anywhere=True,
-)
-def change_time_scale(screen: FlowScreen) -> None:
-    screen.toggle_scale()
+    screen.toggle_lane(Lane.LOG)
 
 
 @action(

@@ -1,4 +1,4 @@
-"""What happened after an utterance: steps across nodes, grouped into chains. Plain data.
+"""What happened after an utterance: steps across nodes, sorted into chains. Plain data.
 
 A step is a message or a log line. The time of a message is the middleware's source timestamp: when
 its publisher sent it, by the publisher's clock. Where that is unknown, or comes from the clock of
@@ -13,12 +13,16 @@ head's service, the log and /head_state are shown.
 
 from __future__ import annotations
 
+import math
 from bisect import insort
+from collections import deque
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from tui.outcome.model_usage import UsageFigures
 
 MOST_STEPS = 80
@@ -89,10 +93,9 @@ class FlowStep:
     usage: UsageFigures | None = field(compare=False, default=None)
     """What a model's answer took, if the step tells of one."""
 
-    def repeats(self, other: FlowStep) -> bool:
-        return self._content() == other._content()
-
-    def _content(self) -> tuple[object, ...]:
+    @property
+    def content(self) -> tuple[object, ...]:
+        """What two steps that repeat each other have in common."""
         # Compared as text, because nan is not equal to nan.
         return self.source, self.kind, self.text, repr(self.figures), self.usage
 
@@ -126,13 +129,9 @@ class Chain:
     def takes(self, step: FlowStep) -> bool:
         """Whether a step belongs to this chain rather than to a new one."""
         age_s = step.time_s - self.start_s
-        if step.begins:
-            return self._takes_beginning(step, age_s)
-        if age_s < -EARLY_S:
-            return False
-        return age_s <= FOLLOWS_S or (step.time_s - self._active_s <= PAUSE_S and age_s <= LONGEST_S)
-
-    def _takes_beginning(self, step: FlowStep, age_s: float) -> bool:
+        if not step.begins:
+            lasts = step.time_s - self._active_s <= PAUSE_S and age_s <= LONGEST_S
+            return age_s >= -EARLY_S and (age_s <= FOLLOWS_S or lasts)
         heard_s = self._heard_s.get(step.source)
         if step.lane is Lane.AGENT:
             return False
@@ -150,9 +149,8 @@ class Chain:
         if step.lane is not Lane.LOG:
             self._active_s = max(self._active_s, step.time_s)
         at = next((at for at in reversed(range(len(self.steps))) if self.steps[at].source == step.source), None)
-        if at is not None and step.repeats(self.steps[at]):
-            said = self.steps[at]
-            self.steps[at] = replace(said, times=said.times + 1)
+        if at is not None and step.content == self.steps[at].content:
+            self.steps[at] = replace(self.steps[at], times=self.steps[at].times + 1)
         elif len(self.steps) >= MOST_STEPS:
             self.more += 1
         else:
@@ -160,3 +158,55 @@ class Chain:
 
 
 _ORDER = {Lane.MIC: 0, Lane.AGENT: 0, Lane.BRAIN: 1, Lane.COMMAND: 2}
+
+MOST_CHAINS = 50
+MOST_LOOSE = 400
+"""Steps without a chain yet: a log line may arrive before the message that caused it."""
+
+
+class FlowBook:
+    """Chains of steps that follow one cause, made from messages and log lines in whatever order they come."""
+
+    def __init__(self) -> None:
+        self.chains: list[Chain] = []
+        """In the order in which they began."""
+        self._loose: deque[FlowStep] = deque(maxlen=MOST_LOOSE)
+
+    def clear(self) -> None:
+        self.chains.clear()
+        self._loose.clear()
+
+    def add(self, steps: Iterable[FlowStep]) -> bool:
+        """Add steps; return whether any chain has changed."""
+        placed = [self._place(step) for step in sorted(steps)]
+        return any(placed)
+
+    def _place(self, step: FlowStep) -> bool:
+        chain = self._at(step.time_s)
+        if chain is not None and chain.takes(step):
+            chain.add(step)
+            return True
+        if step.begins:
+            self._begin(step)
+            return True
+        self._loose.append(step)
+        return False
+
+    def _at(self, time_s: float) -> Chain | None:
+        begun = (one for one in reversed(self.chains) if one.start_s <= time_s + EARLY_S)
+        return next(begun, None)
+
+    def _begin(self, first: FlowStep) -> None:
+        # Chains are identified by their start times.
+        while any(chain.start_s == first.time_s for chain in self.chains):
+            first = replace(first, time_s=math.nextafter(first.time_s, math.inf))
+        chain = Chain(first)
+        insort(self.chains, chain, key=lambda one: one.start_s)
+        del self.chains[:-MOST_CHAINS]
+        waiting = sorted(self._loose)
+        self._loose.clear()
+        for step in waiting:
+            if self._at(step.time_s) is chain and chain.takes(step):
+                chain.add(step)
+            else:
+                self._loose.append(step)

@@ -1,4 +1,4 @@
-"""One timeline across nodes: what followed from an utterance, and after how long."""
+"""One log across nodes: what followed from an utterance, and after how long."""
 
 from __future__ import annotations
 
@@ -17,12 +17,10 @@ from tui import clock
 from tui.actions import WRITE_COMMAND, bindings
 from tui.flow import words
 from tui.flow.actions import FLOW_ACTIONS
-from tui.flow.book import FlowBook
-from tui.flow.chains import Lane
-from tui.flow.lines import FlowLine, lines
+from tui.flow.chains import FlowBook, Lane
 from tui.flow.reading import TOPICS, FlowReader, log_steps
-from tui.flow.view import FlowView
 from tui.frame.screen import DeckScreen
+from tui.widgets.rows import Rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,13 +36,12 @@ class FlowScreen(DeckScreen):
     """The lanes, the chains, and the full text of the chosen step."""
 
     tab: ClassVar[str] = "flow"
-    parts: ClassVar[tuple[str, ...]] = ("FlowView",)
+    parts: ClassVar[tuple[str, ...]] = ("#flow-view",)
     about: ClassVar[str] = N_(
         "What followed when somebody spoke into the microphone, or sent a command: every message "
-        "and log line with its delay from the first. The dot is the moment, the line before it the "
-        "time since the step before. The newest utterance is at the top; Enter folds one. What is "
-        "repeated all the time is shown when it changes. What came since the session was opened "
-        "is here, whatever screen was in front."
+        "and log line with its delay from the first and from the step before. The newest utterance "
+        "is at the top; Enter folds one. What is repeated all the time is shown when it changes. "
+        "What came since the session was opened is here, whatever screen was in front."
     )
     period_s = 0.1
     BINDINGS: ClassVar = bindings(*FLOW_ACTIONS)
@@ -67,23 +64,23 @@ class FlowScreen(DeckScreen):
         self._has_agents = False
         """Whether an agent has called anything: only then is there a lane for it."""
         self._folded: set[float] = set()
-        self._logarithmic = True
         self._held: tuple[Chain, ...] = ()
         """The chains shown while paused."""
+        self._steps: dict[str, tuple[Chain, FlowStep | None]] = {}
+        """Maps the key of a row to its chain and step; of a headline to the first step."""
         self._update: GraphUpdate | None = None
         self._since_s: float | None = None
         """Unix time (of the recording in a replay) before which nothing was collected."""
 
     def compose_body(self) -> ComposeResult:
-        """Lanes above, the timeline, the chosen step below."""
         yield Static(id="flow-lanes", markup=False)
         yield Static(id="flow-empty", markup=False)
-        yield FlowView(self._lay, id="flow-view")
+        yield Rows(id="flow-view")
         yield Static(id="flow-step", markup=False)
 
     @property
-    def view(self) -> FlowView:
-        return self.query_one(FlowView)
+    def view(self) -> Rows:
+        return self.query_one("#flow-view", Rows)
 
     @property
     def chains(self) -> Sequence[Chain]:
@@ -92,34 +89,29 @@ class FlowScreen(DeckScreen):
 
     @property
     def chosen_chain(self) -> Chain | None:
-        key = self.view.chosen if self.is_mounted else None
-        found = (one for one in self.chains if key is not None and one.start_s == key[0])
-        return next(found, None)
+        found = self._steps.get(self.view.chosen) if self.is_mounted else None
+        return None if found is None else found[0]
 
     @property
     def chosen_step(self) -> FlowStep | None:
         """The step at the cursor; the first one of the chain if that is a headline."""
-        chain = self.chosen_chain
-        if chain is None or self.view.chosen is None:
-            return None
-        shown = self._shown(chain)
-        number = max(0, self.view.chosen[1])
-        return shown[number] if number < len(shown) else None
+        found = self._steps.get(self.view.chosen) if self.is_mounted else None
+        return None if found is None else found[1]
 
     def follow_topics(self) -> set[str]:
-        """All topics that may take part, once this screen has been opened."""
         return set(TOPICS)
 
     def past_topics(self) -> set[str]:
-        """The same since the session began."""
         return set(TOPICS)
 
     def on_mount(self) -> None:
-        """Start at the newest chain."""
         self._show()
 
+    def on_resize(self) -> None:
+        self.call_after_refresh(self._show)
+
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Start a new session with an empty timeline; keep the one of a session that has ended."""
+        """Start a new session with nothing; keep what is shown of a session that has ended."""
         del message
         if self.feed.session is not None:
             self._book.clear()
@@ -135,66 +127,56 @@ class FlowScreen(DeckScreen):
         self._take(steps)
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        self._update = message.update
-        self._note_since(message.update)
-        said_by = {
-            row.name: ", ".join(dict.fromkeys(localized(end.called) for end in row.published_by))
-            for row in message.update.topics
-            if row.name in TOPICS
-        }
-        if not self._take(self._reader.messages(message.update.samples, said_by)):
-            self._say_empty()
-
-    def _note_since(self, update: GraphUpdate) -> None:
+        update = self._update = message.update
         came = [one.received_s for topic in TOPICS for one in update.samples.get(topic, ())[:1]]
-        since_s = min(came, default=math.inf)
-        # Time went back: somebody jumped back in a recording.
-        if since_s < (math.inf if self._since_s is None else self._since_s):
+        # Time may go back: somebody jumped back in a recording.
+        if (since_s := min(came, default=math.inf)) < (math.inf if self._since_s is None else self._since_s):
             self._since_s = since_s
             self._say_lanes()
+        said_by = {
+            row.name: ", ".join(dict.fromkeys(localized(end.called) for end in row.published_by))
+            for row in update.topics
+            if row.name in TOPICS
+        }
+        if not self._take(self._reader.messages(update.samples, said_by)):
+            self._say_empty()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
         self._show()
 
-    @on(FlowView.StepHighlighted)
+    @on(Rows.Highlighted, "#flow-view")
     def _highlighted(self) -> None:
         self._say_step()
         self.refresh_bindings()
 
-    @on(FlowView.StepOpened)
+    @on(Rows.Opened, "#flow-view")
     def _fold(self) -> None:
         chain = self.chosen_chain
         if chain is not None:
             self._folded ^= {chain.start_s}
-            self.view.choose((chain.start_s, -1))
+            self.view.choose(words.key_of(chain))
             self._show()
 
     # Actions
 
     async def ros2_command(self) -> str:
-        """Return what prints the topic of the chosen step, or the log of its node."""
         step = self.chosen_step
-        if step is None:
-            return ""
-        if step.lane is Lane.AGENT:
+        if step is None or step.lane is Lane.AGENT:
             return ""
         if step.source.startswith("/") and step.lane is not Lane.LOG:
             return ros2_words.echo(step.source)
         return ros2_words.log_of(step.source)
 
     def neighbour(self, step: int) -> Chain | None:
-        """The chain this many places below the chosen one."""
         chains, chosen = list(self.chains), self.chosen_chain
-        if chosen is None:
-            return None
-        at = chains.index(chosen) + step
+        at = chains.index(chosen) + step if chosen in chains and chosen is not None else -1
         return chains[at] if 0 <= at < len(chains) else None
 
     def go(self, step: int) -> None:
         chain = self.neighbour(step)
         if chain is not None:
-            self.view.choose((chain.start_s, -1))
+            self.view.choose(words.key_of(chain))
 
     def toggle_pause(self) -> None:
         self._held = () if self.paused else tuple(reversed(self._book.chains))
@@ -207,21 +189,10 @@ class FlowScreen(DeckScreen):
         self._show()
 
     def action_lane(self, lane: str) -> None:
-        """Show or hide a lane that was clicked."""
         self.toggle_lane(Lane(lane))
 
-    def toggle_logs(self) -> None:
-        """Show or hide the logs of other nodes."""
-        self.toggle_lane(Lane.LOG)
-
     def show_all(self) -> None:
-        """Hide only the logs of other nodes."""
         self._hidden = {Lane.LOG}
-        self._show()
-
-    def toggle_scale(self) -> None:
-        """Switch between a logarithmic and a linear time axis."""
-        self._logarithmic = not self._logarithmic
         self._show()
 
     def copy_chain(self) -> None:
@@ -231,7 +202,7 @@ class FlowScreen(DeckScreen):
         shown = self._shown(chain)
         rows = [
             f"{words.delay(chain.delay_s(step)):>10}  {step.source:<20}  "
-            f"{words.said_by(step, chain):<24}  {words.content(step)}"
+            f"{words.said_by(step, chain):<24}  {words.content_words(step)}"
             for step in shown
         ]
         head = filter(None, (words.headline(chain, shown), words.model_took(chain)))
@@ -256,26 +227,25 @@ class FlowScreen(DeckScreen):
         # What an answer took stands in the headline, not among what happened.
         return [step for step in chain.steps if step.lane not in self._hidden and step.source != BRAIN_STATE]
 
-    def _lay(self, width: int) -> list[FlowLine]:
-        found: list[FlowLine] = []
-        for chain in self.chains:
-            at = clock.time_of_day(chain.start_s)
-            found += lines(
-                chain,
-                at,
-                self._shown(chain),
-                width,
-                logarithmic=self._logarithmic,
-                folded=chain.start_s in self._folded,
-            )
-        return found
-
     def _show(self) -> None:
+        """Show everything; at the top, follow what is new, otherwise stay at the chosen row."""
         if not self.is_mounted:
             return
+        follows = self.view.chosen in ("", next(iter(self._steps), ""))
+        width, rows = self.size.width, []
+        self._steps = {}
+        for chain in self.chains:
+            shown, folded = self._shown(chain), chain.start_s in self._folded
+            at = clock.time_of_day(chain.start_s)
+            rows += words.rows_of(chain, at, shown, width, folded=folded)
+            self._steps[words.key_of(chain)] = chain, shown[0] if shown else None
+            if not folded:
+                self._steps |= {words.key_of(chain, n): (chain, step) for n, step in enumerate(shown)}
+        self.view.show(words.columns(width), rows)
+        if follows and self._steps:
+            self.view.choose(next(iter(self._steps)))
         self._say_lanes()
         self._say_empty()
-        self.view.show()
         self._say_step()
         self.refresh_bindings()
 
@@ -324,4 +294,4 @@ class FlowScreen(DeckScreen):
         by = words.said_by(step, chain)
         head = f"{words.delay(chain.delay_s(step))} · {step.source}"
         head += f" · {by}" if by and by != step.source else ""
-        self.query_one("#flow-step", Static).update(f"{head}\n{words.content(step)}")
+        self.query_one("#flow-step", Static).update(f"{head}\n{words.content_words(step)}")

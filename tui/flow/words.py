@@ -1,4 +1,4 @@
-"""The steps of a chain in words, and the mark and name of each lane."""
+"""The chains of steps as rows of a table: when, after the step before, who, and what was said."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from text.i18n import N_, _, ngettext
 from tui.flow.chains import Lane, StepKind
 from tui.outcome import words as outcome_words
 from tui.outcome.model_usage import usage_words
+from tui.widgets.rows import Cell, Column, Row
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -28,11 +29,15 @@ LANES: dict[Lane, str] = {
     Lane.SPEAKER: N_("speaker"),
     Lane.LOG: N_("other logs"),
 }
+MEANINGS = {Lane.BRAIN: "warn", Lane.DRIVE: "good", Lane.WHEELS: "good", Lane.LOG: "dim"}
+"""The colours of the lanes, as meanings of `tui.widgets.rows.Cell`."""
 SOUND = "♪"
 SECOND_MS = 1000
+NARROW, WIDE = 100, 150
+"""Widths from which on more columns are shown."""
 
 
-def content(step: FlowStep) -> str:
+def content_words(step: FlowStep) -> str:
     """Return the content of a step as text."""
     words = _once(step)
     return words if step.times == 1 else f"{words} ×{step.times}"
@@ -98,3 +103,38 @@ def nothing_yet(topics: Collection[str], command_key: str, *, recorded: bool) ->
         none = _("None of {topics} is here: lesson 9 has a voice, lesson 4 takes words.")
         said.append(none.format(topics=f"{MICROPHONE}, {AI_COMMAND}, {LLM_RAW_JSON}"))
     return said
+
+
+def columns(width: int) -> list[Column]:
+    source, by = (16, 0) if width < NARROW else (18, 18) if width < WIDE else (24, 26)
+    delays = [Column(_("delay"), 10, right=True), Column(_("step"), 10, right=True)]
+    return [*delays, Column(_("source"), source), *([Column(_("node"), by)] if by else []), Column(_("content"))]
+
+
+def key_of(chain: Chain, number: int = -1) -> str:
+    """Return the key of the row of a step, by its number among those shown, or of the headline."""
+    return f"{chain.start_s}|{number}"
+
+
+def rows_of(chain: Chain, at: str, shown: Sequence[FlowStep], width: int, *, folded: bool) -> list[Row]:
+    """Return the rows of a chain; `at` is the time of day of its start, `shown` the steps to show."""
+    head = Row(key_of(chain), (Cell(f"{'▸' if folded else '▾'} {at}  {headline(chain, shown)}"),))
+    if folded:
+        return [head]
+    found, before_s = [head], 0.0
+    if took := model_took(chain):
+        found.append(Row("", (Cell(f"  {took}", MEANINGS[Lane.BRAIN]),)))
+    for number, step in enumerate(shown):
+        after_s, by = chain.delay_s(step), said_by(step, chain)
+        cells = [
+            Cell(delay(after_s)),
+            Cell("+" + delay(after_s - before_s) if number else "", "dim"),
+            Cell(step.source, MEANINGS.get(step.lane, "")),
+            *([Cell("" if by == step.source else by, "dim")] if width >= NARROW else []),
+            Cell(content_words(step)),
+        ]
+        found.append(Row(key_of(chain, number), tuple(cells)))
+        before_s = after_s
+    if chain.more:
+        found.append(Row("", (Cell(f"… +{chain.more}", "dim"),)))
+    return [*found, Row("", (Cell(""),))]

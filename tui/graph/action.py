@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.content import Content
@@ -14,8 +15,7 @@ from text.figures import figure
 from text.i18n import N_, _, localized
 from text.plain import plain
 from text.sentences import reason_of
-from tui.actions import Announce, bindings
-from tui.dialogs.dialog import Dialog
+from tui.dialogs.dialog import Dialog, answers
 from tui.graph.ask import AskPane
 from tui.graph.pane import LONGEST
 from tui.widgets.rows import Cell, Column, Row
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from textual.binding import BindingType
 
     from tui.graph.ask import Answer
-
-action: Announce[CancelGoalScreen] = Announce()
 
 STATES = {
     GoalStatus.SENDING: ("◌", N_("sending"), "dim"),
@@ -78,7 +76,6 @@ class ActionPane(AskPane):
         return (Column("", 8), Column("", 13), Column("", 8), Column("")), [_row(goal) for goal in self.goals]
 
     def answer(self) -> Answer:
-        """Return the result of the chosen goal, or its newest feedback."""
         goal = self.chosen
         if goal is None:
             way_out = _("{key} sends what is filled in.").format(key=self.submit_key)
@@ -100,7 +97,6 @@ class ActionPane(AskPane):
         return ros2_words.send_goal(self.name_shown, type_name, value)
 
     def ros2_info(self) -> str:
-        """Return what tells who serves it."""
         return ros2_words.action_info(self.name_shown)
 
     def ask(self, type_name: str, value: Mapping[str, Any]) -> None:
@@ -118,7 +114,6 @@ class ActionPane(AskPane):
         self.redraw()
 
     def redraw(self) -> None:
-        """Show the goals, and choose the one that was just sent."""
         super().redraw()
         if self._sent_newest in [goal.number for goal in self.goals if isinstance(goal, Goal)]:
             self.asked_rows.choose(str(self._sent_newest))
@@ -138,13 +133,15 @@ class ActionPane(AskPane):
         """Cancel a goal; one of another client only after confirmation."""
         graph, goal = self.deck.feed.graph, self._to_cancel
         if isinstance(goal, SeenGoal):
-            self.app.push_screen(CancelGoalScreen(goal), self._cancel_of_others)
+            self.app.push_screen(CancelGoalScreen(goal), partial(self._cancel_of_others, goal))
         elif graph is not None and goal is not None:
             graph.ask(CancelGoal(goal.number))
 
-    def _cancel_of_others(self, goal: SeenGoal | None) -> None:
+    def _cancel_of_others(self, goal: SeenGoal, wanted: bool | None) -> None:
         graph = self.deck.feed.graph
         if graph is not None and goal is not None:
+            graph.ask(CancelSeenGoal(goal.action, goal.goal_id))
+        if graph is not None and wanted:
             graph.ask(CancelSeenGoal(goal.action, goal.goal_id))
 
     @property
@@ -182,42 +179,28 @@ def _row(goal: Goal | SeenGoal) -> Row:
     return Row(_key(goal), (Cell(_name(goal)), state, Cell(age, "dim"), Cell(f"{whose} · {told}", "dim")))
 
 
-@action(
-    "cancel_goal.cancel",
-    "enter",
-    N_("Cancel the goal"),
-    N_("Ask its server to cancel it; the server informs whoever sent it."),
-    footer=True,
-    palette=False,
-)
-def cancel_goal(dialog: CancelGoalScreen) -> None:
-    dialog.dismiss(dialog.goal)
+class CancelGoalScreen(Dialog[bool]):
+    """Asks whether a goal of another client is to be cancelled."""
 
-
-@action(
-    "cancel_goal.leave", "escape", N_("Leave it"), N_("Back to the goals as they are."), footer=True, palette=False
-)
-def leave_goal(dialog: CancelGoalScreen) -> None:
-    dialog.dismiss(None)
-
-
-class CancelGoalScreen(Dialog["SeenGoal | None"]):
-    """Returns the goal if it is to be cancelled."""
-
-    BINDINGS: ClassVar[list[BindingType]] = bindings(cancel_goal, leave_goal)
+    BINDINGS: ClassVar[list[BindingType]] = answers(
+        (
+            *("cancel_goal.cancel", "enter"),
+            *(N_("Cancel the goal"), N_("Ask its server to cancel it; the server informs whoever sent it."), True),
+        ),
+        ("cancel_goal.leave", "escape", N_("Leave it"), N_("Back to the goals as they are."), False),
+    )
 
     def __init__(self, goal: SeenGoal) -> None:
         super().__init__()
-        self.goal = goal
-        self._state = _words(goal)
+        self._goal, self._state = goal, _words(goal)
 
     def title_words(self) -> str:
         return _("Cancel a goal of another client?")
 
     def words(self) -> Content:
         lines = [
-            Content.styled(plain(self.goal.action, LONGEST), "bold"),
-            Content(f"{self.goal.goal_id}  {self._state}"),
+            Content.styled(plain(self._goal.action, LONGEST), "bold"),
+            Content(f"{self._goal.goal_id}  {self._state}"),
             Content(""),
             Content(_("Another program sent it and is waiting for its result.")),
         ]

@@ -57,7 +57,6 @@ class AskPane(GraphPane):
         self._form_for = ""
 
     def compose(self) -> ComposeResult:
-        """Head, nodes, form; answer, and the earlier requests."""
         yield NameHead()
         with Container(classes="ask-body"):
             with Vertical(classes="ask-left"):
@@ -132,7 +131,6 @@ class AskPane(GraphPane):
         return ends[0][0] if ends is not None and ends[0] else ""
 
     def ros2_command(self) -> str:
-        """Return what sends the form, or tells of the name while there is nothing to be sent."""
         type_name, value = self._type, self.form.value
         if type_name and value is not None and self._form_for == self.name_shown:
             return self.ros2_line(type_name, value)
@@ -169,7 +167,6 @@ class AskPane(GraphPane):
             self.screen.refresh_bindings()
 
     def relabel(self) -> None:
-        """Redraw in the current language."""
         self.form.relabel()
         self.redraw()
 

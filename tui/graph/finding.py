@@ -53,7 +53,6 @@ class FindingPane(GraphPane):
         yield GraphLinks()
 
     def ros2_command(self) -> str:
-        """Return what tells of the place."""
         finding = self._index.finding(self.name_shown)
         if finding is None:
             return ""
@@ -66,7 +65,6 @@ class FindingPane(GraphPane):
         return commands.get(kind, ros2_words.node_info)(name)
 
     def redraw(self) -> None:
-        """Show the finding in the current language."""
         finding = self._index.finding(self.name_shown) if self.is_mounted else None
         if finding is None:
             return

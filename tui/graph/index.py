@@ -15,12 +15,11 @@ from tui.graph.places import LISTED, GraphKind
 from tui.session.bypass import NORMS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
     from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
     from launcher.status import NodeStatus
     from tui.graph.places import GraphPlace
-    from tui.session.feed import Feed
 
     Typed = TopicRow | ServiceRow | ActionRow
 
@@ -164,35 +163,3 @@ def chosen_of(listed: Iterable[GraphEntry], words: str, *, everything: bool) -> 
         if (everything or not entry.housekeeping)
         and all(part in f"{entry.name} {entry.detail}".casefold() for part in parts)
     ]
-
-
-def why_empty(feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str) -> tuple[str, str]:
-    """Return headline and advice for a list that shows none of `listed`."""
-    update = feed.update
-    if feed.link is None:
-        return _("no lesson is running"), ""
-    if update is None:
-        return _("reading the graph"), _("Nodes are starting.")
-    if update.error:
-        return feed.blind, localized(update.error)
-    if any(not entry.housekeeping for entry in listed):
-        return _("nothing matches the filter"), _("Escape in the filter shows all again.")
-    if listed:
-        return _("only what ROS itself needs is here"), _("{key} shows it.").format(key=all_key)
-    return {
-        GraphKind.NODE: (
-            _("no node in this domain"),
-            _("Nodes of another domain number, or of another computer while discovery is localhost, are not seen."),
-        ),
-        GraphKind.SERVICE: (_("nobody serves a service"), _("Start a node that does: head_controller is one.")),
-        GraphKind.ACTION: (_("nobody serves an action"), _("Start a node that does: drive_to_point is one.")),
-        GraphKind.TYPE: (_("no type is in use"), _("Types are those of topics, services and actions.")),
-        GraphKind.FINDING: (
-            _("no findings"),
-            _(
-                "Checked: publishers that fight, types that do not agree, QoS, topics and services without "
-                "a source, names that nearly match, nodes with one name, clocks. While this list is open, "
-                "every topic is measured: lost messages, foreign stamps and silence show up, too."
-            ),
-        ),
-    }[kind]

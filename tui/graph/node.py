@@ -100,7 +100,6 @@ class NodePane(GraphPane):
             change_lifecycle(self.app, row)
 
     def change_level(self) -> None:
-        """Ask the node for its log level, and change it."""
         self.run_worker(change_log_level(self.app, self.name_shown), exit_on_error=False)
 
     def save_parameters(self) -> None:
@@ -110,7 +109,6 @@ class NodePane(GraphPane):
         parameter_changes.load(self.app, self.parameters)
 
     def ros2_command(self) -> str:
-        """Return what tells of the node, or reads its parameters or the chosen one."""
         if not self.name_shown:
             return ""
         if not self.shows_parameters:
@@ -125,7 +123,6 @@ class NodePane(GraphPane):
         parameter_changes.edit(self.app, self.parameters)
 
     def redraw(self) -> None:
-        """Show the current state of the node."""
         if not self.name_shown or not self.is_mounted:
             return
         update = self.graph_now
@@ -159,7 +156,6 @@ class NodePane(GraphPane):
             words.show(_("it talks to nobody"), _("It neither publishes nor subscribes, serves nor calls anything."))
 
     def relabel(self) -> None:
-        """Redraw in the current language."""
         self.parameters.redraw()
         self.redraw()
 

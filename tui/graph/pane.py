@@ -1,4 +1,4 @@
-"""What all details of the graph have: a head with name and facts, links, and words if it is empty."""
+"""The list of names, and what all details of the graph have: links, and words if there is nothing."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Static
 
+from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import Host, host_of
+from tui.graph.index import GraphEntry
 from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from textual.widget import Widget
 
     from graph.data import GraphUpdate
+    from tui.session.feed import Feed
 
 LONGEST = 300
 """Characters of a text that are shown."""
@@ -62,7 +65,6 @@ class GraphLinks(Rows):
         self.on_resize()
 
     def on_resize(self) -> None:
-        """Divide the width among the columns again."""
         if width := self.size.width:
             names = [len(row.cells[0].text) for row in self._shown if len(row.cells) > 1]
             most = max(4, int(width * ROOM_FOR_NAMES))
@@ -70,7 +72,6 @@ class GraphLinks(Rows):
 
 
 def heading(words: str) -> Row:
-    """Return a row that is only a heading."""
     return Row("", (Cell(words, "dim"),))
 
 
@@ -83,6 +84,86 @@ def link(place: GraphPlace, section: str, told: str = "") -> Row:
 def node_links(names: Iterable[str], section: str, told: str = "") -> list[Row]:
     """Return rows that link to these nodes."""
     return [link(GraphPlace(GraphKind.NODE, name), section, told) for name in names]
+
+
+class GraphList(Rows):
+    """Shows names; one that does not fit loses its beginning."""
+
+    def __init__(self) -> None:
+        super().__init__(header=False)
+        self._listed: tuple[tuple[GraphEntry, bool], ...] = ()
+        """Each entry, and whether it still exists."""
+        self._kind = GraphKind.NODE
+
+    @property
+    def chosen_name(self) -> str:
+        return self.chosen.partition("|")[2]
+
+    def show_entries(self, kind: GraphKind, shown: Sequence[GraphEntry], chosen: str, words: str) -> None:
+        """Show these entries; `chosen` was chosen last, and `words` are the filter."""
+        listed = [(entry, True) for entry in shown]
+        missing = chosen and not words and chosen not in {entry.name for entry in shown}
+        # A finding that has gone was fixed.
+        if missing and kind is not GraphKind.FINDING:
+            # A type does not disappear when nobody uses it.
+            listed.append((GraphEntry(chosen), kind is GraphKind.TYPE))
+        self._kind, self._listed = kind, tuple(listed)
+        self.on_resize()
+        if chosen:
+            self.choose(f"{kind.value}|{chosen}")
+
+    def on_resize(self) -> None:
+        self.show([Column("")], [self._row(entry, there=there) for entry, there in self._listed])
+
+    def _row(self, entry: GraphEntry, *, there: bool) -> Row:
+        room = max(4, self.size.width - 4) if self.size.width else LONGEST
+        words = plain(entry.label or entry.name, LONGEST)
+        if not there:
+            words = f"✗ {words} (" + _("gone") + ")"
+        if entry.remark and len(words) + len(entry.remark) + 2 <= room:
+            words = f"{words}  {entry.remark}"
+        cell = Cell(ended(words, room), entry.meaning if there else "dim")
+        return Row(f"{self._kind.value}|{entry.name}", (cell,))
+
+
+def ended(words: str, room: int) -> str:
+    """Return the words, without their middle if they do not fit: both ends are informative."""
+    if len(words) <= room:
+        return words
+    tail = (room - 1) * 2 // 3
+    return words[: room - 1 - tail] + "…" + (words[-tail:] if tail else "")
+
+
+def why_empty(feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str) -> tuple[str, str]:
+    """Return headline and advice for a list that shows none of `listed`."""
+    update = feed.update
+    if feed.link is None:
+        return _("no lesson is running"), ""
+    if update is None:
+        return _("reading the graph"), _("Nodes are starting.")
+    if update.error:
+        return feed.blind, localized(update.error)
+    if any(not entry.housekeeping for entry in listed):
+        return _("nothing matches the filter"), _("Escape in the filter shows all again.")
+    if listed:
+        return _("only what ROS itself needs is here"), _("{key} shows it.").format(key=all_key)
+    return {
+        GraphKind.NODE: (
+            _("no node in this domain"),
+            _("Nodes of another domain number, or of another computer while discovery is localhost, are not seen."),
+        ),
+        GraphKind.SERVICE: (_("nobody serves a service"), _("Start a node that does: head_controller is one.")),
+        GraphKind.ACTION: (_("nobody serves an action"), _("Start a node that does: drive_to_point is one.")),
+        GraphKind.TYPE: (_("no type is in use"), _("Types are those of topics, services and actions.")),
+        GraphKind.FINDING: (
+            _("no findings"),
+            _(
+                "Checked: publishers that fight, types that do not agree, QoS, topics and services without "
+                "a source, names that nearly match, nodes with one name, clocks. While this list is open, "
+                "every topic is measured: lost messages, foreign stamps and silence show up, too."
+            ),
+        ),
+    }[kind]
 
 
 class GraphPane(Vertical, Working):
@@ -133,7 +214,6 @@ class GraphPane(Vertical, Working):
         """Show the current state in the current language."""
 
     def relabel(self) -> None:
-        """Redraw in the current language."""
         self.redraw()
 
     def first(self) -> Widget:

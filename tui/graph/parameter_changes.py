@@ -66,7 +66,6 @@ class FieldDialog(Dialog[None]):
         self._busy = False
 
     def compose(self) -> ComposeResult:
-        """Words, field, remark, keys."""
         with Vertical(id="dialog"):
             yield Static(id="dialog-text", markup=False)
             yield Field(self._text, compact=True, select_on_focus=self.typing_replaces, disabled=not self.may_change)
@@ -82,7 +81,6 @@ class FieldDialog(Dialog[None]):
         self.query_one("#field-keys", Static).update(self.keys())
 
     def keys(self) -> str:
-        """Return what Enter and Escape do."""
         return _("Enter continues, Escape cancels")
 
     def action_leave(self) -> None:
@@ -152,7 +150,6 @@ class ParameterDialog(FieldDialog):
         return f"{plain(self._node, LONGEST)} · {plain(self._row.name, LONGEST)}"
 
     def words(self) -> Content:
-        """Say what it is, and which values are allowed."""
         row, title = self._row, self.title_words()
         lines = [Content.styled(title, "bold")] if cell_len(title) > LONGEST_TITLE else []
         lines += [Content(plain(_(row.description), LONGEST))] if row.description else []
@@ -170,7 +167,6 @@ class ParameterDialog(FieldDialog):
         return _("Refused: {reason}").format(reason=refusal) if refusal else ""
 
     async def ros2_command(self) -> str:
-        """Return what sets the parameter to what is typed."""
         value = self._value(self.query_one(Input).value)
         is_yaml = isinstance(value, str) and self._row.type_name not in TEXTS
         text = str(value) if is_yaml else ros2_words.flow(value)
@@ -184,7 +180,6 @@ class ParameterDialog(FieldDialog):
 
 
 def edit(app: App[Any], table: GraphParameters) -> None:
-    """Ask for a new value of the chosen parameter."""
     row = table.chosen
     if row is not None:
         app.push_screen(ParameterDialog(table.node, row, lambda value: _set(app, table, {row.name: value})))

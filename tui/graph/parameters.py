@@ -120,7 +120,6 @@ class GraphParameters(Vertical, Working):
         yield Rows(id="graph-parameters")
 
     def on_mount(self) -> None:
-        """Keep the waiting time up to date."""
         self.set_interval(TICK_S, self._label)
 
     @property
@@ -185,11 +184,9 @@ class GraphParameters(Vertical, Working):
             self.redraw()
 
     def on_resize(self) -> None:
-        """Show the columns that fit."""
         self.redraw()
 
     def redraw(self) -> None:
-        """Show the parameters in the current language."""
         if not self.is_mounted:
             return
         self._label()

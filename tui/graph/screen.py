@@ -16,14 +16,13 @@ from tui.graph.action import ActionPane
 from tui.graph.actions import GRAPH_ACTIONS, show_everything
 from tui.graph.ask import AskPane
 from tui.graph.finding import FindingPane, goal_of
-from tui.graph.index import LOOKS, GraphIndex, failures_of, why_empty
-from tui.graph.list import GraphList
+from tui.graph.index import LOOKS, GraphIndex, failures_of
 from tui.graph.node import NodePane
-from tui.graph.pane import EmptyNotice, GraphPane
+from tui.graph.pane import EmptyNotice, GraphList, GraphPane, why_empty
 from tui.graph.parameters import PARAMETER_EVENTS
 from tui.graph.places import LISTED, TITLES, GraphKind, GraphPlace, PlaceHistory
 from tui.graph.service import ServicePane
-from tui.graph.type import GraphTypeTree, TypePane
+from tui.graph.type import TypePane
 from tui.widgets.field import Field
 from tui.widgets.rows import Rows
 from tui.widgets.tab_line import TabEntry, TabLine
@@ -47,7 +46,7 @@ class GraphScreen(DeckScreen):
 
     tab: ClassVar[str] = "graph"
     AUTO_FOCUS: ClassVar[str] = "GraphList"
-    parts: ClassVar[tuple[str, ...]] = ("GraphDetail",)
+    parts: ClassVar[tuple[str, ...]] = ("#graph-detail",)
     about: ClassVar[str] = N_(
         "Nodes with what they publish, hear, serve and call; services to be called, actions to "
         "be sent goals, types down to their fields; findings are what is wrong, with what to do "
@@ -99,7 +98,6 @@ class GraphScreen(DeckScreen):
         self._failures: dict[str, str] = {}
 
     def compose_body(self) -> ComposeResult:
-        """Kinds and filter above list and detail."""
         with Horizontal(id="graph-bar"):
             yield TabLine()
             yield Field(id="graph-filter", compact=True, select_on_focus=False)
@@ -116,7 +114,6 @@ class GraphScreen(DeckScreen):
 
     @property
     def is_typing(self) -> bool:
-        """Whether letters are typed into a text field."""
         return isinstance(self.focused, (Input, TextArea))
 
     @property
@@ -132,22 +129,18 @@ class GraphScreen(DeckScreen):
 
     @property
     def shows_pane(self) -> bool:
-        """Whether the detail is visible, rather than an empty list."""
         return self.pane is not None and self.pane.display
 
     @property
     def node_pane(self) -> NodePane | None:
-        """The current detail, if it is that of a node."""
         return pane if isinstance(pane := self.pane, NodePane) else None
 
     @property
     def ask_pane(self) -> AskPane | None:
-        """The current detail, if it has a form."""
         return pane if isinstance(pane := self.pane, AskPane) else None
 
     @property
     def is_settling(self) -> bool:
-        """Whether the content of the chosen place is still to be loaded."""
         return self.pane is not None and self.pane.is_settling
 
     @property
@@ -176,7 +169,6 @@ class GraphScreen(DeckScreen):
         self.redraw()
 
     def redraw(self) -> None:
-        """Show list and detail in their current state."""
         if not self.is_mounted:
             return
         kind, words = self.history.kind, self.filter.value
@@ -233,7 +225,6 @@ class GraphScreen(DeckScreen):
             self.node_pane.parameters.hear(message.update.samples.get(PARAMETER_EVENTS, ()))
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Show the new states of the processes, and which have failed."""
         del message
         if self._failures != failures_of(self.feed.nodes.values()):
             self.take(self.feed.update)
@@ -279,10 +270,6 @@ class GraphScreen(DeckScreen):
         place = GraphPlace.of_key(message.key)
         if place is not None:
             await self.go(place)
-
-    @on(GraphTypeTree.TypeWanted)
-    async def _type_wanted(self, message: GraphTypeTree.TypeWanted) -> None:
-        await self.go(GraphPlace(GraphKind.TYPE, message.type_name))
 
     @on(TabLine.Selected)
     def _selected(self, message: TabLine.Selected) -> None:
@@ -343,7 +330,6 @@ class GraphScreen(DeckScreen):
         self.list_kind(LISTED[at % len(LISTED)])
 
     async def ros2_command(self) -> str:
-        """Return what does the same as the detail: tells of a node, calls a service."""
         return "" if self.pane is None else self.pane.ros2_command()
 
     def focus_filter(self) -> None:

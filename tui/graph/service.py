@@ -74,7 +74,6 @@ class CallTimeout(Horizontal):
         return typed_s if math.isfinite(typed_s) and LEAST_S <= typed_s <= MOST_S else None
 
     def relabel(self) -> None:
-        """Redraw in the current language."""
         self.query_one(".timeout-label", Static).update(_("Time-out"))
         self.query_one(".timeout-unit", Static).update(_("s"))
         limits = {"least": decimal(f"{LEAST_S:g}"), "greatest": f"{MOST_S:g}"}
@@ -145,7 +144,6 @@ class ServicePane(AskPane):
         """Maps a service to the text in its time-out field."""
 
     def compose_more(self) -> ComposeResult:
-        """Below the form: how long to wait for an answer."""
         yield CallTimeout()
 
     def on_mount(self) -> None:
@@ -170,7 +168,6 @@ class ServicePane(AskPane):
         super().show_name(name)
 
     def relabel(self) -> None:
-        """Redraw in the current language."""
         super().relabel()
         self.timeout.relabel()
 
@@ -183,14 +180,12 @@ class ServicePane(AskPane):
         return None
 
     def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
-        """Return the calls of this session."""
         return (Column("", 8), Column("", 3), Column("")), [
             Row(str(call.number), (Cell(clock.time_of_day(call.asked_s), "dim"), call.sign, Cell(call.summary)))
             for call in self.calls
         ]
 
     def answer(self) -> Answer:
-        """Return the answer to the chosen call."""
         call = next((call for call in self.calls if str(call.number) == self.asked_rows.chosen), None)
         if call is None:
             way_out = _("{key} calls it with what is filled in.").format(key=self.submit_key)
@@ -221,7 +216,6 @@ class ServicePane(AskPane):
         return ros2_words.call(self.name_shown, type_name, value)
 
     def ros2_info(self) -> str:
-        """Return what tells its type."""
         return ros2_words.service_type(self.name_shown)
 
     def ask(self, type_name: str, value: Mapping[str, Any]) -> None:

@@ -7,21 +7,24 @@ takes time. rclpy is imported by the observer's process alone.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
+import sys
 from importlib import import_module
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+import tui
 from launcher.errors import LauncherError
 from launcher.profile.defaults import FOLDERS_OWN
-from launcher.profile.panels import PANELS
+from launcher.profile.panels import PANELS, panels_for
 from text.i18n import language
-from tui.lifecycle.replay import replayed
-from tui.session.requests import Lesson, Score, Task
-from tui.session.watching import watched
+from text.nested import read_json
+from tui.session.requests import Lesson, Score, Task, WholeGrade
+from tui.session.watching import NodelessLink, watched
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from pathlib import Path
 
     from course.lessons.lesson import LessonFolder
     from course.progress.progress import Progress
@@ -32,12 +35,14 @@ if TYPE_CHECKING:
     from launcher.profile.load import Profile
     from launcher.status import SessionInfo
     from tui.session.ports import GraphLink, JudgeLink, SessionLink
-    from tui.session.requests import OpenRequest, ReplayRequest, WholeGrade
+    from tui.session.requests import OpenRequest, ReplayRequest
 
 OF_SCREEN = ("tui.deck.screen", "tui.widgets.half_blocks")
 """Modules that show a lesson, besides its panels."""
 OF_STOP = ("launcher.client.running", "launcher.client.stop_road")
 """Modules of the stop's road to supervisors: whoever presses it does not wait for them."""
+REPLAY = "replay"
+"""Shown in place of the hardware."""
 
 
 class LiveOpener:
@@ -135,8 +140,6 @@ class LiveOpener:
 
     async def grade(self, lesson: LessonFolder, folder: Path) -> WholeGrade:
         """Have a learner's folder graded, which takes a while."""
-        from tui.lifecycle.graded import graded
-
         return await graded(lesson, folder)
 
 
@@ -259,3 +262,57 @@ def _lesson(entry: ProfileEntry, task: Task | None) -> Lesson:
         task=task,
         error=entry.error,
     )
+
+
+def replayed(replay: Replay) -> NodelessLink:
+    """Return the session of a recording, which its observer plays."""
+    from launcher.status import SessionInfo
+
+    bag = replay.bag
+    session = SessionInfo(
+        run_id=REPLAY,
+        profile=str(bag.path),
+        name=bag.name,
+        title={"en": bag.name},
+        hardware=REPLAY,
+        panels=panels_for({topic.name for topic in bag.topics}),
+        foreground=False,
+    )
+    return NodelessLink(session)
+
+
+_PASSED = "passed"
+_COULD_NOT = "could not be judged"
+
+
+async def graded(lesson: LessonFolder, folder: Path) -> WholeGrade:
+    """Grade a folder by `deck grade`; whatever goes wrong is said in the result. The session goes on meanwhile."""
+    grading = await asyncio.create_subprocess_exec(
+        *(sys.executable, "-m", "tui", "grade", str(lesson.path), str(folder), "--format", "json"),
+        cwd=Path(tui.__file__).parent.parent,
+        stdin=asyncio.subprocess.DEVNULL,
+        stdout=asyncio.subprocess.PIPE,
+        stderr=asyncio.subprocess.PIPE,
+        env={**os.environ, "DECK_LANG": language()},
+        # Ctrl-C in the terminal is meant for the screen.
+        start_new_session=True,
+    )
+    try:
+        out, errors = await grading.communicate()
+    finally:
+        if grading.returncode is None:
+            with contextlib.suppress(ProcessLookupError):
+                grading.terminate()
+            await grading.wait()
+    try:
+        return _grade(read_json(out)["grades"][0])
+    except (ValueError, KeyError, IndexError, TypeError):
+        last = errors.decode(errors="replace").strip().splitlines()[-1:]
+        return WholeGrade(0, lesson.points, {}, "".join(last))
+
+
+def _grade(grade: dict[str, Any]) -> WholeGrade:
+    steps = [step for step in grade["steps"] if step["state"] != _PASSED]
+    failed = {step["id"]: step["message"] for step in steps if step["state"] != _COULD_NOT}
+    reason = next((step["message"] for step in steps if step["state"] == _COULD_NOT), "")
+    return WholeGrade(grade["points"], grade["max_points"], failed, reason)

@@ -186,14 +186,14 @@ class Sessions:
             self.parting_words = reason
             self._app.exit(return_code=error.exit_code)
             return
-        from tui.lifecycle.refused import RefusedScreen
+        from tui.lifecycle.dialogs import RefusedScreen
 
         await self._back_to_picker()
         self._app.push_screen(RefusedScreen(reason))
 
     async def _ask_for_domain(self, request: OpenRequest, error: DomainTakenError) -> None:
         """Offer a domain without another session."""
-        from tui.lifecycle.domain_taken import DomainAnswer, DomainTakenScreen
+        from tui.lifecycle.dialogs import DomainAnswer, DomainTakenScreen
 
         answer = await self._app.push_screen_wait(DomainTakenScreen(_name_of(request), error))
         if answer is DomainAnswer.APART:
@@ -206,7 +206,7 @@ class Sessions:
             await self._refuse(error)
 
     async def _ask_about(self, strays: tuple[Stray, ...]) -> None:
-        from tui.lifecycle.strays import StraysScreen
+        from tui.lifecycle.dialogs import StraysScreen
 
         wanted = await self._app.push_screen_wait(StraysScreen(strays))
         link = self._feed.link
@@ -263,7 +263,7 @@ class Sessions:
 
     async def _stop(self, link: SessionLink) -> None:
         """Stop the nodes, with a dialog that shows which are still running."""
-        from tui.lifecycle.stopping import StoppingScreen
+        from tui.lifecycle.dialogs import StoppingScreen
 
         app, graph = self._app, self._feed.graph
         self._stopping = link
@@ -281,7 +281,7 @@ class Sessions:
             await dialog.dismiss()
 
     async def _end_of_others(self) -> None:
-        from tui.lifecycle.end_session import EndSessionScreen
+        from tui.lifecycle.dialogs import EndSessionScreen
 
         link = self._feed.link
         if link is None or not self._feed.of_others:

@@ -62,7 +62,6 @@ def columns_for(width: int, longest_node: int) -> LogColumns:
 
 
 def grouped(count: int) -> str:
-    """A number with blanks between thousands."""
     return f"{count:,}".replace(",", "\N{NO-BREAK SPACE}")
 
 

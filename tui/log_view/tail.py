@@ -57,7 +57,6 @@ class Tail:
         self.redraw(only_end=not self.following and self._total_rows() >= had)
 
     def redraw(self, *, only_end: bool = False) -> None:
-        """Draw; with `only_end`, only if rows became visible below the others."""
         view = self._view
         had = view.virtual_size.height
         # Set without the reactive: its watcher would lay out the whole screen for each batch.

@@ -238,11 +238,9 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self.scroll_to(y=self.scroll_y + self._tail.page_rows, animate=False)
 
     def action_scroll_home(self) -> None:
-        """Go to the oldest row."""
         self.scroll_to(y=0, animate=False)
 
     def action_scroll_end(self) -> None:
-        """Go to the newest row and follow."""
         self.follow()
 
     # Choosing and searching
@@ -270,11 +268,9 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         return exported(self.index.shown, self.index)
 
     def action_scroll_up(self) -> None:
-        """Choose the line above."""
         self._step(-1, extend=False)
 
     def action_scroll_down(self) -> None:
-        """Choose the line below."""
         self._step(1, extend=False)
 
     def action_choose(self, step: int) -> None:

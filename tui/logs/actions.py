@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from text.i18n import N_
-from tui.actions.action import Announce, actions_of
+from tui.actions.action import REGISTRY, Announce
+from tui.log_view.actions import folding, pausing, searching, taking
 
 if TYPE_CHECKING:
     from tui.logs.screen import LogsScreen
@@ -14,42 +15,8 @@ if TYPE_CHECKING:
 action: Announce[LogsScreen] = Announce()
 
 
-@action(
-    "logs.follow",
-    "p",
-    N_("Pause"),
-    N_("Pause while lines come in, or follow the newest again."),
-    footer=True,
-    anywhere=True,
-    label=lambda screen: N_("Pause") if screen.pane.view.following else N_("Resume"),
-)
-def pause_log(screen: LogsScreen) -> None:
-    screen.pane.view.toggle_following()
-
-
-@action(
-    "logs.search",
-    "slash,ctrl+f",
-    N_("Search"),
-    N_("Find text in the lines as you type; Escape ends it."),
-    means="find",
-    footer=True,
-    priority=True,
-    anywhere=True,
-    when=lambda screen: not screen.pane.prompt.kind,
-)
-def search_log(screen: LogsScreen) -> None:
-    screen.pane.search()
-
-
-@action("logs.next", "n", N_("Next"), N_("Go to the next line found."), means="next")
-def next_in_log(screen: LogsScreen) -> None:
-    screen.pane.find(1)
-
-
-@action("logs.previous", "N", N_("Previous"), N_("Go to the previous line found."), means="previous")
-def previous_in_log(screen: LogsScreen) -> None:
-    screen.pane.find(-1)
+pausing("logs.follow")
+searching("logs", footer=True)
 
 
 @action(
@@ -150,21 +117,8 @@ def change_level_in_log(screen: LogsScreen) -> None:
     screen.change_level()
 
 
-@action(
-    "logs.fold",
-    "w",
-    N_("Wrap"),
-    N_("Wrap long lines, or show one row of each: left and right shift it."),
-    footer=True,
-    anywhere=True,
-)
-def fold_log(screen: LogsScreen) -> None:
-    screen.pane.view.set_fold(not screen.pane.view.fold)
-
-
-@action("logs.copy", "y", N_("Copy"), N_("Copy the selected lines to the clipboard of your terminal."), footer=True)
-def copy_log(screen: LogsScreen) -> None:
-    screen.pane.copy()
+folding("logs")
+taking("logs")
 
 
 @action(
@@ -174,16 +128,4 @@ def copy_whole_log(screen: LogsScreen) -> None:
     screen.pane.copy_all()
 
 
-@action(
-    "logs.save",
-    "W",
-    N_("Write"),
-    N_("Write the selected lines to a file, or all lines shown if none is selected."),
-    means="write to a file",
-    footer=True,
-)
-def save_log(screen: LogsScreen) -> None:
-    screen.pane.save()
-
-
-LOGS_ACTIONS = actions_of(__name__)
+LOGS_ACTIONS = [each for id, each in REGISTRY.items() if id.startswith("logs.")]

@@ -117,7 +117,6 @@ class LogsScreen(DeckScreen):
     _counted_s = 0.0
 
     def compose_body(self) -> ComposeResult:
-        """The nodes beside the lines."""
         with Horizontal():
             yield LogNodes()
             yield LogPane(LogView(file_of=self.feed.log_file))
@@ -138,7 +137,6 @@ class LogsScreen(DeckScreen):
         return self.pane.view.choice.node
 
     def on_mount(self) -> None:
-        """Start at the newest line."""
         self.pane.view.focus()
         self.set_interval(COUNTS_EVERY_S, self._show_nodes)
 
@@ -152,7 +150,6 @@ class LogsScreen(DeckScreen):
                 self.pane.view.clear()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Add the nodes before they write anything."""
         self.pane.view.know_nodes(message.nodes)
         self._show_nodes()
 
@@ -180,7 +177,6 @@ class LogsScreen(DeckScreen):
         self.choose(self.pane.view.log_filter.toggled(event.key))
 
     async def ros2_command(self) -> str:
-        """Return what prints the log, of one node if the others are muted."""
         nodes = [name for name in self.feed.nodes if self.pane.view.log_filter.shows_node(name)]
         alone = len(nodes) == 1 and len(self.feed.nodes) > 1
         return ros2_words.log_of(nodes[0] if alone else "")
@@ -190,18 +186,15 @@ class LogsScreen(DeckScreen):
         self._show_nodes()
 
     def hear_all(self) -> None:
-        """Show every node, at every severity."""
         heard = self.pane.view.log_filter.all_nodes()
         self.choose(replace(heard, minimum=Severity.DEBUG))
 
     def change_level(self) -> None:
-        """Ask the chosen node for its log level, and change it."""
         name = self.chosen_node
         if name:
             self.run_worker(change_log_level(self.app, full_name(self.feed.update, name)))
 
     def toggle_nodes(self) -> None:
-        """Go to the list of nodes, or back to the lines."""
         if self.node_list.has_focus:
             self.action_close_nodes()
         else:
@@ -209,7 +202,6 @@ class LogsScreen(DeckScreen):
             self.node_list.focus()
 
     def action_close_nodes(self) -> None:
-        """Go back to the lines."""
         self.node_list.remove_class("-open")
         self.pane.view.focus()
 

@@ -62,7 +62,6 @@ class Outcome(VerticalScroll, can_focus=True):
             self._draw()
 
     def on_resize(self) -> None:
-        """Give the text a column of its own if there is room."""
         self._draw()
 
     def notify_style_update(self) -> None:
@@ -71,6 +70,8 @@ class Outcome(VerticalScroll, can_focus=True):
         self.call_after_refresh(self._draw)
 
     def _draw(self) -> None:
+        if not self.is_attached or not self.children:
+            return
         dim, roomy = Style(dim=True), self.scrollable_size.width >= ROOMY
         lines = Table.grid()
         for width in (DELAY, MARK, TOPIC) if roomy else (DELAY, MARK):

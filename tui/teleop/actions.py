@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
-from tui.actions.action import Announce, actions_of
+from tui.actions.action import Action, Announce, actions_of
 from tui.teleop.keys import Move
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def close_teleop(panel: TeleopPanel) -> None:
     footer=True,
 )
 def drive_faster(panel: TeleopPanel) -> None:
-    panel.limits = panel.limits.faster(1)
+    panel.change_limits(panel.limits.faster(1))
 
 
 @action(
@@ -64,55 +64,7 @@ def drive_faster(panel: TeleopPanel) -> None:
     footer=True,
 )
 def drive_slower(panel: TeleopPanel) -> None:
-    panel.limits = panel.limits.faster(-1)
-
-
-@action(
-    "teleop.forward",
-    "up,w",
-    N_("Forward"),
-    N_("Forward while it is held; press it again in a curve to go straight on."),
-    footer=True,
-    palette=False,
-)
-def drive_forward(panel: TeleopPanel) -> None:
-    panel.press(Move.FORWARD)
-
-
-@action(
-    "teleop.back",
-    "down,s",
-    N_("Back"),
-    N_("Backwards while it is held; press it again in a curve to go straight back."),
-    footer=True,
-    palette=False,
-)
-def drive_back(panel: TeleopPanel) -> None:
-    panel.press(Move.BACK)
-
-
-@action(
-    "teleop.left",
-    "left,a",
-    N_("Left"),
-    N_("Left while it is held; a moving robot goes on in a curve."),
-    footer=True,
-    palette=False,
-)
-def steer_left(panel: TeleopPanel) -> None:
-    panel.press(Move.LEFT)
-
-
-@action(
-    "teleop.right",
-    "right,d",
-    N_("Right"),
-    N_("Right while it is held; a moving robot goes on in a curve."),
-    footer=True,
-    palette=False,
-)
-def steer_right(panel: TeleopPanel) -> None:
-    panel.press(Move.RIGHT)
+    panel.change_limits(panel.limits.faster(-1))
 
 
 @action(
@@ -122,14 +74,36 @@ def steer_right(panel: TeleopPanel) -> None:
     N_("Steer 0.05 rad more from the next press on, up to 0.5 rad."),
 )
 def sharper(panel: TeleopPanel) -> None:
-    panel.limits = panel.limits.sharper(1)
+    panel.change_limits(panel.limits.sharper(1))
 
 
 @action("teleop.wider", "left_square_bracket,х", N_("Wider"), N_("Steer 0.05 rad less from the next press on."))
 def wider(panel: TeleopPanel) -> None:
-    panel.limits = panel.limits.sharper(-1)
+    panel.change_limits(panel.limits.sharper(-1))
 
 
+def _moving(move: Move, key: str, title: str, tooltip: str) -> Action[TeleopPanel]:
+    @action(f"teleop.{move.value}", key, title, tooltip, footer=True, palette=False)
+    def drive(panel: TeleopPanel) -> None:
+        panel.press(move)
+
+    return drive
+
+
+MOVES = {
+    _moving(move, *said): move
+    for move, said in {
+        Move.FORWARD: (
+            *("up,w", N_("Forward")),
+            N_("Forward while it is held; press it again in a curve to go straight on."),
+        ),
+        Move.BACK: (
+            *("down,s", N_("Back")),
+            N_("Backwards while it is held; press it again in a curve to go straight back."),
+        ),
+        Move.LEFT: ("left,a", N_("Left"), N_("Left while it is held; a moving robot goes on in a curve.")),
+        Move.RIGHT: ("right,d", N_("Right"), N_("Right while it is held; a moving robot goes on in a curve.")),
+    }.items()
+}
+"""The actions that drive while their key is held; a click counts as one short press."""
 TELEOP_ACTIONS = [each for each in actions_of(__name__) if each is not open_teleop]
-MOVES = {drive_forward: Move.FORWARD, drive_back: Move.BACK, steer_left: Move.LEFT, steer_right: Move.RIGHT}
-"""Those that drive while their key is held; a click counts as one short press."""

@@ -1,4 +1,4 @@
-"""Driving with keys: what the keys ask for, and until when. Pure; times are monotonic seconds.
+"""Driving with keys: what the keys ask for, until when, and where that goes. Pure; times are monotonic seconds.
 
 A terminal shows that a key is down only by its auto-repeat: nothing for the first half second, then
 about thirty times a second, and only for the key pressed last. So a key that has just been pressed
@@ -11,9 +11,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import Enum
+from typing import TYPE_CHECKING, NamedTuple
 
 from robot.limits import SPEED, STEERING
+from robot.topics import DRIVE, DRIVE_SAFE, DRIVE_TELEOP
 from robot.words import STOP, DriveSetpoint
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from graph.data import GraphUpdate, Value
 
 FIRST_HOLD_S = 0.6
 """Delay before a key repeats: 0.25 to 0.6 s, depending on the settings of the desktop."""
@@ -97,3 +104,38 @@ def _stepped(value: float, steps: int, most: float) -> float:
     """Return the value changed by whole steps, without rounding errors adding up."""
     wanted = (round(value / STEP) + steps) * STEP
     return round(max(LEAST, min(most, wanted)), 2)
+
+
+DRIVE_TYPE = "ackermann_msgs/msg/AckermannDriveStamped"
+RATE_HZ = 20.0
+"""Rate of the commands while a key is held."""
+FRAME = "base_link"
+
+
+class Route(NamedTuple):
+    """The topic that the keys publish to."""
+
+    topic: str = ""
+    """Empty: nobody listens."""
+    gated: bool = False
+    """Whether a gate stands between it and the wheels."""
+
+
+def route(update: GraphUpdate | None) -> Route:
+    """Return the topic that has a subscriber, preferring that of the gate."""
+    rows = {row.name: row for row in update.topics} if update is not None else {}
+    safe = rows.get(DRIVE_SAFE)
+    gated = safe is not None and safe.publishers > 0
+    for topic in (DRIVE_TELEOP, DRIVE):
+        row = rows.get(topic)
+        if row is not None and row.subscribers:
+            return Route(topic, gated or topic == DRIVE_TELEOP)
+    return Route("", gated)
+
+
+def command(setpoint: DriveSetpoint) -> Mapping[str, Value]:
+    """Return an AckermannDriveStamped as a tree."""
+    return {
+        "header": {"frame_id": FRAME},
+        "drive": {"speed": setpoint.speed_m_s, "steering_angle": setpoint.steering_rad},
+    }

@@ -41,23 +41,28 @@ class Driving(NamedTuple):
 
 def drawn(driving: Driving, width: int, height: int) -> list[Line]:
     """Return the lines, as many as fit."""
+    allowed, wheels = driving.allowed, driving.wheels
+    midway = None if wheels is None else DriveSetpoint((wheels.left_m_s + wheels.right_m_s) / 2, wheels.steering_rad)
+    missing = _("no data yet")
     columns = (
-        _column(_("asked"), driving.asked, "accent", ""),
+        _column(_("asked"), driving.asked, "accent"),
         _column(
-            _("allowed"),
-            driving.allowed,
-            _allowed_look(driving),
-            "" if driving.gated else _gone(),
+            *(_("allowed"), allowed, _allowed_look(driving)),
+            missing=missing if driving.gated else _("no gate"),
             ago=driving.allowed_ago,
         ),
-        _column(_("wheels"), _of(driving.wheels), "second", "", _sides(driving.wheels), ago=driving.wheels_ago),
+        _column(_("wheels"), midway, "second", _sides(wheels), missing=missing, ago=driving.wheels_ago),
     )
     words: Line = [Ink(fit(driving.words, width), driving.look)]
     limits = _limits(driving.limits, width)
     if height < BIG_ROWS:
-        return [_small(columns, width), words, limits][:height]
+        small: Line = []
+        for column in columns:
+            small += [Ink(column.title + " ", "muted"), Ink(column.speed + "  ", column.look)]
+        return [beside(small, [Ink(columns[0].short, "strong")], width), words, limits][:height]
     room = (width - 2 * GAP) // 3
-    lines = [_row([column.line(row, room) for column in columns]) for row in range(5)]
+    gap = Ink(" " * GAP)
+    lines = [[ink for column in columns for ink in (*column.line(row, room), gap)][:-1] for row in range(5)]
     return [*lines, words, limits]
 
 
@@ -68,7 +73,7 @@ class _Column(NamedTuple):
     speed: str
     detail: str
     look: str
-    short: str = ""
+    short: str
 
     def line(self, row: int, room: int) -> Line:
         """One of its five lines: the title, three for the number, the detail."""
@@ -84,18 +89,12 @@ class _Column(NamedTuple):
 
 
 def _column(
-    title: str, setpoint: DriveSetpoint | None, look: str, missing: str, detail: str = "", *, ago: str = ""
+    title: str, setpoint: DriveSetpoint | None, look: str, detail: str = "", *, missing: str = "", ago: str = ""
 ) -> _Column:
-    if ago:
-        return _Column(title, "---", ago, "muted", ago)
-    if setpoint is None:
-        return _Column(title, "---", missing or _("no data yet"), "muted")
-    speed, short = number_words(setpoint.speed_m_s), _arrows(setpoint)
-    return _Column(title, speed, detail or _way(setpoint), look, short)
-
-
-def _gone() -> str:
-    return _("no gate")
+    """Return a number; `missing` says why there is none, `ago` how old it is if it is not current any more."""
+    if ago or setpoint is None:
+        return _Column(title, "---", ago or missing, "muted", ago)
+    return _Column(title, number_words(setpoint.speed_m_s), detail or _way(setpoint), look, _arrows(setpoint))
 
 
 def _allowed_look(driving: Driving) -> str:
@@ -129,33 +128,12 @@ def _angle(angle: float) -> str:
     return ("← " if angle > 0 else "→ ") + _("{angle} rad").format(angle=decimal(f"{abs(angle):.2f}"))
 
 
-def _of(wheels: WheelsReading | None) -> DriveSetpoint | None:
-    """The speed midway between the rear wheels."""
-    if wheels is None:
-        return None
-    return DriveSetpoint((wheels.left_m_s + wheels.right_m_s) / 2, wheels.steering_rad)
-
-
 def _sides(wheels: WheelsReading | None) -> str:
     """`0.18 ‖ 0.22  ← 0.30 rad`: each rear wheel, and the steering."""
     if wheels is None:
         return ""
     speeds = f"{number_words(wheels.left_m_s)} ‖ {number_words(wheels.right_m_s)}"
     return f"{speeds}  {_angle(wheels.steering_rad)}".rstrip()
-
-
-def _row(parts: list[Line]) -> Line:
-    line: Line = []
-    for part in parts:
-        line += [*part, Ink(" " * GAP)]
-    return line[:-1]
-
-
-def _small(columns: tuple[_Column, ...], width: int) -> Line:
-    line: Line = []
-    for column in columns:
-        line += [Ink(column.title + " ", "muted"), Ink(column.speed + "  ", column.look)]
-    return beside(line, [Ink(columns[0].short, "strong")], width)
 
 
 def _limits(limits: TeleopLimits, width: int) -> Line:

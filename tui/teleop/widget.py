@@ -14,7 +14,7 @@ from textual.message import Message
 from graph.observer.requests import Hold, LetGo, PrepareHold
 from graph.publishing.dead_man_switch import HeldCommand
 from robot.safety.gate_report import Gate, gate_in
-from robot.topics import DRIVE_SAFE, SAFETY_STATE, WHEEL_COMMANDS
+from robot.topics import DRIVE, DRIVE_SAFE, DRIVE_TELEOP, SAFETY_STATE, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
 from text.i18n import N_, _
 from text.plain import plain
@@ -26,8 +26,7 @@ from tui.frame.host import Host, host_of
 from tui.panels.panel import newest, row_of
 from tui.panels.wheels import WheelsReading, wheels_in
 from tui.teleop.actions import MOVES, TELEOP_ACTIONS, open_teleop
-from tui.teleop.keys import NOTHING, Move, TeleopLimits
-from tui.teleop.route import DRIVE_TYPE, RATE_HZ, Route, command, nowhere_words, route
+from tui.teleop.keys import DRIVE_TYPE, NOTHING, RATE_HZ, Move, Route, TeleopLimits, command, route
 from tui.teleop.view import Driving, drawn
 from tui.widgets.drawing import Drawing, Line
 from tui.yaml_form.words import reason_words
@@ -69,7 +68,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
     def __init__(self) -> None:
         super().__init__(id="teleop")
         self._keys = NOTHING
-        self._limits = TeleopLimits()
+        self.limits = TeleopLimits()
         self._route = Route()
         self._allowed: DriveSetpoint | None = None
         self._wheels: WheelsReading | None = None
@@ -83,26 +82,20 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
 
     @property
     def has_value(self) -> bool:
-        """Always: there is something to show."""
         return True
 
     @property
     def _deck(self) -> Host:
         return host_of(self)
 
-    @property
-    def limits(self) -> TeleopLimits:
-        """Speed and steering of the keys, from the next press on."""
-        return self._limits
-
-    @limits.setter
-    def limits(self, limits: TeleopLimits) -> None:
-        self._limits = limits
+    def change_limits(self, limits: TeleopLimits) -> None:
+        """Use this speed and steering from the next press on."""
+        self.limits = limits
         self.redraw()
 
     @property
     def asked(self) -> DriveSetpoint:
-        return self._keys.at(clock.steady()).setpoint(self._limits)
+        return self._keys.at(clock.steady()).setpoint(self.limits)
 
     # Keys
 
@@ -142,7 +135,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
             # It has waited too long to be obeyed.
             self._keys = NOTHING
             return
-        asked = command(self._keys.setpoint(self._limits))
+        asked = command(self._keys.setpoint(self.limits))
         drive = HeldCommand(asked, command(STOP), RATE_HZ, self._keys.until_s)
         held = graph.ask(Hold(self._route.topic, DRIVE_TYPE, drive))
         held.add_done_callback(self._held)
@@ -209,8 +202,12 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self._wheels = (None if turned is None else wheels_in(turned.value)) or self._wheels
         for topic in (DRIVE_SAFE, WHEEL_COMMANDS):
             row = row_of(update, topic)
-            if row is None or not row.publishers:
-                self._forget(topic)
+            if row is not None and row.publishers:
+                continue
+            if topic == DRIVE_SAFE:
+                self._allowed = self._gate = None
+            else:
+                self._wheels = None
         self.redraw()
 
     def _follow(self, found: Route) -> None:
@@ -229,42 +226,27 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         """For how long nothing has come on this topic; 0.0 before the first message."""
         return max(0.0, self._time_s - self._heard_s.get(topic, self._time_s))
 
-    def _forget(self, topic: str) -> None:
-        if topic == DRIVE_SAFE:
-            self._allowed = self._gate = None
-        else:
-            self._wheels = None
-
     def _entitle(self) -> None:
         topic = f" → {self._route.topic}" if self._route.topic else ""
         self.border_title = Content(_(TITLE) + topic)
 
     def on_language_changed(self) -> None:
+    def words_changed(self) -> None:
         self._entitle()
 
     # Drawing
 
     def draw(self, width: int, height: int) -> list[Line]:
-        words, look = self._told()
-        driving = Driving(
-            self.asked,
-            self._allowed,
-            self._route.gated,
-            self._wheels,
-            self._limits,
-            words,
-            look,
-            self._outdated(DRIVE_SAFE),
-            self._outdated(WHEEL_COMMANDS),
-        )
-        return drawn(driving, width, height)
+        known = (self.asked, self._allowed, self._route.gated, self._wheels, self.limits)
+        ages = self._outdated(DRIVE_SAFE), self._outdated(WHEEL_COMMANDS)
+        return drawn(Driving(*known, *self._told(), *ages), width, height)
 
     def _outdated(self, topic: str) -> str:
         """Say since when a value is not current any more; empty while it is."""
         silent_s = self._silent_s(topic)
         return _("{seconds:.0f} s ago").format(seconds=silent_s) if silent_s > OUTDATED_S else ""
 
-    def _told(self) -> tuple[str, str]:
+    def _told(self) -> tuple[str, str]:  # noqa: PLR0911 - one question after the other
         """Return the most serious remark for now, and its look."""
         if self._deck.emergency.state.unconfirmed:
             return _("emergency stop: pressed, nobody has confirmed it"), "stop"
@@ -272,16 +254,15 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
             key = self._deck.keys_of(emergency_release)[0]
             return _("emergency stop: nothing moves; {key} releases").format(key=key), "stop"
         if not self._route.topic:
-            return nowhere_words(), "warn"
+            words = _("Nobody listens to {gate} or {drive}: nothing will move. Start {nodes}.")
+            nodes = "safety_stop, electronic_differential"
+            return words.format(gate=DRIVE_TELEOP, drive=DRIVE, nodes=nodes), "warn"
         if not self.has_focus:
             key = self._deck.keys_of(open_teleop)[0]
             words = _("the keyboard focus is elsewhere; {key} or a click here brings it back")
             return words.format(key=key), "warn"
         if self._error:
             return plain(self._error, 400), "bad"
-        return self._told_by_gate()
-
-    def _told_by_gate(self) -> tuple[str, str]:
         if not self._route.gated:
             return _("no gate: nothing stops the robot before an obstacle"), "warn"
         if (silent_s := self._silent_s(SAFETY_STATE)) > OUTDATED_S:

@@ -29,9 +29,9 @@ def fills_the_screen(app: DeckApp) -> bool:
 
 PARTS = {
     "topics": ("z", "TopicDetail"),
-    "graph": ("z", "GraphDetail"),
+    "graph": ("z", "#graph-detail"),
     "logs": ("я", "LogPane"),
-    "flow": ("z", "FlowView"),
+    "flow": ("z", "#flow-view"),
     "devices": ("z", "LogPane"),
     "composer": ("alt+z", "#composer-right"),
     "lesson": ("z", "#lesson-reading"),

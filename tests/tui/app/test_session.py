@@ -39,9 +39,7 @@ from tui.deck.nodes_table import NodesTable
 from tui.deck.screen import LessonDeck
 from tui.frame import title
 from tui.frame.title_bar import TitleBar
-from tui.lifecycle.end_session import EndSessionScreen
-from tui.lifecycle.stopping import StoppingScreen
-from tui.lifecycle.strays import StraysScreen
+from tui.lifecycle.dialogs import EndSessionScreen, StoppingScreen, StraysScreen
 from tui.logs.screen import LogsScreen
 from tui.panels.head import HeadView
 from tui.panels.wheels import WheelsView

@@ -19,7 +19,6 @@ from tests.waiting import until
 from tui.flow.chains import Lane
 from tui.flow.reading import TOPICS
 from tui.flow.screen import FlowScreen
-from tui.flow.view import FlowView
 from tui.panels.sonar import Sonar
 from tui.session.past import KEPT, Past
 
@@ -39,10 +38,10 @@ class FlowStage(ScreenStage[FlowScreen]):
 
     def rows(self) -> list[str]:
         """What is drawn, without blanks at the ends."""
-        view = self.screen.query_one(FlowView)
+        view = self.screen.view
         height = int(view.virtual_size.height)
         view.scroll_to(y=0, animate=False)
-        return [view.render_line(y).text.strip() for y in range(min(height, view.size.height))]
+        return [view.render_line(y).text.strip(" ▶") for y in range(1, min(height, view.size.height))]
 
 
 def stage() -> AbstractAsyncContextManager[FlowStage]:
@@ -67,7 +66,8 @@ async def test_messages_and_log_lines_meet_in_one_chain() -> None:
         await at.hear(*voice(0.0))
         rows = at.rows()
         assert "13 steps in 1012 ms" in rows[0]
-        assert [row.split()[2] for row in rows[2:6]] == [*("/audio/mic_raw", "ai_brain", "ai_brain", "ai_brain")]
+        assert "/audio/mic_raw" in rows[1]
+        assert all("ai_brain" in row and " ms  " in row for row in rows[2:5])
 
 
 async def test_the_cursor_walks_and_the_whole_of_a_step_is_shown() -> None:

@@ -10,7 +10,7 @@ from launcher.events import LogEvent
 from tests.tui.recorded import LINES, RecordedOpener, RecordedSession, line
 from tests.tui.snapshots import Look, settle
 from tui.frame.key_bar import KeyBar
-from tui.log_view.bar import LogBar
+from tui.log_view.pane import LogBar
 from tui.logs.screen import LogsScreen
 
 HOME = Look((120, 40), "en")

@@ -19,8 +19,7 @@ from tests.tui.snapshots import opened, seen, settle
 from tests.waiting import until
 from text.sentences import say
 from tui.app import DeckApp
-from tui.lifecycle.domain_taken import DomainTakenScreen
-from tui.lifecycle.refused import RefusedScreen
+from tui.lifecycle.dialogs import DomainTakenScreen, RefusedScreen
 from tui.picker.screen import PickerScreen
 from tui.session.requests import OpenRequest, Task
 from tui.widgets.rows import Rows

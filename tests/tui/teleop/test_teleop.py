@@ -41,8 +41,7 @@ from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.emergency.gate import gate_words
-from tui.teleop.keys import FIRST_HOLD_S, Move
-from tui.teleop.route import DRIVE_TYPE
+from tui.teleop.keys import DRIVE_TYPE, FIRST_HOLD_S, Move
 from tui.teleop.widget import TeleopPanel
 from tui.terminal.stall_detector import DRAIN_S
 

@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 
 from tests.tui.recorded_flow import BEFORE, topics, update, voice, voice_lines
-from tui.flow.book import FlowBook
-from tui.flow.chains import LONGEST_S, Chain, FlowStep, Lane
+from tui.flow.chains import LONGEST_S, Chain, FlowBook, FlowStep, Lane
 from tui.flow.reading import FlowReader, log_steps
 
 

@@ -16,8 +16,7 @@ from robot.words import STOP, DriveSetpoint
 from tui.actions.layouts import on_all_layouts
 from tui.recording.recording import RecordingLimit, read_limit
 from tui.session.outside import ROSOUT, RosoutReader
-from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, Move, Teleop, TeleopLimits
-from tui.teleop.route import RATE_HZ, command
+from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, RATE_HZ, Move, Teleop, TeleopLimits, command
 from tui.terminal.bandwidth import OVER_SSH, SAVED_S, Bandwidth, default_limit
 
 
