@@ -16,7 +16,7 @@ import time
 from std_msgs.msg import ByteMultiArray, Float32
 
 from brain.speech.faults import SpeechError
-from brain.speech.sound_file import read_sound
+from brain.speech.sound import read_sound
 from nodes.parts.node import LessonNode, NodeUsageError, change_period
 from nodes.parts.parameters import Number, Text
 from nodes.parts.qos import DEPTH
