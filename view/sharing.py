@@ -17,9 +17,7 @@ from graph.qos import TRANSIENT_LOCAL
 from graph.recording.relay import Relay
 from graph.recording.topics import TopicChoice
 from text.sentences import reason_of, say
-from view.faults import ViewError
-from view.installed import need_foxglove
-from view.place import FOXGLOVE_PORT, HERE, free_port
+from view.place import FOXGLOVE_PORT, HERE, ViewError, free_port, need_foxglove
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
