@@ -8,19 +8,36 @@ import re
 import time
 from typing import TYPE_CHECKING
 
-from agents.raw_access import check_call, check_publish
 from agents.refusal import refused
 from agents.session import BOOL
+from agents.tools import Call, Facts, Message, Request, RosName, Said, full_name, tool
 from graph.messages.yaml_text import to_yaml
 from graph.observer.requests import CallService, Publish
 from launcher.errors import LauncherError
-from robot.topics import EMERGENCY_STOP, SPEAKER
+from robot.safety.moving_topics import moves
+from robot.topics import (
+    BRAIN_STATE,
+    COMMAND_SOURCES,
+    DRIVE_SAFE,
+    EMERGENCY_STATE,
+    EMERGENCY_STOP,
+    HEAD_SERVICE,
+    MOCK_MOTORS,
+    MOCK_POSE,
+    ODOMETRY,
+    SAFETY_STATE,
+    SONAR_FRONT,
+    SONAR_REAR,
+    SPEAKER,
+    TF,
+    TF_STATIC,
+    VLM_DESCRIPTION,
+    VLM_DETECTIONS,
+)
 from robot.words import parse_word
 from text.plain import plain, plain_lines
 
 if TYPE_CHECKING:
-    from agents.arguments import CallArguments, PublishArguments
-    from agents.session import RobotSession
     from agents.view import GraphView
 
 SOUND = "std_msgs/msg/ByteMultiArray"
@@ -28,11 +45,36 @@ SENT_WITHIN_S = 3.0
 OBEYED_WITHIN_S = 2.0
 CALLED_WITHIN_S = 10.0
 MOST_CHARS = 8000
+KEPT = frozenset(
+    {
+        *COMMAND_SOURCES,
+        BRAIN_STATE,
+        DRIVE_SAFE,
+        EMERGENCY_STATE,
+        EMERGENCY_STOP,
+        MOCK_MOTORS,
+        MOCK_POSE,
+        ODOMETRY,
+        SAFETY_STATE,
+        SONAR_FRONT,
+        SONAR_REAR,
+        TF,
+        TF_STATIC,
+        VLM_DESCRIPTION,
+        VLM_DETECTIONS,
+    }
+)
+"""Topics that no profile opens to agents: motion, and what a decision about it rests on."""
+KEPT_PACKAGES = frozenset({"rcl_interfaces", "lifecycle_msgs", "composition_interfaces"})
+"""Packages of services that change the parameters or the life of a node."""
 WORD = re.compile(r"[^\W\d_]+")
 
 
-async def stop(session: RobotSession) -> dict[str, object]:
-    """Engage the emergency stop; where no node obeys it, stop the nodes."""
+@tool(acts=True, waits=False)
+async def stop(call: Call) -> Facts:
+    """Engage the emergency stop at once. Needs no consent. Only a person releases it."""
+    call.driving.stopped()
+    session = call.session
     sending = session.observer.ask(Publish(EMERGENCY_STOP, BOOL, {"data": True}, latched=True))
     session.has_stopped = True
     view, emergency = session.view, session.emergency
@@ -60,18 +102,21 @@ async def stop(session: RobotSession) -> dict[str, object]:
 
 
 def _is_heard(view: GraphView) -> bool:
+    """Engage the emergency stop at once. Needs no consent. Only a person releases it."""
     row = view.topic(EMERGENCY_STOP)
     return row is not None and row.subscribers > 0
 
 
-async def say_aloud(session: RobotSession, text: str) -> dict[str, object]:
-    """Have the robot say something that is no command: its own microphone hears it."""
+@tool(acts=True)
+async def say_aloud(call: Call, text: Said) -> Facts:
+    """Have the robot say something aloud."""
     commands = [word for word in WORD.findall(text) if parse_word(word) is not None]
     if commands or parse_word(text) is not None:
         raise refused(
             "{word!r} is a word that drives the robot: its microphone would hear it",
             word=commands[0] if commands else text,
         )
+    session = call.session
     row = session.view.topic(SPEAKER)
     if row is None or not row.subscribers:
         raise refused("nobody hears {topic}: the robot has no voice", topic=SPEAKER)
@@ -80,37 +125,59 @@ async def say_aloud(session: RobotSession, text: str) -> dict[str, object]:
     return {"said": text}
 
 
-async def publish(session: RobotSession, asked: PublishArguments) -> dict[str, object]:
-    """Publish one message on a topic that the profile lists."""
+@tool(acts=True)
+async def publish(call: Call, topic: RosName, message: Message) -> Facts:
+    """Publish one message on a topic that the robot's profile lists."""
+    session = call.session
     listed = session.info.agents.publish
-    row = session.view.topic(asked.topic)
+    row = session.view.topic(topic)
     types = () if row is None else row.type_names
     for type_name in types or ("",):
-        check_publish(asked.topic, type_name, listed)
+        check_publish(topic, type_name, listed)
     if len(types) != 1:
-        raise refused("the type of {topic} is not known: nobody uses it", topic=asked.topic)
-    sending = session.observer.ask(Publish(asked.topic, types[0], asked.message))
+        raise refused("the type of {topic} is not known: nobody uses it", topic=topic)
+    sending = session.observer.ask(Publish(topic, types[0], message))
     try:
         count = await asyncio.wait_for(asyncio.wrap_future(sending), SENT_WITHIN_S + 2)
     except asyncio.TimeoutError:
         raise refused("it could not be sent in time") from None
     except Exception as error:  # of the message, by the agent
         raise refused("it cannot be published: {why}", why=plain(str(error), 300)) from error
-    return {"topic": asked.topic, "type": types[0], "subscribers": count}
+    return {"topic": topic, "type": types[0], "subscribers": count}
 
 
-async def call(session: RobotSession, asked: CallArguments) -> dict[str, object]:
-    """Call a service that the profile lists."""
+@tool(acts=True)
+async def call(call: Call, service: RosName, request: Request) -> Facts:
+    """Call a service that the robot's profile lists."""
+    session = call.session
     listed = session.info.agents.call
-    row = next((one for one in session.view.services if one.name == asked.service), None)
+    row = next((one for one in session.view.services if one.name == service), None)
     types = () if row is None else row.type_names
     for type_name in types or ("",):
-        check_call(asked.service, type_name, listed)
+        check_call(service, type_name, listed)
     if len(types) != 1:
-        raise refused("nobody serves {service}", service=asked.service)
-    calling = session.observer.ask(CallService(asked.service, types[0], asked.request, CALLED_WITHIN_S))
+        raise refused("nobody serves {service}", service=service)
+    calling = session.observer.ask(CallService(service, types[0], request, CALLED_WITHIN_S))
     result = await asyncio.wrap_future(calling)
     if not result.ok or result.response is None:
         raise refused("the call has failed: {why}", why=plain(result.error, 300))
     answer = plain_lines(to_yaml(result.response, 64))[:MOST_CHARS]
-    return {"service": asked.service, "answer": answer}
+    return {"service": service, "answer": answer}
+
+
+def check_publish(topic: str, type_name: str, listed: tuple[str, ...]) -> None:
+    """Call a service that the robot's profile lists."""
+    if topic not in map(full_name, listed):
+        raise refused("the profile does not list {name} below `agents: publish:`", name=topic)
+    if topic in KEPT or moves(topic, type_name):
+        raise refused("{name} may move the robot, or its safety rests on it: use `propose`", name=topic)
+
+
+def check_call(service: str, type_name: str, listed: tuple[str, ...]) -> None:
+    """Raise a RefusedError if an agent may not call a service."""
+    if service not in map(full_name, listed):
+        raise refused("the profile does not list {name} below `agents: call:`", name=service)
+    if service.rpartition("/")[2] == HEAD_SERVICE:
+        raise refused("{name} moves the head: use `head`", name=service)
+    if type_name.partition("/")[0] in KEPT_PACKAGES:
+        raise refused("{name} changes how a node works: no agent may call it", name=service)

@@ -6,18 +6,18 @@ import asyncio
 import contextlib
 import json
 import math
+import time
+from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from agents.looking import FRESH_S, gate_fields
-from agents.motion import check_rules, motion_words, read_motion
-from agents.preview import Preview, preview_of
-from agents.proposals import EXECUTED_WITHIN_S, ProposalBook
+from agents.motion import EXECUTED_WITHIN_S, Preview, ProposalBook, check_rules, motion_words, preview_of, read_motion
 from agents.refusal import RefusedError, refused
 from agents.road import road_of
-from agents.unasked_way import UnaskedWay
+from agents.tools import Call, Caller, Commands, Facts, Pan, ProposalId, Reason, Tilt, tool
 from graph.observer.requests import PreparePublisher, Publish
-from launcher.consent import Approval, ConsentVerdict
+from launcher.consent import ALLOWED_FOR_S, Approval, ConsentVerdict
 from launcher.errors import LauncherError
 from launcher.status import Severity
 from robot.topics import LLM_RAW_JSON, LLM_RESULT, ODOMETRY
@@ -28,8 +28,7 @@ from text.sentences import say
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.motion import Motion
-    from agents.proposals import Proposal
+    from agents.motion import Motion, Proposal
     from agents.road import Road
     from agents.session import RobotSession
     from graph.data import Sample
@@ -42,6 +41,7 @@ HEAD_WITHIN_S = 8.0
 WATCHED_FOR_S = 20.0
 """A longer drive goes on after the answer."""
 SETTLES_S = 0.5
+ROUNDING = 1e-9
 HEAD_FIELDS = ("pan", "tilt", "sum", "error")
 REFUSALS = {
     ConsentVerdict.REFUSED: say("the person at the screen has refused"),
@@ -52,16 +52,6 @@ REFUSALS = {
     ConsentVerdict.LATE: say("nobody at the screen has answered in time"),
     ConsentVerdict.ENDED: say("an emergency stop, or the end of the session, has ended the question"),
 }
-
-
-@dataclass(frozen=True)
-class Caller:
-    """The agent that calls."""
-
-    key: str
-    """Distinguishes it from others."""
-    name: str
-    """As it calls itself."""
 
 
 @dataclass(frozen=True)
@@ -93,20 +83,18 @@ class AgentDriving:
     def __init__(self, approval: Approval) -> None:
         self.approval = approval
         self._book = ProposalBook()
-        self._unasked = UnaskedWay()
+        self._unasked: deque[tuple[float, float]] = deque()
+        """When, by the monotonic clock, agents drove without a question, and how far, in m."""
         self._under_way = asyncio.Lock()
 
     def stopped(self) -> None:
         """Forget all proposals: an emergency stop is in force, or the session has ended."""
         self._book.clear()
 
-    async def propose(
-        self, session: RobotSession, caller: Caller, commands: Sequence[object], reason: str
-    ) -> dict[str, object]:
-        """Check commands and say what they would do; nothing moves and nobody is asked."""
-        motion = read_motion(commands)
-        checked = await self._checked(session, motion)
-        proposal = self._book.add(caller.key, session.info.run_id, motion, reason)
+    async def propose(self, call: Call, motion: Motion, reason: str) -> Facts:
+        """Say what a motion would do; nothing moves and nobody is asked."""
+        checked = await self._checked(call.session, motion)
+        proposal = self._book.add(call.caller.key, call.session.info.run_id, motion, reason)
         preview = checked.preview
         return {
             "proposal": proposal.id,
@@ -119,21 +107,18 @@ class AgentDriving:
             "approval": self.approval.value,
         }
 
-    async def execute(self, session: RobotSession, caller: Caller, name: str) -> dict[str, object]:
+    async def execute(self, call: Call, name: str) -> Facts:
         """Carry out a proposal, if it is allowed."""
         # First: as long as it is in force, it ends what has been proposed since, too.
-        _unless_stopped(session)
-        proposal = self._book.take(name, caller.key, session.info.run_id)
-        return await self._execute(session, caller, proposal)
+        _unless_stopped(call.session)
+        proposal = self._book.take(name, call.caller.key, call.session.info.run_id)
+        return await self._execute(call.session, call.caller, proposal)
 
-    async def turn_head(
-        self, session: RobotSession, caller: Caller, pan: int, tilt: int, reason: str
-    ) -> dict[str, object]:
-        """Turn the head, which takes the same consent as driving."""
-        motion = read_motion([{"action": "turn_head", "pan": pan, "tilt": tilt}])
-        proposal = self._book.add(caller.key, session.info.run_id, motion, reason)
-        self._book.take(proposal.id, caller.key, session.info.run_id)
-        return await self._execute(session, caller, proposal)
+    async def execute_at_once(self, call: Call, motion: Motion, reason: str) -> Facts:
+        """Carry out a motion that was not proposed before, which takes the same consent."""
+        name = self._book.add(call.caller.key, call.session.info.run_id, motion, reason).id
+        proposal = self._book.take(name, call.caller.key, call.session.info.run_id)
+        return await self._execute(call.session, call.caller, proposal)
 
     async def _checked(self, session: RobotSession, motion: Motion) -> CheckedMotion:
         road = await road_of(session, wheels=motion.moves_wheels)
@@ -177,7 +162,7 @@ class AgentDriving:
         prepared = session.observer.ask(PreparePublisher(LLM_RAW_JSON, STRING))
         prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
         rules = session.info.agents
-        fits = self._unasked.has_room(checked.distance_m, rules.max_total_m)
+        fits = checked.distance_m <= rules.max_total_m - self.unasked_m() + ROUNDING
         unasked = self.approval is Approval.ALWAYS
         if unasked and not fits:
             raise refused(
@@ -194,8 +179,18 @@ class AgentDriving:
         if again.road.way != checked.road.way:
             raise refused("the robot has changed since the person was asked; make a new proposal")
         if unasked:
-            self._unasked.add(again.distance_m)
+            self.drove_unasked(again.distance_m)
         return again
+
+    def unasked_m(self) -> float:
+        """Return how far they went without a question in as long as an allowance lasts."""
+        while self._unasked and time.monotonic() - self._unasked[0][0] > ALLOWED_FOR_S:
+            self._unasked.popleft()
+        return sum(metres for _when_s, metres in self._unasked)
+
+    def drove_unasked(self, metres: float) -> None:
+        """Note a drive without a question."""
+        self._unasked.append((time.monotonic(), metres))
 
     async def _carry_out(
         self, session: RobotSession, proposal: Proposal, checked: CheckedMotion
@@ -314,3 +309,33 @@ def _moved(before: tuple[float, float] | None, after: tuple[float, float] | None
     if before is None or after is None:
         return None
     return round(math.dist(before, after), 3)
+
+
+@tool()
+async def propose(call: Call, commands: Commands, reason: Reason = "") -> Facts:
+    """Propose motion: nothing moves yet.
+
+    Answers with an id for `execute`, what the safety gate would do now, and how far the robot would go. A drive ends
+    by itself after the time that is answered.
+    """
+    driving: AgentDriving = call.driving
+    return await driving.propose(call, read_motion(commands), reason)
+
+
+@tool(acts=True, tells=True)
+async def execute(call: Call, proposal: ProposalId) -> Facts:
+    """Carry out a proposal, once, within 60 s.
+
+    The person at the robot's screen is asked, which takes up to 30 s; a refusal is final for this proposal: do not
+    repeat it unasked.
+    """
+    driving: AgentDriving = call.driving
+    return await driving.execute(call, proposal)
+
+
+@tool(acts=True, tells=True)
+async def head(call: Call, pan: Pan, tilt: Tilt, reason: Reason = "") -> Facts:
+    """Turn the robot's head. The person at its screen is asked, as for `execute`."""
+    motion = read_motion([{"action": "turn_head", "pan": pan, "tilt": tilt}])
+    driving: AgentDriving = call.driving
+    return await driving.execute_at_once(call, motion, reason)

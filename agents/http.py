@@ -9,20 +9,25 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import hmac
+import os
+import secrets
 import socket
+import stat
 from typing import TYPE_CHECKING
 
 import uvicorn
 from mcp.server.transport_security import TransportSecuritySettings
+from platformdirs import user_config_path
 from starlette.responses import PlainTextResponse
 
-from agents.doors import BACKLOG, CONNECTION, GuardedConnection
 from launcher.errors import UsageError
+from launcher.private_files import make_folder, open_file
 from text.os_words import os_reason
 from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from starlette.types import ASGIApp, Receive, Scope, Send
 
@@ -34,6 +39,10 @@ MAX_BODY_BYTES = 1 << 20
 MAX_SESSIONS = 16
 IDLE_S = 1800.0
 END_WITHIN_S = 2
+BACKLOG = 64
+MOST_AT_ONCE = 64
+"""Connections; whoever comes then is sent away."""
+KEEP_ALIVE_S = 15
 
 
 def listen(port: int) -> socket.socket:
@@ -83,7 +92,8 @@ async def serve_http(server: AgentServer, listening: socket.socket, token: str) 
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=END_WITHIN_S,
-        http=GuardedConnection,
+        limit_concurrency=MOST_AT_ONCE,
+        timeout_keep_alive=KEEP_ALIVE_S,
         ws="none",
         backlog=BACKLOG,
     )
@@ -124,7 +134,65 @@ class TokenNeeded:
                 )
                 await refusal(scope, receive, send)
                 return
-            scope["state"].pop(CONNECTION).shows_token()
         elif scope["type"] != "lifespan":
             return
         await self._app(scope, receive, send)
+
+
+# ---------------------------------------------------------------- the token: made once, in a file for its owner alone
+
+NAME = "mcp-token"
+BYTES = 32
+LONGEST = 200
+
+
+def token_path() -> Path:
+    """Return where the token is kept."""
+    return user_config_path("deck") / NAME
+
+
+def own_token() -> str:
+    """Return the token, made if there is none yet.
+
+    Raises:
+        UsageError: if the file cannot be read or written, or is not private.
+    """
+    path = token_path()
+    try:
+        return _read(path)
+    except FileNotFoundError:
+        pass
+    except OSError as error:
+        raise _unusable(path, error) from error
+    try:
+        make_folder(path.parent)
+        _make(path)
+        return _read(path)
+    except OSError as error:
+        raise _unusable(path, error) from error
+
+
+def _make(path: Path) -> None:
+    try:
+        descriptor = open_file(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL)
+    except FileExistsError:
+        return  # Another `deck mcp` has just made it.
+    with os.fdopen(descriptor, "w", encoding="ascii") as file:
+        file.write(secrets.token_urlsafe(BYTES) + "\n")
+
+
+def _read(path: Path) -> str:
+    descriptor = open_file(path, os.O_RDONLY)
+    with os.fdopen(descriptor, encoding="ascii", errors="replace") as file:
+        found = os.fstat(descriptor)
+        if stat.S_IMODE(found.st_mode) & 0o077 or found.st_uid != os.geteuid():
+            words = say("{path} can be read by others: remove it, and a new one is made", path=path)
+            raise UsageError(words)
+        token = file.read(LONGEST).strip()
+    if len(token) < BYTES:
+        raise UsageError(say("{path} holds no token: remove it, and a new one is made", path=path))
+    return token
+
+
+def _unusable(path: Path, error: OSError) -> UsageError:
+    return UsageError(say("{path}: {reason}", path=path, reason=os_reason(error)))

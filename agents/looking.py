@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from agents.refusal import refused
+from agents.tools import Call, Camera, Count, Facts, Part, RosName, Seconds, Width, tool
 from graph.messages.yaml_text import to_yaml
 from graph.pictures.picture import COMPRESSED, IMAGE
 from robot.safety.gate_report import gate_in
@@ -20,7 +21,6 @@ from robot.topics import BATTERY, CAMERA, HEAD_STATE, MOCK_POSE, ODOMETRY, SAFET
 from text.plain import plain, plain_lines
 
 if TYPE_CHECKING:
-    from agents.arguments import EchoArguments, FindArguments, SeeArguments
     from agents.session import RobotSession
     from graph.data import Sample, TopicRow
     from robot.safety.gate_report import Gate
@@ -41,9 +41,14 @@ def fresh_gate(session: RobotSession) -> Gate | None:
     return None if sample is None else gate_in(sample.value)
 
 
-async def look(session: RobotSession) -> dict[str, object]:
-    """Return the state of the robot: nodes, emergency stop, gate, sonars, pose, head, battery."""
-    view = session.view
+@tool()
+async def look(call: Call) -> Facts:
+    """The state of the robot now.
+
+    Nodes, emergency stop, safety gate and why it holds, sonar distances in metres, pose, head, battery, and the
+    limits for agents.
+    """
+    session, view, rules = call.session, call.session.view, call.session.info.agents
     nodes = [
         {"name": node.name, "state": node.state.value, "detail": plain(str(node.detail), 300)}
         for node in list(session.link.nodes.values())[:MOST_ROWS]
@@ -61,6 +66,8 @@ async def look(session: RobotSession) -> dict[str, object]:
         "pose": _pose(session),
         "head_deg": _head(view.newest(HEAD_STATE, FRESH_S)),
         "battery": _plain_value(view.newest(BATTERY, 60.0)),
+        "approval": call.driving.approval.value,
+        "limits": {"max_speed_m_s": rules.max_speed_m_s, "max_distance_m": rules.max_distance_m},
     }
 
 
@@ -80,9 +87,10 @@ def gate_fields(gate: Gate | None) -> dict[str, object] | None:
     }
 
 
-async def see(session: RobotSession, asked: SeeArguments) -> tuple[str, dict[str, object]]:
-    """Return the newest camera picture as JPEG in base64, and its size and age."""
-    topic = asked.topic or CAMERA
+@tool()
+async def see(call: Call, topic: Camera = None, width: Width = 640) -> tuple[str, Facts]:
+    """The newest picture of the robot's camera."""
+    session, topic = call.session, topic or CAMERA
     row = session.view.topic(topic)
     kinds = () if row is None else row.type_names
     if not {IMAGE, COMPRESSED} & set(kinds):
@@ -92,13 +100,14 @@ async def see(session: RobotSession, asked: SeeArguments) -> tuple[str, dict[str
             raise refused("no picture has come within {seconds:g} s", seconds=SEEN_WITHIN_S)
         sample = session.view.newest(topic, math.inf)
     assert sample is not None
-    jpeg, width, height = await asyncio.to_thread(_as_jpeg, sample, asked.width)
+    jpeg, wide, height = await asyncio.to_thread(_as_jpeg, sample, width)
     age_s = max(0.0, time.time() - sample.received_s + sample.age_s)
-    facts = {"topic": topic, "width": width, "height": height, "age_s": round(age_s, 2)}
+    facts = {"topic": topic, "width": wide, "height": height, "age_s": round(age_s, 2)}
     return base64.b64encode(jpeg).decode(), {**facts, "bytes": len(jpeg)}
 
 
 def _as_jpeg(sample: Sample, width: int) -> tuple[bytes, int, int]:
+    """The newest picture of the robot's camera."""
     from graph.pictures.compressed import to_jpeg
     from graph.pictures.picture import read_picture
     from graph.pictures.pixels import ImageError
@@ -115,9 +124,10 @@ def _as_jpeg(sample: Sample, width: int) -> tuple[bytes, int, int]:
     return to_jpeg(picture.rgb), wide, height
 
 
-def topics(session: RobotSession, asked: FindArguments) -> dict[str, object]:
-    """Return the topics, their types, publishers and subscribers."""
-    rows = [row for row in session.view.topics if asked.contains in row.name]
+@tool()
+async def topics(call: Call, contains: Part = "") -> Facts:
+    """The ROS topics, with types and nodes."""
+    rows = [row for row in call.session.view.topics if contains in row.name]
     found = [
         {
             "topic": plain(row.name, LONGEST_NAME),
@@ -130,9 +140,10 @@ def topics(session: RobotSession, asked: FindArguments) -> dict[str, object]:
     return {"topics": found, "left_out": max(0, len(rows) - MOST_ROWS)}
 
 
-def graph(session: RobotSession, asked: FindArguments) -> dict[str, object]:
-    """Return the nodes with what they publish, hear and serve."""
-    rows = [row for row in session.view.nodes if asked.contains in row.name]
+@tool()
+async def graph(call: Call, contains: Part = "") -> Facts:
+    """The ROS nodes, with topics, services and actions."""
+    rows = [row for row in call.session.view.nodes if contains in row.name]
     found = [
         {
             "node": plain(row.name, LONGEST_NAME),
@@ -146,20 +157,21 @@ def graph(session: RobotSession, asked: FindArguments) -> dict[str, object]:
     return {"nodes": found, "left_out": max(0, len(rows) - MOST_ROWS)}
 
 
-async def echo(session: RobotSession, asked: EchoArguments) -> dict[str, object]:
-    """Return the next messages of a topic as YAML, until there are enough or time is over."""
-    view = session.view
-    row = view.topic(asked.topic)
+@tool()
+async def echo(call: Call, topic: RosName, count: Count = 1, seconds: Seconds = 3.0) -> Facts:
+    """The next messages of a ROS topic, as YAML."""
+    view = call.session.view
+    row = view.topic(topic)
     if row is None or not (row.publishers or row.own_publishers):
-        raise refused("nobody publishes {topic}", topic=asked.topic)
+        raise refused("nobody publishes {topic}", topic=topic)
     samples: list[Sample] = []
 
     def take(sample: Sample) -> None:
-        if len(samples) < asked.count:
+        if len(samples) < count:
             samples.append(sample)
 
-    with view.hearing(asked.topic, take):
-        await view.until(lambda: len(samples) >= asked.count, asked.seconds)
+    with view.hearing(topic, take):
+        await view.until(lambda: len(samples) >= count, seconds)
     messages, room = [], MOST_CHARS
     for sample in samples:
         text = plain_lines(to_yaml(sample.value, MOST_ELEMENTS))[:room]
@@ -167,7 +179,7 @@ async def echo(session: RobotSession, asked: EchoArguments) -> dict[str, object]
         room -= len(text)
         if room <= 0:
             break
-    return {"topic": asked.topic, "messages": messages, "why_empty": _why_empty(row, messages)}
+    return {"topic": topic, "messages": messages, "why_empty": _why_empty(row, messages)}
 
 
 def _why_empty(row: TopicRow, messages: list[str]) -> str:

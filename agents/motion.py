@@ -1,4 +1,4 @@
-"""What a list of commands would do to the robot, and whether the rules of its profile permit it.
+"""What a list of commands would do to the robot, whether the rules of its profile permit it, and what is proposed.
 
 Commands are carried out by the node that hears /llm_raw_json: it repeats the last drive for its
 `repeat_for_s`, then stops. So a drive goes `|speed| * repeat_for_s` metres at most, and a list
@@ -8,11 +8,15 @@ holds one drive at most: of several only the last would count.
 from __future__ import annotations
 
 import json
+import math
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from agents.refusal import refused
 from robot.commands.schema import CommandError, DriveCommand, HeadCommand, parse_llm
+from robot.safety.gate_report import STOPPED
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -20,6 +24,7 @@ if TYPE_CHECKING:
 
     from launcher.consent import AgentRules
     from robot.commands.schema import LlmResponse
+    from robot.safety.gate_report import Gate
     from text.sentences import Words
 
 MAX_HEADS = 8
@@ -125,3 +130,125 @@ def motion_words(motion: Motion, repeat_for_s: float) -> list[Words]:
         poses = ", ".join(f"{head.pan}°/{head.tilt}°" for head in motion.heads)
         said.append(say("turns the head (pan/tilt): {poses}", poses=poses))
     return said
+
+
+# ---------------------------------------------------------------- the gate
+
+
+@dataclass(frozen=True)
+class Preview:
+    """What the gate would do."""
+
+    words: Words
+    lets: bool
+    """Whether it would let the robot begin."""
+    reach_m: float
+    """How far the robot would come, as far as the sensors see."""
+
+
+def preview_of(gate: Gate, speed_m_s: float, distance_m: float) -> Preview:
+    """Return what the gate would do with a drive of this speed and longest way."""
+    place = "rear" if speed_m_s < 0 else "front"
+    metres = gate.metres.get(place)
+    if gate.verdict == STOPPED:
+        return _held(say("the gate would hold it: emergency stop"))
+    if gate.verdict == "starting":
+        return _held(say("the gate would hold it: it is starting"))
+    blocked = "blocked_backward" if speed_m_s < 0 else "blocked_forward"
+    if gate.verdict in ("blocked", blocked):
+        return _held(_why_held(gate, place, metres))
+    if metres is None:
+        unseen = say("the gate would let it: no sensor sees that way")
+        return Preview(unseen, lets=True, reach_m=distance_m)
+    if math.isinf(metres):
+        return Preview(say("the gate would let it: nothing in range"), True, distance_m)
+    return _towards(gate, metres, distance_m)
+
+
+def _towards(gate: Gate, metres: float, distance_m: float) -> Preview:
+    free_m = max(0.0, metres - (gate.critical_m or 0.0))
+    slow_m = gate.slow_m or 0.0
+    if distance_m > free_m:
+        words = say(
+            "the gate would stop it after {reach:.2f} m: obstacle at {metres:.2f} m", reach=free_m, metres=metres
+        )
+    elif metres - distance_m < slow_m:
+        words = say("the gate would slow it down: obstacle at {metres:.2f} m", metres=metres)
+    else:
+        words = say("the gate would let it: free for {metres:.2f} m", metres=metres)
+    return Preview(words, lets=True, reach_m=min(distance_m, free_m))
+
+
+def _held(words: Words) -> Preview:
+    return Preview(words, lets=False, reach_m=0.0)
+
+
+def _why_held(gate: Gate, place: str, metres: float | None) -> Words:
+    if metres is None or gate.states.get(place) in ("silent", "invalid"):
+        return say("the gate would hold it: its sensor gives no distance that way")
+    return say("the gate would hold it: obstacle at {metres:.2f} m", metres=metres)
+
+
+# ---------------------------------------------------------------- proposals
+
+EXECUTED_WITHIN_S = 60.0
+"""An older proposal is about a situation that is no more."""
+MAX_OPEN = 16
+"""Most proposals of all agents that wait; older ones make way."""
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """What an agent has proposed."""
+
+    id: str
+    agent: str
+    """The key of the agent, the only one that may have it carried out."""
+    run_id: str
+    """The session it was made for."""
+    motion: Motion
+    reason: str
+    made_s: float
+    """On the clock of the book."""
+
+
+class ProposalBook:
+    """The proposals that have not been carried out."""
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+        self._now = now
+        self._open: dict[str, Proposal] = {}
+        self._last = 0
+
+    def add(self, agent: str, run_id: str, motion: Motion, reason: str) -> Proposal:
+        """Add a proposal; its id was never used before."""
+        self._last += 1
+        made = Proposal(f"p{self._last}", agent, run_id, motion, reason, self._now())
+        self._open[made.id] = made
+        while len(self._open) > MAX_OPEN:
+            del self._open[next(iter(self._open))]
+        return made
+
+    def take(self, name: str, agent: str, run_id: str) -> Proposal:
+        """Take a proposal out to carry it out.
+
+        Raises:
+            RefusedError: if it is not there any more, or belongs to another agent or session.
+        """
+        found = self._open.get(name)
+        if found is None or found.agent != agent:
+            raise refused(
+                "there is no proposal {name!r}: each is carried out once, and an emergency stop "
+                "ends them all; make a new one",
+                name=name,
+            )
+        del self._open[name]
+        if self._now() - found.made_s > EXECUTED_WITHIN_S:
+            raise refused("the proposal is older than {seconds:g} s; make a new one", seconds=EXECUTED_WITHIN_S)
+        if found.run_id != run_id:
+            raise refused("the proposal was made for another session; make a new one")
+        return found
+
+    def clear(self) -> None:
+        """Forget them all: an emergency stop."""
+        self._open.clear()

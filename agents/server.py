@@ -15,10 +15,11 @@ import mcp_types as types
 from mcp.server.lowlevel.server import Server
 from pydantic import ValidationError
 
-from agents.driving import AgentDriving, Caller
+from agents import acting, looking
+from agents.driving import AgentDriving
 from agents.refusal import RefusedError, refused
 from agents.session import SessionFinder
-from agents.tools import Call, Tool, ToolAnswer, tools_for
+from agents.tools import Call, Caller, Facts, Tool, tools_for
 from launcher.errors import LauncherError
 from launcher.status import Severity
 from text.output import json_text, say_error
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
     from launcher.consent import Approval
 
 logger = logging.getLogger(__name__)
+TOOLS_OF = (acting, looking)
+"""Imported for their tools."""
 
 INSTRUCTIONS = (
     "A small robot, with a person at its screen. Look first. To move, `propose`, read what the "
@@ -124,7 +127,7 @@ class AgentServer:
             await record.keep(time.monotonic() - began_s)
         return _result(answer)
 
-    async def _answer(self, caller: Caller, record: _Record) -> ToolAnswer:
+    async def _answer(self, caller: Caller, record: _Record) -> Facts | tuple[str, Facts]:
         session = record.session = await self.finder.session()
         tool = _tool(record.tool, session)
         if self._calls > MAX_AT_ONCE and tool.waits:
@@ -137,7 +140,7 @@ class AgentServer:
         arguments = _arguments(tool, record.given)
         if tool.waits:
             await session.settled()
-        return await tool.do(Call(session, self.driving, caller, arguments))
+        return await tool.do(Call(session, self.driving, caller), **arguments)
 
 
 class _Record:
@@ -197,9 +200,9 @@ def _tool(name: str, session: RobotSession) -> Tool:
     return found
 
 
-def _arguments(tool: Tool, given: Mapping[str, Any]) -> Any:  # noqa: ANN401 - the tool's own
+def _arguments(tool: Tool, given: Mapping[str, Any]) -> dict[str, Any]:
     try:
-        return tool.arguments.model_validate(given)
+        return dict(tool.arguments.model_validate(given))
     except ValidationError as error:
         problems = "; ".join(
             f"{'.'.join(map(str, one['loc'])) or 'arguments'}: {one['msg']}"
@@ -208,12 +211,13 @@ def _arguments(tool: Tool, given: Mapping[str, Any]) -> Any:  # noqa: ANN401 - t
         raise refused("the arguments are not valid: {problems}", problems=problems) from None
 
 
-def _result(answer: ToolAnswer) -> types.CallToolResult:
-    text = types.TextContent(type="text", text=json.dumps(answer.facts, ensure_ascii=False))
+def _result(answer: Facts | tuple[str, Facts]) -> types.CallToolResult:
+    jpeg, facts = answer if isinstance(answer, tuple) else ("", answer)
+    text = types.TextContent(type="text", text=json.dumps(facts, ensure_ascii=False))
     content: list[types.ContentBlock] = [text]
-    if answer.jpeg:
-        content.insert(0, types.ImageContent(type="image", data=answer.jpeg, mime_type="image/jpeg"))
-    return types.CallToolResult(content=content, structured_content=answer.facts)
+    if jpeg:
+        content.insert(0, types.ImageContent(type="image", data=jpeg, mime_type="image/jpeg"))
+    return types.CallToolResult(content=content, structured_content=facts)
 
 
 def _error(words: str) -> types.CallToolResult:

@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
+import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.audit import Audit
 from agents.emergency import EmergencyWatch, StopPassing
 from agents.refusal import refused
 from agents.view import GraphView
 from graph.observer.observer import Observer
 from graph.observer.requests import PreparePublisher, TakeBack
 from launcher.client import client
+from launcher.consent import AUDIT_FILE
 from launcher.errors import LauncherError, SessionError, SeveralRunningError, UsageError
 from launcher.events import ClosedEvent
+from launcher.private_files import open_file
 from robot.topics import EMERGENCY_STOP
+from text.output import json_text
 from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from concurrent.futures import Future
 
     from graph.data import GraphUpdate
@@ -30,6 +35,40 @@ if TYPE_CHECKING:
 LOOK_EVERY_S = 0.5
 SAID_WITHIN_S = 1.0
 BOOL = "std_msgs/msg/Bool"
+
+
+MAX_ARGUMENTS = 4000
+"""Most characters of the arguments that are kept."""
+
+
+class Audit:
+    """What agents have called, in the log folder of the run: one JSON object a line, mode 0600."""
+
+    def __init__(self, log_dir: str) -> None:
+        self.path = Path(log_dir) / AUDIT_FILE
+
+    def write(self, agent: str, tool: str, arguments: Mapping[str, object], outcome: str, took_s: float) -> None:
+        """Add a line: time (Unix), client, tool, arguments, outcome, seconds.
+
+        Raises:
+            OSError: if it cannot be written.
+        """
+        kept: object = dict(arguments)
+        if len(text := json_text(kept)) > MAX_ARGUMENTS:
+            kept = f"{text[:MAX_ARGUMENTS]} …"
+        line = {
+            "time": round(time.time(), 3),
+            "client": agent,
+            "tool": tool,
+            "arguments": kept,
+            "outcome": outcome[:MAX_ARGUMENTS],
+            "seconds": round(took_s, 3),
+        }
+        descriptor = open_file(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+        try:
+            os.write(descriptor, (json_text(line) + "\n").encode(errors="backslashreplace"))
+        finally:
+            os.close(descriptor)
 
 
 class RobotSession:

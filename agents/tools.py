@@ -1,39 +1,82 @@
-"""The tools: their names, what they are for, their arguments, and what carries them out."""
+"""The tools: a function each, whose parameters are the arguments that an agent has to write, checked and bounded."""
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_type_hints
 
-from agents import acting, looking
-from agents.arguments import (
-    Arguments,
-    CallArguments,
-    EchoArguments,
-    ExecuteArguments,
-    FindArguments,
-    HeadArguments,
-    NoArguments,
-    ProposeArguments,
-    PublishArguments,
-    SayArguments,
-    SeeArguments,
-)
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model
+
+from robot.limits import HEAD_ANGLE, MAX_COMMANDS
+from text.plain import plain
+from text.ros_names import TOPIC_NAME
 
 if TYPE_CHECKING:
-    from agents.driving import AgentDriving, Caller
     from agents.session import RobotSession
     from launcher.consent import AgentRules
 
+LONGEST_TEXT = 300
+Facts: TypeAlias = dict[str, object]
+
+
+def full_name(name: str) -> str:
+    """Return the name of a topic or service from the root."""
+    return f"/{name.lstrip('/')}"
+
+
+def _name(text: str) -> str:
+    name = full_name(text)
+    if not TOPIC_NAME.fullmatch(name):
+        raise ValueError("not a ROS name; write it as /sensor/sonar_front")
+    return name
+
+
+def _printable(text: str) -> str:
+    return plain(" ".join(text.split()))
+
+
+RosName = Annotated[str, Field(max_length=200), AfterValidator(_name)]
+Camera = Annotated[RosName | None, Field(description="By default the robot's own camera.")]
+Width = Annotated[int, Field(ge=32, le=1280, description="Longest side in pixels.")]
+Part = Annotated[str, Field(max_length=100, description="Only names with this text in them.")]
+Count = Annotated[int, Field(ge=1, le=10, description="How many messages.")]
+Seconds = Annotated[float, Field(gt=0, le=10, description="How long to wait for them.")]
+Commands = Annotated[
+    list[dict[str, Any]],
+    Field(
+        max_length=MAX_COMMANDS,
+        description='Such as {"action": "drive", "speed": 0.2, "steering": 0.0} (m/s; rad, + is '
+        'left) and {"action": "turn_head", "pan": -45, "tilt": 10} (degrees). One drive at most.',
+    ),
+]
+Reason = Annotated[
+    str,
+    Field(max_length=LONGEST_TEXT, description="Why, in a sentence for the person at the screen."),
+    AfterValidator(_printable),
+]
+ProposalId = Annotated[str, Field(max_length=20, description="The id that `propose` has returned.")]
+_Degrees = Annotated[int, Field(ge=int(HEAD_ANGLE.low), le=int(HEAD_ANGLE.high))]
+Pan = Annotated[_Degrees, Field(description="Left and right in whole degrees.")]
+Tilt = Annotated[_Degrees, Field(description="Up and down in whole degrees.")]
+Said = Annotated[
+    str,
+    Field(min_length=1, max_length=LONGEST_TEXT, description="What the robot says aloud."),
+    AfterValidator(_printable),
+]
+Message = Annotated[dict[str, Any], Field(description="The fields of one message.")]
+Request = Annotated[dict[str, Any], Field(description="The fields of the request.")]
+
 
 @dataclass(frozen=True)
-class ToolAnswer:
-    """What a tool answers: facts, and perhaps a picture."""
+class Caller:
+    """The agent that calls."""
 
-    facts: dict[str, object]
-    jpeg: str = ""
-    """In base64; empty if there is none."""
+    key: str
+    """Distinguishes it from others."""
+    name: str
+    """As it calls itself."""
 
 
 @dataclass(frozen=True)
@@ -41,13 +84,9 @@ class Call:
     """One call of a tool."""
 
     session: RobotSession
-    driving: AgentDriving
+    driving: Any
+    """An `agents.driving.AgentDriving`, whose module has tools itself."""
     caller: Caller
-    arguments: Any
-    """Of the tool's own class."""
-
-
-Do = Callable[[Call], Awaitable[ToolAnswer]]
 
 
 @dataclass(frozen=True)
@@ -57,8 +96,9 @@ class Tool:
     name: str
     about: str
     """For the model that chooses it."""
-    arguments: type[Arguments]
-    do: Do
+    arguments: type[BaseModel]
+    do: Callable[..., Awaitable[Facts | tuple[str, Facts]]]
+    """Takes the call and the arguments; returns facts, and perhaps before them a JPEG in base64."""
     acts: bool = False
     """Whether it does more than look."""
     tells: bool = False
@@ -67,117 +107,29 @@ class Tool:
     """Whether it waits until the graph is known, right after the start."""
 
 
-async def _look(call: Call) -> ToolAnswer:
-    rules = call.session.info.agents
-    facts = await looking.look(call.session)
-    limits = {"max_speed_m_s": rules.max_speed_m_s, "max_distance_m": rules.max_distance_m}
-    return ToolAnswer({**facts, "approval": call.driving.approval.value, "limits": limits})
+TOOLS: dict[str, Tool] = {}
+_STRICT = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-async def _see(call: Call) -> ToolAnswer:
-    jpeg, facts = await looking.see(call.session, call.arguments)
-    return ToolAnswer(facts, jpeg)
+def tool(**how: bool) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Make a tool of a function: agents read its docstring, and the parameters after the call are its arguments."""
 
+    def register(do: Callable[..., Any]) -> Callable[..., Any]:
+        hints = get_type_hints(do, include_extras=True)
+        _call, *parameters = inspect.signature(do).parameters.values()
+        empty = inspect.Parameter.empty
+        fields: dict[str, Any] = {
+            one.name: (hints[one.name], ... if one.default is empty else one.default) for one in parameters
+        }
+        arguments = create_model(do.__name__, __config__=_STRICT, **fields)
+        name = do.__name__.removesuffix("_aloud")
+        TOOLS[name] = Tool(name, " ".join((do.__doc__ or "").split()), arguments, do, **how)
+        return do
 
-async def _topics(call: Call) -> ToolAnswer:
-    return ToolAnswer(looking.topics(call.session, call.arguments))
-
-
-async def _graph(call: Call) -> ToolAnswer:
-    return ToolAnswer(looking.graph(call.session, call.arguments))
-
-
-async def _echo(call: Call) -> ToolAnswer:
-    return ToolAnswer(await looking.echo(call.session, call.arguments))
-
-
-async def _propose(call: Call) -> ToolAnswer:
-    asked: ProposeArguments = call.arguments
-    return ToolAnswer(await call.driving.propose(call.session, call.caller, asked.commands, asked.reason))
-
-
-async def _execute(call: Call) -> ToolAnswer:
-    return ToolAnswer(await call.driving.execute(call.session, call.caller, call.arguments.proposal))
-
-
-async def _head(call: Call) -> ToolAnswer:
-    asked: HeadArguments = call.arguments
-    return ToolAnswer(await call.driving.turn_head(call.session, call.caller, asked.pan, asked.tilt, asked.reason))
-
-
-async def _stop(call: Call) -> ToolAnswer:
-    call.driving.stopped()
-    return ToolAnswer(await acting.stop(call.session))
-
-
-async def _say(call: Call) -> ToolAnswer:
-    return ToolAnswer(await acting.say_aloud(call.session, call.arguments.text))
-
-
-async def _publish(call: Call) -> ToolAnswer:
-    return ToolAnswer(await acting.publish(call.session, call.arguments))
-
-
-async def _call(call: Call) -> ToolAnswer:
-    return ToolAnswer(await acting.call(call.session, call.arguments))
-
-
-TOOLS = (
-    Tool(
-        "look",
-        "The state of the robot now: nodes, emergency stop, safety gate and why it holds, sonar "
-        "distances in metres, pose, head, battery, and the limits for agents.",
-        NoArguments,
-        _look,
-    ),
-    Tool("see", "The newest picture of the robot's camera.", SeeArguments, _see),
-    Tool("topics", "The ROS topics, with types and nodes.", FindArguments, _topics),
-    Tool("graph", "The ROS nodes, with topics, services and actions.", FindArguments, _graph),
-    Tool("echo", "The next messages of a ROS topic, as YAML.", EchoArguments, _echo),
-    Tool(
-        "propose",
-        "Propose motion: nothing moves yet. Answers with an id for `execute`, what the safety "
-        "gate would do now, and how far the robot would go. A drive ends by itself after the "
-        "time that is answered.",
-        ProposeArguments,
-        _propose,
-    ),
-    Tool(
-        "execute",
-        "Carry out a proposal, once, within 60 s. The person at the robot's screen is asked, "
-        "which takes up to 30 s; a refusal is final for this proposal: do not repeat it unasked.",
-        ExecuteArguments,
-        _execute,
-        acts=True,
-        tells=True,
-    ),
-    Tool(
-        "stop",
-        "Engage the emergency stop at once. Needs no consent. Only a person releases it.",
-        NoArguments,
-        _stop,
-        acts=True,
-        waits=False,
-    ),
-    Tool("say", "Have the robot say something aloud.", SayArguments, _say, acts=True),
-    Tool(
-        "head",
-        "Turn the robot's head. The person at its screen is asked, as for `execute`.",
-        HeadArguments,
-        _head,
-        acts=True,
-        tells=True,
-    ),
-)
-PUBLISH = Tool(
-    "publish", "Publish one message on a topic that the robot's profile lists.", PublishArguments, _publish, acts=True
-)
-CALL = Tool("call", "Call a service that the robot's profile lists.", CallArguments, _call, acts=True)
+    return register
 
 
 def tools_for(rules: AgentRules | None) -> tuple[Tool, ...]:
     """Return the tools; direct publishing and calling only where a profile lists something."""
-    raw = ()
-    if rules is not None:
-        raw = (*((PUBLISH,) if rules.publish else ()), *((CALL,) if rules.call else ()))
-    return (*TOOLS, *raw)
+    listed = {"publish": rules and rules.publish, "call": rules and rules.call}
+    return tuple(tool for name, tool in TOOLS.items() if listed.get(name, True))

@@ -1,10 +1,8 @@
 """How a server gives answers in a form: found out once for each server and model.
 
 Servers take a schema by different fields of the request, and some take it, say 200 and ignore it.
-So each way is tried with a form that nobody can guess, best first, one at a time:
-
-1. `json_schema`, strict; 2. `json_schema`; 3. `json_object`, with the schema in the prompt;
-4. the call of a tool whose parameters are the schema.
+So two ways are tried, one after the other, with a form that nobody can guess: `json_schema`, strict,
+and the call of a tool whose parameters are the schema.
 
 https://platform.openai.com/docs/guides/structured-outputs
 """
@@ -41,30 +39,18 @@ class Rung(Enum):
     """A way to ask for a form."""
 
     STRICT = "json_schema, strict"
-    SCHEMA = "json_schema"
-    OBJECT = "json_object"
     TOOL = "tool call"
 
 
 def request_for(rung: Rung, schema: Mapping[str, Any], messages: Sequence[Message], model: str) -> ModelRequest:
     """Return the request for an answer that obeys a JSON schema."""
-    asked = list(messages)
-    form: dict[str, Any]
-    if rung in (Rung.STRICT, Rung.SCHEMA):
-        named = {"name": NAME, "schema": schema, "strict": rung is Rung.STRICT}
-        form = {"response_format": {"type": "json_schema", "json_schema": named}}
-    elif rung is Rung.OBJECT:
-        form = {"response_format": {"type": "json_object"}}
-        words = f"Answer with one JSON object and nothing else. Its JSON schema:\n{json.dumps(schema)}"
-        asked.append({"role": "system", "content": words})
-    else:
-        tool = {"name": NAME, "description": "Gives the answer.", "parameters": schema}
-        form = {
-            "tools": [{"type": "function", "function": tool}],
-            # llama.cpp takes the name of a function for `auto`; there is only one anyway.
-            "tool_choice": "required",
-        }
-    return ModelRequest(asked, model, form)
+    if rung is Rung.STRICT:
+        named = {"name": NAME, "schema": schema, "strict": True}
+        return ModelRequest(messages, model, {"response_format": {"type": "json_schema", "json_schema": named}})
+    tool = {"name": NAME, "description": "Gives the answer.", "parameters": schema}
+    # llama.cpp takes the name of a function for `auto`; there is only one anyway.
+    form = {"tools": [{"type": "function", "function": tool}], "tool_choice": "required"}
+    return ModelRequest(messages, model, form)
 
 
 class Ladder:
@@ -94,7 +80,7 @@ class Ladder:
             raise
 
     async def rung(self) -> Rung:
-        """Return the way, which may take up to four requests the first time.
+        """Return the way, which may take two requests the first time.
 
         Raises:
             ModelError: if the server obeys none, or does not answer.
@@ -115,7 +101,7 @@ class Ladder:
             try:
                 if await self._obeyed(rung):
                     return rung
-            except ModelError as fault:  # noqa: PERF203 - four times at most
+            except ModelError as fault:  # noqa: PERF203 - twice at most
                 if fault.kind not in _OF_THIS_WAY:
                     raise
                 faults.append(fault)
@@ -163,12 +149,9 @@ class Ladder:
             except (OSError, ValueError):
                 known = {}
             known = dict(known) if isinstance(known, dict) else {}
-            if rung is None:
-                known.pop(self._name, None)
-            elif known.get(self._name) == rung.value:
+            if known.get(self._name) == (rung and rung.value):
                 return
-            else:
-                known[self._name] = rung.value
+            known[self._name] = rung and rung.value
             self._path.parent.mkdir(parents=True, exist_ok=True)
             beside = self._path.with_suffix(f".{os.getpid()}.new")
             beside.write_text(json.dumps(known, indent=2) + "\n", encoding="utf-8")

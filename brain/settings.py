@@ -92,7 +92,6 @@ class ModelSettings(_Section):
     vision_model: Name | None = None
     """Looks at pictures; `model` does where there is none."""
     transcription_model: Name = "whisper-1"
-    speech_model: Name = "tts-1"
     speech_voice: Name = "alloy"
     realtime_model: Name = "gpt-realtime"
     key_env: Name | None = None
@@ -194,6 +193,9 @@ def _unknown(where: Where) -> tuple[Words, str]:
     if where[-1] in ("key", "api_key"):
         words = say("a key does not belong in this file")
         return words, say("write key_env: VARIABLE, or key_file: FILE (of mode 0600)")
+    if where[-1] == "speech_model":
+        words = say("no server speaks or hears for Deck any more, but for realtime_brain")
+        return words, say("take the line out; the node speaking has espeak and piper")
     known = _fields(where)
     words = say("there is no such setting; there are: {known}", known=", ".join(known))
     return words, did_you_mean(str(where[-1]), known)

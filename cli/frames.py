@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from cli.commands import Parser
     from graph.data import FrameRow, GraphUpdate
-    from space.tree.finding import FrameFinding
-    from space.tree.tree import FrameTree
+    from graph.frames.findings import FrameFinding
+    from graph.frames.tree import FrameTree
 
 LOOK_AGAIN_S = 0.05
 STEADY_S = 2.0
@@ -51,8 +51,8 @@ def _frames_options(parser: Parser) -> None:
 @command("frames", _frames_options)
 def frames_command(options: Namespace) -> int:
     """Listen for some seconds and print; return 1 if there is no frame or anything is wrong."""
-    from graph.frames.around import findings_in
-    from space.tree.tree import FrameTree
+    from graph.frames.findings import findings_in
+    from graph.frames.tree import FrameTree
 
     _name, domain, discovery = running_domain(options.domain, options.discovery)
     keep_stdout_to_ourselves()
@@ -94,7 +94,7 @@ def _listen(domain: int, discovery: str | tuple[str, ...], seconds: float) -> Gr
 
 def _wait(newest: Sequence[GraphUpdate], seconds: float) -> None:
     """Wait so long from the first update on, and longer for what is still to come."""
-    from graph.frames.around import is_settling
+    from graph.frames.findings import is_settling
 
     started_s = begun_s = changed_s = time.monotonic()
     known: tuple[int, ...] = ()

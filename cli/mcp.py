@@ -68,7 +68,7 @@ def _mcp_options(parser: Parser) -> None:
 def mcp_command(options: Namespace) -> int:
     """Serve agents until the agent, or a signal, ends it."""
     if options.show_token:
-        from agents.token import own_token
+        from agents.http import own_token
 
         write(own_token())
         return 0
@@ -93,8 +93,7 @@ def _stdio(options: Namespace) -> int:
 
 
 def _http(options: Namespace) -> int:
-    from agents.http import address_of, listen, serve_http
-    from agents.token import own_token
+    from agents.http import address_of, listen, own_token, serve_http
 
     token = own_token()
     listening = listen(options.port)

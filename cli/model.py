@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import urlsplit
 
 from brain.faults import ModelError
-from brain.serving.faults import ServingError
-from brain.serving.model_file import ModelFile, examine
+from brain.serving.model_file import ModelFile, ServingError, examine
 from brain.serving.server import Order
 from brain.serving.service import ServedAnswer, Service, installed, require_port
 from brain.settings import load, settings_path

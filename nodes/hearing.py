@@ -1,9 +1,8 @@
 """Ears: words out of the sound of /audio/mic_raw, on /audio/heard.
 
 Each utterance, from the first voice to `silence_s` without one, is recognised by the `backend`:
-sphinx (offline, English, the robot's commands only), vosk or sherpa (offline, by a `model` folder
-of yours), or server (`/v1/audio/transcriptions` of the server in llm.yaml). Text in place of sound,
-which the lessons send, is left to its listeners.
+sphinx (English, the robot's commands only), or vosk (by a `model` folder of yours), both offline. Text in
+place of sound, which the lessons send, is left to its listeners.
 
 It hears nothing while the robot itself speaks: for as long as the sound on /audio/speaker_raw
 takes, and `echo_s` more. So only the emergency stop interrupts a robot that talks.
@@ -52,7 +51,7 @@ class Hearing(LessonNode):
     NAME = "hearing"
     backend = Choice("sphinx", "What recognises", choices=BACKENDS, fixed=True)
     language = Choice("en", "Language of the speech", choices=("en", "ru"), fixed=True)
-    model = Text("", "Folder of a model, for vosk and sherpa", fixed=True, may_be_empty=True)
+    model = Text("", "Folder of a model, for vosk", fixed=True, may_be_empty=True)
     sample_rate = Whole(RATE_HZ, "Samples a second", fixed=True, low=8000, high=48_000, unit="Hz")
     silence_s = Number(CLOSING_S, "Silence that ends an utterance", fixed=True, low=0.1, high=3.0, unit="s")
     echo_s = Number(0.5, "How long the robot's own words are still heard", low=0.0, high=5.0, unit="s")

@@ -15,7 +15,7 @@ import time
 from std_msgs.msg import ByteMultiArray, Float32
 
 from brain.speech.faults import SpeechError
-from brain.speech.sound_file import read_sound
+from brain.speech.sound import read_sound
 from nodes.parts.messages import sound_message, sound_of
 from nodes.parts.node import DEPTH, LessonNode, NodeUsageError, Number, Text, change_period
 from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, mock_level_dbfs, text_in

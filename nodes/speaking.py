@@ -1,9 +1,8 @@
 """The voice: speaks the words on /say, as sound on /audio/speaker_raw.
 
-The `backend` speaks: espeak (offline, Russian and English), piper (offline, by a voice file of
-yours), or server (`/v1/audio/speech` of the server in llm.yaml). One sentence is spoken after the
-other; while `WAITING` of them wait, the oldest of these is left out for a new one. Empty words
-silence it at once, and what waits with it.
+The `backend` speaks: espeak (Russian and English), or piper (by a voice file of yours), both offline. One
+sentence is spoken after the other; while `WAITING` of them wait, the oldest of these is left out for a
+new one. Empty words silence it at once, and what waits with it.
 
 Sound is published in blocks at the pace of speech, a little ahead, so that it can be silenced.
 """

@@ -165,20 +165,16 @@ def rung_of(request: Any) -> Rung | None:
     """Return the way in which a request asks for a form, None if it asks for none."""
     form = request.get("response_format", {})
     if form.get("type") == "json_schema":
-        return Rung.STRICT if form["json_schema"]["strict"] else Rung.SCHEMA
-    if form.get("type") == "json_object":
-        return Rung.OBJECT
+        return Rung.STRICT
     return Rung.TOOL if request.get("tools") else None
 
 
 def schema_of(request: Any) -> Any:
     """Return the JSON schema that a request asks for."""
     rung = rung_of(request)
-    if rung in (Rung.STRICT, Rung.SCHEMA):
+    if rung is Rung.STRICT:
         return request["response_format"]["json_schema"]["schema"]
-    if rung is Rung.TOOL:
-        return request["tools"][0]["function"]["parameters"]
-    return json.loads(request["messages"][-1]["content"].split("\n", 1)[1])
+    return request["tools"][0]["function"]["parameters"]
 
 
 def hangs_up(_: Exchange) -> None:

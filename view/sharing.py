@@ -16,9 +16,7 @@ from graph.pictures.source import THINNED
 from graph.qos import TRANSIENT_LOCAL
 from graph.recording.topics import Relay, TopicChoice
 from text.sentences import reason_of, say
-from view.faults import ViewError
-from view.installed import need_foxglove
-from view.place import FOXGLOVE_PORT, HERE, free_port
+from view.place import FOXGLOVE_PORT, HERE, ViewError, free_port, need_foxglove
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

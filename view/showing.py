@@ -2,31 +2,104 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import ExitStack
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from graph.data import Interest
 from graph.observer.observer import Observer
-from view.arranged import arranged
-from view.faults import ViewError
-from view.installed import rerun_program
+from text.i18n import _
 from view.page import ViewPage
-from view.place import DATA_PORT, PAGE_PORT, Place, free_port, is_free
-from view.scene.recorded import Stream
-from view.scene.scene import PICTURE_TYPES, ViewScene
+from view.place import DATA_PORT, PAGE_PORT, Place, ViewError, free_port, is_free, rerun_program
+from view.scene import LOG, PICTURE_TYPES, PICTURES, PLOTS, ViewScene
+from view.shapes import WORLD, topic_path
 from view.viewer import Viewer
 
 if TYPE_CHECKING:
     import threading
+    from collections.abc import Iterable
     from pathlib import Path
 
     from typing_extensions import Self
 
     from graph.data import GraphUpdate
+    from view.shapes import Drawn
 
 ROLE = "view"
 LOOK_S = 0.1
 TRIES = 3
+
+
+APPLICATION = "deck"
+TIMELINE = "time"
+
+
+class Stream:
+    """Sends to the server of a viewer on this machine; never waits for it."""
+
+    def __init__(self, source: str) -> None:
+        """Connect to `source`, in Rerun's own notation of an address."""
+        # That a viewer has been closed is no error of the stream's, to be printed on a terminal.
+        os.environ.setdefault("RUST_LOG", "off")
+        import rerun
+
+        self._recording = rerun.RecordingStream(APPLICATION, send_properties=False)
+        self._recording.connect_grpc(source)
+
+    def put(self, time_s: float, drawn: Drawn) -> None:
+        """Send one thing that is drawn at a time, unix time in seconds."""
+        import rerun
+
+        shapes = list(drawn.shapes)
+        if drawn.recursive:
+            shapes.append(rerun.Clear(recursive=True))
+        if drawn.frame:
+            shapes.append(rerun.CoordinateFrame(drawn.frame))
+        self._recording.set_time(TIMELINE, timestamp=time_s)
+        self._recording.log(list(drawn.path), *shapes, static=drawn.static)
+
+    def arrange(self, blueprint: Any) -> None:  # noqa: ANN401
+        self._recording.send_blueprint(blueprint)
+
+    def close(self) -> None:
+        """Send what waits, for a moment at most, and hang up."""
+        self._recording.disconnect()
+
+
+EYE_M, BEFORE_M = (-0.75, -0.65, 0.55), (0.1, 0.0, 0.1)
+"""Where one looks from and to at first, metres: behind a robot at the start of its way."""
+FLAT = (PICTURES, PLOTS, LOG)
+"""What has no place in 3D."""
+
+
+def arranged(pictures: Iterable[str]) -> Any:  # noqa: ANN401
+    """Return the arrangement for these topics with pictures, named in the user's language."""
+    import rerun.blueprint as rrb
+
+    space = rrb.Spatial3DView(
+        origin="/",
+        contents=["+ /**", *(f"- /{root}/**" for root in FLAT)],
+        name=_("Space"),
+        spatial_information=rrb.SpatialInformation(WORLD),
+        eye_controls=rrb.EyeControls3D(position=EYE_M, look_target=BEFORE_M),
+    )
+    cameras = [rrb.Spatial2DView(origin=_entity(topic), name=topic) for topic in sorted(pictures)] or [
+        rrb.Spatial2DView(origin=f"/{PICTURES}", name=_("Camera"))
+    ]
+    plots = rrb.TimeSeriesView(origin=f"/{PLOTS}", name=_("Numbers"))
+    log = rrb.TextLogView(origin=f"/{LOG}", name=_("Logs"))
+    return rrb.Blueprint(
+        rrb.Horizontal(
+            space, rrb.Vertical(rrb.Tabs(*cameras), plots, log, row_shares=[3, 2, 2]), column_shares=[3, 2]
+        ),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        rrb.TimePanel(state="collapsed", timeline=TIMELINE),
+    )
+
+
+def _entity(topic: str) -> str:
+    return "/" + "/".join(topic_path(PICTURES, topic))
 
 
 class Showing:

@@ -11,19 +11,20 @@ import json
 import os
 import signal
 import subprocess
+import tempfile
 import time
-from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING
+
+import psutil
+from platformdirs import user_cache_path
 
 from text.plain import plain
 from text.sentences import say
-from view.faults import ViewError
-from view.own_folder import OwnFolder
-from view.place import HERE
+from view.place import HERE, ViewError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from typing_extensions import Self
 
@@ -34,8 +35,6 @@ MEMORY = "512MiB"
 FORCED = "FORCE_RERUN_ANALYTICS"
 _PR_SET_PDEATHSIG = 1
 _LINES = 2
-_LISTEN = "0A"
-"""The state of a socket that listens, in /proc/net/tcp."""
 
 
 class Viewer:
@@ -48,25 +47,23 @@ class Viewer:
         """
         self.data_port = data_port
         self.page_port = page_port
-        self._folder = OwnFolder()
-        self._log = self._folder.path / "log"
+        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - as long as the program runs
         serving = () if page_port is None else ("--serve-web", "--web-viewer-port", str(page_port))
         command: Sequence[str] = (
             *(str(program), "--bind", HERE, "--port", str(data_port)),
             *("--server-memory-limit", MEMORY, "--hide-welcome-screen"),
             *serving,
         )
-        with self._log.open("wb") as log:
-            self._process = subprocess.Popen(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=log,
-                env=silent_environment(self._folder.path),
-                # Ctrl-C is meant for us, who end it.
-                start_new_session=True,
-                preexec_fn=_die_with_parent,  # noqa: PLW1509 - our threads only wait, without a lock
-            )
+        self._process = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=self._log,
+            stderr=self._log,
+            env=silent_environment(user_cache_path("deck") / "viewer"),
+            # Ctrl-C is meant for us, who end it.
+            start_new_session=True,
+            preexec_fn=_die_with_parent,  # noqa: PLW1509 - our threads only wait, without a lock
+        )
         try:
             self._wait_until_it_listens()
         except BaseException:
@@ -97,7 +94,6 @@ class Viewer:
         return say("Rerun ended with code {code}: {words}", code=code, words=self._last_words())
 
     def close(self) -> None:
-        """End it, and forget its folder."""
         if not self.ended:
             self._process.terminate()
             try:
@@ -105,7 +101,7 @@ class Viewer:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
-        self._folder.close()
+        self._log.close()
 
     def _wait_until_it_listens(self) -> None:
         deadline_s = time.monotonic() + READY_S
@@ -120,7 +116,8 @@ class Viewer:
             time.sleep(0.02)
 
     def _last_words(self) -> str:
-        lines = self._log.read_text(errors="replace").strip().splitlines()
+        self._log.seek(0)
+        lines = self._log.read().decode(errors="replace").strip().splitlines()
         return plain(" ".join(lines[-_LINES:]), 400)
 
 
@@ -131,7 +128,7 @@ def silent_environment(folder: Path) -> dict[str, str]:
     which Rerun reports nothing either.
     """
     settings = folder / "rerun" / "analytics.json"
-    settings.parent.mkdir(exist_ok=True)
+    settings.parent.mkdir(parents=True, exist_ok=True)
     said = {
         "analytics_enabled": False,
         "analytics_id": "",
@@ -145,15 +142,12 @@ def silent_environment(folder: Path) -> dict[str, str]:
 
 
 def listened_at(pid: int) -> set[int]:
-    """Return the ports of IPv4 at which a process listens, by proc(5): fd and net/tcp."""
-    held: set[str] = set()
-    with suppress(OSError):  # It has ended.
-        for each in Path(f"/proc/{pid}/fd").iterdir():
-            with suppress(OSError):  # It has closed this one just now.
-                held.add(str(each.readlink()))
-    rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
-    listening = (row for row in rows if row[3] == _LISTEN)
-    return {int(row[1].partition(":")[2], 16) for row in listening if f"socket:[{row[9]}]" in held}
+    """Return the ports of IPv4 at which a process listens."""
+    try:
+        found = psutil.Process(pid).net_connections("tcp4")
+    except psutil.Error:  # It has ended.
+        return set()
+    return {one.laddr.port for one in found if one.status == psutil.CONN_LISTEN}
 
 
 def _die_with_parent() -> None:

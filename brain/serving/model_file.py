@@ -11,7 +11,6 @@ import struct
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from brain.serving.faults import ServingError
 from text.os_words import os_reason
 from text.sentences import say
 
@@ -19,6 +18,18 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
     from typing import BinaryIO
+
+    from text.sentences import Words
+
+
+class ServingError(Exception):
+    """Why a model file is not served; str() is the reason in English."""
+
+    def __init__(self, words: Words) -> None:
+        """`words` are made by `text.sentences.say`, and name the fix."""
+        super().__init__(words)
+        self.words = words
+
 
 MAGIC = b"GGUF"
 _NUMBERS = {

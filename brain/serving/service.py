@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import brain
-from brain.serving.faults import ServingError
+from brain.serving.model_file import ServingError
 from text.os_words import os_reason
 from text.sentences import say
 

@@ -1,8 +1,16 @@
-"""PCM with its sample rate, and the way from one rate to another."""
+"""PCM with its sample rate, from one rate to another, and out of a file."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+
+from brain.speech.faults import SpeechError
+from text.os_words import os_reason
+from text.sentences import say
+
+LONGEST_BYTES = 32 << 20
+"""Of a file."""
 
 
 @dataclass(frozen=True)
@@ -26,3 +34,25 @@ class Sound:
         form = miniaudio.SampleFormat.SIGNED16
         made = miniaudio.convert_frames(form, 1, self.rate_hz, self.pcm, form, 1, rate_hz)
         return Sound(bytes(made), rate_hz)
+
+
+def read_sound(path: str, rate_hz: int) -> Sound:
+    """Return what is in a WAV, FLAC, MP3 or Ogg Vorbis file, mixed down to one channel.
+
+    Raises:
+        SpeechError: it cannot be read, is too long, or is no sound; the words name the file.
+    """
+    import miniaudio
+
+    try:
+        file = Path(path).expanduser()
+        if file.stat().st_size > LONGEST_BYTES:
+            raise SpeechError(say("{path}: is too long", path=path))
+        form = miniaudio.SampleFormat.SIGNED16
+        decoded = miniaudio.decode(file.read_bytes(), form, 1, rate_hz)
+    except OSError as error:
+        words = say("{path}: cannot be read: {reason}", path=path, reason=os_reason(error))
+        raise SpeechError(words) from None
+    except miniaudio.DecodeError:
+        raise SpeechError(say("{path}: is not a sound file", path=path)) from None
+    return Sound(decoded.samples.tobytes(), rate_hz)

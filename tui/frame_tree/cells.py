@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from space.tree.heard import is_stale
+from graph.frames.findings import is_stale
 from text.figures import elapsed, figure
 from text.i18n import _, localized
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from space.tree.heard import HeardFrame
-    from space.tree.tree import TreeLine
+    from graph.data import FrameRow
+    from graph.frames.tree import TreeLine
 
 LONGEST = 120
 DEEPEST = 24
@@ -22,7 +22,7 @@ Words = tuple[str, str]
 """A text and its meaning: `good`, `warn`, `bad`, `dim` or none."""
 
 
-def heard_of(line: TreeLine) -> HeardFrame | None:
+def heard_of(line: TreeLine) -> FrameRow | None:
     """Return what was heard of it; None for a root.
 
     Of two topics it is the one that moves: what is fixed has neither rate nor age worth a look.

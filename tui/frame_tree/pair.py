@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
 
+from graph.frames.findings import by_whom
 from space.buffer import NoTransformError, TransformBuffer
-from space.tree.finding import by_whom
 from text import ros2_words
 from text.i18n import _, decimal, localized
 from text.plain import plain
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from graph.data import FrameRow
     from space.transform import Transform
-    from space.tree.heard import HeardFrame
 
 LONGEST = 60
 METRES, QUATERNION, DEGREES = 8, 7, 6
@@ -69,7 +68,7 @@ class FramePairs:
             return FramePair(source, target, None, remark)
 
 
-def publisher_line(heard: Sequence[HeardFrame]) -> str:
+def publisher_line(heard: Sequence[FrameRow]) -> str:
     """Return who publishes a frame, or may do so, with the whole names."""
     gone = next((one.gone for one in heard if one.gone), "")
     if gone and not any(one.publishers for one in heard):

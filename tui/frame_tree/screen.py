@@ -9,8 +9,8 @@ from textual.containers import Container, Vertical, VerticalScroll
 from textual.content import Content
 from textual.widgets import Input, Static
 
-from graph.frames.around import findings_in
-from space.tree.tree import FrameTree
+from graph.frames.findings import findings_in
+from graph.frames.tree import FrameTree
 from text import ros2_words
 from text.i18n import N_, _
 from tui.actions import bindings
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
-    from space.tree.finding import FrameFinding
-    from space.tree.tree import TreeLine
+    from graph.frames.findings import FrameFinding
+    from graph.frames.tree import TreeLine
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
 WIDE_FROM = 160

@@ -11,7 +11,7 @@ from tui.widgets.rows import Cell, Column, Row, Rows
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from space.tree.tree import TreeLine
+    from graph.frames.tree import TreeLine
 
 STATE, AGE = 11, 7
 NARROW, WIDE = 18, 30

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from graph.data import GraphUpdate
-    from space.tree.finding import FrameFinding
-    from space.tree.tree import TreeLine
+    from graph.frames.findings import FrameFinding
+    from graph.frames.tree import TreeLine
     from tui.frame.host import Host
 
 NARROWEST = 16

@@ -201,9 +201,6 @@ class LogPane(Vertical, Working):
         self.query_one(LogBar).show(self.view)
 
     def on_language_changed(self) -> None:
-        """Redraw in the current language."""
-
-    def words_changed(self) -> None:
         self.view.lay_out()
         self._show_state()
 

@@ -58,7 +58,3 @@ class TeleopDock:
         """Release all keys: after a stop, or when another screen receives them."""
         if self._panel is not None:
             self._panel.release()
-
-    def words_changed(self) -> None:
-        if self._panel is not None:
-            self._panel.words_changed()

@@ -231,7 +231,6 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self.border_title = Content(_(TITLE) + topic)
 
     def on_language_changed(self) -> None:
-    def words_changed(self) -> None:
         self._entitle()
 
     # Drawing

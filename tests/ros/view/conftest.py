@@ -16,7 +16,7 @@ from sensor_msgs.msg import Image
 from tests.conftest import take
 from tests.deck_process import DeckProcess
 from tests.ros.peer import Peer
-from view.installed import OLDEST
+from view.place import OLDEST
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

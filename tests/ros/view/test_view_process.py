@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from pathlib import Path
 
 import psutil
 import pytest
 
 from tests.deck_process import alive
 from tests.waiting import wait_until
-from view.own_folder import PREFIX
 
 pytestmark = pytest.mark.nightly
 
@@ -27,13 +25,6 @@ asyncio.run(main())
 
 
 @pytest.fixture(autouse=True)
-def folders(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    return tmp_path
-
-
-@pytest.fixture(autouse=True)
 def _no_display(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
@@ -45,11 +36,7 @@ def family(pid: int) -> list[int]:
     return [pid, *(child.pid for child in own.children(recursive=True))]
 
 
-def kept_in(place: Path) -> list[Path]:
-    return list(place.glob(f"{PREFIX}*"))
-
-
-def test_it_does_not_outlive_a_screen_that_is_killed(ros_domain: int, folders: Path) -> None:
+def test_it_does_not_outlive_a_screen_that_is_killed(ros_domain: int) -> None:
     command = [sys.executable, "-c", OPEN_FOREVER, str(ros_domain)]
     screen = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert screen.stdout is not None
@@ -59,4 +46,3 @@ def test_it_does_not_outlive_a_screen_that_is_killed(ros_domain: int, folders: P
     screen.kill()
     screen.wait()
     wait_until(lambda: not any(map(alive, processes)), "the end of all of them")
-    assert kept_in(folders) == []

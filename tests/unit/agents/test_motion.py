@@ -11,18 +11,27 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import ValidationError
 
-from agents.audit import MAX_ARGUMENTS, Audit
-from agents.motion import MAX_HEADS, Motion, check_rules, motion_words, read_motion
-from agents.preview import preview_of
-from agents.proposals import EXECUTED_WITHIN_S, MAX_OPEN, ProposalBook
-from agents.raw_access import KEPT, check_call, check_publish
+from agents.acting import KEPT, check_call, check_publish
+from agents.driving import AgentDriving
+from agents.http import own_token, token_path
+from agents.motion import (
+    EXECUTED_WITHIN_S,
+    MAX_HEADS,
+    MAX_OPEN,
+    Motion,
+    ProposalBook,
+    check_rules,
+    motion_words,
+    preview_of,
+    read_motion,
+)
 from agents.refusal import RefusedError
 from agents.server import LONGEST_NAME, shown_name
-from agents.session import SessionFinder
-from agents.token import own_token, token_path
-from agents.unasked_way import UnaskedWay
-from launcher.consent import ALLOWED_FOR_S, AgentRules
+from agents.session import MAX_ARGUMENTS, Audit, SessionFinder
+from agents.tools import TOOLS, tools_for
+from launcher.consent import ALLOWED_FOR_S, AgentRules, Approval
 from launcher.errors import UsageError
 from robot.commands.schema import parse_llm
 from robot.safety.gate_report import Gate
@@ -194,16 +203,29 @@ def test_a_stop_ends_them_and_old_ones_make_way() -> None:
         book.take(made[-1].id, "a", "run")
 
 
-def test_ways_without_a_question_add_up_for_as_long_as_an_allowance() -> None:
+def test_ways_without_a_question_add_up_for_as_long_as_an_allowance(monkeypatch: pytest.MonkeyPatch) -> None:
     now = Time()
-    way = UnaskedWay(now)
-    way.add(0.6)
+    monkeypatch.setattr("time.monotonic", now)
+    driving = AgentDriving(Approval.ALWAYS)
+    driving.drove_unasked(0.6)
     now.now_s = 100.0
-    way.add(0.3)
-    assert way.has_room(0.1, 1.0)
-    assert not way.has_room(0.11, 1.0)
+    driving.drove_unasked(0.3)
+    assert driving.unasked_m() == pytest.approx(0.9)
     now.now_s = ALLOWED_FOR_S + 1
-    assert way.left_m(1.0) == pytest.approx(0.7)
+    assert driving.unasked_m() == pytest.approx(0.3)
+
+
+def test_each_tool_says_what_it_is_for_and_takes_its_own_arguments_only() -> None:
+    assert set(TOOLS) == {
+        *("look", "see", "topics", "graph", "echo", "propose", "execute", "head", "stop", "say", "publish", "call"),
+    }  # fmt: skip
+    assert all(tool.about for tool in TOOLS.values())
+    assert dict(TOOLS["see"].arguments.model_validate({"width": 64})) == {"topic": None, "width": 64}
+    for given in ({"width": 5}, {"height": 64}, {"topic": "a b"}):
+        with pytest.raises(ValidationError):
+            TOOLS["see"].arguments.model_validate(given)
+    assert {tool.name for tool in tools_for(RULES)}.isdisjoint({"publish", "call"})
+    assert "publish" in {tool.name for tool in tools_for(AgentRules(publish=("/lamp",)))}
 
 
 def test_a_call_is_a_line_of_json(tmp_path: Path) -> None:

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +11,12 @@ import pytest
 from brain.speech.espeak import EspeakVoice
 from brain.speech.faults import SpeechError
 from brain.speech.recognisers import recogniser
-from brain.speech.server import wav_of
-from brain.speech.sound import Sound
+from brain.speech.sound import Sound, read_sound
 from brain.speech.sphinx import SphinxRecogniser
 from brain.speech.utterances import CLOSING_S, Utterances
+from brain.speech.voices import voice
 from robot.sound import RATE_HZ
+from tests.wav import wav_of
 
 SECOND = bytes(2 * RATE_HZ)
 
@@ -82,81 +79,24 @@ def test_what_is_no_command_is_not_taken_for_one(ears: SphinxRecogniser, text: s
         assert ears.transcribe(said) == ""
 
 
-KEY = "sk-test-77aa"
-SAID = Sound(b"\x01\x02" * 4000, RATE_HZ)
-
-
-class Requests(list[tuple[str, str, bytes]]):
-    """Path, Authorization and body of each."""
-
-    url = ""
-
-
-@contextmanager
-def server(status: int, kind: str, answer: bytes) -> Iterator[Requests]:
-    seen = Requests()
-
-    class Handler(BaseHTTPRequestHandler):
-        def do_POST(self) -> None:
-            body = self.rfile.read(int(self.headers["Content-Length"]))
-            seen.append((self.path, self.headers["Authorization"], body))
-            self.send_response(status)
-            self.send_header("Content-Type", kind)
-            self.send_header("Content-Length", str(len(answer)))
-            self.end_headers()
-            self.wfile.write(answer)
-
-        def log_message(self, *_: object) -> None:
-            pass
-
-    http = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-    thread = threading.Thread(target=http.serve_forever, args=(0.02,))
-    thread.start()
-    seen.url = f"http://127.0.0.1:{http.server_port}/v1"
-    try:
-        yield seen
-    finally:
-        http.shutdown()
-        http.server_close()
-        thread.join()
-
-
-@pytest.fixture(autouse=True)
-def _settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-    monkeypatch.setenv("DECK_LLM_MODEL", "m-1")
-    monkeypatch.setenv("DECK_LLM_KEY", KEY)
-
-
-def test_an_utterance_is_transcribed(monkeypatch: pytest.MonkeyPatch) -> None:
-    with server(200, "application/json", b'{"text": " robot forward "}') as seen:
-        monkeypatch.setenv("DECK_LLM_BASE_URL", seen.url)
-        ears = recogniser("server", "en", "")
-        assert ears.transcribe(SAID) == "robot forward"
-        assert ears.transcribe(SAID) == "robot forward"
-    (path, key, body), _again = seen
-    assert path == "/v1/audio/transcriptions"
-    assert key == f"Bearer {KEY}"
-    assert wav_of(SAID) in body
-    assert b"whisper-1" in body
-
-
 @pytest.mark.parametrize(
-    ("status", "answer"),
+    ("make", "words"),
     [
-        (401, {"error": {"message": f"bad key {KEY}"}}),
-        (404, {"error": {"message": "no such model"}}),
-        (429, {"error": {"message": "slow down"}}),
-        (500, {"error": {"message": "oh"}}),
-        (200, [1, 2]),
+        (lambda: recogniser("sphinx", "ru", ""), "pocketsphinx knows only English: take backend:=vosk"),
+        (lambda: recogniser("vosk", "ru", ""), "vosk is not installed: pip install vosk"),
+        (lambda: voice("piper", ""), "piper-tts is not installed: pip install piper-tts"),
     ],
 )
-def test_a_server_that_fails_is_told_without_the_key(
-    status: int, answer: object, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    with server(status, "application/json", json.dumps(answer).encode()) as seen:
-        monkeypatch.setenv("DECK_LLM_BASE_URL", seen.url)
-        with pytest.raises(SpeechError) as caught:
-            recogniser("server", "en", "").transcribe(SAID)
-    assert str(caught.value.sentence)
-    assert KEY not in caught.value.sentence
+def test_what_cannot_hear_or_speak_says_what_it_lacks(make: Callable[[], object], words: str) -> None:
+    with pytest.raises(SpeechError) as caught:
+        make()
+    assert str(caught.value.sentence).startswith(words)
+
+
+def test_a_sound_file_is_read_at_the_rate_that_is_asked_for(tmp_path: Path) -> None:
+    path = tmp_path / "said.wav"
+    path.write_bytes(wav_of(Sound(SECOND, RATE_HZ)))
+    assert read_sound(str(path), 8000).seconds == pytest.approx(1.0, abs=0.01)
+    path.write_bytes(b"no sound at all")
+    with pytest.raises(SpeechError, match="is not a sound file"):
+        read_sound(str(path), 8000)

@@ -12,8 +12,8 @@ import pytest
 from graph.data import Sample
 from space.transform import Transform
 from tests.unit.space.trees import cloud_tree, pose_tree
-from view.scene.drawn import Drawn
-from view.scene.scene import ViewScene
+from view.scene import ViewScene
+from view.shapes import Drawn
 
 STILL = {"twist": {"linear": {"x": 0.0}, "angular": {"z": 0.0}}}
 HEADER = {"stamp": {"sec": 1, "nanosec": 0}, "frame_id": "map"}

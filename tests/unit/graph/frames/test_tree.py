@@ -8,11 +8,10 @@ from typing import Any
 import pytest
 
 from graph.data import FrameRow
+from graph.frames.findings import FrameFinding, FrameTrouble, Surroundings, frame_findings
+from graph.frames.tree import FrameTree
 from space.buffer import Stamped
 from space.transform import IDENTITY
-from space.tree.finding import FrameFinding, FrameTrouble
-from space.tree.findings import Surroundings, frame_findings
-from space.tree.tree import FrameTree
 from text.i18n import localized
 
 

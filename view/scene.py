@@ -2,37 +2,209 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from graph.housekeeping import is_hidden
-from graph.pictures.picture import COMPRESSED, IMAGE
-from graph.pictures.pixels import ImageError
+from graph.pictures.compressed import to_jpeg
+from graph.pictures.picture import COMPRESSED, IMAGE, METRES, read_picture
+from graph.pictures.pixels import DEPTHS, ImageError, image_fields, pixel_rows
 from robot.topics import ROBOT_DESCRIPTION, TF, TF_STATIC
 from space.reading.fields import NotDrawnError
 from text.i18n import localized
+from text.plain import plain
 from text.sentences import Words, reason_of, say
-from view.scene.clouds import cloud, scan
-from view.scene.drawn import Drawn
-from view.scene.frames import Frames, newest_of
-from view.scene.log import remark, rosout
-from view.scene.maps import grid
-from view.scene.markers import marker, several
-from view.scene.pictures import compressed, image
-from view.scene.plots import PLOTTED, numbers
-from view.scene.poses import Trails, many, path, posed
-from view.scene.ranges import cone, ray
-from view.scene.robot import RobotShapes
+from view.shapes import (
+    Drawn,
+    Frames,
+    RobotShapes,
+    Trails,
+    cloud,
+    cone,
+    grid,
+    many,
+    marker,
+    newest_of,
+    path,
+    posed,
+    ray,
+    scan,
+    several,
+    topic_path,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from graph.data import Sample, TopicRow
-    from view.scene.drawn import Message
+    from view.shapes import Message
 
     Reader = Callable[[str, Message], Iterable[Drawn]]
+
+# ---------------------------------------------------------------- words
+
+LOG = "log"
+"""The root of all log lines in the tree of entities."""
+OURS = "deck"
+LEVELS = ((50, "CRITICAL"), (40, "ERROR"), (30, "WARN"), (20, "INFO"), (0, "DEBUG"))
+"""Least numbers of `rcl_interfaces/msg/Log` and Rerun's names."""
+LONGEST, LONGEST_NODE = 4000, 200
+
+
+def rosout(topic: str, message: Message) -> list[Drawn]:
+    """Return a line of a node."""
+    import rerun
+
+    del topic
+    number = int(message["level"])
+    level = next(name for least, name in LEVELS if number >= least)
+    node = plain(str(message["name"]), LONGEST_NODE) or "?"
+    line = rerun.TextLog(plain(str(message["msg"]), LONGEST), level=level)
+    return [Drawn((LOG, node), (line,))]
+
+
+def remark(words: str) -> Drawn:
+    """Return a line of Deck's own."""
+    import rerun
+
+    return Drawn((LOG, OURS), (rerun.TextLog(plain(words, LONGEST), level="WARN"),))
+
+
+# ---------------------------------------------------------------- pictures
+
+PICTURES = "pictures"
+"""The root of all pictures in the tree of entities."""
+AS_IT_IS = {b"\xff\xd8\xff": "image/jpeg", b"\x89PNG": "image/png"}
+"""The first bytes of what the viewer decodes itself."""
+
+
+def image(topic: str, message: Message, *, compact: bool) -> list[Drawn]:
+    """Return a `sensor_msgs/Image`, as JPEG if it is to be `compact`. Raises ImageError."""
+    import rerun
+
+    if message["encoding"] in METRES:
+        metre = 1 / METRES[message["encoding"]]
+        shape = rerun.DepthImage(_numbers(message), meter=metre)
+    else:
+        shape = _picture(IMAGE, message, compact=compact)
+    return [Drawn(topic_path(PICTURES, topic), (shape,))]
+
+
+def compressed(topic: str, message: Message, *, compact: bool) -> list[Drawn]:
+    """Return a `sensor_msgs/CompressedImage`, still compressed if that will do.
+
+    Raises ImageError.
+    """
+    import rerun
+
+    data = bytes(message["data"])
+    kind = next((kind for first, kind in AS_IT_IS.items() if data.startswith(first)), "")
+    if kind and compact:
+        shape = rerun.EncodedImage(contents=data, media_type=kind)
+    else:
+        shape = _picture(COMPRESSED, message, compact=compact)
+    return [Drawn(topic_path(PICTURES, topic), (shape,))]
+
+
+def _picture(type_name: str, message: Message, *, compact: bool) -> Any:  # noqa: ANN401
+    import rerun
+
+    rgb = read_picture(type_name, message, lambda width, height: (width, height)).rgb
+    if compact:
+        return rerun.EncodedImage(contents=to_jpeg(rgb), media_type="image/jpeg")
+    # A viewer on this machine shows them at once, and would take longer to decode them.
+    return rerun.Image(rgb)
+
+
+def _numbers(message: Message) -> NDArray[np.generic]:
+    """Return the pixels of a depth image, shape (height, width)."""
+    (width, height, step), encoding, data = image_fields(message)
+    kind = (">" if message.get("is_bigendian") else "<") + DEPTHS[encoding]
+    size = int(kind[-1])
+    rows = pixel_rows(data, width, height, step, size)
+    numbers = rows.reshape(height, width * size).copy().view(kind)
+    # Rerun reads the machine's own order of bytes.
+    return numbers.astype(kind[1:])
+
+
+# ---------------------------------------------------------------- numbers
+
+PLOTS = "plots"
+"""The root of all numbers in the tree of entities."""
+LONGEST_JOINT = 80
+MOST_JOINTS = 64
+
+
+def numbers(type_name: str, topic: str, message: Message) -> list[Drawn]:
+    """Return the numbers of a message of one of `PLOTTED`, without those that are none."""
+    import rerun
+
+    return [
+        Drawn(topic_path(PLOTS, topic, *name), (rerun.Scalars(number),))
+        for name, number in PLOTTED[type_name](message)
+        if math.isfinite(number)
+    ]
+
+
+_Named = tuple[tuple[str, ...], float]
+
+
+def _data(message: Message) -> Iterator[_Named]:
+    yield (), float(message["data"])
+
+
+def _range(message: Message) -> Iterator[_Named]:
+    yield (), float(message["range"])
+
+
+def _twist(message: Message) -> Iterator[_Named]:
+    yield ("linear_x",), float(message["linear"]["x"])
+    yield ("angular_z",), float(message["angular"]["z"])
+
+
+def _odometry(message: Message) -> Iterator[_Named]:
+    yield from _twist(message["twist"]["twist"])
+
+
+def _steered(message: Message) -> Iterator[_Named]:
+    yield ("speed",), float(message["drive"]["speed"])
+    yield ("steering_angle",), float(message["drive"]["steering_angle"])
+
+
+def _joints(message: Message) -> Iterator[_Named]:
+    for name, position in zip(message["name"][:MOST_JOINTS], message["position"], strict=False):
+        yield (plain(str(name), LONGEST_JOINT),), float(position)
+
+
+def _battery(message: Message) -> Iterator[_Named]:
+    yield ("voltage",), float(message["voltage"])
+
+
+def _twist_stamped(message: Message) -> Iterator[_Named]:
+    yield from _twist(message["twist"])
+
+
+_NUMBERS = ("Float32", "Float64", "Int8", "Int16", "Int32", "UInt8", "UInt16", "UInt32")
+PLOTTED: dict[str, Callable[[Message], Iterator[_Named]]] = {
+    **dict.fromkeys((f"std_msgs/msg/{name}" for name in _NUMBERS), _data),
+    "ackermann_msgs/msg/AckermannDriveStamped": _steered,
+    "geometry_msgs/msg/Twist": _twist,
+    "geometry_msgs/msg/TwistStamped": _twist_stamped,
+    "nav_msgs/msg/Odometry": _odometry,
+    "sensor_msgs/msg/BatteryState": _battery,
+    "sensor_msgs/msg/JointState": _joints,
+    "sensor_msgs/msg/Range": _range,
+}
+"""Types whose numbers are plotted, and which of them."""
+
+
+# ---------------------------------------------------------------- all
 
 PICTURE_TYPES = frozenset({IMAGE, COMPRESSED})
 MARKER, MARKERS = "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    from space.tree.heard import HeardFrame
+    from graph.data import FrameRow
 
 
 class TreeLine(NamedTuple):
@@ -16,7 +16,7 @@ class TreeLine(NamedTuple):
     frame: str
     parent: str
     """Empty for a root."""
-    heard: tuple[HeardFrame, ...]
+    heard: tuple[FrameRow, ...]
     """The frame in this parent: none for a root, two if it comes on both topics."""
     last: tuple[bool, ...]
     """For itself and each frame above it, the root excluded: whether no sibling follows."""
@@ -35,9 +35,9 @@ class TreeLine(NamedTuple):
 class FrameTree:
     """Frames by their parents; there may be several trees, and loops."""
 
-    def __init__(self, heard: Iterable[HeardFrame]) -> None:
+    def __init__(self, heard: Iterable[FrameRow]) -> None:
         """Build it of every frame in each of its parents; a frame without a name is left out."""
-        self.edges: dict[tuple[str, str], tuple[HeardFrame, ...]] = {}
+        self.edges: dict[tuple[str, str], tuple[FrameRow, ...]] = {}
         """Parent and child to what was heard of it."""
         for one in heard:
             edge = (one.newest.parent, one.newest.child)

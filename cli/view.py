@@ -23,8 +23,7 @@ from launcher.processes.ending import stop_by_signals
 from text.i18n import _
 from text.output import json_text, keep_stdout_to_ourselves, write
 from text.sentences import reason_of
-from view.faults import ViewError
-from view.place import has_window, ssh_command
+from view.place import ViewError, has_window, need_foxglove, rerun_program, rviz_program, ssh_command
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -84,7 +83,6 @@ def view_command(options: Namespace) -> int:
     _name, domain, discovery = running_domain(options.domain, options.discovery)
     if options.rviz:
         _rviz(domain, discovery)
-    from view.installed import rerun_program
     from view.showing import Showing
 
     _have(rerun_program)
@@ -116,7 +114,6 @@ def _foxglove_options(parser: Parser) -> None:
 def foxglove_command(options: Namespace) -> int:
     """Serve what is published to Foxglove until it is stopped."""
     _name, domain, discovery = running_domain(options.domain, options.discovery)
-    from view.installed import need_foxglove
     from view.sharing import Sharing
 
     _have(need_foxglove)
@@ -192,7 +189,6 @@ def _lines(opened: ViewOpened, ssh: str) -> list[str]:
 def _rviz(domain: int, discovery: str | tuple[str, ...]) -> NoReturn:
     from cli.shell.command import environment_in
     from launcher.profile.defaults import SHIPPED
-    from view.installed import rviz_program
 
     program = _have(rviz_program)
     sys.stdout.flush()

@@ -1,1 +1,0 @@
-"""`deck view` and `deck foxglove`: viewers beside the screen."""

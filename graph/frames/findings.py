@@ -1,0 +1,534 @@
+"""All that is wrong with the frames, the worst first, in words with what to do."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from graph.frames.book import FRAME_TOPICS, MOST_FRAMES
+from graph.frames.reading import TF_MESSAGE
+from graph.qos import VOLATILE
+from text.ros_names import TF, TF_STATIC
+from text.sentences import say
+from text.suggestions import near
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Iterable, Iterator
+
+    from graph.data import FrameRow, GraphUpdate
+    from graph.frames.tree import FrameTree
+
+NAMED = 3
+"""Frames and nodes that a sentence names; the others are counted."""
+
+
+class FrameTrouble(str, Enum):
+    """What is wrong, from what stops tf2 to what will puzzle somebody later."""
+
+    FULL = "full"
+    LOOP = "loop"
+    PARENTS = "two parents"
+    CONTESTED = "contested"
+    NUMBERS = "numbers"
+    STALE = "stale"
+    GONE = "gone"
+    ROOTS = "two roots"
+    UNKNOWN = "unknown frame"
+    CLOCK = "clock"
+    BOTH = "both topics"
+    STATIC_MOVED = "static moved"
+    VOLATILE = "volatile"
+    ELSEWHERE = "elsewhere"
+    SLASH = "slash"
+
+
+@dataclass(frozen=True)
+class FrameFinding:
+    """One thing that is wrong."""
+
+    trouble: FrameTrouble
+    frames: tuple[str, ...]
+    """Where: the frames that it is about."""
+    text: str
+    """A sentence."""
+    advice: str
+    """What to do, a sentence."""
+
+
+def listed(names: Sequence[str]) -> str:
+    """Name the first of them, and count the others; what is there several times is named once."""
+    if not names:
+        return say("nobody")
+    counted = Counter(names)
+    first, *others = list(counted)[:NAMED]
+    words = _called(first, counted[first])
+    for name in others:
+        # Nested, since a name may be a sentence that is still to be translated.
+        words = say("{names}, {name}", names=words, name=_called(name, counted[name]))
+    more = len(counted) - NAMED
+    return say("{names} and {count} more", names=words, count=more) if more > 0 else words
+
+
+def by_whom(heard: Sequence[FrameRow]) -> str:
+    """Name the publishers of frames, or those that it may be."""
+    names: Counter[str] = Counter()
+    for one in heard:
+        names |= Counter(one.publishers)
+    nodes = listed(tuple(names.elements()))
+    return nodes if all(one.certain for one in heard) else say("one of {nodes}", nodes=nodes)
+
+
+def _called(name: str, times: int) -> str:
+    called = name or say("a frame without a name")
+    return say("{name} ({count} of this name)", name=called, count=times) if times > 1 else called
+
+
+STALE_PERIODS, STALE_S = 5.0, 1.0
+"""A moving frame is stale after so many of its periods, and never sooner than that."""
+ONCE_S = 3.0
+"""One that has come only once is stale after this long."""
+
+
+def is_stale(heard: FrameRow) -> bool:
+    """Return whether a moving frame has been silent for longer than a few of its periods."""
+    if heard.is_static:
+        return False
+    if heard.hz is None:
+        return heard.age_s > ONCE_S
+    return heard.age_s > max(STALE_S, STALE_PERIODS / max(heard.hz, 1e-3))
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What is known besides the frames themselves."""
+
+    named: Mapping[str, str] = field(default_factory=dict)
+    """Topic to the frame that the header of its newest message names."""
+    elsewhere: Mapping[str, int] = field(default_factory=dict)
+    """Other topics on which somebody publishes frames, to how many listen there."""
+    volatile: tuple[str, ...] = ()
+    """Nodes that publish /tf_static and do not latch it."""
+    settling: bool = False
+    """Whether static frames are still to come: what is missing now may be there in a moment."""
+    simulated: bool = False
+    """Whether somebody publishes /clock, so that stamps are not times of day."""
+    most: int = 0
+    """How many frames are kept at most; 0 without a limit."""
+
+
+def frame_findings(tree: FrameTree, heard: Sequence[FrameRow], around: Surroundings) -> list[FrameFinding]:
+    """Return what is wrong, the worst first."""
+    found = [
+        *findings_of_tree(tree, around.named, settling=around.settling),
+        *findings_of_frames(heard, simulated=around.simulated),
+        *_full(heard, around),
+        *_volatile(around),
+        *_elsewhere(around),
+    ]
+    order = list(FrameTrouble)
+    return sorted(found, key=lambda one: order.index(one.trouble))
+
+
+def _full(heard: Sequence[FrameRow], around: Surroundings) -> Iterator[FrameFinding]:
+    if around.most and len(heard) >= around.most:
+        text = say("there are more than {most} frames; the others are not shown", most=around.most)
+        advice = say("look for a node that makes a new name each time, such as one with a number or a time in it")
+        yield FrameFinding(FrameTrouble.FULL, (), text, advice)
+
+
+def _volatile(around: Surroundings) -> Iterator[FrameFinding]:
+    if around.volatile:
+        text = say(
+            "{nodes}: publishes {topic} without transient_local, so that tf2 does not hear it",
+            nodes=listed(around.volatile),
+            topic=TF_STATIC,
+        )
+        advice = say(
+            "create its publisher with durability transient_local and depth 1, as "
+            "tf2_ros.StaticTransformBroadcaster does"
+        )
+        yield FrameFinding(FrameTrouble.VOLATILE, (), text, advice)
+
+
+def _elsewhere(around: Surroundings) -> Iterator[FrameFinding]:
+    for topic, listeners in sorted(around.elsewhere.items()):
+        text = (
+            say("frames come on {topic} too, where tf2 does not listen by itself", topic=topic)
+            if listeners
+            else say("frames come on {topic} too, which nobody here listens to", topic=topic)
+        )
+        advice = say(
+            "start its publisher with -r {topic}:={usual}, or whoever needs these frames with -r {usual}:={topic}",
+            topic=topic,
+            usual=TF_STATIC if topic.endswith(TF_STATIC) else TF,
+        )
+        yield FrameFinding(FrameTrouble.ELSEWHERE, (), text, advice)
+
+
+CLOCK = "/clock"
+
+
+def findings_in(update: GraphUpdate, tree: FrameTree) -> list[FrameFinding]:
+    """Return what is wrong with the frames of an update, which this tree was made of."""
+    return frame_findings(tree, update.frames, surroundings(update))
+
+
+def is_settling(update: GraphUpdate) -> bool:
+    """Return whether somebody publishes /tf_static, and its frames are still to come.
+
+    What has come before comes again, because it is latched; what has not is not waited for long.
+    """
+    return not any(row.is_static for row in update.frames) and any(
+        row.name == TF_STATIC and row.publishers and (row.count or row.trouble is None) for row in update.topics
+    )
+
+
+def surroundings(update: GraphUpdate) -> Surroundings:
+    """Return what the topics tell: frames that headers name, frames on other topics."""
+    volatile = [
+        end.called
+        for row in update.topics
+        if row.name == TF_STATIC
+        for end in row.published_by
+        if end.durability == VOLATILE
+    ]
+    return Surroundings(
+        named={row.name: row.frame_id for row in update.topics if row.frame_id},
+        elsewhere={
+            row.name: row.subscribers
+            for row in update.topics
+            if TF_MESSAGE in row.type_names and row.name not in FRAME_TOPICS and row.publishers
+        },
+        volatile=tuple(dict.fromkeys(volatile)),
+        simulated=any(row.name == CLOCK and row.publishers for row in update.topics),
+        settling=is_settling(update),
+        most=MOST_FRAMES,
+    )
+
+
+# ---------------------------------------------------------------- single frames
+
+FUTURE_S = 0.1
+"""A stamp so far ahead is from another clock: tf2 does not look into the future."""
+BEHIND_S = 1.0
+"""One so far behind is of another clock, or of a node that cannot keep up."""
+OTHER_START_S = 1e9
+"""Stamps below are no unix time: simulated time, time since the start, or none at all."""
+
+
+def findings_of_frames(heard: Sequence[FrameRow], *, simulated: bool = False) -> Iterator[FrameFinding]:
+    """Yield what is wrong with each; what one node does to many frames is said once.
+
+    With `simulated` time, stamps cannot be compared with the clock on the wall.
+    """
+    yield from _numbers(heard)
+    yield from _contested(heard)
+    yield from _stale(heard)
+    yield from _gone(heard)
+    if not simulated:
+        yield from _clocks(heard)
+    yield from _static_moved(heard)
+    yield from _slashed(heard)
+
+
+def _numbers(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+    for found in _together(heard, lambda one: one.fault and (one.publishers, one.certain, one.fault)):
+        first = found[0]
+        text = say(
+            "{frames}: {fault}; refused {faults} of {count}",
+            frames=listed(_names(found)),
+            fault=first.fault,
+            faults=sum(one.faults for one in found),
+            count=sum(one.count for one in found),
+        )
+        advice = say("tf2 drops such a transform as well: fix what {node} fills in", node=by_whom([first]))
+        yield FrameFinding(FrameTrouble.NUMBERS, _names(found), text, advice)
+
+
+def _contested(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+    for found in _together(heard, lambda one: one.contested and (one.publishers, one.certain)):
+        names, nodes = listed(_names(found)), listed(found[0].publishers)
+        text = (
+            say("{nodes} publish {frames} by turns, so that it jumps", nodes=nodes, frames=names)
+            if found[0].certain and len(found[0].publishers) > 1
+            else say("several publishers send {frames} by turns, so that it jumps", frames=names)
+        )
+        advice = say("leave it to one of {nodes}; many nodes have a parameter like publish_tf: false", nodes=nodes)
+        yield FrameFinding(FrameTrouble.CONTESTED, _names(found), text, advice)
+
+
+def _stale(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+    for found in _together(heard, lambda one: is_stale(one) and (one.publishers, one.gone)):
+        first = found[0]
+        text = say(
+            "{frames}: silent for {seconds:.0f} s",
+            frames=listed(_names(found)),
+            seconds=max(one.age_s for one in found),
+        )
+        if first.publishers:
+            advice = say(
+                "see in Logs why {node} publishes it no more; tf2 does not answer for a time that "
+                "it has not heard of",
+                node=by_whom(found[:1]),
+            )
+        elif first.gone:
+            advice = say("{node}, which published it, has gone: start it again", node=first.gone)
+        else:
+            advice = say("the node that published it has gone: start it again")
+        yield FrameFinding(FrameTrouble.STALE, _names(found), text, advice)
+
+
+def _gone(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+    # Endpoints become known a little later than their messages.
+    gone = [one for one in heard if one.is_static and not one.publishers and one.age_s > ONCE_S]
+    for found in _together(gone, lambda one: (one.gone,)):
+        frames, node = listed(_names(found)), found[0].gone
+        text = (
+            say(
+                "{frames}: {node}, which published it on {topic}, has gone", frames=frames, node=node, topic=TF_STATIC
+            )
+            if node
+            else say("{frames}: the node that published it on {topic} has gone", frames=frames, topic=TF_STATIC)
+        )
+        advice = say("start it again: a node that starts now does not get this frame")
+        yield FrameFinding(FrameTrouble.GONE, _names(found), text, advice)
+
+
+def _clocks(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+    moving = [one for one in heard if not one.is_static and one.count > one.faults]
+    for found in _together(moving, lambda one: (kind := _clock(one)) and (kind, one.publishers, one.certain)):
+        first = found[0]
+        values: dict[str, object] = {
+            "frames": listed(_names(found)),
+            "node": by_whom([first]),
+            "seconds": abs(first.delay_s),
+            "stamp": first.newest.stamp_s,
+        }
+        text, advice = _CLOCK_WORDS[_clock(first)](values)
+        yield FrameFinding(FrameTrouble.CLOCK, _names(found), text, advice)
+
+
+def _clock(one: FrameRow) -> str:
+    """Return what is wrong with its stamps, empty if nothing is."""
+    if one.newest.stamp_s < OTHER_START_S:
+        return "other start" if one.delay_s > BEHIND_S else ""
+    if one.delay_s < -FUTURE_S:
+        return "future"
+    return "behind" if one.delay_s > BEHIND_S else ""
+
+
+def _of_other_start(values: dict[str, object]) -> tuple[str, str]:
+    return (
+        say("{frames}: stamped {stamp:.1f} s, which cannot be the present time", **values),
+        say(
+            "have {node} stamp with its clock, node.get_clock().now(); in simulated time set "
+            "use_sim_time for all nodes or for none",
+            **values,
+        ),
+    )
+
+
+def _of_future(values: dict[str, object]) -> tuple[str, str]:
+    return (
+        say("{frames}: stamped {seconds:.1f} s in the future", **values),
+        say(
+            "set the clocks of both machines by the same server (chrony); {node} must not add time to its stamps",
+            **values,
+        ),
+    )
+
+
+def _of_past(values: dict[str, object]) -> tuple[str, str]:
+    return (
+        say("{frames}: stamped {seconds:.1f} s before it arrives", **values),
+        say(
+            "set the clocks of both machines by the same server (chrony), or find out what holds {node} up", **values
+        ),
+    )
+
+
+_CLOCK_WORDS = {"other start": _of_other_start, "future": _of_future, "behind": _of_past}
+
+
+def _static_moved(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+    for found in _together(heard, lambda one: one.moved and (one.publishers, one.certain)):
+        first = found[0]
+        words: dict[str, object] = {
+            "frames": listed(_names(found)),
+            "nodes": listed(first.publishers),
+            "topic": TF_STATIC,
+        }
+        if first.certain and len(first.publishers) > 1:
+            text = say("{nodes} publish {frames} on {topic} with different numbers", **words)
+            advice = say("leave it to one: which of them holds depends on who comes last")
+        else:
+            text = say("{frames}: comes on {topic} with different numbers", **words)
+            advice = say(
+                "what moves belongs on {topic}; if two nodes publish it, leave it to one: {nodes}",
+                topic=TF,
+                nodes=words["nodes"],
+            )
+        yield FrameFinding(FrameTrouble.STATIC_MOVED, _names(found), text, advice)
+
+
+def _slashed(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+    for found in _together(heard, lambda one: one.slashed and (one.publishers, one.certain)):
+        text = say("{frames}: published with a slash in front", frames=listed(_names(found)))
+        advice = say(
+            "take it away in {node}: tf2 knows names without one, and others may look for it with the slash",
+            node=by_whom(found[:1]),
+        )
+        yield FrameFinding(FrameTrouble.SLASH, _names(found), text, advice)
+
+
+def _together(heard: Iterable[FrameRow], key: Callable[[FrameRow], Hashable]) -> list[list[FrameRow]]:
+    """Return those that have a key, together with others of the same."""
+    found: dict[Hashable, list[FrameRow]] = {}
+    for one in heard:
+        if of := key(one):
+            found.setdefault(of, []).append(one)
+    return list(found.values())
+
+
+def _names(found: Iterable[FrameRow]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(one.newest.child for one in found))
+
+
+# ---------------------------------------------------------------- the tree
+
+ALIKE = 0.85
+"""Names that are as similar as this may be a slip of the pen."""
+MOST_COMPARED = 20
+"""Roots and names whose slips are looked for: comparing all with all takes long."""
+
+
+def findings_of_tree(tree: FrameTree, named: Mapping[str, str], *, settling: bool = False) -> Iterator[FrameFinding]:
+    """Yield what is wrong; `named` is topic to the frame that the header of its messages names.
+
+    While it is `settling`, nothing is said to be missing.
+    """
+    yield from _loops(tree)
+    yield from _parents(tree)
+    yield from _both(tree)
+    if not settling:
+        yield from _roots(tree)
+        yield from _unknown(tree, named)
+
+
+def _loops(tree: FrameTree) -> Iterator[FrameFinding]:
+    for loop in tree.loops:
+        text = say(
+            "{frames} and back to {first}: a loop, which has no root", frames=" → ".join(loop[:8]), first=loop[0]
+        )
+        closing = tree.edges[loop[-1], loop[0]]
+        advice = say(
+            "a frame's parent is the one that it hangs on: take {parent} → {child} out of {node}",
+            parent=loop[-1],
+            child=loop[0],
+            node=by_whom(closing),
+        )
+        yield FrameFinding(FrameTrouble.LOOP, loop, text, advice)
+
+
+def _parents(tree: FrameTree) -> Iterator[FrameFinding]:
+    for frame, parents in sorted(tree.parents.items()):
+        if len(parents) < 2:
+            continue
+        first, second = parents[:2]
+        text = say(
+            "{frame} has two parents: {first} by {one}, {second} by {other}",
+            frame=frame,
+            first=first,
+            one=by_whom(tree.edges[first, frame]),
+            second=second,
+            other=by_whom(tree.edges[second, frame]),
+        )
+        advice = say(
+            "it would jump between the two: keep one, and turn the other round ({frame} → {first}) "
+            "or give it another name",
+            frame=frame,
+            first=first,
+        )
+        yield FrameFinding(FrameTrouble.PARENTS, (frame, *parents), text, advice)
+
+
+def _roots(tree: FrameTree) -> Iterator[FrameFinding]:
+    if len(tree.parts) < 2:
+        return
+    text = say(
+        "{count} trees that nothing joins, with the roots {roots}", count=len(tree.parts), roots=listed(tree.parts)
+    )
+    main, *others = tree.parts
+    yield FrameFinding(FrameTrouble.ROOTS, tree.parts, text, _to_join(tree, main, others))
+
+
+def _to_join(tree: FrameTree, main: str, others: list[str]) -> str:
+    for root in others[:MOST_COMPARED]:
+        meant = _meant(root, tree.frames - {root, *tree.children[root]})
+        if meant:
+            return say(
+                "is {root} a slip for {meant}? Then correct the parent that {node} gives",
+                root=root,
+                meant=meant,
+                node=by_whom(tree.edges[root, tree.children[root][0]]),
+            )
+    return say(
+        "publish where {root} is in the other tree: ros2 run tf2_ros static_transform_publisher "
+        "--frame-id {main} --child-frame-id {root}",
+        # What is the root of a loop has a parent already.
+        root=min(others, key=lambda root: root in tree.parents),
+        main=main,
+    )
+
+
+def _unknown(tree: FrameTree, named: Mapping[str, str]) -> Iterator[FrameFinding]:
+    unknown: dict[str, list[str]] = {}
+    for topic, frame in sorted(named.items()):
+        bare = frame.removeprefix("/")
+        if bare and tree.frames and bare not in tree.frames:
+            unknown.setdefault(bare, []).append(topic)
+    for number, (frame, topics) in enumerate(unknown.items()):
+        text = say("{topics}: the header names {frame}, which no tree knows", topics=listed(topics), frame=frame)
+        meant = _meant(frame, tree.frames) if number < MOST_COMPARED else ""
+        if meant:
+            advice = say("is it a slip for {meant}?", meant=meant)
+        else:
+            advice = say(
+                "publish where it is: ros2 run tf2_ros static_transform_publisher "
+                "--frame-id {root} --child-frame-id {frame}",
+                root=tree.roots[0],
+                frame=frame,
+            )
+        yield FrameFinding(FrameTrouble.UNKNOWN, (frame,), text, advice)
+
+
+def _both(tree: FrameTree) -> Iterator[FrameFinding]:
+    for (parent, child), heard in tree.edges.items():
+        if len(heard) < 2:
+            continue
+        moving, static = sorted(heard, key=lambda one: one.is_static)[:2]
+        text = say(
+            "{child} in {parent} comes on {moving} by {one} and on {static} by {other}",
+            child=child,
+            parent=parent,
+            moving=TF,
+            one=by_whom([moving]),
+            static=TF_STATIC,
+            other=by_whom([static]),
+        )
+        advice = say(
+            "what moves is published on {moving} alone, what is fixed on {static} alone, once",
+            moving=TF,
+            static=TF_STATIC,
+        )
+        yield FrameFinding(FrameTrouble.BOTH, (child, parent), text, advice)
+
+
+@lru_cache(maxsize=4 * MOST_COMPARED)
+def _meant(name: str, known: frozenset[str]) -> str:
+    """Return the frame that was probably meant, empty if none is as similar."""
+    return next(iter(near(name, sorted(known), cutoff=ALIKE)), "")
