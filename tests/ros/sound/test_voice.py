@@ -12,7 +12,7 @@ from std_msgs.msg import ByteMultiArray, Float32, String
 
 from brain.speech.espeak import EspeakVoice
 from brain.speech.server import wav_of
-from nodes.parts.messages import sound_of
+from nodes.parts.sound import sound_of
 from robot.sound import RATE_HZ, level_dbfs, text_in
 from tests.ros.node_process import NodeProcess
 from tests.waiting import wait_until
