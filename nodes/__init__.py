@@ -25,7 +25,7 @@ __preload_idle__ = (
     ".parts.head_client",
     ".simulated.scenes",
     ".drivers.servos",
-    ".parts.messages",
+    ".parts.sound",
     # Brings pydantic, which takes longer than all others together.
     "robot.commands.schema",
 )

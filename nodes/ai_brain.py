@@ -24,9 +24,10 @@ from std_msgs.msg import ByteMultiArray, Float32, String
 
 from brain.faults import FaultKind, ModelError
 from nodes.parts.head_client import HeadAnswer, HeadClient
-from nodes.parts.listeners import SensorListener
-from nodes.parts.messages import BadPictureError, jpeg_of, sound_message, sound_of
-from nodes.parts.node import DEPTH, Choice, LessonNode, Number, Text
+from nodes.parts.node import DEPTH, Choice, LessonNode, Number, SensorListener, Text
+from nodes.parts.pictures import BadPictureError, jpeg_of
+from nodes.parts.runner import run
+from nodes.parts.sound import sound_message, sound_of
 from nodes.parts.stop_news import StopNews
 from nodes.thinking.mind import ModelMind
 from robot.commands.brain import Decision, asks_to_stop, decide, spoken
@@ -273,4 +274,4 @@ def _canonical(word: str) -> str:
 
 
 if __name__ == "__main__":
-    raise SystemExit(AiBrain.main())
+    raise SystemExit(run(AiBrain))

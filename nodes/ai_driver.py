@@ -11,6 +11,7 @@ from std_msgs.msg import String
 
 from nodes.parts.node import DEPTH, LessonNode
 from nodes.parts.repeat import REPEAT_FOR_S, DriveRepeater
+from nodes.parts.runner import run
 from robot.topics import AI_COMMAND
 from robot.words import WORDS, parse_word
 from text.i18n import N_
@@ -48,4 +49,4 @@ class AiDriver(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(AiDriver.main())
+    raise SystemExit(run(AiDriver))

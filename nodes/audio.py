@@ -9,14 +9,16 @@ returns; the state of both goes to /diagnostics once a second.
 from __future__ import annotations
 
 import time
+from functools import partial
 
 from std_msgs.msg import ByteMultiArray, Float32
 
+from nodes.drivers.diagnostics import tell_every_second
 from nodes.drivers.sound_device import IN, OUT
-from nodes.drivers.sound_port import EMPTY, LATE, ODD, UNPLAYED, WORDS, PortStatus, SoundPort
-from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.messages import sound_message, sound_of
+from nodes.drivers.sound_port import EMPTY, LATE, ODD, UNPLAYED, WORDS, SoundPort
 from nodes.parts.node import DEPTH, LessonNode, Number, Text, Whole
+from nodes.parts.runner import run
+from nodes.parts.sound import sound_message, sound_of
 from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, text_in
 from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
 from text.i18n import N_
@@ -55,8 +57,7 @@ class Audio(LessonNode):
         self.create_subscription(ByteMultiArray, SPEAKER, self._play, DEPTH)
         self.every(LEVEL_S, self._tell_level)
         for port, name in ((self._microphone, "microphone"), (self._speaker, "speaker")):
-            status = PortStatus(self.say, f"{self.get_name()}: {name}", port)
-            tell_every_second(self, status.message)
+            tell_every_second(self, partial(port.status, f"{self.get_name()}: {name}"))
         self.say.info(_STARTED, microphone=MICROPHONE, speaker=SPEAKER)
         self._microphone.start()
         self._speaker.start()
@@ -100,4 +101,4 @@ class Audio(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(Audio.main())
+    raise SystemExit(run(Audio))

@@ -15,14 +15,15 @@ import time
 from array import array
 
 import numpy as np
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus
 from numpy.typing import NDArray
 from sensor_msgs.msg import Image
 
 from nodes.drivers.capture import SILENT_S, THREAD, CameraSource, Capture
-from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.messages import CHANNELS, fit
+from nodes.drivers.diagnostics import Rates, connection_status, tell_every_second
 from nodes.parts.node import NEWEST, Choice, LessonNode, Number, Switch, Text, Whole
+from nodes.parts.pictures import CHANNELS, fit
+from nodes.parts.runner import run
 from robot.topics import CAMERA
 from text.i18n import N_
 
@@ -63,7 +64,7 @@ class Camera(LessonNode):
         self._capture = Capture(
             self.say, CameraSource(self.source), (width, height), lambda: self.rate, self._publish, loop=self.loop
         )
-        self._told = (time.monotonic(), 0, 0)
+        self._rates = Rates()
         tell_every_second(self, self._status)
         self.every(_LOOK_EVERY_S, self._look)
         source = self._capture.source
@@ -91,53 +92,35 @@ class Camera(LessonNode):
     def _status(self) -> DiagnosticStatus:
         capture = self._capture
         seconds = time.monotonic() - capture.changed_s
-        values = {
-            "port": str(capture.source),
-            "connected": str(capture.connected).lower(),
-            "connected_since": capture.since,
-            "seconds": f"{seconds:.1f}",
-            "connections": str(capture.pictures.connections),
-            "reconnects": str(max(0, capture.pictures.connections - 1)),
-            **self._rates(),
-        }
-        level, message = (DiagnosticStatus.OK, self.say.text(_SINCE, source=capture.source, seconds=seconds))
+        rates = self._rates.of(capture.came, capture.taken)
+        state = DiagnosticStatus.OK, self.say.text(_SINCE, source=capture.source, seconds=seconds)
         if not capture.connected:
             level = DiagnosticStatus.OK if capture.over else DiagnosticStatus.ERROR
-            message = capture.problem or self.say.text(_NOT_YET, source=capture.source)
+            state = level, capture.problem or self.say.text(_NOT_YET, source=capture.source)
         elif capture.silent:
-            level = DiagnosticStatus.ERROR
-            message = self.say.text(_SILENT, source=capture.source, seconds=SILENT_S)
-        return DiagnosticStatus(
-            level=level,
-            name=self.get_name(),
-            message=message,
-            hardware_id=str(capture.source),
-            values=[KeyValue(key=key, value=value) for key, value in values.items()],
+            state = DiagnosticStatus.ERROR, self.say.text(_SILENT, source=capture.source, seconds=SILENT_S)
+        return connection_status(
+            self.get_name(),
+            state,
+            str(capture.source),
+            capture.since,
+            seconds,
+            capture.connections,
+            frames_in_per_s=f"{rates[0]:.1f}",
+            frames_out_per_s=f"{rates[1]:.1f}",
         )
 
-    def _rates(self) -> dict[str, str]:
-        """Return pictures per second since the last call."""
-        now_s, pictures = time.monotonic(), self._capture.pictures
-        came, taken = pictures.came, pictures.taken
-        before_s, *before = self._told
-        passed_s = max(1e-3, now_s - before_s)
-        self._told = now_s, came, taken
-        return {
-            "frames_in_per_s": f"{(came - before[0]) / passed_s:.1f}",
-            "frames_out_per_s": f"{(taken - before[1]) / passed_s:.1f}",
-        }
 
-    @classmethod
-    def main(cls, args: list[str] | None = None) -> int:
-        code = super().main(args)
-        if any(thread.name == THREAD for thread in threading.enumerate()):
-            # OpenCV is in a read. If it returned while the interpreter shuts down, the process would
-            # crash.
-            sys.stdout.flush()
-            sys.stderr.flush()
-            os._exit(code)
-        return code
+def main() -> int:
+    """Run the node until it is asked to end."""
+    code = run(Camera)
+    if any(thread.name == THREAD for thread in threading.enumerate()):
+        # OpenCV is in a read. If it returned while the interpreter shuts down, the process would crash.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+    return code
 
 
 if __name__ == "__main__":
-    raise SystemExit(Camera.main())
+    raise SystemExit(main())

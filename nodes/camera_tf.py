@@ -14,6 +14,7 @@ from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from nodes.parts.node import LATCHED, LessonNode, Number, Text
+from nodes.parts.runner import run
 from robot.topics import TF_STATIC
 from space.transform import quaternion_from_rpy
 from text.i18n import N_
@@ -69,4 +70,4 @@ class CameraTf(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(CameraTf.main())
+    raise SystemExit(run(CameraTf))

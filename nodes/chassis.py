@@ -19,12 +19,11 @@ from typing import Any
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import Quaternion, TransformStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, JointState
-from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
+from nodes.drivers.diagnostics import tell_every_second
 from nodes.drivers.pico import (
     COMMAND_OLD,
     EMERGENCY,
@@ -35,20 +34,19 @@ from nodes.drivers.pico import (
     StandstillLogger,
     diagnosis,
 )
-from nodes.parts.commands import FRAME, MAX_WHEEL_SPEED, CommandRefusals, StallDetector
-from nodes.parts.diagnostics import tell_every_second
+from nodes.parts.commands import MAX_WHEEL_SPEED, CommandRefusals, StallDetector
 from nodes.parts.emergency import PICO, EmergencyStopListener
-from nodes.parts.listeners import ODOM
 from nodes.parts.node import DEPTH, LessonNode, Number, PeriodicThread, Text, Whole
+from nodes.parts.odometry import fill, transform_to
+from nodes.parts.runner import run
 from robot.joints import DRIVE_JOINTS
-from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M, turning_radius
+from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
 from robot.limits import STEERING, wheel_limits
 from robot.motion.odometry import Pose, advance
 from robot.safety.several import SlowestCommand
 from robot.topics import BATTERY, JOINT_STATES, ODOMETRY, TF, WHEEL_COMMANDS
 from robot.wire.pico import Telemetry
 from robot.words import DriveSetpoint
-from space.transform import quaternion_from_rpy
 
 _LONGEST_GAP_S = 1.0
 """After a longer silence the robot's motion is unknown."""
@@ -62,7 +60,7 @@ class DeadReckoning:
         self._wheelbase_m, self._radius_m = wheelbase_m, radius_m
         self._uptime_ms: int | None = None
         self._angles = [0.0, 0.0]
-        self._odometry = Odometry(header=Header(frame_id=ODOM), child_frame_id=FRAME)
+        self._odometry = Odometry()
         self.pose = Pose()
 
     def take(self, telemetry: Telemetry) -> None:
@@ -84,30 +82,8 @@ class DeadReckoning:
 
     def odometry(self, telemetry: Telemetry, stamp: Time) -> Odometry:
         """Return /odom: the same message object each time, refilled."""
-        message = self._odometry
-        message.header.stamp = stamp
-        message.pose.pose.position.x = self.pose.x_m
-        message.pose.pose.position.y = self.pose.y_m
-        message.pose.pose.orientation = self._orientation()
-        command = self._command(telemetry)
-        radius_m = turning_radius(command.steering_rad, self._wheelbase_m)
-        message.twist.twist.linear.x = command.speed_m_s
-        message.twist.twist.angular.z = command.speed_m_s / radius_m
-        return message
-
-    def transform(self, stamp: Time) -> TransformStamped:
-        """Return /tf: odom to base_link."""
-        message = TransformStamped()
-        message.header = Header(stamp=stamp, frame_id=ODOM)
-        message.child_frame_id = FRAME
-        moved = message.transform.translation
-        moved.x, moved.y = self.pose.x_m, self.pose.y_m
-        message.transform.rotation = self._orientation()
-        return message
-
-    def _orientation(self) -> Quaternion:
-        x, y, z, w = quaternion_from_rpy(0.0, 0.0, self.pose.heading_rad)
-        return Quaternion(x=x, y=y, z=z, w=w)
+        fill(self._odometry, self.pose, self._command(telemetry), self._wheelbase_m, stamp)
+        return self._odometry
 
     def _command(self, telemetry: Telemetry) -> DriveSetpoint:
         """Return the robot's actual motion as a drive command."""
@@ -337,8 +313,8 @@ class ChassisNode(LessonNode):
         if self._odometry.get_subscription_count():
             self._odometry.publish(self._reckoning.odometry(telemetry, stamp))
         if self._transforms.get_subscription_count():
-            self._transforms.publish(TFMessage(transforms=[self._reckoning.transform(stamp)]))
+            self._transforms.publish(TFMessage(transforms=[transform_to(self._reckoning.pose, stamp)]))
 
 
 if __name__ == "__main__":
-    raise SystemExit(ChassisNode.main())
+    raise SystemExit(run(ChassisNode))

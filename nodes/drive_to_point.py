@@ -22,13 +22,13 @@ from deck_interfaces.action import DriveToPoint
 from geometry_msgs.msg import PoseStamped
 from rclpy.action.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
-from rclpy.duration import Duration
 from rclpy.task import Future
 
-from nodes.parts.commands import to_message
+from nodes.parts.commands import LAST_STOP, to_message
 from nodes.parts.emergency import EmergencyStopListener
-from nodes.parts.listeners import ODOM, OdometryListener
 from nodes.parts.node import DEPTH, LATCHED, Choice, LessonNode, Number, Text, change_period
+from nodes.parts.odometry import ODOM, OdometryListener
+from nodes.parts.runner import run
 from nodes.simulated.base import ALWAYS, AUTO, NEVER, WAIT_S, SimulatedBase
 from robot.kinematics import WHEELBASE_M
 from robot.limits import SPEED, STEERING
@@ -118,36 +118,9 @@ class DriveGoal:
         self.over.set_result(DriveToPoint.Result(reached=reached, distance=distance_m, message=message))
 
 
-class GoalPose:
-    """Publishes one goal at a time; a pose without a frame means that there is none."""
-
-    def __init__(self, node: LessonNode) -> None:
-        self._node = node
-        self._publisher = node.create_publisher(PoseStamped, GOAL_POSE, LATCHED)
-
-    def tell(self, point: Point) -> None:
-        """Publish a new goal point; the robot may arrive with any heading."""
-        message = self._message()
-        message.header.frame_id = ODOM
-        message.pose.position.x, message.pose.position.y = point.x_m, point.y_m
-        self._publisher.publish(message)
-
-    def forget(self) -> None:
-        """Publish that there is no goal any more."""
-        self._publisher.publish(self._message())
-
-    def _message(self) -> PoseStamped:
-        message = PoseStamped()
-        message.header.stamp = self._node.get_clock().now().to_msg()
-        message.pose.orientation.w = 1.0
-        return message
-
-
 _FINEST_M, _COARSEST_M = 0.02, 2.0
 _NO_ODOMETRY_S = WAIT_S + 1.0
 """How long a goal waits for a first pose."""
-_LAST_STOP = Duration(seconds=0.2)
-"""How long the last stop may take to reach all subscribers."""
 _LAST_WORD_S = 0.2
 """How long the result may take to reach its clients."""
 
@@ -175,7 +148,7 @@ class DriveToPointNode(LessonNode):
         self._waiting: dict[bytes, Future] = {}
         """Goals whose results have not been sent to their clients yet."""
         self._publisher = self.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
-        self._goal_pose = GoalPose(self)
+        self._goal_pose = self.create_publisher(PoseStamped, GOAL_POSE, LATCHED)
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
         self._odometry = OdometryListener(self)
         self._base = SimulatedBase(
@@ -206,7 +179,7 @@ class DriveToPointNode(LessonNode):
         if self._goal is None:
             return
         self._finish(_ENDING)
-        self._publisher.wait_for_all_acked(_LAST_STOP)
+        self._publisher.wait_for_all_acked(LAST_STOP)
         if self.executor is not None:
             # The result is sent by a separate task, after everything already queued.
             until_s = time.monotonic() + _LAST_WORD_S
@@ -253,7 +226,7 @@ class DriveToPointNode(LessonNode):
         approach = Approach(Point(wanted.x, wanted.y), tolerance_m, chassis)
         self._goal = DriveGoal(handle, approach, self.patience_s)
         self._waiting[bytes(handle.goal_id.uuid)] = self._goal.over
-        self._goal_pose.tell(approach.goal)
+        self._tell_goal(approach.goal)
         self.say.info(_GOAL, x=wanted.x, y=wanted.y, tolerance=tolerance_m)
         handle.execute()
         change_period(self._timer, 1.0 / self.rate)
@@ -297,7 +270,7 @@ class DriveToPointNode(LessonNode):
             return
         self._timer.cancel()
         self._ask_for(STOP)
-        self._goal_pose.forget()
+        self._tell_goal(None)
         pose = self._odometry.pose
         values = {
             "distance": goal.distance_m(pose),
@@ -310,6 +283,16 @@ class DriveToPointNode(LessonNode):
         else:
             self.say.warn(phrase, every_s=0.0, **values)
         goal.finish(phrase is _REACHED, pose, self.say.text(phrase, **values))
+
+    def _tell_goal(self, point: Point | None) -> None:
+        """Publish the goal, at which the robot may arrive with any heading; None: there is none any more."""
+        message = PoseStamped()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.pose.orientation.w = 1.0
+        if point is not None:
+            message.header.frame_id = ODOM
+            message.pose.position.x, message.pose.position.y = point.x_m, point.y_m
+        self._goal_pose.publish(message)
 
     def _emergency_changed(self, active: bool) -> None:
         if active:
@@ -324,4 +307,4 @@ class DriveToPointNode(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(DriveToPointNode.main())
+    raise SystemExit(run(DriveToPointNode))

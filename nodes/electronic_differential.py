@@ -17,11 +17,11 @@ import time
 from typing import Any
 
 from ackermann_msgs.msg import AckermannDriveStamped
-from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 
 from nodes.parts.commands import (
     FRAME,
+    LAST_STOP,
     MAX_WHEEL_SPEED,
     SLOWEST,
     CommandRefusals,
@@ -31,6 +31,7 @@ from nodes.parts.commands import (
 )
 from nodes.parts.emergency import EmergencyStopListener
 from nodes.parts.node import DEPTH, LessonNode, Number, Text, change_period
+from nodes.parts.runner import run
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import STRAIGHT_BELOW_RAD, TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M, WheelSpeeds, wheel_speeds
 from robot.limits import RIM_M_S, SPEED, STEERING, Limits
@@ -38,9 +39,6 @@ from robot.safety.several import SlowestCommand
 from robot.topics import DRIVE, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
 from text.i18n import N_
-
-_LAST_STOP = Duration(seconds=0.2)
-"""How long the last stop may take to reach all subscribers."""
 
 _STARTED = N_("The electronic differential listens to {topic}")
 _STANDING = N_("Standing: {speed:.2f} m/s, steering {steering:.2f} rad -> left {left:.2f}, right {right:.2f} m/s")
@@ -111,7 +109,7 @@ class ElectronicDifferential(LessonNode):
         """Leave the wheels stopped."""
         self._command = STOP
         self._publish()
-        self._publisher.wait_for_all_acked(_LAST_STOP)
+        self._publisher.wait_for_all_acked(LAST_STOP)
 
     def _hear(self, message: AckermannDriveStamped, info: dict[str, Any]) -> None:
         stamp = message.header.stamp
@@ -247,4 +245,4 @@ def _much_the_same(command: DriveSetpoint, told: DriveSetpoint | None) -> bool:
 
 
 if __name__ == "__main__":
-    raise SystemExit(ElectronicDifferential.main())
+    raise SystemExit(run(ElectronicDifferential))

@@ -25,9 +25,10 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.task import Future
 from sensor_msgs.msg import JointState
 
+from nodes.drivers.diagnostics import tell_every_second
 from nodes.drivers.servos import WAS_AWAY, ServoClient
-from nodes.parts.diagnostics import tell_every_second
 from nodes.parts.node import DEPTH, LessonNode, Number, Switch, Text, Whole, change_period
+from nodes.parts.runner import run
 from robot.joints import HEAD_JOINTS
 from robot.limits import HEAD_ANGLE, Limits
 from robot.motion.head import HeadJoint, turn_ms
@@ -296,4 +297,4 @@ def _joint(values: Mapping[str, Any], name: str) -> HeadJoint:
 
 
 if __name__ == "__main__":
-    raise SystemExit(HeadController.main())
+    raise SystemExit(run(HeadController))

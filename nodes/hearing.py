@@ -20,8 +20,9 @@ from std_msgs.msg import ByteMultiArray, String
 from brain.speech.faults import SpeechError
 from brain.speech.recognisers import BACKENDS, recogniser
 from brain.speech.utterances import CLOSING_S, Utterances
-from nodes.parts.messages import sound_of
 from nodes.parts.node import DEPTH, Choice, LessonNode, NodeUsageError, Number, Text, Whole
+from nodes.parts.runner import run
+from nodes.parts.sound import sound_of
 from robot.sound import RATE_HZ, SAMPLE, text_in
 from robot.topics import HEARD, MICROPHONE, SPEAKER
 from text.i18n import N_
@@ -139,4 +140,4 @@ class _Worker:
 
 
 if __name__ == "__main__":
-    raise SystemExit(Hearing.main())
+    raise SystemExit(run(Hearing))

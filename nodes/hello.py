@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from nodes.parts.node import LessonNode, Number
+from nodes.parts.runner import run
 from text.i18n import N_
 
 _AWAKE = N_("Hello! The first node is awake.")
@@ -27,4 +28,4 @@ class HelloNode(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(HelloNode.main())
+    raise SystemExit(run(HelloNode))

@@ -21,6 +21,7 @@ from std_msgs.msg import String
 from nodes.parts.head_client import HeadAnswer, HeadClient
 from nodes.parts.node import DEPTH, LessonNode, Number
 from nodes.parts.repeat import REPEAT_FOR_S, DriveRepeater
+from nodes.parts.runner import run
 from robot.commands.schema import (
     MAX_COMMANDS,
     CommandError,
@@ -130,4 +131,4 @@ class LlmParser(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(LlmParser.main())
+    raise SystemExit(run(LlmParser))

@@ -16,8 +16,9 @@ from std_msgs.msg import ByteMultiArray, Float32
 
 from brain.speech.faults import SpeechError
 from brain.speech.sound import read_sound
-from nodes.parts.messages import sound_message, sound_of
 from nodes.parts.node import DEPTH, LessonNode, NodeUsageError, Number, Text, change_period
+from nodes.parts.runner import run
+from nodes.parts.sound import sound_message, sound_of
 from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, mock_level_dbfs, text_in
 from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
 from text.i18n import N_
@@ -133,4 +134,4 @@ class MockAudio(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(MockAudio.main())
+    raise SystemExit(run(MockAudio))

@@ -15,6 +15,7 @@ import numpy as np
 from sensor_msgs.msg import Image
 
 from nodes.parts.node import NEWEST, Choice, LessonNode, Number, Text, Whole, change_period
+from nodes.parts.runner import run
 from nodes.simulated.scenes import MovingScene, RoomScene
 from robot.topics import CAMERA
 from text.i18n import N_
@@ -68,4 +69,4 @@ class MockCamera(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(MockCamera.main())
+    raise SystemExit(run(MockCamera))

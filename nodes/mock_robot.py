@@ -22,6 +22,8 @@ from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import JointState
 
 from nodes.parts.node import DEPTH, LATCHED, Choice, LessonNode, NodeUsageError, Number, Text, Whole
+from nodes.parts.odometry import ODOM, turned
+from nodes.parts.runner import run
 from nodes.simulated.devices import FAULTS, FINE, NOISE, SILENT, SLOW, UNPLUGGED, FaultyLine, PseudoSerial
 from robot.joints import DRIVE_JOINTS
 from robot.topics import MAP, MOCK_MOTORS, MOCK_POSE
@@ -29,19 +31,16 @@ from robot.wire.tfluna import TofFrame, encode
 from robot.world.boards import SimulatedPico, SimulatedServos
 from robot.world.grid import CellMap, grid_of
 from robot.world.world import STEP_S, SimulatedSonar, World
-from space.transform import quaternion_from_rpy
 from text.i18n import N_
 from text.os_words import os_reason
 from text.run_path import run_path
-
-FRAME = "odom"
-"""The simulated robot starts at the origin of its odometry, so one frame is enough."""
 
 
 def occupancy_grid(grid: CellMap, stamp: Time) -> OccupancyGrid:
     """Put a grid into a message with this stamp."""
     message = OccupancyGrid()
-    message.header.frame_id = FRAME
+    # The simulated robot starts at the origin of its odometry, so one frame is enough.
+    message.header.frame_id = ODOM
     message.header.stamp = message.info.map_load_time = stamp
     message.info.resolution = grid.cell_m
     message.info.height, message.info.width = grid.cells.shape
@@ -209,11 +208,9 @@ class MockRobot(LessonNode):
     def _publish_pose(self) -> None:
         message = PoseStamped()
         message.header.stamp = self.get_clock().now().to_msg()
-        message.header.frame_id = "odom"
-        place, turn = message.pose.position, message.pose.orientation
-        place.x, place.y = self._world.pose.x_m, self._world.pose.y_m
-        heading_rad = self._world.pose.heading_rad
-        turn.x, turn.y, turn.z, turn.w = quaternion_from_rpy(0.0, 0.0, heading_rad)
+        message.header.frame_id = ODOM
+        message.pose.position.x, message.pose.position.y = self._world.pose.x_m, self._world.pose.y_m
+        message.pose.orientation = turned(self._world.pose.heading_rad)
         self._publisher.publish(message)
 
 
@@ -227,4 +224,4 @@ def _tof_frame(metres: float) -> TofFrame:
 
 
 if __name__ == "__main__":
-    raise SystemExit(MockRobot.main())
+    raise SystemExit(run(MockRobot))

@@ -16,6 +16,7 @@ from typing import Any
 from std_msgs.msg import Float32
 
 from nodes.parts.node import DEPTH, Choice, LessonNode, Number, Text, change_period
+from nodes.parts.runner import run
 from robot.topics import SONAR_FRONT
 from text.i18n import N_
 
@@ -78,4 +79,4 @@ class MockSonar(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(MockSonar.main())
+    raise SystemExit(run(MockSonar))

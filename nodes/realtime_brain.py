@@ -20,9 +20,9 @@ from std_msgs.msg import ByteMultiArray, Float32, String
 
 from brain.faults import FaultKind, ModelError
 from brain.prompt import prompt_file, read_prompt
-from nodes.parts.listeners import SensorListener
-from nodes.parts.messages import sound_message, sound_of
-from nodes.parts.node import DEPTH, LessonNode, NodeUsageError, Number, Text, Whole
+from nodes.parts.node import DEPTH, LessonNode, NodeUsageError, Number, SensorListener, Text, Whole
+from nodes.parts.runner import run
+from nodes.parts.sound import sound_message, sound_of
 from nodes.parts.stop_news import StopNews
 from nodes.thinking.model import AskedModel, BrainState
 from nodes.thinking.senses import Senses
@@ -204,7 +204,7 @@ class RealtimeBrain(LessonNode):
         self._speaker.drop()
         self._stand()
         if self._talk is not None:
-            self._model.background.begin(self._talk.stop())
+            self._model.begin(self._talk.stop())
 
     # ---------------------------------------------------------------- what the node hears
 
@@ -217,13 +217,13 @@ class RealtimeBrain(LessonNode):
             return
         if text_in(sound) is None:
             pcm = self._up.feed(sound[: len(sound) // SAMPLE * SAMPLE])
-            self._model.background.call(lambda: talk.hear(pcm))
+            self._model.call(lambda: talk.hear(pcm))
             return
         words = spoken(sound)
         self._heard(words)
         if not asks_to_stop(words):
-            self._model.background.begin(talk.tell(words))
+            self._model.begin(talk.tell(words))
 
 
 if __name__ == "__main__":
-    raise SystemExit(RealtimeBrain.main())
+    raise SystemExit(run(RealtimeBrain))

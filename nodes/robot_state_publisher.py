@@ -26,6 +26,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from nodes.parts.node import LATCHED, LessonNode, NodeUsageError, Number, Switch, Text, change_period
+from nodes.parts.runner import run
 from robot.topics import HEAD_STATE, JOINT_STATES, ROBOT_DESCRIPTION, TF, TF_STATIC
 from space.robot_model import JointType, ModelJoint, RobotModel, is_position
 from space.transform import Transform
@@ -305,4 +306,4 @@ def _is_set(stamp: Time) -> bool:
 
 
 if __name__ == "__main__":
-    raise SystemExit(RobotStatePublisher.main())
+    raise SystemExit(run(RobotStatePublisher))

@@ -30,9 +30,10 @@ from std_msgs.msg import Float32
 
 from nodes.parts.commands import LOWEST, SolePublisher
 from nodes.parts.emergency import EmergencyStopListener
-from nodes.parts.listeners import SensorListener
-from nodes.parts.node import DEPTH, LessonNode, Number, Switch, Text, change_period
-from nodes.safety.gate import CommandGate, DistanceSensor, DistanceSensors, GateSnapshot, SensorResult, shares
+from nodes.parts.node import DEPTH, LessonNode, Number, SensorListener, Switch, Text, change_period
+from nodes.parts.runner import run
+from nodes.safety.gate import CommandGate
+from nodes.safety.state import DistanceSensor, DistanceSensors, GateSnapshot, SensorResult, shares
 from nodes.safety.words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
 from robot.safety.distance import RangeState, SafetyZone, Verdict, allowed, where
 from robot.topics import COMMAND_SOURCES, SAFETY_STATE, SONAR_FRONT
@@ -184,4 +185,4 @@ class SafetyStop(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(SafetyStop.main())
+    raise SystemExit(run(SafetyStop))

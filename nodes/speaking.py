@@ -19,8 +19,9 @@ from std_msgs.msg import ByteMultiArray, String
 
 from brain.speech.faults import SpeechError
 from brain.speech.voices import BACKENDS, language_of, voice
-from nodes.parts.messages import sound_message
 from nodes.parts.node import DEPTH, Choice, LessonNode, NodeUsageError, Text, Whole
+from nodes.parts.runner import run
+from nodes.parts.sound import sound_message
 from robot.sound import RATE_HZ, SAMPLE
 from robot.topics import SAY, SPEAKER
 from text.i18n import N_
@@ -121,4 +122,4 @@ class Speaking(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(Speaking.main())
+    raise SystemExit(run(Speaking))

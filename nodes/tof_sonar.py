@@ -16,9 +16,10 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from sensor_msgs.msg import Range
 from std_msgs.msg import Float32
 
+from nodes.drivers.diagnostics import tell_every_second
 from nodes.drivers.serial_link import SerialLink
-from nodes.parts.diagnostics import tell_every_second
 from nodes.parts.node import DEPTH, Choice, LessonNode, Number, PeriodicThread, Text, Whole
+from nodes.parts.runner import run
 from robot.frames.readers import TofReader
 from robot.topics import SONAR_FRONT
 from robot.wire.tfluna import BAUD, Model, TofDecoder
@@ -129,4 +130,4 @@ class TofSonar(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(TofSonar.main())
+    raise SystemExit(run(TofSonar))

@@ -12,17 +12,16 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image
 from std_msgs.msg import String
 
 from brain.faults import ModelError
 from brain.prompt import prompt_file, read_prompt
-from nodes.parts.listeners import SensorListener
-from nodes.parts.messages import BadPictureError, jpeg_of
-from nodes.parts.node import DEPTH, LessonNode, Number, Text, Whole, change_period
+from nodes.parts.node import DEPTH, Number, Text
+from nodes.parts.pictures import PictureTaker, jpeg_of
+from nodes.parts.runner import run
 from nodes.thinking.model import AskedModel, BrainState
-from robot.topics import CAMERA, VLM_DESCRIPTION, VLM_DETECTIONS
+from robot.topics import VLM_DESCRIPTION, VLM_DETECTIONS
 from text.i18n import N_
 
 if TYPE_CHECKING:
@@ -32,39 +31,25 @@ if TYPE_CHECKING:
 
 _STARTED = N_("Pictures from {topic} go to {model} at {url}")
 _NO_MODEL = N_("No picture goes anywhere: {problem}")
-_NONE = N_("No picture yet on {topic}")
-_OLD = N_("No new picture on {topic} since the last one")
 _SEES = N_("{model} sees: {description}")
-_BAD = N_("The picture is refused: {reason}")
 _FAILED = N_("No description: {problem}")
 _SAY_EVERY_S = 30.0
 
 
-class VlmAgent(LessonNode):
+class VlmAgent(PictureTaker):
     """Takes the newest picture, and asks about one at a time."""
 
     NAME = "vlm_agent"
-    topic = Text(CAMERA, "Where the pictures come from", fixed=True)
     period = Number(5.0, "Time between two looks", low=0.1, high=3600.0, unit="s")
-    quality = Whole(80, "Quality of the JPEG", low=1, high=100)
     prompt = Text("", "File with the system prompt; empty: Deck's own", may_be_empty=True)
 
     def __init__(self) -> None:
         super().__init__()
-        self._newest: bytes | None = None
-        """Serialized: decoding ten pictures a second to use one in fifty would be wasteful."""
-        self._any = False
         self._description = self.create_publisher(String, VLM_DESCRIPTION, DEPTH)
         self._detections = self.create_publisher(String, VLM_DETECTIONS, DEPTH)
         self._problem: ModelError | None = None
         self._model = self._made()
         self._state = BrainState(self, self._model)
-        SensorListener(self, Image, self.topic, self._keep, depth=1, raw=True)
-        self._timer = self.every(self.period, self._look)
-
-    def parameters_changed(self) -> None:
-        """Apply the new period."""
-        change_period(self._timer, self.period)
 
     def before_end(self) -> None:
         if self._model is not None:
@@ -81,29 +66,19 @@ class VlmAgent(LessonNode):
         self.say.info(_STARTED, topic=self.topic, model=model.name, url=url)
         return model
 
-    def _keep(self, serialized: bytes) -> None:
-        self._newest, self._any = serialized, True
+    @property
+    def is_ready(self) -> bool:
+        if self._problem is not None:
+            self.say.warn(_NO_MODEL, every_s=_SAY_EVERY_S, problem=self._problem.words)
+        return self._model is not None and not self._model.busy
 
-    def _look(self) -> None:
-        if self._model is None:
-            if self._problem is not None:
-                self.say.warn(_NO_MODEL, every_s=_SAY_EVERY_S, problem=self._problem.words)
-            return
-        if self._model.busy:
-            return
-        if self._newest is None:
-            self.say.warn(_OLD if self._any else _NONE, every_s=1.0, topic=self.topic)
-            return
-        message, self._newest = deserialize_message(self._newest, Image), None
-        try:
-            jpeg = jpeg_of(message, self.quality)
-        except BadPictureError as error:
-            self.say.warn(_BAD, reason=self.say.text(error.phrase, **error.values))
-            return
+    def send(self, picture: Image) -> None:
+        jpeg = jpeg_of(picture, self.quality)
         self._state.thinks()
+        assert self._model is not None
         self._model.ask(
             lambda ladder: self._question(ladder, jpeg),
-            lambda thought: self._tell(thought, message.width, message.height),
+            lambda thought: self._tell(thought, picture.width, picture.height),
             self._fail,
         )
 
@@ -128,4 +103,4 @@ class VlmAgent(LessonNode):
 
 
 if __name__ == "__main__":
-    raise SystemExit(VlmAgent.main())
+    raise SystemExit(run(VlmAgent))

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from course.judge.evidence import MET, Observation
 from course.results import CheckResult, State
 from graph.observer.requests import CallService
-from launcher.faults.stuck import held_by
+from launcher.faults.crash import held_by
 from launcher.processes.table import read_process
 from launcher.status import STUCK, NodeState
 from text.sentences import Words, say

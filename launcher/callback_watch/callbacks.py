@@ -5,11 +5,10 @@ from __future__ import annotations
 import sys
 import threading
 
-from .finding import DEADLOCK_S, LOST, NOBODY, STUCK_S, UNSPUN_S, Finding
-from .stacks import ACTION_SERVER, awaits_calls, is_of
+from .stacks import ACTION_SERVER, DEADLOCK_S, LOST, NOBODY, STUCK_S, UNSPUN_S, Finding, awaits_calls, is_of
 from .waits import CALL, EVENT, LOCK, LOOP, RATE, SPIN, awaiting, is_offered, is_told, name_of, pending, waits_of
 
-TYPE_CHECKING = False
+TYPE_CHECKING = False  # Importing `typing` for this would slow down every start.
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from types import FrameType

@@ -8,7 +8,7 @@ import linecache
 
 from .stacks import ACTION_CLIENT, CLIENT, EXECUTORS, RCLPY, class_of, is_in, is_of
 
-TYPE_CHECKING = False
+TYPE_CHECKING = False  # Importing `typing` for this would slow down every start.
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from types import FrameType

@@ -14,16 +14,13 @@ import inspect
 import itertools
 import sys
 import typing
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
-from types import ModuleType
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from types import CodeType, FrameType, ModuleType, TracebackType
+from typing import Any, NamedTuple, TypeVar
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from types import CodeType, FrameType, TracebackType
-
-    from text.sentences import Words
+from text.sentences import Words
 
 Kind = TypeVar("Kind", bound=ast.AST)
 LONGEST = 60

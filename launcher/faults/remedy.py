@@ -6,13 +6,11 @@ import ast
 import inspect
 import re
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from launcher.faults.failure import UNKNOWN, Failure, fields_of, is_from, is_message_class, name_of, shown
-from text.sentences import say
-
-if TYPE_CHECKING:
-    from text.sentences import Words
+from text.i18n import N_
+from text.sentences import Words, say
 
 FEW = 6
 """As many fields are named."""
@@ -38,11 +36,8 @@ def remedy(failure: Failure, node: ast.AST | None, value: Any = UNKNOWN) -> Word
 
 
 def of_list(what: str, call: str) -> Words:
-    return say(
-        "{what} is a list: take one of its values, {call}({what}[0]), or all, [{call}(v) for v in {what}].",
-        what=what,
-        call=call,
-    )
+    phrase = N_("{what} is a list: take one of its values, {call}({what}[0]), or all, [{call}(v) for v in {what}].")
+    return say(phrase, what=what, call=call)
 
 
 def is_none(failure: Failure, node: ast.AST | None) -> Words | None:
@@ -130,12 +125,8 @@ def of_message(what: str, kind: Any) -> Words:
     fields = list(fields_of(kind))
     if "data" in fields:
         return say("{what} is a whole message, {type}; what is in it is {what}.data.", what=what, type=name_of(kind))
-    return say(
-        "{what} is a whole message, {type}; use one of its fields: {fields}.",
-        what=what,
-        type=name_of(kind),
-        fields=listed(fields),
-    )
+    phrase = N_("{what} is a whole message, {type}; use one of its fields: {fields}.")
+    return say(phrase, what=what, type=name_of(kind), fields=listed(fields))
 
 
 def given(value: object) -> Words | str:
@@ -181,11 +172,8 @@ def _of_type(failure: Failure, what: str, node: ast.AST | None, kind: type) -> W
             "{what} is a message around the value; the value alone is self.get_parameter(name).value.", what=what
         )
     if module == "builtin_interfaces":
-        return say(
-            "{what} is the message {type}: Time.from_msg({what}) of rclpy.time can be calculated with.",
-            what=what,
-            type=name_of(kind),
-        )
+        phrase = N_("{what} is the message {type}: Time.from_msg({what}) of rclpy.time can be calculated with.")
+        return say(phrase, what=what, type=name_of(kind))
     if is_message_class(kind):
         return of_message(what, kind)
     if module != "rclpy":

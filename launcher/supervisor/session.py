@@ -8,9 +8,8 @@ from typing import Any
 
 from launcher.clock import Clock, MonotonicClock
 from launcher.errors import StillRunningError, UnknownNodeError
-from launcher.faults.crash import crash_of, refused_arguments, warning_in
+from launcher.faults.crash import crash_of, refused_arguments, stuck_in, warning_in
 from launcher.faults.source import look_at, spun_in_turn, unspun
-from launcher.faults.stuck import stuck_in
 from launcher.faults.telling import fault_in
 from launcher.logs.session_log import SessionLog
 from launcher.processes.table import Process

@@ -138,15 +138,6 @@ _THERE = N_("there is {cameras}")
 _NONE = N_("there is no camera at all (/dev/video*)")
 
 
-@dataclass
-class Pictures:
-    """The pictures received since the node started."""
-
-    came: int = 0
-    taken: int = 0
-    connections: int = 0
-
-
 class Capture:
     """Keeps a source open; `start` it, and `close` it at the end."""
 
@@ -163,7 +154,8 @@ class Capture:
         """`size` is the width and height to request; at most `rate_hz()` pictures are `taken`."""
         self._say, self.source, self._size = say, source, size
         self._rate_hz, self._taken, self._loop = rate_hz, taken, loop
-        self.pictures = Pictures()
+        self.came = self.taken = self.connections = 0
+        """Pictures that came and that were taken, and connections, since the node started."""
         self.connected = self.over = False
         self.since = ""
         """When it was connected, ISO 8601, empty if it is not."""
@@ -214,14 +206,14 @@ class Capture:
             return 0
         import cv2
 
-        before = self.pictures.came
+        before = self.came
         try:
             self._read(film)
         except cv2.error as error:
             self._say.warn(_BROKEN, every_s=_SAY_EVERY_S, source=self.source, problem=error)
         finally:
             film.release()
-        count = self.pictures.came - before
+        count = self.came - before
         if not self._ending.is_set() and not (count and self.source.kind is SourceKind.FILE):
             self._lose(count)
         return count
@@ -241,7 +233,7 @@ class Capture:
             if self._is_wanted():
                 read, picture = film.retrieve()
                 if read and not self._ending.is_set():
-                    self.pictures.taken += 1
+                    self.taken += 1
                     self._taken(picture)  # type: ignore[arg-type]
             if pace_s:
                 due_s = max(due_s + pace_s, time.monotonic() - 1.0)
@@ -258,10 +250,10 @@ class Capture:
 
     def _came(self) -> None:
         self.seen_s = time.monotonic()
-        self.pictures.came += 1
+        self.came += 1
         if not self.connected:
             # Only a picture proves that there is a camera.
-            self.pictures.connections += 1
+            self.connections += 1
             self.changed_s, self.connected, self.problem = self.seen_s, True, ""
             self.since = datetime.now().astimezone().isoformat(timespec="seconds")
             self._say.info(_OPEN, source=self.source)

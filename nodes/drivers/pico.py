@@ -16,19 +16,7 @@ from nodes.drivers.serial_link import SerialLink
 from nodes.parts.commands import Refusal
 from nodes.parts.node import LessonNode, TranslatedLogger
 from robot.frames.readers import PicoReader
-from robot.wire.pico import (
-    PROTOCOL,
-    SEQUENCES,
-    Drive,
-    Halt,
-    Hello,
-    Message,
-    PicoDecoder,
-    Release,
-    Telemetry,
-    Welcome,
-    encode,
-)
+from robot.wire import pico as wire
 from text.i18n import N_
 
 STARTED = N_("The chassis at {port} obeys {topic}")
@@ -71,7 +59,7 @@ class StandstillLogger:
         self._flags: frozenset[str] = frozenset()
         self._refused: int | None = None
 
-    def tell(self, telemetry: Telemetry | None) -> None:
+    def tell(self, telemetry: wire.Telemetry | None) -> None:
         """Report the Pico's newest telemetry, None without any; call this at any rate."""
         flags = telemetry.flags & _BAD if telemetry is not None else frozenset()
         if flags:
@@ -134,15 +122,15 @@ _SILENT = N_("{port} is open, but no Pico answers: another device, or no firmwar
 class PicoClient:
     """Communicates over a `SerialLink`; `start` and `close` that."""
 
-    def __init__(self, node: LessonNode, baud: int, heard: Callable[[Telemetry], None]) -> None:
+    def __init__(self, node: LessonNode, baud: int, heard: Callable[[wire.Telemetry], None]) -> None:
         self._say, self._heard = node.say, heard
         self.link = SerialLink(node, baud, self._hear, self._opened, self._forget, PicoReader)
         self._lock = threading.Lock()
-        self._decoder = PicoDecoder()
+        self._decoder = wire.PicoDecoder()
         self._sequence = 0
         self._greeted_s = 0.0
         self._heard_s, self._opened_s = 0.0, math.inf
-        self.telemetry: Telemetry | None = None
+        self.telemetry: wire.Telemetry | None = None
         """The newest telemetry, None while there is no connection."""
         self.frames = 0
         """Valid lines received."""
@@ -173,22 +161,22 @@ class PicoClient:
         if telemetry is not None and "A" in telemetry.flags:
             # The firmware requires a stop before it obeys again.
             left_rad_s = right_rad_s = 0.0
-        self._send(lambda seq: Drive(seq, left_rad_s, right_rad_s, steering_rad))
+        self._send(lambda seq: wire.Drive(seq, left_rad_s, right_rad_s, steering_rad))
         if self.silent:
             self._say.warn(_SILENT, every_s=10.0, port=self.link.port)
 
     def halt(self) -> None:
         """Latch the emergency stop."""
-        self._send(Halt)
+        self._send(wire.Halt)
 
     def release(self) -> None:
-        self._send(Release)
+        self._send(wire.Release)
 
-    def _send(self, build: Callable[[int], Message]) -> None:
+    def _send(self, build: Callable[[int], wire.Message]) -> None:
         with self._lock:
-            line = encode(build(self._sequence))
+            line = wire.encode(build(self._sequence))
             if self.link.write(line):
-                self._sequence = (self._sequence + 1) % SEQUENCES
+                self._sequence = (self._sequence + 1) % wire.SEQUENCES
 
     def _greet_again(self) -> None:
         if time.monotonic() - self._greeted_s > _HELLO_EVERY_S:
@@ -202,7 +190,7 @@ class PicoClient:
 
     def _greet(self) -> None:
         self._greeted_s = time.monotonic()
-        self._send(Hello)
+        self._send(wire.Hello)
 
     def _forget(self) -> None:
         self.telemetry, self._opened_s = None, math.inf
@@ -210,17 +198,17 @@ class PicoClient:
     def _hear(self, data: bytes) -> None:
         for message in self._decoder.feed(data):
             self.frames += 1
-            if isinstance(message, Welcome):
+            if isinstance(message, wire.Welcome):
                 self._welcome(message)
-            elif isinstance(message, Telemetry):
+            elif isinstance(message, wire.Telemetry):
                 last, self.telemetry = self.telemetry, message
                 self._heard_s = time.monotonic()
                 if last is not None and last.uptime_ms <= message.uptime_ms:
-                    self.lost += max(0, (message.seq - last.seq) % SEQUENCES - 1) % 1000
+                    self.lost += max(0, (message.seq - last.seq) % wire.SEQUENCES - 1) % 1000
                 self._heard(message)
 
-    def _welcome(self, message: Welcome) -> None:
-        if message.protocol == PROTOCOL:
+    def _welcome(self, message: wire.Welcome) -> None:
+        if message.protocol == wire.PROTOCOL:
             self._say.info(_WELCOME, every_s=1.0, firmware=message.firmware, protocol=message.protocol)
         else:
-            self._say.error(_OTHER_PROTOCOL, every_s=10.0, theirs=message.protocol, ours=PROTOCOL)
+            self._say.error(_OTHER_PROTOCOL, every_s=10.0, theirs=message.protocol, ours=wire.PROTOCOL)

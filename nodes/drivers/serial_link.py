@@ -14,13 +14,13 @@ import termios
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from datetime import datetime
 
 import serial
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import String
 
+from nodes.drivers.diagnostics import Rates, connection_status
 from nodes.parts.node import LessonNode, change_period
 from robot.frames.protocols import Chunk, FrameBatcher, FrameReader, RawReader, encode
 from text.i18n import N_
@@ -187,15 +187,6 @@ _CANNOT = N_("Cannot open {port}: {problem}")
 _SINCE = N_("connected to {port} for {seconds:.0f} s")
 
 
-@dataclass
-class Traffic:
-    """The traffic since the node started."""
-
-    octets_in: int = 0
-    octets_out: int = 0
-    connections: int = 0
-
-
 class SerialLink:
     """Keeps a port open; `start` it, and `close` it at the end."""
 
@@ -214,7 +205,8 @@ class SerialLink:
         """
         self._say, self.port, self.baud = node.say, node.values["port"], baud
         self._heard, self._opened, self._lost = heard, opened, lost
-        self.traffic = Traffic()
+        self.octets_in = self.octets_out = self.connections = 0
+        """Since the node started."""
         self._frames = SerialFrames(node, frames)
         self._output: SerialWrites | None = None
         self._since_s, self._since = time.monotonic(), ""
@@ -222,7 +214,7 @@ class SerialLink:
         self._writes = threading.Lock()
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._live, name="serial", daemon=True)
-        self._told = (time.monotonic(), (0, 0, 0, 0))
+        self._rates = Rates()
 
     @property
     def connected(self) -> bool:
@@ -250,7 +242,7 @@ class SerialLink:
                 # The reader notices by itself, and reopens the port.
                 self._problem = reason_of(error).splitlines()[0]
                 return False
-            self.traffic.octets_out += len(data)
+            self.octets_out += len(data)
             self._frames.note("out", data)
             return True
 
@@ -260,45 +252,24 @@ class SerialLink:
         The caller counts `errors` and incoming `frames`, since the start.
         """
         seconds = time.monotonic() - self._since_s
-        connected = self.connected
-        message = self._told_state(connected, seconds)
-        rates = self._rates(errors, frames)
-        values = {
-            "port": self.port,
-            "connected": str(connected).lower(),
-            "connected_since": self._since,
-            "seconds": f"{seconds:.1f}",
-            "connections": str(self.traffic.connections),
-            "reconnects": str(max(0, self.traffic.connections - 1)),
-            "bytes_in_per_s": f"{rates[0]:.0f}",
-            "bytes_out_per_s": f"{rates[1]:.0f}",
-            "frames_in_per_s": f"{rates[2]:.1f}",
-            "errors_per_s": f"{rates[3]:.1f}",
-            "errors": str(errors),
-        }
-        return DiagnosticStatus(
-            level=DiagnosticStatus.OK if connected else DiagnosticStatus.ERROR,
-            name=name,
-            message=message,
-            hardware_id=self.port,
-            values=[KeyValue(key=key, value=value) for key, value in values.items()],
+        rates = self._rates.of(self.octets_in, self.octets_out, frames, errors)
+        state = DiagnosticStatus.OK, self._say.text(_SINCE, port=self.port, seconds=seconds)
+        if not self.connected:
+            phrase = _CANNOT if self._problem else _NOT_YET
+            state = DiagnosticStatus.ERROR, self._say.text(phrase, port=self.port, problem=self._problem)
+        return connection_status(
+            name,
+            state,
+            self.port,
+            self._since,
+            seconds,
+            self.connections,
+            bytes_in_per_s=f"{rates[0]:.0f}",
+            bytes_out_per_s=f"{rates[1]:.0f}",
+            frames_in_per_s=f"{rates[2]:.1f}",
+            errors_per_s=f"{rates[3]:.1f}",
+            errors=str(errors),
         )
-
-    def _told_state(self, connected: bool, seconds: float) -> str:
-        if connected:
-            return self._say.text(_SINCE, port=self.port, seconds=seconds)
-        phrase = _CANNOT if self._problem else _NOT_YET
-        return self._say.text(phrase, port=self.port, problem=self._problem)
-
-    def _rates(self, errors: int, frames: int) -> list[float]:
-        """Return bytes in, bytes out, frames and errors per second since the last call."""
-        now_s = time.monotonic()
-        counts = (self.traffic.octets_in, self.traffic.octets_out, frames, errors)
-        told_s, told = self._told
-        self._told = (now_s, counts)
-        passed_s = max(1e-3, now_s - told_s)
-        # A restarted device counts its errors from zero.
-        return [max(0, new - old) / passed_s for new, old in zip(counts, told, strict=True)]
 
     # ---------------------------------------------------------------- the reader's thread
 
@@ -319,7 +290,7 @@ class SerialLink:
             self._problem = self._explain(error)
             self._say.warn(_CANNOT, every_s=_SAY_EVERY_S, port=self.port, problem=self._problem)
             return None
-        self.traffic.connections += 1
+        self.connections += 1
         self._since = datetime.now().astimezone().isoformat(timespec="seconds")
         self._since_s, self._output = time.monotonic(), SerialWrites(port)
         self._say.info(_OPEN, port=self.port, baud=self.baud)
@@ -332,7 +303,7 @@ class SerialLink:
             while not self._ending.is_set():
                 data = reads.read()
                 if data:
-                    self.traffic.octets_in += len(data)
+                    self.octets_in += len(data)
                     self._frames.note("in", data)
                     self._heard(data)
                 elif not _is_there(self.port):

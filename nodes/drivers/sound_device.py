@@ -24,10 +24,10 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NoReturn, Protocol
+from typing import Any, NoReturn
 
 IN, OUT = "in", "out"
 SAMPLE = 2
@@ -43,16 +43,6 @@ SILENT_S = 2.0
 _TICK_S = 0.05
 _TELL_S = 1.0
 _PR_SET_PDEATHSIG = 1
-
-
-class SoundStream(Protocol):
-    """An open device of miniaudio."""
-
-    running: bool
-    stop_callback: Callable[[], None] | None
-
-    def start(self, moving: Generator[object, object, None]) -> None:
-        """Begin to move sound."""
 
 
 def choose(names: Sequence[str], wanted: str) -> int | None:
@@ -194,16 +184,14 @@ def find(sound: ModuleType, way: str, wanted: str) -> tuple[object, object, str]
     end("missing" if answered else "library", ", ".join(dict.fromkeys(there)))
 
 
-def open_device(
-    sound: ModuleType, way: str, wanted: str, rate_hz: int, block_ms: int, line: AudioPipe
-) -> SoundStream:
+def open_device(sound: ModuleType, way: str, wanted: str, rate_hz: int, block_ms: int, line: AudioPipe) -> Any:  # noqa: ANN401 - of miniaudio
     """Open and start the device."""
     backend, device_id, name = find(sound, way, wanted)
     make = sound.CaptureDevice if way == IN else sound.PlaybackDevice
     moving: Generator[object, object, None] = line.hearing() if way == IN else line.playing()  # type: ignore[assignment]
     next(moving)
     try:
-        device: SoundStream = make(
+        device = make(
             sound.SampleFormat.SIGNED16,
             nchannels=1,
             sample_rate=rate_hz,

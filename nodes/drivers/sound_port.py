@@ -20,8 +20,9 @@ from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus
 
+from nodes.drivers.diagnostics import Rates, connection_status
 from nodes.drivers.sound_device import CARDS, IN, OUT
 from nodes.parts.node import TranslatedLogger
 from robot.sound import SAMPLE
@@ -67,38 +68,6 @@ def explain(say: TranslatedLogger, problem: str, device: str, detail: str) -> st
     if problem == "missing" and not (device and detail):
         problem = "none"
     return say.text(_PROBLEMS.get(problem, _PROBLEMS["other"]), device=device, detail=detail)
-
-
-class SoundQueue:
-    """Holds at most `most` bytes; thread-safe."""
-
-    def __init__(self, most: int) -> None:
-        self._most = most
-        self._sound = bytearray()
-        self._lock = threading.Lock()
-
-    def __len__(self) -> int:
-        """Return the number of waiting bytes."""
-        return len(self._sound)
-
-    def put(self, sound: bytes) -> int:
-        """Append sound; return how many bytes were dropped to make room."""
-        with self._lock:
-            self._sound += sound
-            dropped = max(0, len(self._sound) - self._most)
-            del self._sound[:dropped]
-            return dropped
-
-    def take(self, most: int) -> bytes:
-        """Take at most this many bytes from the front."""
-        with self._lock:
-            sound = bytes(self._sound[:most])
-            del self._sound[:most]
-            return sound
-
-    def clear(self) -> None:
-        with self._lock:
-            self._sound.clear()
 
 
 PROGRAM = Path(__file__).with_name("sound_device.py")
@@ -219,12 +188,15 @@ class SoundPort:
         self.rate_hz, self._block_ms = rate_hz, block_ms
         self._heard = heard
         self._block = rate_hz * block_ms // 1000 * SAMPLE
-        self._queue = SoundQueue(round(rate_hz * queue_s) * SAMPLE)
+        self._queue, self._most = bytearray(), round(rate_hz * queue_s) * SAMPLE
+        """What waits for the loudspeaker, and how much of it may; the oldest is dropped."""
+        self._queueing = threading.Lock()
         self.octets = self.faults = self.connections = 0
         """Bytes moved, blocks missed and connections, since the start."""
         self.device, self.problem = "", say.text(OPENING)
         self.connected, self.since_s, self.since = False, time.monotonic(), ""
         """Start of the current state; while connected also as ISO 8601."""
+        self._rates = Rates()
         self._missed = 0
         self._part = b""
         """Half a sample left over from a read block, or from sound to write."""
@@ -251,10 +223,42 @@ class SoundPort:
         """Queue whole samples; return (bytes dropped, whether there is a loudspeaker)."""
         if not self.connected and time.monotonic() - self.since_s > _PATIENCE_S:
             return len(sound), False
-        dropped = self._queue.put(sound)
+        with self._queueing:
+            self._queue += sound
+            dropped = max(0, len(self._queue) - self._most)
+            del self._queue[:dropped]
         self.faults += bool(dropped)
         os.eventfd_write(self._stirred, 1)
         return dropped, True
+
+    def status(self, name: str) -> DiagnosticStatus:
+        """Return the /diagnostics status: the device, time connected, bytes and errors per second."""
+        seconds, port = time.monotonic() - self.since_s, self.device or self.wanted
+        octets, faults = self._rates.of(self.octets, self.faults)
+        return connection_status(
+            name,
+            self._state(seconds, faults),
+            port,
+            self.since,
+            seconds,
+            self.connections,
+            bytes_in_per_s=f"{octets if self.way == IN else 0:.0f}",
+            bytes_out_per_s=f"{0 if self.way == IN else octets:.0f}",
+            errors_per_s=f"{faults:.1f}",
+            errors=str(self.faults),
+            sample_rate=str(self.rate_hz),
+        )
+
+    def _state(self, seconds: float, faults: float) -> tuple[bytes, str]:
+        say = self._say
+        if not self.wants:
+            return DiagnosticStatus.OK, say.text(OFF)
+        if not self.connected:
+            return DiagnosticStatus.ERROR, say.text(CANNOT[self.way], problem=self.problem)
+        words = say.text(SINCE[self.way], device=self.device, rate=self.rate_hz, seconds=seconds)
+        if faults:
+            return DiagnosticStatus.WARN, say.text(FAULTY, words=words, faults=faults)
+        return DiagnosticStatus.OK, words
 
     # ---------------------------------------------------------------- the thread
 
@@ -300,7 +304,8 @@ class SoundPort:
         finally:
             if self.connected:
                 self.connected, self.since_s, self.since = False, time.monotonic(), ""
-            self._queue.clear()
+            with self._queueing:
+                self._queue.clear()
             child.close()
         return problem, detail or child.last_words
 
@@ -352,11 +357,14 @@ class SoundPort:
         self._say.info(OPENED[self.way], device=device, rate=self.rate_hz)
 
     def _has_sound(self) -> bool:
-        return self.connected and bool(self._part or len(self._queue))
+        return self.connected and bool(self._part or self._queue)
 
     def _carry(self, child: SoundChild) -> None:
         if self.way == OUT:
-            self._part = self._part or self._queue.take(self._block)
+            if not self._part:
+                with self._queueing:
+                    self._part = bytes(self._queue[: self._block])
+                    del self._queue[: self._block]
             left = child.play(self._part)
             self.octets += len(self._part) - len(left)
             self._part = left
@@ -385,52 +393,3 @@ def _cards() -> bytes:
         return CARDS.read_bytes()
     except OSError:
         return b""
-
-
-class PortStatus:
-    """Makes the message: the device, time connected, bytes and errors per second."""
-
-    def __init__(self, say: TranslatedLogger, name: str, port: SoundPort) -> None:
-        self._say, self._name, self._port = say, name, port
-        self._told = (time.monotonic(), 0, 0)
-
-    def message(self) -> DiagnosticStatus:
-        """Return the current state; rates are those since the last message."""
-        port, now_s = self._port, time.monotonic()
-        counts = port.octets, port.faults
-        passed_s = max(1e-3, now_s - self._told[0])
-        octets, faults = ((new - old) / passed_s for new, old in zip(counts, self._told[1:], strict=True))
-        self._told = (now_s, *counts)
-        level, words = self._state(faults)
-        values = {
-            "port": port.device or port.wanted,
-            "connected": str(port.connected).lower(),
-            "connected_since": port.since,
-            "seconds": f"{now_s - port.since_s:.1f}",
-            "connections": str(port.connections),
-            "reconnects": str(max(0, port.connections - 1)),
-            "bytes_in_per_s": f"{octets if port.way == IN else 0:.0f}",
-            "bytes_out_per_s": f"{0 if port.way == IN else octets:.0f}",
-            "errors_per_s": f"{faults:.1f}",
-            "errors": str(port.faults),
-            "sample_rate": str(port.rate_hz),
-        }
-        return DiagnosticStatus(
-            level=level,
-            name=self._name,
-            message=words,
-            hardware_id=values["port"],
-            values=[KeyValue(key=key, value=value) for key, value in values.items()],
-        )
-
-    def _state(self, faults: float) -> tuple[bytes, str]:
-        port, say = self._port, self._say
-        if not port.wants:
-            return DiagnosticStatus.OK, say.text(OFF)
-        if not port.connected:
-            return DiagnosticStatus.ERROR, say.text(CANNOT[port.way], problem=port.problem)
-        seconds = time.monotonic() - port.since_s
-        words = say.text(SINCE[port.way], device=port.device, rate=port.rate_hz, seconds=seconds)
-        if faults:
-            return DiagnosticStatus.WARN, say.text(FAULTY, words=words, faults=faults)
-        return DiagnosticStatus.OK, words

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from ackermann_msgs.msg import AckermannDriveStamped
 from builtin_interfaces.msg import Time
+from rclpy.duration import Duration
 
 from nodes.parts.node import LessonNode, Number
 from robot.limits import PICO_RAD_S, Limits, first_excess
@@ -21,6 +22,8 @@ from robot.words import DriveSetpoint
 from text.i18n import N_
 
 FRAME = "base_link"
+LAST_STOP = Duration(seconds=0.2)
+"""How long the last stop of a node that ends may take to reach all subscribers."""
 
 
 def to_message(node: LessonNode, setpoint: DriveSetpoint) -> AckermannDriveStamped:

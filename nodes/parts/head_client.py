@@ -39,13 +39,6 @@ class HeadAnswer:
     """Why there was no answer, in the language of the node."""
 
 
-@dataclass(frozen=True)
-class _Request:
-    pan: int
-    tilt: int
-    report: Callable[[HeadAnswer], None]
-
-
 class HeadClient:
     """A queue of requests to the head, one of them under way."""
 
@@ -53,7 +46,7 @@ class HeadClient:
         self._node = node
         self._timeout_s = timeout_s
         self._client = node.create_client(AddTwoInts, HEAD_SERVICE)
-        self._queue: deque[_Request] = deque()
+        self._queue: deque[tuple[int, int, Callable[[HeadAnswer], None]]] = deque()
         self._call: Future | None = None
         self._asked_s = 0.0
         self._timer = node.every(_CHECK_EVERY_S, self._check)
@@ -61,7 +54,7 @@ class HeadClient:
 
     def turn(self, pan: int, tilt: int, report: Callable[[HeadAnswer], None]) -> None:
         """Queue a request for a pose, in degrees; `report` is called with the outcome."""
-        self._queue.append(_Request(pan, tilt, report))
+        self._queue.append((pan, tilt, report))
         if len(self._queue) == 1:
             self._ask()
 
@@ -69,9 +62,8 @@ class HeadClient:
         """Drop requests that have not been sent yet."""
         under_way = self._queue.popleft() if self._queue else None
         dropped, self._queue = self._queue, deque([under_way] if under_way else [])
-        for request in dropped:
-            trouble = self._node.say.text(DROPPED)
-            request.report(HeadAnswer(request.pan, request.tilt, trouble=trouble))
+        for pan, tilt, report in dropped:
+            report(HeadAnswer(pan, tilt, trouble=self._node.say.text(DROPPED)))
 
     def _ask(self) -> None:
         self._asked_s = time.monotonic()
@@ -80,9 +72,9 @@ class HeadClient:
 
     def _call_if_there(self) -> None:
         if self._client.service_is_ready():
-            request = self._queue[0]
+            pan, tilt, _report = self._queue[0]
             self._asked_s = time.monotonic()
-            self._call = self._client.call_async(AddTwoInts.Request(a=request.pan, b=request.tilt))
+            self._call = self._client.call_async(AddTwoInts.Request(a=pan, b=tilt))
             self._call.add_done_callback(self._answered)
 
     def _check(self) -> None:
@@ -105,7 +97,7 @@ class HeadClient:
     def _finish(self, total: int | None = None, trouble: str = "") -> None:
         self._call = None
         self._timer.cancel()
-        request = self._queue.popleft()
-        request.report(HeadAnswer(request.pan, request.tilt, total, trouble))
+        pan, tilt, report = self._queue.popleft()
+        report(HeadAnswer(pan, tilt, total, trouble))
         if self._queue and self._call is None:
             self._ask()

@@ -18,12 +18,13 @@ from typing import Any, ClassVar, Generic, TypeVar, overload
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.event_handler import PublisherEventCallbacks, QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 
 from text.i18n import N_, detect, localized
@@ -51,23 +52,20 @@ _OWN_TO_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.
 """Prefixes of names that rclpy handles by itself."""
 
 
-class NodeUsageError(Exception):
-    """The node cannot start with these arguments; its code is not at fault."""
+class PhrasedError(Exception):
+    """An error that can be told in several languages, by its phrase and what fills it."""
 
     def __init__(self, phrase: str, **values: object) -> None:
         super().__init__(say(phrase, **values))
-        self.phrase = phrase
-        self.values = values
+        self.phrase, self.values = phrase, values
 
 
-class BadValueError(ValueError):
-    """A value that a parameter does not accept."""
+class NodeUsageError(PhrasedError):
+    """The node cannot start with these arguments; its code is not at fault."""
 
-    def __init__(self, expected: str, **values: object) -> None:
-        super().__init__(say(expected, **values))
-        self.expected = expected
-        """A description of valid values, to follow "is X, but must be"."""
-        self.values = values
+
+class BadValueError(PhrasedError, ValueError):
+    """A value that a parameter does not accept; the phrase, what it does accept, follows "but must be"."""
 
 
 # -------------------------------------------------------------------- parameters
@@ -272,13 +270,6 @@ class LessonNode(Node):
         """Called before the node ends, while the graph can still be used."""
 
     @classmethod
-    def main(cls, args: list[str] | None = None) -> int:
-        """Run the node until it is asked to end; return the exit code."""
-        from nodes.parts.runner import run
-
-        return run(cls, args)
-
-    @classmethod
     def usage(cls) -> str:
         """Return the node's purpose and parameters, for a terminal."""
         module = sys.modules[cls.__module__]
@@ -313,7 +304,7 @@ class LessonNode(Node):
         return {
             "name": setting.name,
             "value": value,
-            "expected": self.say.text(error.expected, **error.values).rstrip(),
+            "expected": self.say.text(error.phrase, **error.values).rstrip(),
             "example": str(setting.default).lower() if isinstance(setting.default, bool) else setting.default,
         }
 
@@ -384,6 +375,52 @@ class PeriodicThread:
             # Missed calls are not made up for.
             due_s = max(due_s + self.period_s, time.monotonic())
             time.sleep(max(0.0, due_s - time.monotonic()))
+
+
+class SensorListener:
+    """Subscribes reliably, or as best effort from the first publisher on that offers no more.
+
+    A best-effort request would match both, but would then lose most large pictures, which travel in
+    many fragments, of a reliable publisher. So best effort is requested only if nothing else is
+    offered.
+    """
+
+    def __init__(
+        self,
+        node: LessonNode,
+        kind: type[Any],
+        topic: str,
+        hear: Callable[[Any], None],
+        *,
+        depth: int = DEPTH,
+        raw: bool = False,
+    ) -> None:
+        """`hear` is called with each message, or with its bytes if `raw`."""
+        self._node, self._kind, self._topic = node, kind, topic
+        self._hear, self._depth, self._raw = hear, depth, raw
+        self._relaxed = False
+        self._subscription = self._subscribed(
+            ReliabilityPolicy.RELIABLE, SubscriptionEventCallbacks(incompatible_qos=self._relax)
+        )
+
+    def _subscribed(
+        self, reliability: ReliabilityPolicy, events: SubscriptionEventCallbacks | None = None
+    ) -> Subscription:
+        return self._node.create_subscription(
+            self._kind,
+            self._topic,
+            self._hear,
+            QoSProfile(depth=self._depth, reliability=reliability),
+            event_callbacks=events,
+            raw=self._raw,
+        )
+
+    def _relax(self, told: QoSRequestedIncompatibleQoSInfo) -> None:
+        if self._relaxed or told.last_policy_kind != QoSPolicyKind.RELIABILITY:
+            return
+        self._relaxed = True
+        strict, self._subscription = (self._subscription, self._subscribed(ReliabilityPolicy.BEST_EFFORT))
+        self._node.destroy_subscription(strict)
 
 
 # -------------------------------------------------------------------- its log

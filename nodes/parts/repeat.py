@@ -9,9 +9,8 @@ from __future__ import annotations
 import time
 
 from ackermann_msgs.msg import AckermannDriveStamped
-from rclpy.duration import Duration
 
-from nodes.parts.commands import to_message
+from nodes.parts.commands import LAST_STOP, to_message
 from nodes.parts.emergency import EmergencyStopListener
 from nodes.parts.node import DEPTH, LessonNode, Number
 from robot.topics import DRIVE
@@ -26,8 +25,6 @@ REPEAT_FOR_S = Number(
     unit="s",
 )
 _EVERY_S = 0.1
-_LAST_STOP = Duration(seconds=0.2)
-"""How long the last stop may take to reach all subscribers."""
 _OVER = N_("The command was repeated for {seconds:g} s: stop")
 
 
@@ -64,7 +61,7 @@ class DriveRepeater:
         """Stop as `hush` does, and wait until that has arrived, as the node is about to end."""
         if self._for_s and not self._timer.is_canceled():
             self.hush()
-            self._publisher.wait_for_all_acked(_LAST_STOP)
+            self._publisher.wait_for_all_acked(LAST_STOP)
 
     def _again(self) -> None:
         if time.monotonic() < self._until_s:

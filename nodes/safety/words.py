@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes.parts.node import TranslatedLogger
-from nodes.safety.gate import GateSnapshot, SensorResult
+from nodes.safety.state import GateSnapshot, SensorResult
 from robot.safety.distance import RangeState, SafetyZone, Verdict
 from text.i18n import N_
 

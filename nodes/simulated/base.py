@@ -11,20 +11,17 @@ import time
 from collections.abc import Callable
 
 from ackermann_msgs.msg import AckermannDriveStamped
-from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
-from nodes.parts.commands import FRAME, from_message
-from nodes.parts.listeners import ODOM
+from nodes.parts.commands import from_message
 from nodes.parts.node import DEPTH, LessonNode
-from robot.kinematics import turning_radius
+from nodes.parts.odometry import fill, transform_to
 from robot.limits import SPEED, STEERING, first_excess
 from robot.motion.odometry import Pose, advance
 from robot.topics import ODOMETRY, TF
 from robot.words import STOP
-from space.transform import quaternion_from_rpy
 from text.i18n import N_
 
 AUTO, ALWAYS, NEVER = "auto", "always", "never"
@@ -47,7 +44,7 @@ class SimulatedBase:
         """Read /drive or another topic of `commands`; stand and ignore commands while `held`."""
         self._node, self._commands, self._held = node, commands, held
         self._wheelbase_m = wheelbase_m
-        self._pose, self._command = Pose(), STOP
+        self._pose, self._command, self._odometry = Pose(), STOP, Odometry()
         self._started_s = self._stepped_s = time.monotonic()
         self._publishers: tuple[Publisher, Publisher] | None = None
         node.create_subscription(AckermannDriveStamped, commands, self._hear, DEPTH)
@@ -108,28 +105,7 @@ class SimulatedBase:
         passed_s, self._stepped_s = now_s - self._stepped_s, now_s
         self._pose = advance(self._pose, self._command, passed_s, self._wheelbase_m)
         odometry, transforms = self._publishers
-        message = self._odometry()
-        odometry.publish(message)
-        transforms.publish(TFMessage(transforms=[_transform(message)]))
-
-    def _odometry(self) -> Odometry:
-        message = Odometry()
-        message.header.stamp = self._node.get_clock().now().to_msg()
-        message.header.frame_id, message.child_frame_id = ODOM, FRAME
-        place, turn = message.pose.pose.position, message.pose.pose.orientation
-        place.x, place.y = self._pose.x_m, self._pose.y_m
-        turn.x, turn.y, turn.z, turn.w = quaternion_from_rpy(0.0, 0.0, self._pose.heading_rad)
-        radius_m = turning_radius(self._command.steering_rad, self._wheelbase_m)
-        message.twist.twist.linear.x = self._command.speed_m_s
-        message.twist.twist.angular.z = self._command.speed_m_s / radius_m
-        return message
-
-
-def _transform(odometry: Odometry) -> TransformStamped:
-    transform = TransformStamped()
-    transform.header, transform.child_frame_id = odometry.header, odometry.child_frame_id
-    place = odometry.pose.pose.position
-    moved = transform.transform.translation
-    moved.x, moved.y, moved.z = place.x, place.y, place.z
-    transform.transform.rotation = odometry.pose.pose.orientation
-    return transform
+        stamp = self._node.get_clock().now().to_msg()
+        fill(self._odometry, self._pose, self._command, self._wheelbase_m, stamp)
+        odometry.publish(self._odometry)
+        transforms.publish(TFMessage(transforms=[transform_to(self._pose, stamp)]))

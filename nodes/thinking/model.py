@@ -33,14 +33,23 @@ T = TypeVar("T")
 _CLOSING_S = 2.0
 
 
-class Background:
-    """A thread with an event loop, and the way back to the node's thread; `close` it.
+class AskedModel:
+    """Asks one question at a time, on a thread of its own; `close` it at the node's end.
 
-    A node's callbacks must not wait for a network. There is one question at a time; a newer one takes
-    the place of the one under way, which is hung up on.
+    A node's callbacks must not wait for a network. A newer question takes the place of the one under
+    way, which is hung up on; what comes of it is called on the node's thread.
     """
 
-    def __init__(self, node: LessonNode) -> None:
+    def __init__(self, node: LessonNode, name: Callable[[ModelSettings], str]) -> None:
+        """`name` chooses which of the settings' models is asked.
+
+        Raises:
+            ModelError: if there are no settings that can be used.
+        """
+        settings = required()
+        self.settings, self.name = settings, name(settings)
+        self.key, self.who = key_of(settings), str(node.get_name())
+        self.ledger = Ledger(run_folder(os.environ))
         self._results: deque[Callable[[], None]] = deque()
         self._wake = node.create_guard_condition(self._take)
         self._loop = asyncio.new_event_loop()
@@ -48,6 +57,10 @@ class Background:
         self._thread.start()
         self._question: Future[Any] | None = None
         self._number = 0
+        self._ladder: Ladder | None = None
+        self._client: ModelClient | None = None
+        # The client takes a second to import, on a Pi: not of the first answer.
+        self.call(self._import)
 
     @property
     def busy(self) -> bool:
@@ -55,17 +68,30 @@ class Background:
         return self._question is not None
 
     def ask(
-        self, question: Coroutine[Any, Any, T], answered: Callable[[T], None], failed: Callable[[Exception], None]
+        self,
+        question: Callable[[Ladder], Coroutine[Any, Any, T]],
+        answered: Callable[[T], None],
+        failed: Callable[[ModelError], None],
     ) -> None:
-        """Ask in place of the question under way; one of the two is called on the node's thread."""
+        """Ask in place of the question under way."""
+
+        async def asking() -> T:
+            return await question(self._made())
+
+        self.run(asking(), answered, failed)
+
+    def run(
+        self, work: Coroutine[Any, Any, T], answered: Callable[[T], None], failed: Callable[[ModelError], None]
+    ) -> None:
+        """Do something else with the server, in place of the question under way."""
         self.cancel()
         number = self._number
-        asked = asyncio.run_coroutine_threadsafe(question, self._loop)
+        asked = asyncio.run_coroutine_threadsafe(work, self._loop)
         self._question = asked
 
         def done(future: Future[T]) -> None:
             if not future.cancelled():
-                self.post(lambda: self._finish(number, future, answered, failed))
+                self.later(lambda: self._finish(number, future, answered, failed))
 
         asked.add_done_callback(done)
 
@@ -76,7 +102,7 @@ class Background:
         if question is not None:
             question.cancel()
 
-    def post(self, call: Callable[[], None]) -> None:
+    def later(self, call: Callable[[], None]) -> None:
         """Have something called on the node's thread; from any thread."""
         self._results.append(call)
         self._wake.trigger()
@@ -89,17 +115,17 @@ class Background:
         """Do something on the thread beside the question under way; its end is not waited for."""
         asyncio.run_coroutine_threadsafe(work, self._loop)
 
-    def close(self, last: Coroutine[Any, Any, None] | None = None) -> None:
-        """Hang up, run what closes the connections, and end the thread."""
+    def close(self) -> None:
+        """Hang up, close the connections, and end the thread."""
         self.cancel()
-        if last is not None:
+        if self._client is not None:
             with contextlib.suppress(Exception):
-                asyncio.run_coroutine_threadsafe(last, self._loop).result(_CLOSING_S)
-        self._loop.call_soon_threadsafe(self._loop.stop)
+                asyncio.run_coroutine_threadsafe(self._client.close(), self._loop).result(_CLOSING_S)
+        self.call(self._loop.stop)
         self._thread.join(_CLOSING_S)
 
     def _finish(
-        self, number: int, future: Future[T], answered: Callable[[T], None], failed: Callable[[Exception], None]
+        self, number: int, future: Future[T], answered: Callable[[T], None], failed: Callable[[ModelError], None]
     ) -> None:
         if number != self._number:
             return
@@ -107,74 +133,14 @@ class Background:
         error = future.exception()
         if error is None:
             answered(future.result())
-        elif isinstance(error, Exception):
+        elif isinstance(error, ModelError):
             failed(error)
+        else:
+            raise error
 
     def _take(self) -> None:
         while self._results:
             self._results.popleft()()
-
-
-class AskedModel:
-    """Asks one question at a time; `close` it at the node's end."""
-
-    def __init__(self, node: LessonNode, name: Callable[[ModelSettings], str]) -> None:
-        """`name` chooses which of the settings' models is asked.
-
-        Raises:
-            ModelError: if there are no settings that can be used.
-        """
-        settings = required()
-        self.settings, self.name = settings, name(settings)
-        self.key, self.who = key_of(settings), str(node.get_name())
-        self.ledger = Ledger(run_folder(os.environ))
-        self.background = Background(node)
-        """Its thread."""
-        self._ladder: Ladder | None = None
-        self._client: ModelClient | None = None
-        # The client takes a second to import, on a Pi: not of the first answer.
-        self.background.call(self._import)
-
-    @property
-    def busy(self) -> bool:
-        """Whether a question is under way."""
-        return self.background.busy
-
-    def ask(
-        self,
-        question: Callable[[Ladder], Coroutine[Any, Any, T]],
-        answered: Callable[[T], None],
-        failed: Callable[[ModelError], None],
-    ) -> None:
-        """Ask in place of the question under way; the outcome comes on the node's thread."""
-
-        async def asking() -> T:
-            return await question(self._made())
-
-        self.run(asking(), answered, failed)
-
-    def run(
-        self, work: Coroutine[Any, Any, T], answered: Callable[[T], None], failed: Callable[[ModelError], None]
-    ) -> None:
-        """Do something else with the server, in place of the question under way."""
-
-        def broken(error: Exception) -> None:
-            if not isinstance(error, ModelError):
-                raise error
-            failed(error)
-
-        self.background.ask(work, answered, broken)
-
-    def later(self, call: Callable[[], None]) -> None:
-        """Have something called on the node's thread, from that of a question."""
-        self.background.post(call)
-
-    def cancel(self) -> None:
-        """Hang up on the question under way."""
-        self.background.cancel()
-
-    def close(self) -> None:
-        self.background.close(self._client.close() if self._client is not None else None)
 
     def _made(self) -> Ladder:
         if self._ladder is None:

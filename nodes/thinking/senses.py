@@ -9,8 +9,8 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float32, String
 
 from brain.situation import Situation, refusal
-from nodes.parts.listeners import OdometryListener, SensorListener
-from nodes.parts.node import DEPTH, LessonNode
+from nodes.parts.node import DEPTH, LessonNode, SensorListener
+from nodes.parts.odometry import OdometryListener
 from robot.topics import LLM_RESULT, SAFETY_STATE, SONAR_REAR, VLM_DESCRIPTION
 
 T = TypeVar("T")

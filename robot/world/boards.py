@@ -3,27 +3,13 @@
 from __future__ import annotations
 
 from robot.limits import STEERING, first_excess, wheel_limits
+from robot.wire import pico as wire
 from robot.wire.lsc16 import CENTRE_US, Battery, BatteryRequest, ServoDecoder, ServoMove
 from robot.wire.lsc16 import encode as encode_servos
-from robot.wire.pico import (
-    PROTOCOL,
-    SEQUENCES,
-    STANDING_FLAGS,
-    WATCHDOG_S,
-    Drive,
-    FromPico,
-    Halt,
-    Hello,
-    PicoDecoder,
-    Release,
-    Telemetry,
-    Welcome,
-    encode,
-)
 from robot.world.world import STEP_S, Wheels, World
 
 FIRMWARE = "simulated"
-_STEP_MS, _WATCHDOG_MS = round(STEP_S * 1000), round(WATCHDOG_S * 1000)
+_STEP_MS, _WATCHDOG_MS = round(STEP_S * 1000), round(wire.WATCHDOG_S * 1000)
 _TELEMETRY_MS, _QUIET_MS = 20, 1000
 _LOW_V, _BACK_V, _LOW_FOR_MS = 6.0, 6.3, 500
 _NEEDS_RELEASE = frozenset("ELRUH")
@@ -41,7 +27,7 @@ class SimulatedPico:
         self.faults: frozenset[str] = frozenset()
         """Motor drivers with a fault: any of `L` and `R`."""
         self.flags = set("WHA")
-        self._decoder = PicoDecoder()
+        self._decoder = wire.PicoDecoder()
         self._now_ms = self._drove_ms = self._told_ms = self._well_ms = 0
         self._heard_ms: int | None = None
         self._asked = Wheels()
@@ -58,13 +44,13 @@ class SimulatedPico:
         """Take bytes from the computer."""
         for message in self._decoder.feed(data):
             self._heard_ms = self._now_ms
-            if isinstance(message, Drive):
+            if isinstance(message, wire.Drive):
                 self._drive(message)
-            elif isinstance(message, Hello):
+            elif isinstance(message, wire.Hello):
                 self._hello(message)
-            elif isinstance(message, Halt):
+            elif isinstance(message, wire.Halt):
                 self._stop_anew("E")
-            elif isinstance(message, Release):
+            elif isinstance(message, wire.Release):
                 self.flags.discard("E")
                 self._stop_anew()
         self._obey()
@@ -88,19 +74,19 @@ class SimulatedPico:
     def refused(self) -> int:
         return self._decoder.errors + self._refused
 
-    def _hello(self, message: Hello) -> None:
+    def _hello(self, message: wire.Hello) -> None:
         self._counts = False
-        if message.protocol == PROTOCOL:
+        if message.protocol == wire.PROTOCOL:
             self.flags.discard("H")
             self._stop_anew()
         else:
             self._stop_anew("H")
-        self._say(Welcome(self._sequence, PROTOCOL, FIRMWARE))
+        self._say(wire.Welcome(self._sequence, wire.PROTOCOL, FIRMWARE))
 
-    def _drive(self, message: Drive) -> None:
+    def _drive(self, message: wire.Drive) -> None:
         if self._counts:
-            ahead = (message.seq - self._obeyed) % SEQUENCES
-            if not 0 < ahead < SEQUENCES // 2:
+            ahead = (message.seq - self._obeyed) % wire.SEQUENCES
+            if not 0 < ahead < wire.SEQUENCES // 2:
                 self._refused += 1
                 return
         wheels, steering = wheel_limits(), (message.steering_rad, STEERING)
@@ -133,16 +119,16 @@ class SimulatedPico:
             self.flags.discard("U")
 
     def _obey(self) -> None:
-        stands = bool(self.flags & STANDING_FLAGS)
+        stands = bool(self.flags & wire.STANDING_FLAGS)
         asked = Wheels() if stands else self._asked
         self.world.asked = Wheels(asked.left_rad_s, asked.right_rad_s, self._steering_rad)
 
-    def _telemetry(self) -> Telemetry:
+    def _telemetry(self) -> wire.Telemetry:
         wheels = self.world.wheels
         left_a, right_a = (
             0.2 + 0.05 * abs(speed) if speed else 0.0 for speed in (self._asked.left_rad_s, self._asked.right_rad_s)
         )
-        return Telemetry(
+        return wire.Telemetry(
             self._sequence,
             self._now_ms % 2**32,
             self._obeyed,
@@ -156,9 +142,9 @@ class SimulatedPico:
             frozenset(self.flags),
         )
 
-    def _say(self, message: FromPico) -> None:
-        self._out += encode(message)
-        self._sequence = (self._sequence + 1) % SEQUENCES
+    def _say(self, message: wire.FromPico) -> None:
+        self._out += wire.encode(message)
+        self._sequence = (self._sequence + 1) % wire.SEQUENCES
 
 
 class SimulatedServos:

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from launcher.faults.rules import attributes, callbacks, calls, fields, imports, names, said, values
-
-if TYPE_CHECKING:
-    from launcher.faults.failure import Rule
+from launcher.faults.failure import Rule
+from launcher.faults.rules import attributes, callbacks, calls, fields, names, said, values
 
 RULES: tuple[Rule, ...] = (
     # What rclpy has called, and what it was given back, before what its own lines seem to say.
@@ -22,7 +18,7 @@ RULES: tuple[Rule, ...] = (
     # What an exception says by itself.
     said.rows, said.undeclared, said.bad_name, said.spun_twice, said.two_types, said.looked_up, said.opencv,
     calls.logger, calls.misused, calls.text_for_number,
-    imports.missing, imports.misplaced,
+    names.not_found, names.misplaced,
     names.local, names.unknown,
     attributes.other_names, attributes.unsettable, attributes.missing,
     # The learner's own line: its classes, its operators, its calls, its values.

@@ -20,9 +20,10 @@ from launcher.faults.failure import (
     name_of,
     shown,
 )
-from launcher.faults.homes import ROS1, home_of, ros1
 from launcher.faults.remedy import future, is_none, parameter
 from launcher.faults.rules.fields import no_field, time_now
+from launcher.faults.rules.names import ROS1, home_of, ros1, shadowing
+from text.i18n import N_
 from text.sentences import Words, say
 from text.suggestions import near
 
@@ -151,24 +152,11 @@ def _meant(name: str, known: list[str], cutoff: float) -> str:
     return next(iter(same or near(name, known, cutoff=cutoff)), "")
 
 
-def shadowing(module: ModuleType | None, folder: str) -> Words | None:
-    """Say that a file of the learner's own has the name of a module, and hides it."""
-    file, name = getattr(module, "__file__", None) or "", getattr(module, "__name__", "")
-    known = name in sys.stdlib_module_names or name in ("rclpy", "numpy", "cv2", "std_msgs", "tf2_ros")
-    if not known or file.rpartition("/")[0] != folder:
-        return None
-    return say("Your own file {name}.py hides the module {name}: give the file another name.", name=name)
-
-
 def _of_class(kind: type, name: str) -> Words:
     if is_service_class(kind) or is_action_class(kind):
         parts = ("Request", "Response") if is_service_class(kind) else ("Goal", "Result", "Feedback")
-        return say(
-            "{type} has the parts {parts}, written like this: {type}.{first}.",
-            type=kind.__name__,
-            parts=", ".join(parts),
-            first=parts[0],
-        )
+        phrase = N_("{type} has the parts {parts}, written like this: {type}.{first}.")
+        return say(phrase, type=kind.__name__, parts=", ".join(parts), first=parts[0])
     if is_message_class(kind):
         return no_field(kind, name)
     return time_now() if name == "now" and kind.__name__ == "Time" else _near(kind.__name__, name, _known(kind))
@@ -176,22 +164,20 @@ def _of_class(kind: type, name: str) -> Words:
 
 def _of_routine(of: Any, name: str, what: str) -> Words:
     if of.__name__.startswith("create_") and _is_of_rclpy(of):
-        return say(
-            "{what} makes what is asked for: keep what it gives, self.x = {what}(…), and use that: self.x.{name}.",
-            what=what,
-            name=name,
+        phrase = N_(
+            "{what} makes what is asked for: keep what it gives, self.x = {what}(…), and use that: self.x.{name}."
         )
+        return say(phrase, what=what, name=name)
     return say("{what} is a function: its brackets are missing, {what}().{name}.", what=what, name=name)
 
 
 def _of_rclpy(of: Any, name: str, what: str) -> Words | None:
     """Say that an object of rclpy, or of Python, has it under another name, or that another one is meant."""
     if is_from(of, "rclpy", "Node") and name in _ACTIONS:
-        return say(
-            "A node makes no actions; they have classes of their own: {call}, from rclpy.action import {name}.",
-            call=_ACTIONS[name],
-            name=_ACTIONS[name].partition("(")[0],
+        phrase = N_(
+            "A node makes no actions; they have classes of their own: {call}, from rclpy.action import {name}."
         )
+        return say(phrase, call=_ACTIONS[name], name=_ACTIONS[name].partition("(")[0])
     if is_from(of, "rclpy", "ClientGoalHandle") and (name in ("result", "get_result") or not near(name, _known(of))):
         return say(
             "{what} is the goal's handle, not its result: {what}.get_result_async() gives a future, and"
@@ -199,11 +185,8 @@ def _of_rclpy(of: Any, name: str, what: str) -> Words | None:
             what=what,
         )
     if is_from(of, "rclpy", "ServerGoalHandle") and name in ("goal", *(fields := list(fields_of(of.request)))):
-        return say(
-            "{what} is the goal's handle; the goal itself is {what}.request: {what}.request.{field}.",
-            what=what,
-            field=name if name in fields else next(iter(fields), "x"),
-        )
+        phrase = N_("{what} is the goal's handle; the goal itself is {what}.request: {what}.request.{field}.")
+        return say(phrase, what=what, field=name if name in fields else next(iter(fields), "x"))
     if is_from(of, "rclpy", "Future", "Task"):
         return future(what, of)
     if is_from(of, "rclpy", "Parameter"):
@@ -286,29 +269,23 @@ def _made_where(failure: Failure, of: Any, name: str) -> Words | None:
     for method in methods:
         for one in ast.walk(method):
             if isinstance(one, ast.FunctionDef) and one is not method and one.name == name:
-                return say(
+                phrase = N_(
                     "{name} (line {line}) stands within {method}, since it is indented too deep:"
-                    " its def belongs at the depth of that of {method}.",
-                    name=name,
-                    line=one.lineno,
-                    method=method.name,
+                    " its def belongs at the depth of that of {method}."
                 )
+                return say(phrase, name=name, line=one.lineno, method=method.name)
             if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store) and one.id == name:
-                return say(
+                phrase = N_(
                     "In line {line} {name} is made without self, and is forgotten when {method}"
-                    " ends: write self.{name} there.",
-                    line=one.lineno,
-                    name=name,
-                    method=method.name,
+                    " ends: write self.{name} there."
                 )
+                return say(phrase, line=one.lineno, name=name, method=method.name)
     for one in failure.tree.body:
         if isinstance(one, ast.FunctionDef) and one.name == name and one.args.args:
-            return say(
-                "{name} (line {line}) stands outside of the class {owner}: indent it, as deep as the other methods.",
-                name=name,
-                line=one.lineno,
-                owner=cls.name,
+            phrase = N_(
+                "{name} (line {line}) stands outside of the class {owner}: indent it, as deep as the other methods."
             )
+            return say(phrase, name=name, line=one.lineno, owner=cls.name)
     node = getattr(sys.modules.get("rclpy.node"), "Node", None)
     if node is not None and not isinstance(of, node) and hasattr(node, name):
         return say("The class {name} is not a node yet: class {name}(Node).", name=cls.name)
@@ -334,26 +311,20 @@ def _only_there(failure: Failure, name: str, method: ast.FunctionDef, node: ast.
     above = getattr(node, "parent", None)
     while above is not None and above is not method:
         if isinstance(above, (ast.If, ast.For, ast.While, ast.Try)):
-            return say(
+            phrase = N_(
                 "self.{name} is only made in line {line}, in a branch that was not taken: give it a"
-                " value in __init__ in every case.",
-                name=name,
-                line=line,
+                " value in __init__ in every case."
             )
+            return say(phrase, name=name, line=line)
         above = getattr(above, "parent", None)
     if method.name in (here, "__init__"):
-        return say(
+        phrase = N_(
             "self.{name} is made in line {line}, and this line is run before: make it at the very"
-            " beginning of __init__.",
-            name=name,
-            line=line,
+            " beginning of __init__."
         )
-    return say(
-        "self.{name} is only made in {method} (line {line}), which has not run yet: make it in __init__.",
-        name=name,
-        method=method.name,
-        line=line,
-    )
+        return say(phrase, name=name, line=line)
+    phrase = N_("self.{name} is only made in {method} (line {line}), which has not run yet: make it in __init__.")
+    return say(phrase, name=name, method=method.name, line=line)
 
 
 def _near_own(of: Any, name: str) -> Words | None:
@@ -388,25 +359,17 @@ def _of_node(name: str) -> Words | None:
     maker = _MADE_BY.get(name.strip("_"))
     if not maker:
         return None
-    return say(
-        "self.{name} is made nowhere: keep what {maker} gives, self.{name} = self.{maker}(…), in __init__.",
-        name=name,
-        maker=maker,
-    )
+    phrase = N_("self.{name} is made nowhere: keep what {maker} gives, self.{name} = self.{maker}(…), in __init__.")
+    return say(phrase, name=name, maker=maker)
 
 
 def _made_nowhere(failure: Failure, of: Any, name: str) -> Words:
     methods = [each for each in getattr(failure.own_class, "body", ()) if isinstance(each, ast.FunctionDef)]
     if _stores(methods, name):
-        return say(
-            "self.{name} is changed here, and has no value before: give it one in __init__, self.{name} = 0.",
-            name=name,
-        )
-    return say(
-        "{type} has no {name}: it is made nowhere in this class. Make it in __init__, self.{name} = ….",
-        type=type(of).__name__,
-        name=name,
-    )
+        phrase = N_("self.{name} is changed here, and has no value before: give it one in __init__, self.{name} = 0.")
+        return say(phrase, name=name)
+    phrase = N_("{type} has no {name}: it is made nowhere in this class. Make it in __init__, self.{name} = ….")
+    return say(phrase, type=type(of).__name__, name=name)
 
 
 def _near(kind: str, name: str, known: list[str]) -> Words:

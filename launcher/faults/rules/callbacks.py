@@ -5,13 +5,11 @@ from __future__ import annotations
 import ast
 import inspect
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from launcher.faults.failure import Failure, is_from, is_message, name_of, shown
-from text.sentences import say
-
-if TYPE_CHECKING:
-    from text.sentences import Words
+from text.i18n import N_
+from text.sentences import Words, say
 
 TIMER, SUBSCRIPTION, SERVICE = "tmr", "sub", "srv"
 """The names of the local variables in rclpy's executors that hold what has called back."""
@@ -81,10 +79,8 @@ def signature(failure: Failure) -> Words | None:
 def not_handed_over(instead: object = None) -> Words:
     """Say that a method was called where it had to be handed over, or written in quotes."""
     if isinstance(instead, str):
-        return say(
-            "The callback is a text, and has to be the method itself: self.{name}, without quotes.",
-            name=instead if instead.isidentifier() else "on_timer",
-        )
+        phrase = N_("The callback is a text, and has to be the method itself: self.{name}, without quotes.")
+        return say(phrase, name=instead if instead.isidentifier() else "on_timer")
     return say(
         "The method was called where it had to be handed over: write its name without brackets, self.on_timer."
     )
@@ -112,18 +108,16 @@ def asks_for_other(owner: str, callback: Any) -> Words | None:
             "A subscription gives its callback the message, and nothing else: def {name}({me}msg).", name=name, me=me
         )
     if owner == FEEDBACK:
-        return say(
+        phrase = N_(
             "An action's client gives its feedback callback one message, with the feedback in it:"
-            " def {name}({me}msg).",
-            name=name,
-            me=me,
+            " def {name}({me}msg)."
         )
+        return say(phrase, name=name, me=me)
     if owner == GOAL:
-        return say(
-            "An action's server gives its callback the goal's handle, and nothing else: def {name}({me}goal_handle).",
-            name=name,
-            me=me,
+        phrase = N_(
+            "An action's server gives its callback the goal's handle, and nothing else: def {name}({me}goal_handle)."
         )
+        return say(phrase, name=name, me=me)
     return say("A service gives its callback two things: def {name}({me}request, response).", name=name, me=me)
 
 
@@ -155,16 +149,12 @@ def response(failure: Failure) -> Words | None:
     if answer is None:
         return say("{name} has to return the response in every case: return response.", name=name)
     if isinstance(answer, type):
-        return say(
-            "{name} returns the class {type}, and not the response: fill response, and write return response.",
-            name=name,
-            type=name_of(answer),
+        phrase = N_(
+            "{name} returns the class {type}, and not the response: fill response, and write return response."
         )
-    return say(
-        "{name} has to return the response, and returns {given}: fill response, and write return response.",
-        name=name,
-        given=name_of(type(answer)) if is_message(answer) else type(answer).__name__,
-    )
+        return say(phrase, name=name, type=name_of(answer))
+    phrase = N_("{name} has to return the response, and returns {given}: fill response, and write return response.")
+    return say(phrase, name=name, given=name_of(type(answer)) if is_message(answer) else type(answer).__name__)
 
 
 def swapped(failure: Failure) -> Words | None:
@@ -197,9 +187,6 @@ def done(failure: Failure) -> Words | None:
         if isinstance(each, ast.FunctionDef) and each.name in given:
             is_method = isinstance(getattr(each, "parent", None), ast.ClassDef)
             if len(each.args.args) - len(each.args.defaults) != 1 + is_method:
-                return say(
-                    "A done callback gets the future, and nothing else: def {name}({me}future).",
-                    name=each.name,
-                    me="self, " if is_method else "",
-                )
+                phrase = N_("A done callback gets the future, and nothing else: def {name}({me}future).")
+                return say(phrase, name=each.name, me="self, " if is_method else "")
     return None

@@ -7,8 +7,9 @@ import inspect
 import itertools
 import re
 import typing
+from collections.abc import Callable
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from launcher.faults.failure import (
     UNKNOWN,
@@ -22,16 +23,12 @@ from launcher.faults.failure import (
     name_of,
     shown,
 )
-from launcher.faults.homes import home_of
 from launcher.faults.remedy import given, listed, of_message, of_text, parameter
 from launcher.faults.rules.callbacks import SUBSCRIPTION, asks_for_other, not_handed_over
-from text.sentences import say
+from launcher.faults.rules.names import home_of
+from text.i18n import N_
+from text.sentences import Words, say
 from text.suggestions import nearest
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from text.sentences import Words
 
 
 def _is_text(value: object) -> bool:
@@ -87,11 +84,8 @@ def made(failure: Failure) -> Words | None:
     ):
         signature = inspect.signature(getattr(type(me), level.function))
         names = [each.name for each in signature.parameters.values() if each.default is each.empty]
-        return say(
-            "The arguments are in another order: {call}({arguments}).",
-            call=call,
-            arguments=", ".join(names[1:]).removesuffix(", kwargs"),
-        )
+        phrase = N_("The arguments are in another order: {call}({arguments}).")
+        return say(phrase, call=call, arguments=", ".join(names[1:]).removesuffix(", kwargs"))
     name, value = wrong[0], handed[wrong[0]]
     if is_from(value, "rclpy", "Parameter"):
         return parameter(_written(failure, value))
@@ -126,10 +120,8 @@ def _wrong(call: str, name: str, value: Any) -> Words:
     if name == "timer_period_sec" and is_message(value):
         return of_message(name, type(value))
     if name == "timer_period_sec":
-        return say(
-            "{call}: the period comes first, as a number of seconds: self.create_timer(0.5, self.on_timer).",
-            call=call,
-        )
+        phrase = N_("{call}: the period comes first, as a number of seconds: self.create_timer(0.5, self.on_timer).")
+        return say(phrase, call=call)
     if name == "node":
         return say("{call}: the node comes first: {call}(self, …).", call=call)
     return _wrong_type(call, name, value)
@@ -137,26 +129,18 @@ def _wrong(call: str, name: str, value: Any) -> Words:
 
 def _wrong_type(call: str, name: str, value: Any) -> Words:
     if is_message(value):
-        return say(
-            "{call}: the type is handed over as it is, without brackets: {type}.",
-            call=call,
-            type=name_of(type(value)),
-        )
+        phrase = N_("{call}: the type is handed over as it is, without brackets: {type}.")
+        return say(phrase, call=call, type=name_of(type(value)))
     if isinstance(value, ModuleType):
-        return say(
-            "{call}: {module} is a module; the type is a class in it: {module}.String.",
-            call=call,
-            module=value.__name__,
-        )
+        phrase = N_("{call}: {module} is a module; the type is a class in it: {module}.String.")
+        return say(phrase, call=call, module=value.__name__)
     if isinstance(value, str):
         kind = value.rpartition("/")[2]
         home, kind = (home_of(kind), kind) if home_of(kind) else _EXAMPLES[name]
-        return say(
-            "{call}: the type is a class that is imported, and stands without quotes: from {home} import {type}.",
-            call=call,
-            home=home,
-            type=kind,
+        phrase = N_(
+            "{call}: the type is a class that is imported, and stands without quotes: from {home} import {type}."
         )
+        return say(phrase, call=call, home=home, type=kind)
     kinds = (
         (is_service_class, say("a service")),
         (is_action_class, say("an action")),
@@ -164,13 +148,11 @@ def _wrong_type(call: str, name: str, value: Any) -> Words:
     )
     for fits, words in kinds:
         if fits(value):
-            return say(
+            phrase = N_(
                 "{call}: {type} is the type of {kind}, which does not go with it: a topic has"
-                " messages (.msg), a service .srv, an action .action.",
-                call=call,
-                type=value.__name__,
-                kind=words,
+                " messages (.msg), a service .srv, an action .action."
             )
+            return say(phrase, call=call, type=value.__name__, kind=words)
     return say(
         "{call}: {name} is a class that is imported, such as from std_msgs.msg import Float32.", call=call, name=name
     )
@@ -200,14 +182,10 @@ def parameters(failure: Failure) -> Words | None:
     if isinstance(failure.error, TypeError) and inner.function == "from_parameter_value":
         value = inner.values.get("parameter_value")
         if isinstance(value, (list, tuple)):
-            return say(
-                "The values of a parameter's list are all of one type, and these are: {types}.",
-                types=listed(sorted({name_of(type(each)) for each in value})),
-            )
-        return say(
-            "A parameter is a number, a text, True or False, or a list of one of them, and not {type}.",
-            type=name_of(value if isinstance(value, type) else type(value)),
-        )
+            phrase = N_("The values of a parameter's list are all of one type, and these are: {types}.")
+            return say(phrase, types=listed(sorted({name_of(type(each)) for each in value})))
+        phrase = N_("A parameter is a number, a text, True or False, or a list of one of them, and not {type}.")
+        return say(phrase, type=name_of(value if isinstance(value, type) else type(value)))
     if isinstance(failure.error, ValueError) and inner.function == "__init__":
         return say(
             "The type of the parameter, {type}, and its value, {value}, do not agree:"
@@ -260,11 +238,8 @@ def misused(failure: Failure) -> Words | None:
     call, level = found
     kind = failure.value(call.func.value) if isinstance(call.func, ast.Attribute) else UNKNOWN
     if isinstance(kind, type) and not isinstance(level.values.get("self", UNKNOWN), (kind, type(UNKNOWN))):
-        return say(
-            "{what} is the class {name} itself: its brackets are missing where it is made, {name}().",
-            what=shown(call.func).rpartition(".")[0],
-            name=kind.__name__,
-        )
+        phrase = N_("{what} is the class {name} itself: its brackets are missing where it is made, {name}().")
+        return say(phrase, what=shown(call.func).rpartition(".")[0], name=kind.__name__)
     if "allable" in str(failure.error) and not callable(level.values.get("callback", callable)):
         return not_handed_over(level.values["callback"])
     if level.function == "sendTransform":
@@ -274,11 +249,8 @@ def misused(failure: Failure) -> Words | None:
         )
     picture = level.values.get("img_msg", UNKNOWN)
     if picture is not UNKNOWN and not is_message(picture):
-        return say(
-            "{call} takes the message of a picture, as a callback gets it, and is given {given}.",
-            call=shown(call.func),
-            given=given(picture),
-        )
+        phrase = N_("{call} takes the message of a picture, as a callback gets it, and is given {given}.")
+        return say(phrase, call=shown(call.func), given=given(picture))
     return _annotated(failure, call, level)
 
 
@@ -294,25 +266,18 @@ def _annotated(failure: Failure, call: ast.Call, level: TraceLevel) -> Words | N
     for name, kind in hints.items():
         value = level.values.get(name, UNKNOWN)
         if "Duration" in str(kind) and isinstance(value, (int, float)):
-            return say(
+            phrase = N_(
                 "{function}: {name} is a Duration of rclpy: Duration(seconds={value}), from rclpy.duration"
-                " import Duration.",
-                function=level.function,
-                name=name,
-                value=str(value),
+                " import Duration."
             )
+            return say(phrase, function=level.function, name=name, value=str(value))
         # A default may be of another class than what is asked for, and a float may be an int.
         if name not in known or not isinstance(kind, type) or kind is float:
             continue
         if value is UNKNOWN or value is known[name].default or isinstance(value, kind):
             continue
-        return say(
-            "{function}: {name} is of type {type}, and is given {given}.",
-            function=level.function,
-            name=name,
-            type=kind.__name__,
-            given=given(value),
-        )
+        phrase = N_("{function}: {name} is of type {type}, and is given {given}.")
+        return say(phrase, function=level.function, name=name, type=kind.__name__, given=given(value))
     return None
 
 
@@ -398,11 +363,8 @@ def _on_class(failure: Failure, call: ast.Call, signature: inspect.Signature) ->
         return None
     if me is not UNKNOWN and isinstance(me, of):
         return say("{owner} is the class: the node itself is self, self.{name}(…).", owner=owner, name=call.func.attr)
-    return say(
-        "{name} belongs to an object, and {owner} is the class: make one first, {owner}().",
-        name=call.func.attr,
-        owner=owner,
-    )
+    phrase = N_("{name} belongs to an object, and {owner} is the class: make one first, {owner}().")
+    return say(phrase, name=call.func.attr, owner=owner)
 
 
 def _without_self(call: ast.Call, function: Any) -> Words | None:
@@ -410,11 +372,8 @@ def _without_self(call: ast.Call, function: Any) -> Words | None:
     names = code.co_varnames[: code.co_argcount] if code is not None else ("self",)
     if names and (names[0] == "self" or len(call.args) != len(names)):
         return None
-    return say(
-        "The first argument of a method is self: def {name}({arguments}).",
-        name=function.__name__,
-        arguments=", ".join(("self", *names)),
-    )
+    phrase = N_("The first argument of a method is self: def {name}({arguments}).")
+    return say(phrase, name=function.__name__, arguments=", ".join(("self", *names)))
 
 
 def _misfit(call: ast.Call, parameters: list[inspect.Parameter]) -> Words:
@@ -422,11 +381,8 @@ def _misfit(call: ast.Call, parameters: list[inspect.Parameter]) -> Words:
     takes = ", ".join(each.name for each in parameters if each.default is each.empty and each.kind in (0, 1))
     what, extra = shown(call.func), next((name for name in names if name not in known), "")
     if extra == "queue_size" and "qos_profile" in known:
-        return say(
-            "queue_size is of ROS 1; here the number alone stands at the end: {what}({takes}).",
-            what=what,
-            takes=takes,
-        )
+        phrase = N_("queue_size is of ROS 1; here the number alone stands at the end: {what}({takes}).")
+        return say(phrase, what=what, takes=takes)
     if extra:
         return _no_argument(what, extra, known)
     missing = [
@@ -435,30 +391,19 @@ def _misfit(call: ast.Call, parameters: list[inspect.Parameter]) -> Words:
         if each.default is each.empty and each.kind in (0, 1, 3) and each.name not in names
     ]
     if missing == ["qos_profile"]:
-        return say(
-            "The last argument is missing, the queue depth: {what}({takes}), such as 10 for qos_profile.",
-            what=what,
-            takes=takes,
-        )
+        phrase = N_("The last argument is missing, the queue depth: {what}({takes}), such as 10 for qos_profile.")
+        return say(phrase, what=what, takes=takes)
     if missing:
-        return say(
-            "{what} is called without {missing}; it takes {takes}.",
-            what=what,
-            missing=", ".join(missing),
-            takes=takes,
-        )
+        phrase = N_("{what} is called without {missing}; it takes {takes}.")
+        return say(phrase, what=what, missing=", ".join(missing), takes=takes)
     by_name = ["depth"] if what == "QoSProfile" else [each.name for each in parameters if each.kind == 3]
     if what == "rclpy.init" and call.args and isinstance(call.args[0], ast.Constant):
         return say(
             'rclpy.init takes no name: rclpy.init(). The name is given to the node, super().__init__("my_node").'
         )
     if not takes and by_name and call.args:
-        return say(
-            "{what} takes its values by name: {what}({name}={value}).",
-            what=what,
-            name=by_name[0],
-            value=shown(call.args[0]),
-        )
+        phrase = N_("{what} takes its values by name: {what}({name}={value}).")
+        return say(phrase, what=what, name=by_name[0], value=shown(call.args[0]))
     places, values = (
         ", ".join(each.name for each in parameters if each.kind in (0, 1)),
         listed([shown(each) for each in call.args]),
@@ -500,12 +445,11 @@ def base(failure: Failure) -> Words | None:
         return None
     for each in statement.bases:
         if isinstance(failure.value(each), ModuleType):
-            return say(
+            phrase = N_(
                 "{what} is a module, and a class cannot be made of it: from rclpy.node import Node,"
-                " and class {name}(Node).",
-                what=shown(each),
-                name=statement.name,
+                " and class {name}(Node)."
             )
+            return say(phrase, what=shown(each), name=statement.name)
     return None
 
 
@@ -525,13 +469,8 @@ def unwritten_init(failure: Failure) -> Words | None:
         like = (each for each in vars(kind) if each.strip("_").lower() in ("init", "int", "innit", "inti", "intit"))
         name = next(like, "")
         if name:
-            return say(
-                "{name} is not {init}, with two underscores on either side, and is never run.",
-                name=name,
-                init="__init__",
-            )
-        return say(
-            'The node has no name yet: in {name}, def __init__(self): super().__init__("my_node").',
-            name=kind.__name__,
-        )
+            phrase = N_("{name} is not {init}, with two underscores on either side, and is never run.")
+            return say(phrase, name=name, init="__init__")
+        phrase = N_('The node has no name yet: in {name}, def __init__(self): super().__init__("my_node").')
+        return say(phrase, name=kind.__name__)
     return None

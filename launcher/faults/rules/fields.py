@@ -26,6 +26,7 @@ from launcher.faults.failure import (
     shown,
 )
 from launcher.faults.remedy import future, given, is_none_here, listed, of_message, parameter
+from text.i18n import N_
 from text.sentences import Words, say
 from text.suggestions import nearest
 
@@ -145,13 +146,8 @@ def _unsuitable(name: str, what: str, value: Any) -> Words | None:
 
 
 def _is_given(name: str, of: str, what: str, value: Any) -> Words:
-    return say(
-        "The field {field} is of type {type}, and {what} is of type {given}.",
-        field=name,
-        type=of,
-        what=what,
-        given=name_of(type(value)),
-    )
+    phrase = N_("The field {field} is of type {type}, and {what} is of type {given}.")
+    return say(phrase, field=name, type=of, what=what, given=name_of(type(value)))
 
 
 def _one(kind: Any, name: str, what: str, of: str, value: Any) -> Words | None:
@@ -160,10 +156,8 @@ def _one(kind: Any, name: str, what: str, of: str, value: Any) -> Words | None:
     if words is not None:
         return words
     if isinstance(value, tuple) and len(value) == 1 and _takes(kind, name, value[0]):
-        return say(
-            "{what} is one value in a tuple, as a comma at the end of a line makes it: take that comma away.",
-            what=what,
-        )
+        phrase = N_("{what} is one value in a tuple, as a comma at the end of a line makes it: take that comma away.")
+        return say(phrase, what=what)
     if isinstance(value, (bytes, bytearray)) and of in _TEXTS:
         return say("The field {field} is a text, and {what} are bytes: {what}.decode().", field=name, what=what)
     if of in _TEXTS:
@@ -179,35 +173,20 @@ def _number(kind: Any, name: str, what: str, of: str, value: Any) -> Words:
     bits = _BITS.fullmatch(of)
     if bits and isinstance(value, int):
         low, high = _range_of(bits)
-        return say(
-            "The field {field} holds {low} to {high}; {value} does not fit.",
-            field=name,
-            low=low,
-            high=high,
-            value=value,
-        )
+        phrase = N_("The field {field} holds {low} to {high}; {value} does not fit.")
+        return say(phrase, field=name, low=low, high=high, value=value)
     if of in _FLOATS and isinstance(value, int) and re.fullmatch(r"-?\d+", what):
         return say("The field {field} is a float: write {value}.0, not {value}.", field=name, value=what)
     if of in _FLOATS and isinstance(value, float):
-        return say(
-            "The field {field} is a {type}, and {value:g} is too large for it.",
-            field=name,
-            type="float32" if of == "float" else "float64",
-            value=value,
-        )
+        phrase = N_("The field {field} is a {type}, and {value:g} is too large for it.")
+        return say(phrase, field=name, type="float32" if of == "float" else "float64", value=value)
     constant = _constant_of(kind, name, value) if bits else ""
     if constant:
-        return say(
-            "The field {field} is a whole number, which has a name: {constant}, without quotes.",
-            field=name,
-            constant=constant,
-        )
+        phrase = N_("The field {field} is a whole number, which has a name: {constant}, without quotes.")
+        return say(phrase, field=name, constant=constant)
     if bits and isinstance(value, float) and math.isfinite(value):
-        return say(
-            "The field {field} is a whole number: int({what}) cuts the fraction off, round({what}) rounds.",
-            field=name,
-            what=what,
-        )
+        phrase = N_("The field {field} is a whole number: int({what}) cuts the fraction off, round({what}) rounds.")
+        return say(phrase, field=name, what=what)
     made = "" if _is_listlike(value) else _fitting(kind, name, _single(what, value))
     if made and of in _FLOATS:
         return say("The field {field} is a float: write {made}.", field=name, made=made)
@@ -240,26 +219,17 @@ def _message(message: Any, name: str, what: str, of: str, value: Any) -> Words:
     if is_message_class(value) and value.__name__ == kind:
         return _no_brackets(what, kind)
     if is_from(value, "rclpy", "Time", "Duration"):
-        return say(
+        phrase = N_(
             "The field {field} is a message, and {what} is of type {type} of rclpy: {what}.to_msg()"
-            " makes the message.",
-            field=name,
-            type=kind,
-            what=what,
+            " makes the message."
         )
+        return say(phrase, field=name, type=kind, what=what)
     if of == "builtin_interfaces/Time":
-        return say(
-            "The field {field} is a message of type {type}. The time now is self.get_clock().now().to_msg().",
-            field=name,
-            type=kind,
-        )
+        phrase = N_("The field {field} is a message of type {type}. The time now is self.get_clock().now().to_msg().")
+        return say(phrase, field=name, type=kind)
     if is_message(value):
-        return say(
-            "The field {field} is of type {type}, and is given {given}.",
-            field=name,
-            type=of,
-            given=name_of(type(value)),
-        )
+        phrase = N_("The field {field} is of type {type}, and is given {given}.")
+        return say(phrase, field=name, type=of, given=name_of(type(value)))
     inner = getattr(message, f"_{name}", None)
     fields = list(fields_of(inner)) if is_message(inner) else ["x"]
     return say(
@@ -284,12 +254,8 @@ def _many(kind: Any, name: str, what: str, parts: re.Match[str], value: Any) -> 
     is_array = _is_of_numpy(value)
     length = value.size if is_array else len(value)
     if count and length != int(count):
-        return say(
-            "The field {field} has {count} values, always; this list has {given}.",
-            field=name,
-            count=int(count),
-            given=length,
-        )
+        phrase = N_("The field {field} has {count} values, always; this list has {given}.")
+        return say(phrase, field=name, count=int(count), given=length)
     if not is_array:
         return _within(kind, name, of, list(value))
     made = _fitting(kind, name, _of_array(what, value, of))
@@ -306,20 +272,11 @@ def _within(kind: Any, name: str, of: str, values: list[Any]) -> Words | None:
         if bits and isinstance(value, int):
             low, high = _range_of(bits)
             if not low <= value <= high:
-                return say(
-                    "The values of {field} are {low} to {high}; the one at [{index}] is {value}.",
-                    **at,
-                    low=low,
-                    high=high,
-                    value=value,
-                )
+                phrase = N_("The values of {field} are {low} to {high}; the one at [{index}] is {value}.")
+                return say(phrase, **at, low=low, high=high, value=value)
         elif "/" in of and not (is_message(value) and type(value).__name__ == of.rpartition("/")[2]):
-            return say(
-                "The values of {field} are messages {type}; the one at [{index}] is {given}.",
-                **at,
-                type=of,
-                given=given(value),
-            )
+            phrase = N_("The values of {field} are messages {type}; the one at [{index}] is {given}.")
+            return say(phrase, **at, type=of, given=given(value))
         elif bits or (of in _FLOATS and not isinstance(value, float)):
             return _numbers(kind, name, of, values, index)
         elif of in _TEXTS and not isinstance(value, str):
@@ -335,13 +292,8 @@ def _numbers(kind: Any, name: str, of: str, values: list[Any], index: int) -> Wo
         return say("The values of {field} are floats: write 1.0, not 1, or [float(v) for v in …].", field=name)
     if made:
         return say("The values of {field} are whole numbers: [int(v) for v in …].", field=name)
-    return say(
-        "The values of {field} are of type {type}; the one at [{index}] is {value}.",
-        field=name,
-        type=of,
-        index=index,
-        value=repr(values[index]),
-    )
+    phrase = N_("The values of {field} are of type {type}; the one at [{index}] is {value}.")
+    return say(phrase, field=name, type=of, index=index, value=repr(values[index]))
 
 
 def _range_of(bits: re.Match[str]) -> tuple[int, int]:
@@ -394,12 +346,11 @@ def no_field(kind: Any, name: str) -> Words:
     if kind.__module__.startswith("builtin_interfaces.") and name == "now":
         return time_now()
     if kind.__module__.startswith("builtin_interfaces.") and name in ("to_sec", "to_nsec", "seconds", "nanoseconds"):
-        return say(
+        phrase = N_(
             "The {type} of a message has sec and nanosec. As one number:"
-            " {type}.from_msg(stamp).nanoseconds / 1e9, from rclpy.{module} import {type}.",
-            type=kind.__name__,
-            module=kind.__name__.lower(),
+            " {type}.from_msg(stamp).nanoseconds / 1e9, from rclpy.{module} import {type}."
         )
+        return say(phrase, type=kind.__name__, module=kind.__name__.lower())
     ways = list(_ways(kind))
     said = {"type": name_of(kind), "field": name}
     joined = next((way for way in ways if "." in way and _plain(way) == _plain(name)), "")
@@ -452,11 +403,8 @@ def positional_field(failure: Failure) -> Words | None:
                 type=what,
                 arguments=", ".join(f"{name}={each}" for (name, _), each in zip(pairs, made, strict=True)),
             )
-        return say(
-            "The fields of a message are given by name, {type}(name=…). It has: {fields}.",
-            type=what,
-            fields=listed(fields) or "-",
-        )
+        phrase = N_("The fields of a message are given by name, {type}(name=…). It has: {fields}.")
+        return say(phrase, type=what, fields=listed(fields) or "-")
     return None
 
 
@@ -477,12 +425,11 @@ def not_made(failure: Failure) -> Words | None:
         kind = failure.value(call.func)
         inner = "Request" if is_service_class(kind) else "Goal" if hasattr(kind, "Goal") else ""
         if inner:
-            return say(
+            phrase = N_(
                 "{type} is only the pair of what is asked and answered; make"
-                " {type}.{inner}(), or the other part of it.",
-                type=shown(call.func),
-                inner=inner,
+                " {type}.{inner}(), or the other part of it."
             )
+            return say(phrase, type=shown(call.func), inner=inner)
     return None
 
 
@@ -557,11 +504,8 @@ def result(failure: Failure) -> Words | None:
         return say(
             "The action's callback has to return the result in every case: return {action}.Result().", action=action
         )
-    return say(
-        "The action's callback has to return {action}.Result(), filled, and returns {given}.",
-        action=action,
-        given=given(value),
-    )
+    phrase = N_("The action's callback has to return {action}.Result(), filled, and returns {given}.")
+    return say(phrase, action=action, given=given(value))
 
 
 def feedback(failure: Failure) -> Words | None:
@@ -572,8 +516,5 @@ def feedback(failure: Failure) -> Words | None:
     value, action = level.values.get("feedback"), level.values["self"]._action_server.action_type
     if isinstance(value, action.Feedback):
         return None
-    return say(
-        "publish_feedback takes {action}.Feedback(), filled, and is given {given}.",
-        action=action.__name__,
-        given=given(value),
-    )
+    phrase = N_("publish_feedback takes {action}.Feedback(), filled, and is given {given}.")
+    return say(phrase, action=action.__name__, given=given(value))

@@ -5,16 +5,13 @@ from __future__ import annotations
 import ast
 import gc
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from launcher.faults.failure import Failure, is_from, shown
 from launcher.faults.rules.names import mixed
 from text.i18n import N_
-from text.sentences import say
+from text.sentences import Words, say
 from text.suggestions import nearest
-
-if TYPE_CHECKING:
-    from text.sentences import Words
 
 UNHEARD = N_(
     "A Buffer hears nothing by itself: self.listener = TransformListener(self.buffer, self) in __init__ fills it."
@@ -234,22 +231,18 @@ def bad_name(failure: Failure) -> Words | None:
         return words
     sign = name[at] if isinstance(at, int) and at < len(name) else ""
     if "InvalidNodeNameException" in kinds:
-        return say(
+        phrase = N_(
             "The name of a node has letters, digits and _, and begins with no digit; {name!r} has"
-            " {sign!r} at {place}.",
-            name=name,
-            sign=sign,
-            place=at + 1,
+            " {sign!r} at {place}."
         )
+        return say(phrase, name=name, sign=sign, place=at + 1)
     if "InvalidNamespaceException" in kinds:
         return say("A namespace has letters, digits, _ and /: {name!r}.", name=name)
-    return say(
+    phrase = N_(
         "The name of a topic or service has letters, digits, _ and /, and no digit after a /;"
-        " {name!r} has {sign!r} at {place}.",
-        name=name,
-        sign=sign,
-        place=at + 1,
+        " {name!r} has {sign!r} at {place}."
     )
+    return say(phrase, name=name, sign=sign, place=at + 1)
 
 
 def spun_twice(failure: Failure) -> Words | None:
@@ -288,11 +281,8 @@ def two_types(failure: Failure) -> Words | None:
     others = {each.msg_type.__name__ for each in (*node.publishers, *node.subscriptions) if each.topic_name == topic}
     if not others:
         return None
-    return say(
-        "This node uses {topic} with the type {other} already: a topic has one type.",
-        topic=topic,
-        other=", ".join(others),
-    )
+    phrase = N_("This node uses {topic} with the type {other} already: a topic has one type.")
+    return say(phrase, topic=topic, other=", ".join(others))
 
 
 def looked_up(failure: Failure) -> Words | None:
@@ -362,21 +352,13 @@ def opencv(failure: Failure) -> Words | None:
         node = call.args[at] if at < len(call.args) else None
         if node is not None and found is not None:
             if "item" not in found[0]:
-                return say(
-                    "{call}: {name} is a whole number: int({what}) cuts the fraction off.",
-                    call=shown(call.func),
-                    name=found["name"],
-                    what=shown(node),
-                )
+                phrase = N_("{call}: {name} is a whole number: int({what}) cuts the fraction off.")
+                return say(phrase, call=shown(call.func), name=found["name"], what=shown(node))
             items: list[ast.expr] = getattr(node, "elts", [])
             parts = [shown(one) if type(failure.value(one)) is int else f"int({shown(one)})" for one in items]
             made = f"({', '.join(parts)})" if parts else f"tuple(int(v) for v in {shown(node)})"
-            return say(
-                "{call}: the values of {name} are whole numbers: {made}.",
-                call=shown(call.func),
-                name=found["name"],
-                made=made,
-            )
+            phrase = N_("{call}: the values of {name} are whole numbers: {made}.")
+            return say(phrase, call=shown(call.func), name=found["name"], made=made)
     for call in calls:
         for each in call.args:
             value = failure.value(each)

@@ -11,6 +11,7 @@ from typing import Any
 from launcher.faults.failure import UNKNOWN, Failure, fields_of, is_message, name_of, shown
 from launcher.faults.remedy import is_none, listed, of_list, remedy, unset_parameter
 from launcher.faults.rules.fields import no_field
+from text.i18n import N_
 from text.sentences import Words, say
 from text.suggestions import nearest
 
@@ -68,20 +69,17 @@ def _plain(failure: Failure, left: ast.expr, sign: str, right: ast.expr) -> Word
         if kind is str and other in (int, float):
             return _text(failure, node, number, sign)
         if kind in _LISTS and other in (int, float):
-            return say(
+            phrase = N_(
                 "{what} is a list, which cannot be calculated with as a whole: [v {sign} … for v in"
-                " {what}], or np.array({what}).",
-                what=shown(node),
-                sign=sign,
+                " {what}], or np.array({what})."
             )
+            return say(phrase, what=shown(node), sign=sign)
     if kinds[0] in _LISTS and sign != "+":
-        return say(
+        phrase = N_(
             "Lists are not calculated with by {sign}: np.array({left}) {sign} np.array({right})"
-            " does it value by value.",
-            sign=sign,
-            left=shown(left),
-            right=shown(right),
+            " does it value by value."
         )
+        return say(phrase, sign=sign, left=shown(left), right=shown(right))
     if None in kinds:
         # Such as of a function without annotations: the interpreter has said it in words only.
         return None
@@ -99,25 +97,15 @@ def _text(failure: Failure, text: ast.expr, number: ast.expr, sign: str) -> Word
     value = failure.value(text)
     is_joined = isinstance(text, (ast.Constant, ast.JoinedStr)) and sign == "+"
     if isinstance(value, str) and value and not is_joined and not _is_number(value):
-        return say(
-            "{text} is the text {value!r}, not a number: it does not go with {number}.",
-            text=shown(text),
-            value=value,
-            number=shown(number),
-        )
+        phrase = N_("{text} is the text {value!r}, not a number: it does not go with {number}.")
+        return say(phrase, text=shown(text), value=value, number=shown(number))
     if sign != "+":
         return say("{text} is a text, even if it looks like a number: float({text}).", text=shown(text))
     if isinstance(text, ast.Constant):
-        return say(
-            'A text and a number cannot be added: str({number}), or in one f-string, f"{text} {{{number}}}".',
-            number=shown(number),
-            text=str(text.value).strip(),
-        )
-    return say(
-        "{text} is a text and {number} a number: float({text}) to calculate, str({number}) to write both.",
-        text=shown(text),
-        number=shown(number),
-    )
+        phrase = N_('A text and a number cannot be added: str({number}), or in one f-string, f"{text} {{{number}}}".')
+        return say(phrase, number=shown(number), text=str(text.value).strip())
+    phrase = N_("{text} is a text and {number} a number: float({text}) to calculate, str({number}) to write both.")
+    return say(phrase, text=shown(text), number=shown(number))
 
 
 def _is_number(text: str) -> bool:
@@ -139,12 +127,11 @@ def _times(left: ast.expr, right: ast.expr, first: type | None, second: type | N
         return None
     of_messages = [each.__module__.startswith("builtin_interfaces.") for each in (first, second)]
     if all(of_messages):
-        return say(
+        phrase = N_(
             "Times of messages are not calculated with: make times of rclpy of both,"
-            " Time.from_msg({first}) and Time.from_msg({second}).",
-            first=shown(left),
-            second=shown(right),
+            " Time.from_msg({first}) and Time.from_msg({second})."
         )
+        return say(phrase, first=shown(left), second=shown(right))
     if not any(of_messages):
         return None
     return say(
@@ -166,12 +153,11 @@ def formatted(failure: Failure) -> Words | None:
         wanted = text.replace("%%", "").count("%")
         values = each.right.elts if isinstance(each.right, ast.Tuple) else [each.right]
         if wanted != len(values):
-            return say(
+            phrase = N_(
                 "The text has {wanted} places for values (%), and is given {given}. An f-string shows"
-                ' where each goes: f"… {{x}}".',
-                wanted=wanted,
-                given=len(values),
+                ' where each goes: f"… {{x}}".'
             )
+            return say(phrase, wanted=wanted, given=len(values))
         return remedy(failure, values[0]) or say(
             '%d and %f stand for numbers, %s for any value; an f-string asks for neither: f"{x}".'
         )
@@ -206,11 +192,8 @@ def not_callable(failure: Failure) -> Words | None:
         if inspect.ismodule(value):
             return say("{what} is a module: name what is meant in it, {what}.x.", what=what)
         if said and not callable(value) and (value is not UNKNOWN or call is failure.node or unknown == [call]):
-            return say(
-                "{what} is a value of type {type}, not a function: write it without brackets.",
-                what=what,
-                type=said["type"],
-            )
+            phrase = N_("{what} is a value of type {type}, not a function: write it without brackets.")
+            return say(phrase, what=what, type=said["type"])
     return None
 
 
@@ -260,12 +243,8 @@ def _of_message(what: str, message: Any, index: Any) -> Words:
         field = fields[index]
     if isinstance(index, int) and field == "data" and isinstance(message.data, _LISTS):
         field = f"data[{index}]"
-    return say(
-        "{what} is a message, {type}: its fields are had with a point, {what}.{field}.",
-        what=what,
-        type=name_of(type(message)),
-        field=field,
-    )
+    phrase = N_("{what} is a message, {type}: its fields are had with a point, {what}.{field}.")
+    return say(phrase, what=what, type=name_of(type(message)), field=field)
 
 
 def builtin(failure: Failure) -> Words | None:
@@ -310,11 +289,8 @@ def not_iterable(failure: Failure) -> Words | None:
         if words is not None:
             return words
         if found and isinstance(statement, ast.Assign):
-            return say(
-                "{what} is one value of type {type}, and several names stand left of the equals sign.",
-                what=shown(each),
-                type=found["type"],
-            )
+            phrase = N_("{what} is one value of type {type}, and several names stand left of the equals sign.")
+            return say(phrase, what=shown(each), type=found["type"])
     return None
 
 
@@ -335,18 +311,13 @@ def number(failure: Failure) -> Words | None:
         if function in (int, float) and value is UNKNOWN and quoted:
             return _no_number(what, quoted["text"])
         if function in (int, float) and isinstance(value, float):
-            return say(
-                "{what} is {value}, which is not a whole number: ask math.isfinite({what}) first.",
-                what=what,
-                value=str(value),
-            )
+            phrase = N_("{what} is {value}, which is not a whole number: ask math.isfinite({what}) first.")
+            return say(phrase, what=what, value=str(value))
         if function in (min, max) and len(call.args) == 1 and (value is UNKNOWN or not len(value)):
-            return say(
-                "{what} is empty, and has neither a least nor a largest value: ask before, or"
-                " {call}(…, default=0.0).",
-                what=what,
-                call=shown(call.func),
+            phrase = N_(
+                "{what} is empty, and has neither a least nor a largest value: ask before, or {call}(…, default=0.0)."
             )
+            return say(phrase, what=what, call=shown(call.func))
         if getattr(function, "__module__", None) == "math":
             return _mathematics(function.__name__, what)
     return None
@@ -377,12 +348,8 @@ def unpacked(failure: Failure) -> Words | None:
         return None
     count, given = len(statement.targets[0].elts), failure.value(statement.value)
     if isinstance(given, (list, tuple, str)) and len(given) > 1:
-        return say(
-            "{what} has {given} values, and {count} names stand left of the equals sign.",
-            what=shown(statement.value),
-            given=len(given),
-            count=count,
-        )
+        phrase = N_("{what} has {given} values, and {count} names stand left of the equals sign.")
+        return say(phrase, what=shown(statement.value), given=len(given), count=count)
     return say(
         "{what} has other than the {count} values that names stand for.", what=shown(statement.value), count=count
     )
@@ -399,13 +366,8 @@ def index(failure: Failure) -> Words | None:
         if len(of) == 1:
             return say("{what} has a single value, {what}[0].", what=what)
         if isinstance(number, int):
-            return say(
-                "{what} has {count} values, [0] to [{last}]; there is no [{index}].",
-                what=what,
-                count=len(of),
-                last=len(of) - 1,
-                index=number,
-            )
+            phrase = N_("{what} has {count} values, [0] to [{last}]; there is no [{index}].")
+            return say(phrase, what=what, count=len(of), last=len(of) - 1, index=number)
         return say("{what} has {count} values, [0] to [{last}].", what=what, count=len(of), last=len(of) - 1)
     if not isinstance(failure.error, IndexError):
         return None
@@ -424,11 +386,8 @@ def key(failure: Failure) -> Words | None:
         meant = nearest(wanted, [k for k in of if isinstance(k, str)]) if isinstance(wanted, str) else ""
         if meant:
             return say("{what} has no key {key!r}; did you mean {meant!r}?", **said, meant=meant)
-        return say(
-            "{what} has no key {key!r}; it has {known}. {what}.get({key!r}) gives None instead.",
-            **said,
-            known=listed([repr(k) for k in of]),
-        )
+        phrase = N_("{what} has no key {key!r}; it has {known}. {what}.get({key!r}) gives None instead.")
+        return say(phrase, **said, known=listed([repr(k) for k in of]))
     return say("There is no key {key!r}.", key=wanted)
 
 

@@ -82,7 +82,7 @@ def test_every_way_in_which_pyserial_fails_leads_to_a_new_try(
 
     monkeypatch.setattr("nodes.drivers.serial_link.serial.Serial", Broken)
     link[0].start()
-    wait_until(lambda: link[0].traffic.connections >= 3, "three tries")
+    wait_until(lambda: link[0].connections >= 3, "three tries")
     assert len(closed) >= 2
     link[0].write(b"1")
     assert any("gone" in line for line in link[1].lines)

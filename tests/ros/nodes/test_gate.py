@@ -15,7 +15,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32
 
 from nodes.parts.node import TranslatedLogger
-from nodes.safety.gate import DistanceSensor, GateSnapshot
+from nodes.safety.state import DistanceSensor, GateSnapshot
 from nodes.safety.words import diagnosis, tell_front
 from robot.safety.distance import SafetyZone, Verdict
 from tests.ros.gate import BEYOND, FRONT, REAR, STAMPS, Gate, drive, stamped, values

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import math
 import os
@@ -16,8 +15,8 @@ from hypothesis import strategies as st
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 
-from nodes.parts.node import BadValueError, Choice, LessonNode, Number, Setting, Switch, Text, Whole
-from tests.ros.node_thread import NodeThread
+from nodes.parts.node import BadValueError, Choice, Number, Setting, Switch, Text, Whole
+from tests.ros.node_thread import NodeThread, node_of
 from tests.ros.peer import DISCOVERY, ROOT, Peer
 
 if TYPE_CHECKING:
@@ -33,11 +32,7 @@ MODULES = (
 
 
 def settings_of(name: str) -> list[Setting[Any]]:
-    found: list[Setting[Any]] = []
-    for item in vars(importlib.import_module(f"nodes.{name}")).values():
-        if isinstance(item, type) and issubclass(item, LessonNode) and item is not LessonNode:
-            found += item.settings().values()
-    return found
+    return list(node_of(f"nodes.{name}").settings().values())
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -105,9 +100,10 @@ OTHER_STARTS = [
 ]
 STARTS = """
 import importlib, json, sys
+from nodes.parts.runner import run
 from tests.ros.node_thread import node_of
 for module, words in json.loads(sys.argv[1]):
-    print(node_of(module).main(words), flush=True)
+    print(run(node_of(module), words), flush=True)
 """
 
 

@@ -11,7 +11,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import ByteMultiArray, Float32, String
 
 from brain.speech.espeak import EspeakVoice
-from nodes.parts.messages import sound_of
+from nodes.parts.sound import sound_of
 from robot.sound import RATE_HZ, level_dbfs, text_in
 from tests.ros.node_process import NodeProcess
 from tests.waiting import wait_until

@@ -14,7 +14,7 @@ TABLE: dict[str, dict[str, dict[str, Any]]] = yaml.safe_load(
 )
 """Group, name, and what is wrong in which program."""
 SENTENCES = Path(__file__).with_name("sentences.txt")
-"""Of each mistake a line with its name, one with the English sentence, one with the Russian."""
+"""Of each mistake a line: its name, and the English sentence."""
 
 
 def program(text: str = "", swap: list[list[str]] | None = None, **around: Any) -> str:
@@ -35,14 +35,11 @@ GATE = tuple(name for group in TABLE.values() for name in list(group)[::ONE_IN_E
 """Some sixty of all groups; the others are tried at night."""
 
 
-def sentences() -> dict[str, tuple[str, str]]:
-    """Return the sentences of each mistake, in English and Russian."""
+def sentences() -> dict[str, str]:
+    """Return the sentence of each mistake, in English."""
     lines = SENTENCES.read_text().splitlines() if SENTENCES.exists() else []
-    return {
-        name: (english.strip(), russian.strip())
-        for name, english, russian in zip(lines[::3], lines[1::3], lines[2::3], strict=True)
-    }
+    return dict(line.split(" | ", 1) for line in lines)
 
 
-def write(found: dict[str, tuple[str, str]]) -> None:
-    SENTENCES.write_text("".join(f"{name}\n  {en}\n  {ru}\n" for name, (en, ru) in found.items()))
+def write(found: dict[str, str]) -> None:
+    SENTENCES.write_text("".join(f"{name} | {words}\n" for name, words in found.items()))

@@ -1,27 +1,26 @@
-"""Pictures and sound in messages, to numpy and bytes, and back."""
+"""Pictures: sensor_msgs/Image to numpy, without cv_bridge, and a node that looks at the newest now and then."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image
-from std_msgs.msg import ByteMultiArray
 
+from nodes.parts.node import LessonNode, Number, PhrasedError, SensorListener, Text, Whole, change_period
+from robot.topics import CAMERA
 from text.i18n import N_
-from text.sentences import say
 
 CHANNELS = 3
+_NONE = N_("No picture yet on {topic}")
+_OLD = N_("No new picture on {topic} since the last one")
+_BAD = N_("The picture is refused: {reason}")
 _BAD_ENCODING = N_("encoding {encoding}, but only bgr8 and rgb8 are understood")
 _BAD_SIZE = N_("{width}x{height} pixels, {step} bytes a row and {size} bytes do not fit together")
 
 
-class BadPictureError(ValueError):
-    """A message that is not a valid picture; `phrase` and `values` say why."""
-
-    def __init__(self, phrase: str, **values: object) -> None:
-        super().__init__(say(phrase, **values))
-        self.phrase = phrase
-        self.values = values
+class BadPictureError(PhrasedError, ValueError):
+    """A message that is not a valid picture."""
 
 
 def bgr(message: Image) -> NDArray[np.uint8]:
@@ -72,11 +71,45 @@ def fit(picture: NDArray[np.uint8], into: NDArray[np.uint8]) -> None:
     into[top : top + height, left : left + width] = scaled.reshape(height, width, -1)
 
 
-def sound_message(sound: bytes) -> ByteMultiArray:
-    """Return samples (signed, 16 bit, little-endian, mono) as ROS wants them: each byte a bytes of its own."""
-    return ByteMultiArray(data=[sound[at : at + 1] for at in range(len(sound))])
+class PictureTaker(LessonNode):
+    """Keeps the newest picture, and has it sent each `period`; none is ever queued."""
 
+    topic = Text(CAMERA, "Where the pictures come from", fixed=True)
+    period = Number(3.0, "Time between two looks", low=0.1, high=3600.0, unit="s")
+    quality = Whole(80, "Quality of the JPEG", low=1, high=100)
 
-def sound_of(message: ByteMultiArray) -> bytes:
-    """Return the samples of a message, as `sound_message` takes them."""
-    return b"".join(message.data)
+    def __init__(self) -> None:
+        super().__init__()
+        self._newest: bytes | None = None
+        """Serialized: decoding ten pictures a second to use one in thirty would be wasteful."""
+        self._any = False
+        SensorListener(self, Image, self.topic, self._keep, depth=1, raw=True)
+        self._timer = self.every(self.period, self._look)
+
+    def send(self, picture: Image) -> None:
+        """Send the picture somewhere; raises `BadPictureError`."""
+        raise NotImplementedError
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether a picture can be sent now."""
+        return True
+
+    def parameters_changed(self) -> None:
+        """Apply the new period."""
+        change_period(self._timer, self.period)
+
+    def _keep(self, serialized: bytes) -> None:
+        self._newest, self._any = serialized, True
+
+    def _look(self) -> None:
+        if not self.is_ready:
+            return
+        if self._newest is None:
+            self.say.warn(_OLD if self._any else _NONE, every_s=1.0, topic=self.topic)
+            return
+        picture, self._newest = deserialize_message(self._newest, Image), None
+        try:
+            self.send(picture)
+        except BadPictureError as error:
+            self.say.warn(_BAD, reason=self.say.text(error.phrase, **error.values))
