@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from graph.housekeeping import is_hidden
 from graph.pictures.compressed import to_jpeg
 from graph.pictures.picture import COMPRESSED, IMAGE, METRES, read_picture
-from graph.pictures.pixels import DEPTHS, ImageError, image_fields, pixel_rows
+from graph.pictures.pixels import ImageError, pixels_of
 from robot.topics import ROBOT_DESCRIPTION, TF, TF_STATIC
 from space.reading.fields import NotDrawnError
 from text.i18n import localized
@@ -124,13 +124,9 @@ def _picture(type_name: str, message: Message, *, compact: bool) -> Any:  # noqa
 
 def _numbers(message: Message) -> NDArray[np.generic]:
     """Return the pixels of a depth image, shape (height, width)."""
-    (width, height, step), encoding, data = image_fields(message)
-    kind = (">" if message.get("is_bigendian") else "<") + DEPTHS[encoding]
-    size = int(kind[-1])
-    rows = pixel_rows(data, width, height, step, size)
-    numbers = rows.reshape(height, width * size).copy().view(kind)
+    numbers = pixels_of(message)[:, :, 0]
     # Rerun reads the machine's own order of bytes.
-    return numbers.astype(kind[1:])
+    return numbers.astype(numbers.dtype.newbyteorder("="))
 
 
 # ---------------------------------------------------------------- numbers
