@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from agents.refusal import refused
 from agents.tools import Call, Camera, Count, Facts, Part, RosName, Seconds, Width, tool
 from graph.messages.yaml_text import to_yaml
-from graph.pictures.picture import COMPRESSED, IMAGE
+from graph.pictures.reading import COMPRESSED, IMAGE
 from robot.safety.gate_report import gate_in
 from robot.topics import BATTERY, CAMERA, HEAD_STATE, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.plain import plain, plain_lines
@@ -109,8 +109,8 @@ async def see(call: Call, topic: Camera = None, width: Width = 640) -> tuple[str
 def _as_jpeg(sample: Sample, width: int) -> tuple[bytes, int, int]:
     """The newest picture of the robot's camera."""
     from graph.pictures.compressed import to_jpeg
-    from graph.pictures.picture import read_picture
     from graph.pictures.pixels import ImageError
+    from graph.pictures.reading import read_picture
 
     def fit(wide: int, high: int) -> tuple[int, int]:
         share = min(1.0, width / max(1, wide), width / max(1, high))

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from graph.housekeeping import is_hidden
 from graph.pictures.compressed import to_jpeg
-from graph.pictures.picture import COMPRESSED, IMAGE, METRES, read_picture
+from graph.pictures.picture import METRES
 from graph.pictures.pixels import ImageError, pixels_of
+from graph.pictures.reading import COMPRESSED, IMAGE, read_picture
 from robot.topics import ROBOT_DESCRIPTION, TF, TF_STATIC
 from space.reading.fields import NotDrawnError
 from text.i18n import localized

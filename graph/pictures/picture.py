@@ -1,4 +1,4 @@
-"""Any message that holds a picture, as a picture of the size that is shown: thinned out first, coloured after.
+"""A picture of the size that is shown: thinned out first, coloured after.
 
 A picture of 1280x720 has thirty times the pixels that a terminal shows: skipping the others is
 what makes ten pictures a second cheap. numpy is imported in the functions, see `graph.pictures.pixels`.
@@ -7,22 +7,20 @@ what makes ten pictures a second cheap. numpy is imported in the functions, see 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from graph.pictures.pixels import DEPTHS, coloured, grey, pixels_of
+from graph.pictures.pixels import grey
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from graph.data import Value
     from graph.pictures.pixels import Rgb
 
 Fit: TypeAlias = "Callable[[int, int], tuple[int, int]]"
 """From width and height of a picture to the wanted width and height, in pixels."""
-IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 METRES = {"16UC1": 1e-3, "32FC1": 1.0}
 """Metres of one unit of the depth encodings (source: REP-118)."""
 FARTHEST = 99.0
@@ -47,23 +45,6 @@ class Picture:
     def is_empty_depth(self) -> bool:
         """Whether it is depth of which not one reading is a distance: NaN, infinite or zero."""
         return self.encoding in METRES and self.range_m is None
-
-
-def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Picture:
-    """Return the picture of a `sensor_msgs/Image` or `CompressedImage`, thinned out to `fit`.
-
-    Raises ImageError. A compressed picture takes milliseconds: do not call this where others wait.
-    """
-    if type_name == COMPRESSED:
-        from graph.pictures.compressed import read_compressed
-
-        return read_compressed(value, fit)
-    pixels, encoding = pixels_of(value), str(value["encoding"])
-    height, width = pixels.shape[:2]
-    thin = thinned(pixels, fit)
-    if encoding in DEPTHS:
-        return numbers_picture(thin[:, :, 0], (width, height), encoding, pixels[:, :, 0])
-    return Picture(coloured(thin, encoding), width, height, encoding)
 
 
 def numbers_picture(

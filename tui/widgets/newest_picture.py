@@ -6,8 +6,9 @@ import asyncio
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from graph.pictures.picture import COMPRESSED, Picture, read_picture
+from graph.pictures.picture import Picture
 from graph.pictures.pixels import ImageError
+from graph.pictures.reading import COMPRESSED, read_picture
 
 if TYPE_CHECKING:
     from textual.widget import Widget

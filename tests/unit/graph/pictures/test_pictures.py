@@ -11,8 +11,8 @@ import pytest
 
 from graph.data import Value
 from graph.pictures.compressed import thinned_picture
-from graph.pictures.picture import COMPRESSED, IMAGE, read_picture
 from graph.pictures.pixels import ImageError, to_rgb
+from graph.pictures.reading import COMPRESSED, IMAGE, read_picture
 
 ORANGE = (250, 120, 10)
 
