@@ -1,7 +1,8 @@
 """What is kept of a session for the screens: the waiting update, messages, log lines, and what remains at its end.
 
 While the app is busy updates are merged, so that at most one waits: a slow screen draws less often, but does not
-fall behind. What a session leaves that has ended by itself is not updated any more, and must not look as if it were current.
+fall behind. What a session leaves that has ended by itself is not updated any more, and must not look as if it were
+current.
 """
 
 from __future__ import annotations
