@@ -50,7 +50,7 @@ class Replay:
             notes=self.bag.notes,
         )
         self._start_s = start_s
-        self._wanted = self._interest = Interest()
+        self._interest = Interest()
         self._shown = Interest()
         self._orders: deque[Callable[[Player], None]] = deque()
         self._lock = threading.Lock()
@@ -75,15 +75,9 @@ class Replay:
         elif self._thread is not threading.current_thread():
             self._thread.join(STOP_WITHIN_S)
 
-    @property
-    def wanted(self) -> Interest:
-        """What updates are to have."""
-        return self._wanted
-
     def want(self, interest: Interest) -> None:
         """Have updates with exactly this: every topic is measured, and there is no network to spare pictures from."""
         with self._lock:
-            self._wanted = interest
             self._interest = replace(interest, watched=interest.watched | interest.pictures)
         self._wake.set()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
+from multiprocessing import Pipe
 from typing import Any, cast
 
 import numpy as np
@@ -13,11 +14,13 @@ from graph.data import EndpointInfo, GraphUpdate, NodeRow, Sample, TopicRow, Val
 from graph.messages.making import NoSuchFieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.observer import GIVEN_UP_AFTER_S, HUNG_AFTER_S, ObserverProcess, _Line
+from graph.observer.process import Speaker
 from graph.observer.requests import ObserverError
-from graph.observer.updates import news, renewed
+from graph.observer.updates import KEPT_BYTES, news, renewed
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES, RMW, announcing
 from launcher.domain.discovery import settings_of_discovery
 from tests.conftest import MIDDLEWARE
+from tests.waiting import DEADLINE_S
 from text.sentences import Words, say
 
 
@@ -89,3 +92,19 @@ def test_it_is_found_as_the_nodes_of_a_session_are(
     for name, value in environ.items():
         monkeypatch.setenv(name, value)
     assert announcing(discovery) == settings_of_discovery(environ, discovery)
+
+
+def test_a_reader_that_is_slow_gets_the_newest_and_lets_nothing_pile_up() -> None:
+    ours, theirs = Pipe()
+    speaker = Speaker(theirs)
+    picture = Sample("/t", "a/msg/B", 1.0, 0.0, KEPT_BYTES // 2, {"data": b"x" * 1_000_000})
+    for number in range(200):
+        speaker.show(GraphUpdate(float(number), samples={"/t": (picture,)}))
+        speaker.give_sign()
+    speaker.say("an answer")
+    heard: list[Any] = []
+    while not heard or heard[-1].get("time_s") != 199.0:
+        heard += [words for words in [ours.recv()] if isinstance(words, dict)]
+    assert len(heard) <= 3
+    assert sum(len(words["samples"].get("/t", ())) for words in heard) <= 2 * len(heard)
+    speaker.finish(DEADLINE_S)
