@@ -99,9 +99,9 @@ async def see(session: RobotSession, asked: SeeArguments) -> tuple[str, dict[str
 
 
 def _as_jpeg(sample: Sample, width: int) -> tuple[bytes, int, int]:
-    from graph.pictures.jpeg import to_jpeg
+    from graph.pictures.compressed import to_jpeg
+    from graph.pictures.picture import read_picture
     from graph.pictures.pixels import ImageError
-    from graph.pictures.reading import read_picture
 
     def fit(wide: int, high: int) -> tuple[int, int]:
         share = min(1.0, width / max(1, wide), width / max(1, high))

@@ -3,7 +3,7 @@
 For each topic of raw images that is published on this machine it offers another one, whose name
 begins with that topic's and ends with `graph.pictures.source.THINNED`. While somebody listens
 there, and only then, it takes the raw pictures, and publishes what a terminal can
-draw: see `graph.pictures.thinning`. It runs until its stdin ends.
+draw: see `graph.pictures.compressed`. It runs until its stdin ends.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.housekeeping import is_hidden
 from graph.messages.types import load_message
 from graph.observer.tap import SHALLOW, Tap
+from graph.pictures.compressed import thinned_picture
 from graph.pictures.pixels import ImageError
 from graph.pictures.source import THINNED, host_of, to_see
-from graph.pictures.thinning import thinned_picture
 from graph.qos import BEST_EFFORT, Qos, profile
 from graph.ros import open_ros
 from graph.scan.endpoints import TopicEnds, publishers

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from graph.messages.dated import draft
-from graph.messages.making import FieldError
-from graph.messages.yaml_reading import read_fields
+from graph.messages.making import FieldError, draft
+from graph.messages.yaml_text import read_fields
 from text.i18n import localized
 from text.yaml_faults import YamlError
 from text.yaml_tree import Branch, plain
@@ -14,7 +13,7 @@ from text.yaml_tree import Branch, plain
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from graph.messages.dated import Draft
+    from graph.messages.making import Draft
 
 
 def read(text: str) -> Mapping[str, Any] | None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from graph.messages.fields import fields_of
 from graph.messages.making import no_such_field
-from graph.messages.values import fields_of
 from ros2.options import UsageError
 from text.i18n import localized
 from text.sentences import say

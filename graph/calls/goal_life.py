@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import Goal, GoalStatus
-from graph.messages.values import to_tree
+from graph.messages.fields import to_tree
 from text.i18n import N_
 from text.sentences import say
 
 if TYPE_CHECKING:
     from graph.calls.action_client import GoalAnswers, PolledActionClient
-    from graph.messages.dated import Draft
+    from graph.messages.making import Draft
 
 GONE_AFTER_S = 0.5
 """A server's last messages may arrive a little after it has left the graph."""

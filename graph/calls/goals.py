@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from graph.calls.action_client import PolledActionClient
 from graph.calls.goal_life import GoalLife
 from graph.data import Goal, GoalStatus
-from graph.messages.dated import draft
+from graph.messages.fields import to_tree
+from graph.messages.making import draft
 from graph.messages.types import UnknownTypeError
-from graph.messages.values import to_tree
 from text.sentences import say
 
 if TYPE_CHECKING:

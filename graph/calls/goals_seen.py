@@ -16,8 +16,8 @@ from graph.calls.action_client import FEEDBACKS, Servers, status_topic
 from graph.calls.goal_cancel import Cancelling
 from graph.calls.goal_life import LOST, STATUS
 from graph.data import GoalStatus, SeenGoal
+from graph.messages.fields import to_tree
 from graph.messages.types import UnknownTypeError, load_action
-from graph.messages.values import to_tree
 from text.sentences import say
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.messages.yaml_reading import RULES, read
+from graph.messages.yaml_text import RULES, read
 from text.sentences import say
 from text.yaml_faults import YamlError, character_error, fault
 from text.yaml_reading import check_colons, mapping

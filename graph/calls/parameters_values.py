@@ -183,7 +183,7 @@ def _elements(value: Value) -> list[Value]:
 
 
 def _parsed(text: str) -> Value:
-    from graph.messages.yaml_reading import value_of
+    from graph.messages.yaml_text import value_of
     from text.yaml_faults import YamlError
 
     try:

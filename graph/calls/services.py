@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from graph.calls.clients import Clients
 from graph.data import CallResult
-from graph.messages.dated import draft
-from graph.messages.making import FieldError
+from graph.messages.fields import to_tree
+from graph.messages.making import FieldError, draft
 from graph.messages.types import UnknownTypeError, load_service
-from graph.messages.values import to_tree
 from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
     from graph.data import ServiceRow, Value
-    from graph.messages.dated import Draft
+    from graph.messages.making import Draft
 
 
 QUEUE = 10

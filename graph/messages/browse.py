@@ -13,9 +13,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from graph.messages.fields import INTEGERS, parse, ros_name
+from graph.messages.fields import INTEGERS, fields_of, parse, ros_name, to_tree
 from graph.messages.types import NAME_PARTS, UnknownTypeError, load_action, load_message, load_service
-from graph.messages.values import fields_of, to_tree
 from text.sentences import say
 
 if TYPE_CHECKING:

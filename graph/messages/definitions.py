@@ -14,9 +14,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from graph.messages.fields import BYTES, FieldType, parse
+from graph.messages.fields import BYTES, DUMMY, FieldType, parse, to_tree
 from graph.messages.types import UnknownTypeError, load_action, load_message, load_service
-from graph.messages.values import DUMMY
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -39,6 +38,8 @@ _WIDE_FIELD = re.compile(r"(?m)^[^\S\n]*wstring(?:<=\d+)?(?P<many>\[[^\]\n]*\])?
 _WIDE_CONSTANT = re.compile(r"(?m)^[^\S\n]*wstring(?=\s+\w+\s*=)")
 _WIDE_IN_IDL = re.compile(r"\bwstring\b(?:\s*<\s*\d+\s*>)?(?=\s*[\w,>])(?!\s+\w+\s*=)")
 _WIDE_LITERAL = re.compile(r'(?<==)\s*L(?=")')
+LARGE = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"})
+"""Types whose bytes rclpy copies three times, and the library once: a cloud of 300 000 points has 5 MB."""
 SEPARATOR = "=" * 80
 MSG_NAMES = {"boolean": "bool", "float": "float32", "double": "float64", "octet": "byte"}
 """The generator's name of a plain type to its name in a `.msg` file."""
@@ -52,6 +53,31 @@ PARTS = {"Feedback": "action", "Request": "srv", "Response": "srv"}
 """The kind of interface that a generated message belongs to, by the suffix of its name."""
 _TYPE = re.compile(r"^\s*(?P<name>[A-Za-z][\w/]*)")
 _CONSTANT = re.compile(r"^\s*\S+\s+\w+\s*=")
+
+
+def decoder(type_name: str) -> Callable[[bytes], dict[str, Value]]:
+    """Return a function that decodes a serialized message of an installed type into a tree.
+
+    Raises UnknownTypeError; the returned function raises what rclpy raises for bytes that are not such a message.
+    """
+    from rclpy.serialization import deserialize_message
+
+    cls = load_message(type_name)
+
+    def decode(raw: bytes) -> dict[str, Value]:
+        return to_tree(deserialize_message(raw, cls))
+
+    if type_name not in LARGE:
+        return decode
+    quick = bag_decoder(TypeText(type_name))
+
+    def decode_quickly(raw: bytes) -> dict[str, Value]:
+        try:
+            return quick(raw)
+        except Exception:  # noqa: BLE001 - rclpy says what is wrong with it
+            return decode(raw)
+
+    return decode_quickly
 
 
 class TypeText(NamedTuple):

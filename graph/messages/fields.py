@@ -1,10 +1,16 @@
-"""The types of a message's fields, as its class names them: `sequence<uint8, 16>`, `string<10>`."""
+"""The fields of messages: their types, as a class names them (`sequence<uint8, 16>`), and their values as trees."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from graph.data import Value
 
 INTEGERS = {
     "int8": (-(2**7), 2**7 - 1),
@@ -25,6 +31,8 @@ STRINGS = frozenset({"string", "wstring"})
 BYTES = frozenset({"octet", "uint8", "char"})
 """Element types whose arrays are shown as bytes."""
 
+DUMMY = "structure_needs_at_least_one_member"
+"""Dummy field that the generator puts into a message without fields."""
 _ROS_NAMES = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
 _SEQUENCE = re.compile(r"^sequence<(?P<element>.+?)(?:, (?P<limit>\d+))?>$")
 _ARRAY = re.compile(r"^(?P<element>.+)\[(?P<size>\d+)\]$")
@@ -91,3 +99,53 @@ def _text(element: str) -> tuple[str, int | None]:
     if not found:
         return element, None
     return found["kind"], int(found["limit"]) if found["limit"] else None
+
+
+def to_tree(message: Any) -> dict[str, Value]:  # noqa: ANN401 - generated, without a base class
+    """Return the message's fields in order, by the rules of `graph.data.Value`.
+
+    Arrays of numbers that the message owns are not copied: do not change the message afterwards.
+    """
+    return {name: read(getattr(message, name)) for name, read in _readers(type(message))}  # type: ignore[arg-type]
+
+
+def fields_of(cls: type[Any]) -> tuple[tuple[str, str], ...]:
+    """Return names and types of a message's fields as the class has them, in order."""
+    fields: dict[str, str] = cls.get_fields_and_field_types()
+    return tuple((name, kind) for name, kind in fields.items() if name != DUMMY)
+
+
+@lru_cache(maxsize=512)
+def _readers(cls: type[Any]) -> tuple[tuple[str, Callable[[Any], Value]], ...]:
+    return tuple((name, _reader(parse(kind))) for name, kind in fields_of(cls))
+
+
+def _reader(kind: FieldType) -> Callable[[Any], Value]:
+    if kind.is_message:
+        return _read_messages if kind.is_many else to_tree
+    if not kind.is_many:
+        return _read_octet if kind.element == "octet" else _read_plain
+    if kind.element == "octet":
+        return b"".join
+    if kind.element in BYTES:
+        return bytes
+    return _read_numbers if kind.is_number else list
+
+
+def _read_plain(value: Value) -> Value:
+    return value
+
+
+def _read_octet(value: bytes) -> Value:
+    return value[0]
+
+
+def _read_messages(values: list[Any]) -> Value:
+    return [to_tree(value) for value in values]
+
+
+def _read_numbers(values: Any) -> Value:  # noqa: ANN401 - array.array or numpy.ndarray
+    import numpy as np
+
+    array: Value = np.asarray(values)
+    return array

@@ -5,13 +5,10 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from graph.messages.dated import draft, with_words
-from graph.messages.fields import parse, ros_name
-from graph.messages.making import FieldError, NoSuchFieldError
+from graph.messages.fields import fields_of, parse, ros_name, to_tree
+from graph.messages.making import FieldError, NoSuchFieldError, draft, with_words
 from graph.messages.types import NAME_PARTS, UnknownTypeError, load_action, load_message, load_service
-from graph.messages.values import fields_of, to_tree
-from graph.messages.yaml_reading import read_message
-from graph.messages.yaml_text import to_yaml
+from graph.messages.yaml_text import read_message, to_yaml
 from text.sentences import say
 from text.yaml_tree import Branch, Listing, Scalar, field_name, find, place_of, plain
 

@@ -1,17 +1,27 @@
-"""Messages as YAML, as `ros2 topic echo` and `ros2 topic pub` have it."""
+"""Messages as YAML, as `ros2 topic echo` and `ros2 topic pub` have it, and such YAML read again.
+
+What is read are plain values only, without anchors and aliases.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from text.sentences import say
+from text.yaml_faults import YamlError
+from text.yaml_reading import Rules, check_colons, mapping
+from text.yaml_reading import read as read_tree
 from text.yaml_scalars import written
+from text.yaml_tree import Listing, empty, plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from graph.data import Value
+    from text.yaml_tree import Branch, Tree
 
+RULES = Rules(shares=False, longest=1024 * 1024, deepest=64)
 LONGEST_TEXT = 64 * 1024
 """Characters of a text, where arrays are cut too: what a terminal still takes as a clipboard."""
 
@@ -109,3 +119,34 @@ def _elements(value: Any) -> list[Any]:  # noqa: ANN401 - bytes, an array of num
 
 def _commented(line: str, remark: str) -> str:
     return f"{line}  # {remark}" if remark else line
+
+
+def read(text: str, rules: Rules = RULES) -> Branch | None:
+    """Return the only document of `text`, a mapping, None if there is nothing. Raises YamlError."""
+    root = read_tree(text, rules)
+    return None if root is None or empty(root) else mapping(root)
+
+
+def read_message(text: str) -> Branch:
+    """Return the fields of a message. Raises YamlError."""
+    root = read_fields(text)
+    if root is None or empty(root):
+        raise YamlError(1, 1, say("is empty: write {} for a message with nothing but defaults"))
+    return mapping(root)
+
+
+def read_fields(text: str) -> Tree | None:
+    """Return what stands in a text that should be the fields of a message. Raises YamlError."""
+    root = read_tree(text, RULES)
+    if root is not None:
+        check_colons(root)
+    if isinstance(root, Listing):
+        for item in root.items:
+            check_colons(item)
+    return root
+
+
+def value_of(text: str) -> Any:  # noqa: ANN401 - whatever was written
+    """Return the value that the only document of `text` is, None for nothing. Raises YamlError."""
+    root = read_tree(text, RULES)
+    return None if root is None else plain(root)

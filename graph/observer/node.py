@@ -16,7 +16,7 @@ from graph.calls.services import Calls
 from graph.data import GraphUpdate
 from graph.frames.book import FRAME_TOPICS, FrameBook
 from graph.frames.reading import TF_MESSAGE
-from graph.messages.decoding import decoder
+from graph.messages.definitions import decoder
 from graph.observer.census import Census, census
 from graph.observer.interest import Interest
 from graph.observer.settings import LOOK_AT_GRAPH_S

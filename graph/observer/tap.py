@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from graph.data import Sample
-from graph.messages.decoding import decoder
+from graph.messages.definitions import decoder
 from graph.messages.stamps import delay_reader, frame_id
 from graph.messages.stand_in import stand_in
 from graph.messages.types import UnknownTypeError, load_message, not_decoded

@@ -1,4 +1,4 @@
-"""`sensor_msgs/CompressedImage`: JPEG and PNG by OpenCV, refused before they can do harm."""
+"""`sensor_msgs/CompressedImage`: JPEG and PNG by OpenCV, refused before they can do harm; and pictures packed so."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import re
 import struct
 from typing import TYPE_CHECKING, Any
 
-from graph.pictures.picture import Picture, numbers_picture, thinned
-from graph.pictures.pixels import ImageError, opencv
+from graph.pictures.picture import METRES, Picture, numbers_picture, thinned
+from graph.pictures.pixels import ImageError, opencv, pixels_of, to_rgb
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from graph.data import Value
     from graph.pictures.picture import Fit
+    from graph.pictures.pixels import Rgb
 
 MOST_BYTES = 64 * 1024 * 1024
 MOST_PIXELS = 64 * 1024 * 1024
@@ -25,7 +26,11 @@ MOST_PIXELS = 64 * 1024 * 1024
 JPEG, PNG = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
 JPEG_END, PNG_END = b"\xff\xd9", b"IEND\xaeB`\x82"
 DEPTH_HEAD = struct.Struct("<iff")
-"""Header before the PNG of the transport compressedDepth: format, and two numbers for 32FC1."""
+"""Header before the PNG of the transport compressedDepth: format, and two numbers for 32FC1. Without these, the
+numbers are millimetres (source: compressed_depth_image_transport, codec.cpp)."""
+WIDTH, HEIGHT = 400, 300
+"""At most, of a picture for a network: a terminal of 200 columns shows half of it, each pixel the mean of four."""
+MILLIMETRES = 1000.0
 _FULL_SIZE = re.compile(r"; of (\d{1,5})x(\d{1,5})$")
 """What Deck's own relay adds to the format: the size of the camera's picture."""
 _SIZED = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
@@ -47,21 +52,18 @@ def read_compressed(value: Mapping[str, Value], fit: Fit) -> Picture:
     if "compressedDepth" in words and len(raw) > DEPTH_HEAD.size:
         head, raw = DEPTH_HEAD.unpack_from(raw), raw[DEPTH_HEAD.size :]
     width, height = _size(raw)
-    _refuse_if_cut(raw)
-    pixels = _decoded(raw, _reduction(width, height, fit), as_they_are=head is not None)
-    thin = thinned(pixels, fit)
+    kind, end = ("JPEG", JPEG_END) if raw.startswith(JPEG) else ("PNG", PNG_END)
+    if raw.rfind(end, -4096) < 0:
+        # OpenCV would show half of it, with complaints on the terminal.
+        raise ImageError(say("the {kind} data are cut short: no end in {found} bytes", kind=kind, found=len(raw)))
+    pixels = _decoded(raw, kind, _reduction(width, height, fit), as_they_are=head is not None)
     if head is not None:
-        encoding, read = words.split(";")[0].strip(), head
-        return numbers_picture(
-            _depths(thin[..., 0], encoding, head),
-            width,
-            height,
-            encoding,
-            lambda: _depths(pixels[..., 0], encoding, read),
-        )
-    full = _FULL_SIZE.search(words)
-    width, height = map(int, full.groups()) if full else (width, height)
-    return Picture(thin[:, :, ::-1], width, height, "jpeg" if raw[:3] == JPEG else "png")
+        encoding = words.split(";")[0].strip()
+        every = _depths(pixels[..., 0], encoding, head)
+        return numbers_picture(thinned(every, fit), (width, height), encoding, every)
+    if full := _FULL_SIZE.search(words):
+        width, height = map(int, full.groups())
+    return Picture(thinned(pixels, fit)[:, :, ::-1], width, height, kind.lower())
 
 
 def _size(raw: bytes) -> tuple[int, int]:
@@ -107,40 +109,25 @@ def _jpeg_size(raw: bytes) -> tuple[int, int]:
     raise ImageError(say("the JPEG data are damaged: they do not say how large the picture is"))
 
 
-def _refuse_if_cut(raw: bytes) -> None:
-    """Refuse what OpenCV would show only half of, with complaints on the terminal."""
-    kind, end = ("JPEG", JPEG_END) if raw.startswith(JPEG) else ("PNG", PNG_END)
-    if raw.rfind(end, -4096) < 0:
-        words = say("the {kind} data are cut short: no end in {found} bytes", kind=kind, found=len(raw))
-        raise ImageError(words)
-
-
 def _reduction(width: int, height: int, fit: Fit) -> int:
     """How much the decoder may shrink it (1, 2, 4 or 8) without falling below the wanted pixels."""
     wide, high = fit(width, height)
     return next((by for by in (8, 4, 2) if width >= by * wide and height >= by * high), 1)
 
 
-def _decoded(raw: bytes, reduction: int, *, as_they_are: bool) -> NDArray[np.uint8]:
+def _decoded(raw: bytes, kind: str, reduction: int, *, as_they_are: bool) -> NDArray[np.uint8]:
     """Return pixels of shape (height, width, 3), or raw numbers of shape (height, width, 1)."""
     import numpy as np
 
     cv2 = opencv()
-    modes: dict[int, int] = {
-        1: cv2.IMREAD_COLOR,
-        2: cv2.IMREAD_REDUCED_COLOR_2,
-        4: cv2.IMREAD_REDUCED_COLOR_4,
-        8: cv2.IMREAD_REDUCED_COLOR_8,
-    }
-    mode = cv2.IMREAD_UNCHANGED if as_they_are else modes[reduction]
+    mode = getattr(cv2, f"IMREAD_REDUCED_COLOR_{reduction}" if reduction > 1 else "IMREAD_COLOR")
+    mode = cv2.IMREAD_UNCHANGED if as_they_are else mode
     try:
         pixels: Any = cv2.imdecode(np.frombuffer(raw, np.uint8), mode)
     except cv2.error as error:
         raise ImageError(say("the data are damaged: {error}", error=error.err)) from error
     if pixels is None:
-        kind = "JPEG" if raw.startswith(JPEG) else "PNG"
-        words = say("the {kind} data are damaged: they cannot be decoded", kind=kind)
-        raise ImageError(words)
+        raise ImageError(say("the {kind} data are damaged: they cannot be decoded", kind=kind))
     return pixels[:, :, None] if pixels.ndim == 2 else pixels  # type: ignore[no-any-return]
 
 
@@ -157,3 +144,37 @@ def _depths(numbers: NDArray[np.generic], encoding: str, head: tuple[int, float,
     with np.errstate(divide="ignore", invalid="ignore"):
         depths: NDArray[np.generic] = np.where(numbers != 0, scale / (numbers.astype(np.float64) - offset), np.nan)
     return depths
+
+
+def thinned_picture(value: Mapping[str, Value]) -> tuple[str, bytes]:
+    """Return format and data of a `CompressedImage` from a `sensor_msgs/Image`: a few packets of a network.
+
+    Colours become a JPEG, depths a PNG of millimetres; the format ends with the size of the image.
+    Raises ImageError.
+    """
+    import numpy as np
+
+    cv2 = opencv()
+    encoding = value.get("encoding")
+    pixels = pixels_of(value)[:, :, 0] if encoding in METRES else to_rgb(value)
+    height, width = pixels.shape[:2]
+    share = min(1.0, WIDTH / width, HEIGHT / height)
+    size = max(1, round(width * share)), max(1, round(height * share))
+    if encoding in METRES:
+        metres = np.nan_to_num(pixels * METRES[str(encoding)], nan=0.0, posinf=0.0, neginf=0.0)
+        depths = np.clip(metres * MILLIMETRES, 0, 65535).astype(np.uint16)
+        # Not the mean: between near and far there is often nothing.
+        _done, png = cv2.imencode(".png", cv2.resize(depths, size, interpolation=cv2.INTER_NEAREST))
+        words, data = "16UC1; compressedDepth png", bytes(DEPTH_HEAD.size) + png.tobytes()
+    else:
+        small = cv2.resize(pixels, size, interpolation=cv2.INTER_AREA)
+        words, data = f"{encoding}; jpeg compressed bgr8", to_jpeg(small, quality=70)
+    return f"{words}; of {width}x{height}", data
+
+
+def to_jpeg(rgb: Rgb, quality: int = 80) -> bytes:
+    """Return a picture of shape (height, width, 3) as a JPEG file; `quality` is 0 to 100."""
+    import cv2
+
+    _done, data = cv2.imencode(".jpg", rgb[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, quality])
+    return data.tobytes()

@@ -1,22 +1,23 @@
-"""Camera messages as pictures of the size that is shown: thinned out first, coloured after.
+"""Any message that holds a picture, as a picture of the size that is shown: thinned out first, coloured after.
 
 A picture of 1280x720 has thirty times the pixels that a terminal shows: skipping the others is
-what makes ten pictures a second cheap. numpy is imported in the functions, see
-`graph.pictures.images`.
+what makes ten pictures a second cheap. numpy is imported in the functions, see `graph.pictures.pixels`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from graph.pictures.pixels import grey
+from graph.pictures.pixels import DEPTHS, coloured, grey, pixels_of
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from graph.data import Value
     from graph.pictures.pixels import Rgb
 
 Fit: TypeAlias = "Callable[[int, int], tuple[int, int]]"
@@ -48,30 +49,47 @@ class Picture:
         return self.encoding in METRES and self.range_m is None
 
 
+def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Picture:
+    """Return the picture of a `sensor_msgs/Image` or `CompressedImage`, thinned out to `fit`.
+
+    Raises ImageError. A compressed picture takes milliseconds: do not call this where others wait.
+    """
+    if type_name == COMPRESSED:
+        from graph.pictures.compressed import read_compressed
+
+        return read_compressed(value, fit)
+    pixels, encoding = pixels_of(value), str(value["encoding"])
+    height, width = pixels.shape[:2]
+    thin = thinned(pixels, fit)
+    if encoding in DEPTHS:
+        return numbers_picture(thin[:, :, 0], (width, height), encoding, pixels[:, :, 0])
+    return Picture(coloured(thin, encoding), width, height, encoding)
+
+
 def numbers_picture(
-    numbers: NDArray[np.generic], width: int, height: int, encoding: str, all_of: Callable[[], NDArray[np.generic]]
+    numbers: NDArray[Any], size: tuple[int, int], encoding: str, every: NDArray[np.generic]
 ) -> Picture:
     """Return numbers of shape (height, width) as a picture: depth by the ramp, others in grey.
 
-    `all_of` returns all numbers of the message, of which the others are a choice: whether there is
-    any distance is judged by them.
+    They are a choice of `every` number of the message, by which is judged whether there is any distance; `size` is
+    the width and height of those.
     """
     if encoding not in METRES:
-        return Picture(grey(numbers), width, height, encoding)
+        return Picture(grey(numbers), *size, encoding)
     import numpy as np
 
     metres, valid = _measured(numbers, encoding)
     distances = metres[valid]
     if not distances.size:
-        every, known = _measured(all_of(), encoding)
-        distances = every[known]
+        all_metres, all_valid = _measured(every, encoding)
+        distances = all_metres[all_valid]
     if not distances.size:
-        return Picture(np.zeros((*metres.shape, 3), np.uint8), width, height, encoding)
+        return Picture(np.zeros((*metres.shape, 3), np.uint8), *size, encoding)
     near, far = rounded(*np.percentile(distances, (100 - FARTHEST, FARTHEST)).tolist())
     share = np.clip((np.where(valid, metres, near) - near) / (far - near), 0.0, 1.0)
     rgb = ramp_colours()[(share * 255).astype(np.uint8)]
     rgb[~valid] = 0
-    return Picture(rgb, width, height, encoding, (near, far))
+    return Picture(rgb, *size, encoding, (near, far))
 
 
 def _measured(numbers: NDArray[np.generic], encoding: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
@@ -94,8 +112,6 @@ def ramp_colours(steps: int = 256) -> Rgb:
 
 def rounded(near: float, far: float) -> tuple[float, float]:
     """Return the range widened a little to round numbers: it must not jitter with every picture."""
-    import math
-
     span = max(far - near, 0.01 * far, 1e-3)
     step = 10.0 ** math.floor(math.log10(span))
     step = step / 2 if span < 5 * step else step
@@ -103,8 +119,8 @@ def rounded(near: float, far: float) -> tuple[float, float]:
     return low, high if high > low else low + step
 
 
-def thinned(pixels: NDArray[np.uint8], fit: Fit) -> NDArray[np.uint8]:
-    """Return every n-th pixel, shape (height, width, bytes); all pixels if the picture is small."""
+def thinned(pixels: NDArray[Any], fit: Fit) -> NDArray[Any]:
+    """Return every n-th pixel, shape (height, width, n); all pixels if the picture is small."""
     import numpy as np
 
     height, width = pixels.shape[:2]
@@ -114,5 +130,5 @@ def thinned(pixels: NDArray[np.uint8], fit: Fit) -> NDArray[np.uint8]:
     wide, high = max(1, min(wide, width)), max(1, min(high, height))
     rows = (np.arange(high) * height + height // 2) // high
     columns = (np.arange(wide) * width + width // 2) // wide
-    fewer: NDArray[np.uint8] = pixels[rows[:, None], columns]
+    fewer: NDArray[Any] = pixels[rows[:, None], columns]
     return fewer

@@ -7,7 +7,7 @@ from collections import deque
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from graph.messages.dated import Draft, draft
+from graph.messages.making import Draft, draft
 from graph.messages.types import load_message
 from graph.qos import RELIABLE, TRANSIENT_LOCAL, Qos, profile, to_be_heard
 from graph.ros import ONLY_LISTENING

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from graph.data import Publication
-from graph.messages.dated import Draft, draft
+from graph.messages.making import Draft, draft
 from graph.messages.types import load_message
 from graph.publishing.outbox import PublishError, open_publisher, refuse_other_type
 from graph.qos import Qos, to_be_heard

@@ -1,4 +1,1 @@
-"""Recording: a node of its own, raw messages, one rosbag2 directory.
-
-Other rooms may import only `recorder`.
-"""
+"""Recording: a node of its own, raw messages, one rosbag2 directory. Viewers take the same messages by a relay."""

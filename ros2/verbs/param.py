@@ -7,9 +7,9 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from graph.messages.fields import to_tree
 from graph.messages.making import to_message
-from graph.messages.values import to_tree
-from graph.messages.yaml_reading import value_of
+from graph.messages.yaml_text import value_of
 from ros2 import naming, options
 from ros2.joining import NoAnswerError, joined
 from ros2.verb import arg, flag, verb

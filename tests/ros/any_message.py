@@ -10,9 +10,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from graph.messages.browse import interfaces
-from graph.messages.fields import BYTES, INTEGERS, FieldType, parse
+from graph.messages.fields import BYTES, INTEGERS, FieldType, fields_of, parse
 from graph.messages.types import load_message
-from graph.messages.values import fields_of
 
 TYPES = tuple(name for name in interfaces() if "/msg/" in name)
 """All messages, those of services and actions left out."""

@@ -6,8 +6,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
-from graph.pictures.images import to_rgb
-from graph.pictures.pixels import ImageError
+from graph.pictures.pixels import ImageError, to_rgb
 from robot.topics import CAMERA
 from text.figures import whole
 from text.i18n import N_, _, localized

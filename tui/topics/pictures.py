@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from graph.pictures.picture import COMPRESSED, IMAGE, Picture, ramp_colours
+from graph.pictures.picture import COMPRESSED, IMAGE, Picture, ramp_colours, read_picture
 from graph.pictures.pixels import ImageError, UnknownEncodingError
-from graph.pictures.reading import read_picture
 from text.i18n import _, decimal, localized
 from text.plain import plain
 from tui.topics.table.columns import hz_text

@@ -12,7 +12,7 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from graph.pictures.images import shrink
+from graph.pictures.pixels import shrink
 from text.figures import figure
 from text.i18n import _, decimal
 from text.plain import plain

@@ -6,9 +6,8 @@ import asyncio
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from graph.pictures.picture import COMPRESSED, Picture
+from graph.pictures.picture import COMPRESSED, Picture, read_picture
 from graph.pictures.pixels import ImageError
-from graph.pictures.reading import read_picture
 
 if TYPE_CHECKING:
     from textual.widget import Widget

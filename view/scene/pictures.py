@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from graph.pictures.jpeg import to_jpeg
-from graph.pictures.picture import COMPRESSED, IMAGE, METRES
-from graph.pictures.pixels import DEPTHS, image_fields, pixel_rows
-from graph.pictures.reading import read_picture
+from graph.pictures.compressed import to_jpeg
+from graph.pictures.picture import COMPRESSED, IMAGE, METRES, read_picture
+from graph.pictures.pixels import pixels_of
 from view.scene.drawn import Drawn, topic_path
 
 if TYPE_CHECKING:
@@ -62,10 +61,6 @@ def _picture(type_name: str, message: Message, *, compact: bool) -> Any:  # noqa
 
 def _numbers(message: Message) -> NDArray[np.generic]:
     """Return the pixels of a depth image, shape (height, width)."""
-    (width, height, step), encoding, data = image_fields(message)
-    kind = (">" if message.get("is_bigendian") else "<") + DEPTHS[encoding]
-    size = int(kind[-1])
-    rows = pixel_rows(data, width, height, step, size)
-    numbers = rows.reshape(height, width * size).copy().view(kind)
+    numbers = pixels_of(message)[:, :, 0]
     # Rerun reads the machine's own order of bytes.
-    return numbers.astype(kind[1:])
+    return numbers.astype(numbers.dtype.newbyteorder("="))

@@ -14,7 +14,7 @@ from tf2_msgs.msg import TFMessage
 
 from graph.data import FrameRow
 from graph.frames.reading import TF_MESSAGE, TransformReader
-from graph.messages.decoding import decoder
+from graph.messages.definitions import decoder
 from tests.ros.observing import Peer, Watcher
 from tests.unit.transform_messages import Sent
 from tests.waiting import wait_until

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import PointCloud2, PointField
 
-from graph.messages.decoding import decoder
+from graph.messages.definitions import decoder
+from graph.messages.fields import to_tree
 from graph.messages.making import to_message
 from graph.messages.types import load_message
-from graph.messages.values import to_tree
 from space.drawing.camera import SpaceCamera
 from space.drawing.raster import Raster
 from space.drawing.scene import draw

@@ -23,7 +23,7 @@ from graph.calls.lifecycle import managed
 from graph.calls.lifecycle_exchange import CHANGE_WITHIN_S, ChangeFacts, change
 from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import Goal, GoalStatus, GraphUpdate, ServiceRow, Value
-from graph.messages.dated import Draft
+from graph.messages.making import Draft
 from graph.observer.loop import ObserverLoop
 from graph.observer.node import ObserverNode
 from graph.observer.requests import ObserverError

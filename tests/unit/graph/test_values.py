@@ -18,8 +18,7 @@ from hypothesis import strategies as st
 from graph.messages.condition import ConditionError, MessageFilter
 from graph.messages.fields import FieldType, parse
 from graph.messages.types import UnknownTypeError, load_message, load_service
-from graph.messages.yaml_reading import read_message
-from graph.messages.yaml_text import is_cut, to_yaml
+from graph.messages.yaml_text import is_cut, read_message, to_yaml
 from graph.observer.troubles import structural
 from graph.scan.endpoints import TopicEnds
 from text.yaml_faults import YamlError

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from graph.calls.parameters_values import WrongValueError, carried
-from graph.messages.yaml_reading import read_message
+from graph.messages.yaml_text import read_message
 from launcher.profile.problems import Problems
 from launcher.profile.reading import read_yaml as read_profile
 from text.nested import MAX_DEPTH, NestedTooDeeplyError, read_json

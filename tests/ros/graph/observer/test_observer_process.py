@@ -208,7 +208,7 @@ def run(program: str, domain: int, **env: str) -> subprocess.CompletedProcess[st
 def test_importing_the_room_imports_neither_rclpy_nor_numpy(ros_domain: int) -> None:
     program = (
         "import json, sys;"
-        "import graph, graph.data, graph.pictures.images, graph.observer.observer;"
+        "import graph, graph.data, graph.pictures.pixels, graph.observer.observer;"
         "print(json.dumps([m for m in ('rclpy', 'numpy', 'rosidl_parser') if m in sys.modules]))"
     )
     assert json.loads(run(program, ros_domain).stdout) == []

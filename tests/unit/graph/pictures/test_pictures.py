@@ -10,11 +10,9 @@ import numpy as np
 import pytest
 
 from graph.data import Value
-from graph.pictures.images import to_rgb
-from graph.pictures.picture import COMPRESSED, IMAGE
-from graph.pictures.pixels import ImageError
-from graph.pictures.reading import read_picture
-from graph.pictures.thinning import thinned_picture
+from graph.pictures.compressed import thinned_picture
+from graph.pictures.picture import COMPRESSED, IMAGE, read_picture
+from graph.pictures.pixels import ImageError, to_rgb
 
 ORANGE = (250, 120, 10)
 
