@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 
     from tui.faults import Journal
     from tui.frame.host import SharedLesson
-    from tui.recording.wish import RecordingWish
+    from tui.recording.recording import RecordingWish
     from tui.session.ports import SessionOpener
     from tui.session.requests import OpenRequest
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from textual import on
 from textual.containers import Horizontal, Vertical
@@ -10,23 +10,26 @@ from textual.content import Content
 from textual.widgets import Input, Static
 
 from graph.heavy_types import COMPRESSED_IMAGE, HEAVY_TYPES, IMAGE, POINT_CLOUD
+from graph.housekeeping import is_hidden
 from text.i18n import N_, _, ngettext
 from text.plain import plain
 from tui.actions import Announce, bindings
-from tui.bags.estimate import OTHERS, RecordingShare, shares, total_rate
 from tui.dialogs.dialog import Dialog
 from tui.frame.key_bar import KeyBar
-from tui.recording.wish import RecordingLimit, RecordingWish, read_limit
+from tui.recording.recording import RecordingWish, read_limit
 from tui.recording.words import length_words, size_words
 from tui.widgets.field import Field
 from tui.widgets.figures import UNKNOWN
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Sequence
     from pathlib import Path
 
     from textual.app import ComposeResult
     from textual.binding import BindingType
+
+    from graph.data import TopicRow
 
 action: Announce[BeginRecordingScreen] = Announce()
 
@@ -36,12 +39,54 @@ MINUTE_S = 60.0
 DAY_S = 86_400.0
 DAYS_FROM = 2
 LONGEST = 400
+OTHERS = ""
+"""Stands for all types that are not heavy."""
+MESSAGE_BYTES = 47
+"""What MCAP adds to each message: 31 bytes of its record, 16 in the index of its chunk."""
 NAMES = {
     IMAGE: N_("Pictures (Image)"),
     COMPRESSED_IMAGE: N_("Pictures (CompressedImage)"),
     POINT_CLOUD: N_("Point clouds (PointCloud2)"),
     OTHERS: N_("All other topics"),
 }
+
+
+class RecordingShare(NamedTuple):
+    """What the topics of one type add to a recording."""
+
+    type_name: str
+    """One of `HEAVY_TYPES`, or `OTHERS`."""
+    topics: tuple[str, ...]
+    bytes_per_s: float | None
+    """On the disk; None while none of the topics has been measured."""
+
+
+def shares(rows: Iterable[TopicRow]) -> tuple[RecordingShare, ...]:
+    """Return the share of each heavy type and, as the last one, that of all others together."""
+    found: dict[str, list[TopicRow]] = {kind: [] for kind in (*HEAVY_TYPES, OTHERS)}
+    for row in rows:
+        if row.publishers and not is_hidden(row.name):
+            kind = next((kind for kind in HEAVY_TYPES if kind in row.type_names), OTHERS)
+            found[kind].append(row)
+    return tuple(
+        RecordingShare(kind, tuple(row.name for row in of_kind), _rate(of_kind)) for kind, of_kind in found.items()
+    )
+
+
+def total_rate(found: Iterable[RecordingShare], left_out: Collection[str]) -> float | None:
+    """Return the bytes a second of a recording without these types; None while unknown."""
+    rates = [share.bytes_per_s for share in found if share.type_name not in left_out]
+    return None if None in rates else sum(rate for rate in rates if rate is not None)
+
+
+def _rate(rows: Sequence[TopicRow]) -> float | None:
+    # A topic that is quiet has no rate, and adds nothing.
+    known = [
+        (row.bytes_per_s or 0.0) + MESSAGE_BYTES * (row.hz or 0.0)
+        for row in rows
+        if row.measured or row.bytes_per_s is not None
+    ]
+    return sum(known) if known or not rows else None
 
 
 @action(
@@ -144,21 +189,15 @@ class BeginRecordingScreen(Dialog["RecordingWish | None"]):
 
     def begin(self) -> None:
         """Answer with what is wished, unless the limit cannot be read."""
-        limit = self._limit()
-        if limit is None:
-            self.redraw()
-            self.query_one("#recording-limit").focus()
-        else:
-            self.dismiss(RecordingWish(self._folder, self.left_out, limit))
-
-    def _limit(self) -> RecordingLimit | None:
-        """Return when it should end; None if that cannot be read, which is noted."""
-        self._note = ""
+        field = self.query_one("#recording-limit", Input)
         try:
-            return read_limit(self.query_one("#recording-limit", Input).value)
+            limit = read_limit(field.value)
         except ValueError as error:
             self._note = str(error)
-            return None
+            self.redraw()
+            field.focus()
+        else:
+            self.dismiss(RecordingWish(self._folder, self.left_out, limit))
 
     @on(Rows.Opened)
     def _clicked_twice(self, message: Rows.Opened) -> None:
@@ -183,7 +222,10 @@ class BeginRecordingScreen(Dialog["RecordingWish | None"]):
     def redraw(self) -> None:
         """Show the current rates in the current language."""
         super().redraw()
-        self._show_shares()
+        found = self._shares()
+        columns = [Column("", 1), Column("", 27), Column(""), Column("", 13, right=True)]
+        together = Cell(_("Together")), Cell(""), Cell(_a_minute(total_rate(found, self.left_out)))
+        self.query_one(Rows).show(columns, [*map(self._row, found), Row("", (Cell(""), *together))])
         label = self.query_one("#recording-label", Static)
         if label.content != (words := _("End after")):
             label.update(words)
@@ -208,14 +250,6 @@ class BeginRecordingScreen(Dialog["RecordingWish | None"]):
     def _shares(self) -> tuple[RecordingShare, ...]:
         update = self.deck.feed.update
         return shares(() if update is None else update.topics)
-
-    def _show_shares(self) -> None:
-        found = self._shares()
-        rate = total_rate(found, self.left_out)
-        columns = [Column("", 1), Column("", 27), Column(""), Column("", 13, right=True)]
-        together = Cell(_("Together")), Cell(""), Cell(_a_minute(rate))
-        rows = [*map(self._row, found), Row("", (Cell(""), *together))]
-        self.query_one(Rows).show(columns, rows)
 
     def _row(self, share: RecordingShare) -> Row:
         out = share.type_name in self.left_out

@@ -14,7 +14,7 @@ from graph.publishing.dead_man_switch import CommandRepeater, HeldCommand
 from robot.limits import SPEED, STEERING
 from robot.words import STOP, DriveSetpoint
 from tui.actions.layouts import on_all_layouts
-from tui.recording.wish import RecordingLimit, read_limit
+from tui.recording.recording import RecordingLimit, read_limit
 from tui.session.rosout import TOPIC, RosoutReader
 from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, Move, Teleop, TeleopLimits
 from tui.teleop.route import RATE_HZ, command
