@@ -107,10 +107,8 @@ async def see(call: Call, topic: Camera = None, width: Width = 640) -> tuple[str
 
 
 def _as_jpeg(sample: Sample, width: int) -> tuple[bytes, int, int]:
-    """The newest picture of the robot's camera."""
     from graph.pictures.compressed import to_jpeg
     from graph.pictures.pixels import ImageError
-    from graph.pictures.reading import read_picture
 
     def fit(wide: int, high: int) -> tuple[int, int]:
         share = min(1.0, width / max(1, wide), width / max(1, high))

@@ -1,24 +1,43 @@
-"""`deck replay`: show a recording on the screen, without robot or ROS, or list recordings."""
+"""`deck replay`: show a recording on the screen, without robot or ROS, publish it, or list recordings.
+
+Of a recording that is published, topics that move a robot are left out unless requested, and so is every topic that
+another node publishes: with a recorded distance beside a measured one a robot would drive into obstacles.
+"""
 
 from __future__ import annotations
 
+import sys
+import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cli.commands import command
 from cli.options import add_graph, add_screen, rate, seconds
-from cli.recordings import find_recording, list_recordings
+from cli.running_domain import running_domain
 from cli.screen import has_terminal
+from graph.bag.errors import BagError, nothing_to_publish
+from graph.bag.listing import bags_in
 from launcher.errors import UsageError
-from text.i18n import _, localized
-from text.output import say_error
+from launcher.processes.ending import stop_by_signals
+from launcher.rundir import recordings_path
+from robot.safety.moving_topics import STOPPED_BY_ZEROS, moves
+from robot.topics import EMERGENCY_STOP
+from text.i18n import _, localized, ngettext
+from text.output import BOLD, YELLOW, Paint, keep_stdout_to_ourselves, say_error, table, write
+from text.plain import plain
 from text.sentences import say
+from text.suggestions import did_you_mean
+from tui.recording.words import BETWEEN, length_words, size_words
 from tui.session.requests import OpenRequest, ReplayRequest
 
 if TYPE_CHECKING:
+    import threading
     from argparse import Namespace
-    from pathlib import Path
 
     from cli.commands import Parser
+    from graph.bag.listing import ListedBag
+    from graph.bag.publishing import BagPublisher, PublishingProgress
+    from graph.bag.reading import Bag, TopicInBag
 
 
 def _replay_options(parser: Parser) -> None:
@@ -49,12 +68,10 @@ def replay_command(options: Namespace) -> int:
     if (options.motion or options.domain is not None) and not options.publish:
         raise UsageError(say("--motion and --domain only work with --publish"))
     if options.bag is None:
-        return list_recordings()
-    bag = find_recording(options.bag)
+        return _list_recordings()
+    bag = _find_recording(options.bag)
     if options.publish:
-        from cli.replay_publishing import publish_bag
-
-        return publish_bag(bag, options)
+        return _publish_bag(bag, options)
     _check(bag, whole=not has_terminal())
     if not has_terminal():
         say_error(_("replay needs a terminal; `deck replay --publish` works without one"))
@@ -70,7 +87,6 @@ def _check(bag: Path, *, whole: bool) -> None:
 
     `whole`: check its contents too, which may take a while; the screen does this itself.
     """
-    from graph.bag.errors import BagError
     from graph.bag.files import files_of
     from graph.bag.reading import open_bag
 
@@ -83,3 +99,149 @@ def _check(bag: Path, *, whole: bool) -> None:
             files_of(bag)
     except BagError as error:
         raise UsageError(error.words) from error
+
+
+def _list_recordings() -> int:
+    """Show the recordings in the default folder, newest first."""
+    folder = recordings_path()
+    bags = bags_in(folder)
+    if not bags:
+        words = _("no recordings in {folder}: F6 on the screen or `deck record` makes one")
+        write(words.format(folder=plain(str(folder))))
+        return 0
+    paint = Paint(sys.stdout)
+    head = (_("NAME"), _("ENDED"), _("LENGTH"), _("TOPICS"), _("MESSAGES"), _("SIZE"))
+    first, *rows = table(head, [_row(bag) for bag in bags])
+    write(paint(first, BOLD))
+    for row, bag in zip(rows, bags, strict=True):
+        write(row)
+        if bag.trouble:
+            write(paint(f"  {localized(bag.trouble)}", YELLOW))
+    write(_("recordings are in {folder}; to open one: deck replay NAME").format(folder=plain(str(folder))))
+    return 0
+
+
+def _find_recording(named: str) -> Path:
+    """Return the path of a recording, given by its path or by its name in the default folder; else UsageError."""
+    path, folder = Path(named), recordings_path()
+    if path.exists() or len(path.parts) != 1:
+        return path
+    if (folder / named).exists():
+        return folder / named
+    names = [bag.name for bag in bags_in(folder)]
+    longer = [name for name in names if name.startswith(named)][:1]
+    near = did_you_mean(longer[0] if longer else named, names)
+    raise UsageError(
+        say(
+            "{name}: there is no such file or folder here or in {folder}{near}; `deck replay` alone"
+            " lists the recordings",
+            name=named,
+            folder=folder,
+            near=say("; {hint}", hint=near) if near else "",
+        )
+    )
+
+
+def _row(bag: ListedBag) -> tuple[str, ...]:
+    ended = time.strftime("%Y-%m-%d %H:%M", time.localtime(bag.changed_s))
+    return (
+        plain(bag.name),
+        ended,
+        "–" if bag.seconds is None else length_words(bag.seconds),
+        "–" if bag.topics is None else str(bag.topics),
+        "–" if bag.messages is None else str(bag.messages),
+        size_words(bag.bytes),
+    )
+
+
+def _publish_bag(path: Path, options: Namespace) -> int:
+    """Publish until the end or until stopped.
+
+    Return 1 if others publish all of it already, or if messages are missing in the bag. Raises
+    UsageError for a bag of which nothing can be published.
+    """
+    from graph.bag.reading import open_bag
+
+    _name, domain, discovery = running_domain(options.domain, options.discovery)
+    stop = stop_by_signals()
+    keep_stdout_to_ourselves()
+    try:
+        with open_bag(path) as bag:
+            return _publish(bag, domain, discovery, stop, options)
+    except BagError as error:
+        raise UsageError(error.words) from error
+
+
+def _publish(
+    bag: Bag, domain: int, discovery: str | tuple[str, ...], stop: threading.Event, options: Namespace
+) -> int:
+    from graph.bag.publishing import BagPublisher
+    from graph.ros import open_ros
+
+    try:
+        ros = open_ros(domain, discovery, "replay")
+    except Exception as error:  # noqa: BLE001 - rclpy may raise anything, or be missing
+        say_error(localized(say("ROS cannot be used: {reason}", reason=error)))
+        return 1
+    try:
+        publisher = BagPublisher(bag, ros, lambda topic: _refusal(topic, motion=options.motion), STOPPED_BY_ZEROS)
+        if not publisher.topics:
+            _tell_left_out(publisher.progress, set())
+            raise nothing_to_publish(bag.path, bag.messages_count)
+        publisher.find_others(stop)
+        _begin(bag, publisher, domain)
+        told = _tell_left_out(publisher.progress, set())
+        if not publisher.topics:
+            say_error(_("nothing is left to publish"))
+            return 1
+
+        def tell(progress: PublishingProgress) -> None:
+            told.update(_tell_left_out(progress, told))
+            write(_words(progress, bag))
+
+        publisher.play(stop, tell, rate=options.rate, start_s=options.start, loop=options.loop)
+        _tell_left_out(publisher.progress, told)
+        # The end is known only after reading everything.
+        _tell(bag.damage)
+        write(_("published: {words}").format(words=_words(publisher.progress, bag)))
+        return int(bag.is_incomplete or bag.damage is not None)
+    finally:
+        ros.close()
+
+
+def _refusal(topic: TopicInBag, *, motion: bool) -> str | None:
+    if topic.name == EMERGENCY_STOP:
+        # A recorded `false` would release a stop that somebody has engaged.
+        return say("only people engage and release an emergency stop")
+    if not motion and moves(topic.name, topic.kind.name):
+        return say("moves the robot; --motion publishes it too")
+    return None
+
+
+def _begin(bag: Bag, publisher: BagPublisher, domain: int) -> None:
+    topics = ngettext("{n} topic", "{n} topics", publisher.topics).format(n=publisher.topics)
+    words = _("publishing {name} in domain {domain}: {topics}, {length}; Ctrl-C ends it")
+    length = length_words(bag.length_s)
+    write(words.format(name=plain(bag.name), domain=domain, topics=topics, length=length))
+    for words in bag.notes:
+        _tell(words)
+
+
+def _tell(sentence: str | None) -> None:
+    if sentence:
+        write(plain(localized(sentence), 400))
+
+
+def _tell_left_out(progress: PublishingProgress, told: set[str]) -> set[str]:
+    """Say why topics are newly left out; return the names of all topics left out."""
+    for name, reason in sorted(progress.left_out.items()):
+        if name not in told:
+            words = _("not published: {topic}: {reason}")
+            write(words.format(topic=plain(name), reason=plain(localized(reason), 300)))
+    return set(progress.left_out)
+
+
+def _words(progress: PublishingProgress, bag: Bag) -> str:
+    place = _("{now} of {length}").format(now=length_words(progress.seconds), length=length_words(bag.length_s))
+    count = progress.messages
+    return BETWEEN.join((place, ngettext("{n} message", "{n} messages", count).format(n=count)))

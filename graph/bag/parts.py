@@ -172,21 +172,19 @@ class SqlitePart:
 
     def messages(self, start_ns: int | None, numbers: Collection[int]) -> Iterator[Found]:
         """Yield messages of these channels in the order of their times. Raises BagError where it is damaged."""
-        import apsw
-
         wanted = [connection for connection in self._reader.connections if connection.id in numbers]
         try:
             for connection, stamp_ns, raw in self._reader.messages(wanted, start_ns):
                 yield stamp_ns, connection.id, raw
-        except apsw.Error as error:
+        except Exception as error:
             raise _refused_database(self.file, error) from error
 
 
 def _refused_database(file: Path, error: Exception) -> BagError:
-    import apsw
+    from rosbags.rosbag2 import ReaderError
 
-    reason = error if isinstance(error, apsw.Error) else error.__cause__
-    if not isinstance(reason, apsw.Error):
+    reason = error.__cause__ if isinstance(error, ReaderError) else error
+    if reason is None:
         return BagError(say("{file} is a database, but not of a recording", file=file.name))
     words = say(
         "{file} is damaged ({reason}); `sqlite3 {file} .recover | sqlite3 new.db3` saves what can be read of it",
