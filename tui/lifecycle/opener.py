@@ -233,7 +233,7 @@ def _scored(lessons: Iterable[Lesson]) -> list[Lesson]:
 
 def _with_score(task: Task, progress: Progress) -> Task | None:
     from course.lessons.lesson import LessonFolder
-    from course.progress.files import state_of
+    from course.progress.progress import state_of
 
     folder = LessonFolder(task.folder)
     try:
