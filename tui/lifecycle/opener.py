@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from course.lessons.lesson import LessonFolder
-    from course.progress.progress import Progress
+    from course.progress import Progress
     from graph.replay.replay import Replay
     from launcher.client.client import SupervisorClient
     from launcher.client.start import StartingSupervisor
@@ -198,7 +198,7 @@ async def _imported(*modules: str) -> None:
 
 def _lessons() -> list[Lesson]:
     from course.lessons.catalog import lessons
-    from course.progress.progress import load_progress
+    from course.progress import load_progress
     from launcher.profile.catalog import list_profiles
 
     tasks, progress = lessons(), load_progress()
@@ -222,7 +222,7 @@ def _task(folder: LessonFolder | None, progress: Progress) -> Task | None:
 
 
 def _scored(lessons: Iterable[Lesson]) -> list[Lesson]:
-    from course.progress.progress import load_progress
+    from course.progress import load_progress
 
     progress = load_progress()
     return [
@@ -233,7 +233,7 @@ def _scored(lessons: Iterable[Lesson]) -> list[Lesson]:
 
 def _with_score(task: Task, progress: Progress) -> Task | None:
     from course.lessons.lesson import LessonFolder
-    from course.progress.progress import state_of
+    from course.progress import state_of
 
     folder = LessonFolder(task.folder)
     try:

@@ -41,7 +41,7 @@ class StepProgress:
     solution: bool = False
     """Whether the solution was looked at."""
     files: str = ""
-    """The state of the files that it passed with, see `course.progress.progress.state_of`."""
+    """The state of the files that it passed with, see `course.progress.state_of`."""
     at: int = 0
     """When, as Unix time; 0 if that is not known."""
     graded: str = ""
