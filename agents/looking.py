@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from agents.refusal import refused
 from agents.tools import Call, Camera, Count, Facts, Part, RosName, Seconds, Width, tool
 from graph.messages.yaml_text import to_yaml
-from graph.pictures.reading import COMPRESSED, IMAGE
+from graph.pictures.reading import COMPRESSED, IMAGE, read_picture
 from robot.safety.gate_report import gate_in
 from robot.topics import BATTERY, CAMERA, HEAD_STATE, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.plain import plain, plain_lines

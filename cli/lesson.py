@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from cli.commands import command
 from cli.options import add_seed, at_once
 from course.lessons.catalog import find_lesson, lessons
-from course.proof.domains import unused_domains
 from course.proof.proof import ProofVerdict, incomplete, prove, variants
 from course.proof.skeleton import new_lesson
+from course.proof.trial import unused_domains
 from launcher.processes.interrupts import run
 from launcher.profile.defaults import shown
 from text.i18n import _, localized, ngettext

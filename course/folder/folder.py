@@ -1,6 +1,7 @@
 """Making the learner's folder of a lesson, or of a node; what is there is copied before it changes.
 
-The folders are in `course.lessons.catalog.course_dir`, each named after its lesson.
+The folders are in `course.lessons.catalog.course_dir`, each named after its lesson. The files of a starter have each
+comment in English, and below it in Russian; what they log in English, and behind it `# ru: "..."`.
 """
 
 from __future__ import annotations
@@ -11,8 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.folder.comments import in_language
-from course.folder.node_template import NODE, PROFILE
 from course.lessons.catalog import course_dir
 from course.lessons.lesson import IGNORED
 from launcher.errors import UsageError
@@ -24,6 +23,49 @@ if TYPE_CHECKING:
     from course.lessons.lesson import LessonFolder
 
 NAME = re.compile(r"[a-z][a-z0-9_]*")
+NODE = """\
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+
+class {class_name}(Node):
+    def __init__(self):
+        super().__init__("{name}")
+        self.get_logger().info("{name} is on")
+        self.create_timer(1.0, self.tick)
+
+    def tick(self):
+        self.get_logger().info("tick")
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = {class_name}()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
+"""
+PROFILE = """\
+title: {{en: My node, ru: Мой узел}}
+nodes:
+  {name}:
+    run: ./{name}.py
+"""
+_COMMENTS = re.compile(r"(?:^[ \t]*#.*\n)+", re.MULTILINE)
+_RUSSIAN = re.compile("[а-яё]", re.IGNORECASE)
+_QUOTED = re.compile('"[^"]*"')
+"""Words that the course's nodes know are Russian in every language."""
+_DOCSTRING = re.compile(r'"""([^"а-яё]+\.) ([^"]*[а-яё][^"]*)"""', re.IGNORECASE)
+_LOGGED = re.compile(r'"([^"\n]*)"\)  # ru: ("[^"\n]*")')
 
 
 @dataclass(frozen=True)
@@ -110,6 +152,33 @@ def _content(source: Path) -> bytes:
     """Return what the learner gets of a file of the starter."""
     raw = source.read_bytes()
     return in_language(raw, language()) if source.suffix in (".py", ".yaml") else raw
+
+
+def in_language(content: bytes, code: str) -> bytes:
+    """Return the content of a file without the words in the other language."""
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content
+    russian = code == "ru"
+    text = _DOCSTRING.sub(r'"""\2"""' if russian else r'"""\1"""', text)
+    text = _LOGGED.sub(r"\2)" if russian else r'"\1")', text)
+    text = _COMMENTS.sub(lambda found: _kept(found[0].splitlines(keepends=True), russian=russian), text)
+    return text.encode("utf-8")
+
+
+def _kept(lines: list[str], *, russian: bool) -> str:
+    """Return the lines of a comment in one language; those that have no translation stay."""
+    is_russian = [_RUSSIAN.search(_QUOTED.sub("", line)) is not None for line in lines]
+    if not russian:
+        return "".join(line for line, of_it in zip(lines, is_russian, strict=True) if not of_it)
+    kept: list[str] = []
+    translated = False
+    for line, of_it in zip(reversed(lines), reversed(is_russian), strict=True):
+        translated = of_it or translated
+        if of_it or not translated:
+            kept.append(line)
+    return "".join(reversed(kept))
 
 
 def _copied(file: Path) -> Path:

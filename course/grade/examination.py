@@ -24,7 +24,7 @@ import psutil
 import course
 from course.grade.limits import descendants, taken
 from course.proof.trial import Places
-from course.protocol import MOST_BYTES
+from course.results import MOST_BYTES
 from launcher.processes.table import processes, read_marks
 from text.nested import read_json
 from text.packing import unpack_text

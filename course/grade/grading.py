@@ -13,16 +13,14 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from course.folder.comments import in_language
+from course.folder.folder import in_language
 from course.grade.examination import Examination, ExamRequest, own_places
 from course.grade.grades import Grade, StepGrade, filled_up
 from course.grade.limits import remove_tree
 from course.grade.submission import Files, Submission, UnreadableError, check_gradable, files_of
 from course.grade.walls import cell, room
-from course.proof.domains import unused_domains
-from course.proof.trial import Places
-from course.protocol import unpack_step
-from course.results import State
+from course.proof.trial import Places, unused_domains
+from course.results import State, unpack_step
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.steps.draw import LARGEST_SEED
 from text.i18n import LANGUAGES

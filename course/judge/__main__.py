@@ -1,6 +1,6 @@
 """The judge as a process of its own: `python -m course.judge`, started by `course.judging`.
 
-What it hears and says is in `course.protocol`. It ends with its standard input, with the session
+What it hears and says is in `course.results`. It ends with its standard input, with the session
 that it judges, or by `quit`. A learner's node that floods its topics, or a function of a lesson
 that never returns, holds up this process and no screen.
 """
@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from course.judge.judge import judging
 from course.lessons.lesson import LessonFolder
-from course.protocol import MOST_BYTES, pack_step
-from course.results import State, StepResult
+from course.results import MOST_BYTES, State, StepResult, pack_step
 from launcher.client.client import attach
 from launcher.errors import LauncherError
 from launcher.profile.steps.draw import new_seed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import random
 import shutil
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -11,9 +12,11 @@ from typing import TYPE_CHECKING
 from course.judge.judge import judging
 from course.lessons.lesson import IGNORED
 from launcher.client.client import launch
+from launcher.domain.domain import LAST_SAFE_DOMAIN, default_domain
 from launcher.errors import LauncherError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
+from launcher.runs.record import supervisors
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
@@ -114,3 +117,13 @@ def _at_home(profile: Profile, lesson: LessonFolder, places: Places) -> Profile:
 
     nodes = {name: at_home(node) for name, node in profile.nodes.items()}
     return profile.model_copy(update={"discovery": "localhost", "nodes": nodes})
+
+
+def unused_domains(count: int) -> list[int]:
+    """Return so many domains in which no session of this user runs, nor would by default.
+
+    They are drawn, so that two proofs at the same time hardly ever meet.
+    """
+    taken = {default_domain(), *(one.domain for one in supervisors())}
+    free = [domain for domain in range(1, LAST_SAFE_DOMAIN + 1) if domain not in taken]
+    return random.SystemRandom().sample(free, min(count, len(free)))

@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from course.lessons.catalog import next_lesson
-from course.progress.files import state_of
-from course.progress.progress import Progress, load_progress, noted
+from course.progress import Progress, load_progress, noted, state_of
 from course.results import State, StepResult
 from launcher.profile.steps.checks import LOOK_AGAIN_S
 from text.i18n import _, localized
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
 
     from course.judging import JudgeEvent
     from course.lessons.lesson import LessonFolder
-    from course.progress.progress import StepChanges
+    from course.progress import StepChanges
     from launcher.profile.steps.model import StepDocument
     from launcher.status import NodeStatus, SessionInfo
     from tui.frame.host import Host
@@ -67,7 +66,7 @@ class LessonAtWork:
         self._run = ""
         """The run whose lesson this is."""
         self.files = ""
-        """The state of the learner's files that run, see `course.progress.files`."""
+        """The state of the learner's files that run, see `course.progress.state_of`."""
         self._again: list[str] = []
         """Steps to be judged again: they have passed with other files."""
         self.grade: WholeGrade | None = None

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from course.lessons.lesson import LessonFolder
-    from course.progress.progress import Progress
+    from course.progress import Progress
     from graph.replay.replay import Replay
     from launcher.client.client import SupervisorClient
     from launcher.client.start import StartingSupervisor
@@ -201,7 +201,7 @@ async def _imported(*modules: str) -> None:
 
 def _lessons() -> list[Lesson]:
     from course.lessons.catalog import lessons
-    from course.progress.progress import load_progress
+    from course.progress import load_progress
     from launcher.profile.catalog import list_profiles
 
     tasks, progress = lessons(), load_progress()
@@ -225,7 +225,7 @@ def _task(folder: LessonFolder | None, progress: Progress) -> Task | None:
 
 
 def _scored(lessons: Iterable[Lesson]) -> list[Lesson]:
-    from course.progress.progress import load_progress
+    from course.progress import load_progress
 
     progress = load_progress()
     return [
@@ -236,7 +236,7 @@ def _scored(lessons: Iterable[Lesson]) -> list[Lesson]:
 
 def _with_score(task: Task, progress: Progress) -> Task | None:
     from course.lessons.lesson import LessonFolder
-    from course.progress.files import state_of
+    from course.progress import state_of
 
     folder = LessonFolder(task.folder)
     try:

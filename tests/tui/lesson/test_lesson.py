@@ -17,8 +17,7 @@ from course.judge.kinds import expected
 from course.judging import ValuesDrawn
 from course.lessons.catalog import SHIPPED
 from course.lessons.lesson import LessonFolder
-from course.progress.files import state_of
-from course.progress.progress import load_progress, noted
+from course.progress import load_progress, noted, state_of
 from course.results import CheckResult, State, StepResult
 from launcher.status import NodeFault, NodeState, NodeStatus
 from tests.tui.recorded import SESSION, RecordedOpener, RecordedSession

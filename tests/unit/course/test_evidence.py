@@ -15,8 +15,7 @@ import pytest
 
 from course.judge.evidence import TICK_S, Evidence
 from course.judge.judge import Judge
-from course.progress.files import state_of
-from course.progress.progress import load_progress, noted
+from course.progress import load_progress, noted, state_of
 from graph.data import NAMELESS, PROCESS_NUMBERS, EndpointInfo, GraphUpdate, NodeRow, TopicRow
 from launcher.events import LogEvent, StatusEvent
 from launcher.status import LogLine, NodeState, NodeStatus, Severity
