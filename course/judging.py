@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import course
-from course.protocol import MOST_BYTES
 from course.results import MOST_BYTES, StepResult, unpack_step
 from launcher.wire import encode
 from text.nested import read_json

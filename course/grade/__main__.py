@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING
 
 from course.grade.examination import ExamRequest
 from course.grade.limits import limit_this_process
-from course.protocol import MOST_BYTES
 from course.results import MOST_BYTES, pack_step
 from launcher.errors import AlreadyRunningError, LauncherError
 from launcher.supervisor.guardian import fork_under_guardian
