@@ -34,8 +34,8 @@ from tui.session.node_command import node_command
 from tui.session.past import SONARS
 from tui.teleop.actions import TELEOP_ACTIONS, open_teleop
 from tui.teleop.dock import TeleopDock
-from tui.widgets.fault_words import fault_lines
 from tui.widgets.name_head import NameHead
+from tui.widgets.node_words import fault_lines
 from tui.widgets.words import word_strips
 
 if TYPE_CHECKING:

@@ -36,7 +36,7 @@ from tui.panels.map_scene import (
     ray_origin,
     robot_corners,
 )
-from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
+from tui.panels.panel import Panel, is_published, newest, other_type, row_of, trouble_of
 from tui.panels.sonar import COURSE, bounds_of, ink_of, remark
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 from tui.widgets.scale_bar import scale_bar
@@ -368,7 +368,7 @@ class MapPanel(Panel):
 
     def _choose_pose(self, update: GraphUpdate, drawing: RoomMap) -> None:
         """Use odometry if there is any, otherwise the true pose of a simulated robot."""
-        topic = next((one for one in (ODOMETRY, MOCK_POSE) if _is_published(update, one)), "")
+        topic = next((one for one in (ODOMETRY, MOCK_POSE) if is_published(update, one)), "")
         if not topic or self._pose_topic in {topic, ODOMETRY}:
             return
         if self._pose_topic:
@@ -391,7 +391,7 @@ class MapPanel(Panel):
             drawing.show_pose(*found)
 
     def _show_truth(self, update: GraphUpdate, drawing: RoomMap) -> None:
-        if self._pose_topic != ODOMETRY or not _is_published(update, MOCK_POSE):
+        if self._pose_topic != ODOMETRY or not is_published(update, MOCK_POSE):
             drawing.show_truth(None)
             return
         sample = newest(update, MOCK_POSE)
@@ -401,7 +401,7 @@ class MapPanel(Panel):
 
     def _show_goal(self, update: GraphUpdate, drawing: RoomMap) -> None:
         sample = newest(update, GOAL_POSE)
-        if not _is_published(update, GOAL_POSE):
+        if not is_published(update, GOAL_POSE):
             drawing.show_goal(None)
         elif sample is not None:
             drawing.show_goal(goal_in(sample.value))
@@ -430,8 +430,3 @@ class MapPanel(Panel):
             detail = f"{detail}. {hint}"
         # The age is shown in whole seconds, and not redrawn more often.
         return trouble, detail, None if age_s is None else age_s // 1
-
-
-def _is_published(update: GraphUpdate, topic: str) -> bool:
-    row = row_of(update, topic)
-    return row is not None and row.publishers > 0

@@ -19,15 +19,15 @@ from robot.world.world import Body, SimulatedSonar
 from space.reading.fields import NotDrawnError
 from space.reading.fields import field as field_of
 from space.reading.grids import grid_cells
-from tui.panels.canvas import Canvas
 from tui.panels.sonar import COURSE, Bounds, ink_of
+from tui.widgets.canvas import Canvas
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from tui.panels.canvas import Point
+    from tui.widgets.canvas import Point
 
 
 @dataclass(frozen=True)

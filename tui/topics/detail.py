@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from textual.geometry import Size
 
     from graph.data import Sample, TopicRow
-    from tui.widgets.half_blocks import Pixels
-    from tui.widgets.image_view import ImageScale
+    from tui.widgets.image_view import ImageScale, Pixels
 
 LONGEST_ARRAY = 2000
 """Elements of an array that are copied: the clipboard of a terminal (OSC 52) is small."""

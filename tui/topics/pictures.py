@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING
 
 from graph.pictures.picture import COMPRESSED, IMAGE, Picture, ramp_colours
 from graph.pictures.pixels import ImageError, UnknownEncodingError
-from graph.pictures.reading import read_picture
 from text.i18n import _, decimal, localized
 from text.plain import plain
-from tui.topics.table.columns import hz_text
-from tui.widgets.image_view import ImageScale
-from tui.widgets.newest_picture import NewestPicture
+from tui.topics.table import hz_text
+from tui.widgets.image_view import ImageScale, NewestPicture
 
 if TYPE_CHECKING:
     from graph.data import Sample, TopicRow
@@ -44,18 +42,11 @@ class TopicPictures:
         self._detail = detail
         self._is_wanted = is_wanted
         self._row = row
-        self._compressed = NewestPicture(detail, self._fit, self._show, self._refuse_wanted)
+        self._newest = NewestPicture(detail, self._fit, self._show, self._refuse_wanted)
 
     def show(self, sample: Sample) -> None:
         """Show this image; a compressed one after decoding it."""
-        if sample.type_name == IMAGE:
-            # It takes a millisecond: less than switching to another thread and back.
-            try:
-                self._put(read_picture(IMAGE, sample.value, self._detail.picture.wanted))
-            except ImageError as error:
-                self._refuse(sample, error)
-            return
-        self._compressed.take(sample)
+        self._newest.take(sample)
 
     def _fit(self, width: int, height: int) -> tuple[int, int]:
         return self._detail.picture.wanted(width, height)

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.motion.odometry import Pose
-from tui.panels.canvas import Canvas
 from tui.panels.map_scene import FRONT, REAR, Extent, Scene, Viewport, draw_scene, fitted
+from tui.widgets.canvas import Canvas
 from tui.widgets.drawing import Line
 
 ROOM = Extent(-1.0, 4.0, -2.0, 2.0)
