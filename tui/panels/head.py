@@ -1,4 +1,4 @@
-"""Where the head looks, read from a JointState."""
+"""The Head panel: where the head looks, from above and from the side, and what LLM commands told it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which part of the floor is shown, and where a point of it is on the canvas.
+"""The map's floor: which part is shown, what messages say of it, and everything that is drawn on it.
 
 Seen from above as on paper: x to the right and y upwards, so that a left turn appears as a left
 turn. A metre has the same length in both directions.

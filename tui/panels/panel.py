@@ -1,4 +1,4 @@
-"""The base of all panels: a titled frame, a widget in it, and the topics that feed it."""
+"""The base of all panels, and what they read of an update: rows, troubles, other types, joints."""
 
 from __future__ import annotations
 

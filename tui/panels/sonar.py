@@ -1,4 +1,4 @@
-"""The meaning of a distance: free, close, stop, or no reading at all (REP-117)."""
+"""The Sonar panel: distances, what they mean (REP-117), and their trend; bounds, bar and words also for others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The content of a sound message: text, as in the lessons, or PCM samples, or neither."""
+"""The Voice panel: who said what and when, text or sound, and the level of the microphone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The motion of the wheels, read from a JointState, and what it means."""
+"""The Wheels panel: how fast the wheels turn, or would, and how they are steered, from above."""
 
 from __future__ import annotations
 

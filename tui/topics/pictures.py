@@ -62,7 +62,7 @@ class TopicPictures:
     def _put(self, picture: Picture) -> None:
         row = self._row()
         if picture.is_empty_depth:
-            self._detail.show_no_picture(
+            self._detail.picture.show_words(
                 _("no valid depth"), _("no reading is a distance: each is NaN, infinite or 0")
             )
             return
@@ -72,7 +72,7 @@ class TopicPictures:
             near, far = (_("{n} m").format(n=decimal(f"{metres:g}")) for metres in picture.range_m)
             first = _("near {distance}").format(distance=near)
             scale = ImageScale(first, _("{distance} far").format(distance=far), ramp_colours())
-        self._detail.show_picture(picture.rgb, size, scale, hz_text(row.hz if row else None))
+        self._detail.picture.show(picture.rgb, size, scale, hz_text(row.hz if row else None))
 
     def _refuse(self, sample: Sample, error: ImageError) -> None:
         headline = _("this picture cannot be shown")
@@ -80,4 +80,4 @@ class TopicPictures:
             encoding = str(sample.value.get("encoding"))
             words = _("pictures of the encoding {encoding} cannot be shown")
             headline = words.format(encoding=plain(encoding, LONGEST))
-        self._detail.show_no_picture(headline, localized(error.words))
+        self._detail.picture.show_words(headline, localized(error.words))

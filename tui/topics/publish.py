@@ -1,4 +1,4 @@
-"""The destination of a message: the topic and its type."""
+"""The dialog that publishes a message: its destination, its text as a form, its rate, and what is going on."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from rich.cells import cell_len
 from textual import on
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
-from textual.message import Message
 from textual.widgets import Input, Static
 
 from graph.messages.browse import interfaces
@@ -47,12 +46,6 @@ if TYPE_CHECKING:
 
 class PublishTarget(Vertical, Working):
     """Two lines; the second is completed from the installed types."""
-
-    class TopicChanged(Message):
-        """Another topic name was entered."""
-
-    class TopicDone(Message):
-        """Enter was pressed in the field of the name."""
 
     DEFAULT_CSS = """
     PublishTarget {
@@ -105,25 +98,12 @@ class PublishTarget(Vertical, Working):
         names = await asyncio.to_thread(interfaces)
         self.type.know(tuple(name for name in names if "/msg/" in name))
 
-    @on(Input.Changed, "#target-topic")
-    def _changed(self, event: Input.Changed) -> None:
-        event.stop()
-        self.post_message(self.TopicChanged())
-
-    @on(Input.Submitted, "#target-topic")
-    def _submitted(self, event: Input.Submitted) -> None:
-        event.stop()
-        self.post_message(self.TopicDone())
-
 
 LONGEST = 300
 
 
 class PublishRate(Horizontal):
     """A field for the rate, and on its right a remark in the current language."""
-
-    class RateDone(Message):
-        """Enter was pressed in the field."""
 
     DEFAULT_CSS = """
     PublishRate {
@@ -184,11 +164,6 @@ class PublishRate(Horizontal):
         self.query_one("#rate-label", Static).update(_("Rate"))
         self.query_one("#rate-unit", Static).update(_("Hz"))
         self.tell(self._words, self._look)
-
-    @on(Input.Submitted)
-    def _submitted(self, event: Input.Submitted) -> None:
-        event.stop()
-        self.post_message(self.RateDone())
 
 
 def _limits() -> str:
@@ -385,7 +360,7 @@ class PublishDialog(Dialog[None]):
         else:
             self.dismiss(None)
 
-    @on(PublishTarget.TopicChanged)
+    @on(Input.Changed, "#target-topic")
     def _follow_topic(self) -> None:
         row = self._known(self.target.topic)
         if row is not None and row.type_names and row.type_names[0] != self.form.type_name:
@@ -393,11 +368,11 @@ class PublishDialog(Dialog[None]):
             self.form.load(row.type_names[0])
         self.refresh_bindings()
 
-    @on(PublishTarget.TopicDone)
+    @on(Input.Submitted, "#target-topic")
     def _topic_done(self) -> None:
         (self.form.editor if self.form.type_name else self.target.type.field).focus()
 
-    @on(PublishRate.RateDone)
+    @on(Input.Submitted, "#rate-hz")
     def _rate_done(self) -> None:
         self.publish_at_rate()
 

@@ -1,4 +1,4 @@
-"""What the wall says in numbers: distances, speed, battery; each with its unit and its meaning."""
+"""The numbers of the wall: distances, speed, battery, with unit and meaning, as large as there is room."""
 
 from __future__ import annotations
 

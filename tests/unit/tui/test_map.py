@@ -65,12 +65,3 @@ def test_a_ray_ends_where_the_sonar_found_something(heading: float, place: str, 
     y = -0.1 + (1.5 + offset) * math.sin(heading + turn)
     end = view.place(x, y)
     assert signs(lines, "●") == [(int(end[0]) // 2, int(end[1]) // 4)]
-
-
-# ---------------------------------------------------------------- the path
-
-
-# ---------------------------------------------------------------- what is read
-
-
-# ---------------------------------------------------------------- the legend
