@@ -26,7 +26,7 @@ from tui.frame import title
 from tui.frame.actions.app import emergency_stop
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
-from tui.topics.publish_actions import PUBLISH_ACTIONS
+from tui.topics.actions_of_publish import PUBLISH_ACTIONS
 from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working

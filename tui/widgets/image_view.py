@@ -169,8 +169,6 @@ class ImageView(OneStyle, Widget):
         top, left = self._margins(self._shown, width, height)
         if not 0 <= y - top < self._shown.shape[0] // 2:
             return Strip.blank(width, self.rich_style)
-        from tui.widgets.image_view import row_segments
-
         strip = Strip(row_segments(self._shown, y - top), self._shown.shape[1])
         return in_row(strip, left, width, self.rich_style)
 
