@@ -23,7 +23,6 @@ from text.plain import plain
 from tui import clock
 from tui.app import DeckApp
 from tui.isolation import isolating
-from tui.lean_strips import lean_strips
 from tui.lifecycle.opener import LiveOpener
 from tui.screens import every_action
 from tui.session.requests import OpenRequest
@@ -188,7 +187,7 @@ def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = Non
         return _refused(str(error))
     set_language(detect(lang, settled=settings.language))
     limit = default_limit(os.environ) if bandwidth is None else bandwidth
-    with stray, isolating(), lean_strips():
+    with stray, isolating():
         terminal = RealTerminal(stray, settings)
         app = DeckApp(
             LiveOpener(),

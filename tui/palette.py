@@ -19,7 +19,7 @@ from tui.screens import SCREENS
 from tui.teleop.actions import TELEOP_ACTIONS, open_teleop
 from tui.themes import CYCLE
 from tui.topics.actions import open_publish
-from tui.topics.publish.actions import PUBLISH_ACTIONS
+from tui.topics.actions_of_publish import PUBLISH_ACTIONS
 
 if TYPE_CHECKING:
     from textual.app import App

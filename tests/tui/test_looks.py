@@ -48,7 +48,7 @@ from tui.panels.sonar import Sonar
 from tui.panels.voice import VoiceView
 from tui.panels.wheels import WheelsView
 from tui.session.requests import OpenRequest, ReplayRequest
-from tui.topics.publish.dialog import PublishDialog
+from tui.topics.publish import PublishDialog
 from tui.topics.screen import TopicsScreen
 
 

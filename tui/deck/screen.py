@@ -12,6 +12,7 @@ from textual.widgets import Static
 
 from graph.observer.requests import Publish
 from launcher.errors import LauncherError
+from launcher.profile.panels import PANELS, panels_for
 from launcher.status import NodeState, Severity
 from robot.topics import AI_COMMAND
 from text import ros2_words
@@ -23,7 +24,7 @@ from tui.deck.actions import DECK_ACTIONS
 from tui.deck.command_line import CommandLine
 from tui.deck.lesson_beside import LessonBesideNodes
 from tui.deck.nodes_table import NodesTable, lifecycle_states
-from tui.deck.panels import DeckPanels
+from tui.deck.watched import Watched
 from tui.editing import edit_node
 from tui.frame.screen import DeckScreen
 from tui.log_view.pane import LogPane
@@ -35,8 +36,8 @@ from tui.session.past import SONARS
 from tui.session.words import node_command
 from tui.teleop.actions import TELEOP_ACTIONS, open_teleop
 from tui.teleop.dock import TeleopDock
-from tui.widgets.fault_words import fault_lines
 from tui.widgets.name_head import NameHead
+from tui.widgets.node_words import fault_lines
 from tui.widgets.words import word_strips
 
 if TYPE_CHECKING:
@@ -48,7 +49,9 @@ if TYPE_CHECKING:
     from textual.events import Resize
     from textual.widget import Widget
 
+    from graph.data import GraphUpdate
     from graph.inner_states import LifecycleRow
+    from launcher.status import SessionInfo
     from tui.actions import Action
     from tui.emergency.messages import EmergencyChanged
     from tui.log_view.index import LogFilter
@@ -58,6 +61,8 @@ if TYPE_CHECKING:
 
 DRIVER = "nodes.ai_driver"
 COMMANDS_TYPE = "std_msgs/msg/String"
+SMALL = (60, 18)
+"""Columns and rows of the terminal below which panels are hidden."""
 LOG_LINES = 1000
 """What is older is on the screen of the log."""
 
@@ -84,7 +89,8 @@ class LessonDeck(DeckScreen):
         &.-with-panels #board { grid-size: 2; grid-columns: 11fr 9fr; }
         #nodes { height: 1fr; }
         #nodes NameHead { display: none; max-height: 100%; }
-        #panel-grid { height: 1fr; }
+        #panel-grid { display: none; height: 1fr; }
+        &.-with-panels #panel-grid { display: block; }
         #talk { height: 1fr; }
         &.-flat #teleop { height: 4; }
         #command { display: none; padding: 0 1; border-top: none; background: $panel; }
@@ -114,7 +120,10 @@ class LessonDeck(DeckScreen):
 
     def __init__(self) -> None:
         super().__init__()
-        self._panels = DeckPanels(self)
+        self._grid = PanelGrid(id="panel-grid")
+        self._put: set[str] = set()
+        """Panels that were added for topics that others publish."""
+        self._watched: Watched | None = None
         self._dock = TeleopDock(self, self.focus_usual)
         self._beside = LessonBesideNodes(self)
 
@@ -126,6 +135,7 @@ class LessonDeck(DeckScreen):
             with Vertical(id="nodes"):
                 yield NodesTable()
                 yield NameHead()
+            yield self._grid
             with Vertical(id="talk"):
                 yield LogPane(LogView(max_lines=LOG_LINES, file_of=self.feed.log_file))
                 yield CommandLine(id="command")
@@ -248,17 +258,17 @@ class LessonDeck(DeckScreen):
     @property
     def panels(self) -> Sequence[Panel]:
         """All panels, shown or not."""
-        return self._panels.all
+        return self._grid.panels
 
     @property
     def pages(self) -> int:
-        return self._panels.pages
+        return 0 if self.has_class("-small") else self._grid.pages
 
     def turn_page(self) -> None:
         """Show the next page of panels, or the next panel in the place of an enlarged one."""
         if not self.shows_one_panel:
-            self._panels.turn_page()
-        elif (panel := self._panels.choose_next()) is not None:
+            self._grid.turn()
+        elif (panel := self._grid.choose_next(1)) is not None:
             self.enlarge(panel)
 
     @property
@@ -272,8 +282,8 @@ class LessonDeck(DeckScreen):
 
     def part_to_enlarge(self) -> Widget | None:
         """Return the part that has the focus; without nodes, the chosen panel."""
-        usual, panel = super().part_to_enlarge(), self._panels.chosen
-        in_panels = self._panels.have_focus or self.focused is None
+        usual, panel = super().part_to_enlarge(), self._grid.chosen if self.pages else None
+        in_panels = self._grid.has_focus or self.focused is None
         return panel if panel is not None and in_panels else usual
 
     @on(PanelGrid.PanelWanted)
@@ -302,26 +312,26 @@ class LessonDeck(DeckScreen):
     # Display
 
     def watch_topics(self) -> set[str]:
-        return self._panels.watched() | self._dock.topics
+        return set().union(*(panel.watched() for panel in self.panels)) | self._dock.topics
 
     def picture_topics(self) -> set[str]:
         """The topics of the panels with pictures that are on the screen."""
-        return self._panels.pictures()
+        return set().union(*(panel.pictures() for panel in self.panels))
 
     def keep_topics(self) -> set[str]:
         """The topics whose history a panel shows."""
-        return self._panels.kept()
+        return set().union(*(panel.kept() for panel in self.panels))
 
     def past_topics(self) -> set[str]:
         return set(SONARS)
 
     def follow_topics(self) -> set[str]:
         """The topics of which the panels need every message."""
-        return self._panels.followed()
+        return set().union(*(panel.followed() for panel in self.panels))
 
     def on_resize(self, event: Resize) -> None:
         """Hide the panels if they do not fit."""
-        self._panels.measure_room(*event.size)
+        self.set_class(event.size.width < SMALL[0] or event.size.height < SMALL[1], "-small")
         self._beside.measure_room()
         # Without its parts it is just being opened or closed.
         if self.query(NameHead):
@@ -345,9 +355,37 @@ class LessonDeck(DeckScreen):
         self.pane.save_folder = session.log_dir
         self.set_class(self.feed.replay is not None, "-recorded")
         self.set_class(self.feed.watching, "-watching")
-        await self._panels.put_up(session.panels)
+        self._put.clear()
+        self._watched = None
+        await self._put_up(session.panels)
         self._lay_out(self.size.height)
         self.topics_changed()
+
+    async def _put_up(self, names: Iterable[str]) -> None:
+        if self.shows_one_panel:
+            self.minimize()
+        await self._grid.put_up(names)
+        self.set_class(bool(self.panels), "-with-panels")
+        self._say_small()
+
+    def _say_small(self) -> None:
+        words = _("Too small for panels: they need {columns}×{rows}")
+        self.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))
+
+    async def _watch(self, update: GraphUpdate, session: SessionInfo) -> None:
+        """Say which nodes run, and add panels for topics that have appeared; none is removed."""
+        if self._watched is None:
+            self._watched = Watched(session.domain, beyond=session.discovery != "localhost")
+        words, watched = self._watched.words(update), self.query_one("#watched", Static)
+        # Updating a Static repeats the layout of the screen, and graph updates are frequent.
+        if words != watched.content:
+            watched.update(words)
+        wanted = panels_for({row.name for row in update.topics if row.publishers})
+        if not self._put.issuperset(wanted):
+            self._put |= set(wanted)
+            await self._put_up([name for name in PANELS if name in self._put])
+            self._lay_out(self.size.height)
+            self.topics_changed()
 
     def on_status_changed(self, message: StatusChanged) -> None:
         """Show the new states of the nodes."""
@@ -370,10 +408,9 @@ class LessonDeck(DeckScreen):
             return
         if self.feed.watching and self.feed.session is not None:
             self.set_class(self.driven, "-driven")
-            if await self._panels.put_up_for(message.update, self.feed.session):
-                self._lay_out(self.size.height)
-                self.topics_changed()
-        self._panels.take(message.update, seen=self.feed.front is self)
+            await self._watch(message.update, self.feed.session)
+        for panel in self.panels:
+            panel.take(message.update, seen=self.feed.front is self)
         if message.update.lifecycles != self._lifecycles:
             self._show_nodes()
         if self.table.outside != self.feed.outside.now:
@@ -396,7 +433,7 @@ class LessonDeck(DeckScreen):
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
         self._show_nodes()
-        self._panels.say_small()
+        self._say_small()
 
     def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
         """Update the possible keys, and what is said of the node."""

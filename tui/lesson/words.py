@@ -12,8 +12,7 @@ from textual.content import Content
 from course.results import State
 from text.i18n import N_, _, localized, ngettext, pick
 from text.plain import plain
-from tui.widgets.fault_words import fault_lines
-from tui.widgets.node_words import state_words
+from tui.widgets.node_words import fault_lines, state_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

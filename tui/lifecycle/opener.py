@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from tui.session.ports import GraphLink, JudgeLink, SessionLink
     from tui.session.requests import OpenRequest, ReplayRequest
 
-OF_SCREEN = ("tui.deck.screen", "tui.widgets.half_blocks")
+OF_SCREEN = ("tui.deck.screen", "tui.widgets.image_view")
 """Modules that show a lesson, besides its panels."""
 OF_STOP = ("launcher.client.running", "launcher.client.stop_road")
 """Modules of the stop's road to supervisors: whoever presses it does not wait for them."""

@@ -6,14 +6,13 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
-from graph.pictures.pixels import ImageError, to_rgb
+from graph.pictures.pixels import ImageError
 from robot.topics import CAMERA
 from text.figures import whole
 from text.i18n import N_, _, localized
 from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
 from tui.session.messages import PicturesChanged
-from tui.widgets.image_view import ImageView
-from tui.widgets.newest_picture import NewestPicture
+from tui.widgets.image_view import ImageView, NewestPicture
 from tui.widgets.trouble import lost_words, trouble_words
 
 if TYPE_CHECKING:
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate, Sample
     from graph.pictures.picture import Picture
+    from graph.pictures.pixels import ImageError
 
 PERIOD_S = 0.3
 """Three pictures a second are enough for a terminal, and for SSH."""
@@ -40,7 +40,7 @@ class CameraPanel(Panel):
         """Whether an error message is shown because the last message was not a picture."""
         self._in_sight = False
         self._hz = ""
-        self._compressed = NewestPicture(self, self._fit, self._show_read, self._refuse_read)
+        self._newest = NewestPicture(self, self._fit, self._show_read, self._refuse_read)
 
     def compose(self) -> ComposeResult:
         yield ImageView(bits=4)
@@ -73,8 +73,7 @@ class CameraPanel(Panel):
             if not view.has_picture and not self._refused:
                 view.show_words(_("waiting for the first picture"), CAMERA)
             return
-        is_compressed = sample.type_name == COMPRESSED_IMAGE
-        if not is_compressed and (wrong := other_type(sample, IMAGE)) is not None:
+        if sample.type_name != COMPRESSED_IMAGE and (wrong := other_type(sample, IMAGE)) is not None:
             self._refuse(view, *wrong)
             return
         now_s = monotonic()
@@ -85,16 +84,7 @@ class CameraPanel(Panel):
         if row is not None and row.pictures_from:
             row = row_of(update, row.pictures_from)
         self._hz = "" if row is None or row.hz is None else whole(row.hz)
-        if is_compressed:
-            self._compressed.take(sample)
-            return
-        try:
-            picture = to_rgb(sample.value)
-        except ImageError as error:
-            self._refuse_read(sample, error)
-            return
-        self._refused = False
-        view.show(picture, f"{picture.shape[1]}×{picture.shape[0]}", hz=self._hz)
+        self._newest.take(sample)
 
     def _fit(self, width: int, height: int) -> tuple[int, int]:
         return self.query_one(ImageView).wanted(width, height)

@@ -1,4 +1,4 @@
-"""Where the head looks, read from a JointState."""
+"""The Head panel: where the head looks, from above and from the side, and what LLM commands told it."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from text.figures import whole
 from text.i18n import N_, _
 from text.nested import read_json
 from text.plain import plain
-from tui.panels.canvas import Canvas, Point
-from tui.panels.panel import Joints, Panel, trouble_of
+from tui.panels.panel import Joints, Panel, has_joints, joint_number, trouble_of
+from tui.widgets.canvas import Canvas, Point
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 
 if TYPE_CHECKING:
@@ -67,16 +67,10 @@ def head_in(value: Mapping[str, Any]) -> HeadReading | None:
 
     A missing joint is read as nan.
     """
-    names = [str(name) for name in value.get("name", ())]
-    if HEAD_PAN not in names and HEAD_TILT not in names:
+    if not has_joints(value, (HEAD_PAN, HEAD_TILT)):
         return None
-    positions = value.get("position", ())
-
-    def degrees(joint: str) -> float:
-        at = names.index(joint) if joint in names else len(positions)
-        return math.degrees(float(positions[at])) if at < len(positions) else math.nan
-
-    return HeadReading(degrees(HEAD_PAN), degrees(HEAD_TILT))
+    pan, tilt = (math.degrees(joint_number(value, "position", joint)) for joint in (HEAD_PAN, HEAD_TILT))
+    return HeadReading(pan, tilt)
 
 
 CAPTION_FROM = 10

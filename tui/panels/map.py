@@ -1,4 +1,4 @@
-"""The legend of the map: what its signs mean, and how long a metre is on it."""
+"""The Map panel: the room from above with robot and path, and a legend of what its signs mean."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from tui.panels.map_scene import (
     ray_origin,
     robot_corners,
 )
-from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
+from tui.panels.panel import Panel, is_published, newest, other_type, row_of, trouble_of
 from tui.panels.sonar import COURSE, bounds_of, ink_of, remark
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 from tui.widgets.scale_bar import scale_bar
@@ -154,16 +154,18 @@ APART_M, APART_RAD = 0.05, math.radians(5)
 
 
 class RoomMap(Drawing):
-    """Takes values through `show_...`; `settle` draws them if the change is visible."""
+    """Takes values by its fields and `show_...`; `settle` draws them if the change is visible."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._scene: Scene | None = None
-        self._truth: Pose | None = None
-        self._goal: Point | None = None
+        self.truth: Pose | None = None
+        """The true pose of the simulated robot; None if it is not published."""
+        self.goal: Point | None = None
         self._rays: dict[str, float] = {}
-        self._bounds = COURSE
-        self._occupancy: OccupancyGrid | None = None
+        self.bounds = COURSE
+        """Readings below these distances are near."""
+        self.occupancy: OccupancyGrid | None = None
         self._frame = ""
         self._seen: Extent | None = None
         """What the rays have reached while there is no room."""
@@ -182,14 +184,6 @@ class RoomMap(Drawing):
         self._trail.add(pose.x_m, pose.y_m)
         self._scene = Scene(pose)
 
-    def show_truth(self, pose: Pose | None) -> None:
-        """Show the true pose of the simulated robot; None if it is not published."""
-        self._truth = pose
-
-    def show_goal(self, goal: Point | None) -> None:
-        """Show the goal; None if there is none."""
-        self._goal = goal
-
     def show_ray(self, place: str, metres: float | None) -> None:
         """Show the reading of a sonar; None if there is no such sonar."""
         if metres is None:
@@ -200,13 +194,6 @@ class RoomMap(Drawing):
         if before is None or not abs(metres - before) < steady_m:
             self._rays[place] = metres
 
-    def show_bounds(self, bounds: Bounds) -> None:
-        """Show readings below these distances as near."""
-        self._bounds = bounds
-
-    def show_occupancy(self, occupancy: OccupancyGrid) -> None:
-        self._occupancy = occupancy
-
     def forget_path(self) -> None:
         self._trail.clear()
         self._seen = None
@@ -216,7 +203,7 @@ class RoomMap(Drawing):
         if self._scene is None:
             return
         self._scene = Scene(
-            self._scene.pose, self._truth_apart(self._scene.pose), self._goal, dict(self._rays), self._bounds
+            self._scene.pose, self._truth_apart(self._scene.pose), self.goal, dict(self._rays), self.bounds
         )
         look = self._look(self._scene)
         if look != self._last or not self._lines:
@@ -244,7 +231,7 @@ class RoomMap(Drawing):
         return [*self._field(scene, under), *rows(self._entries(scene, under), width, below)]
 
     def _field(self, scene: Scene, view: Viewport) -> list[Line]:
-        canvas = self._layers.canvas(view, self._occupancy, self._trail)
+        canvas = self._layers.canvas(view, self.occupancy, self._trail)
         draw_scene(canvas, view, scene)
         return canvas.lines()
 
@@ -254,7 +241,7 @@ class RoomMap(Drawing):
 
     def _other_frame(self) -> str:
         """Warn about a room in another frame, which may be elsewhere; its transform is unknown."""
-        occupancy = self._occupancy
+        occupancy = self.occupancy
         if occupancy is None or not occupancy.frame or occupancy.frame == self._frame:
             return ""
         return _("map in frame {frame}, not {own}").format(frame=occupancy.frame, own=self._frame)
@@ -265,7 +252,7 @@ class RoomMap(Drawing):
         here = Extent(x, x, y, y).holding(*self._trail.bounds)
         if scene.goal is not None:
             here = here.holding((scene.goal.x_m, scene.goal.y_m))
-        room = self._occupancy.extent if self._occupancy else None
+        room = self.occupancy.extent if self.occupancy else None
         if room is not None:
             room = room.widened(MARGIN_M)
             return room if room.joined(here) == room else room.joined(here.widened(0.5).rounded())
@@ -280,7 +267,7 @@ class RoomMap(Drawing):
 
     def _truth_apart(self, pose: Pose) -> Pose | None:
         """The true pose, if it differs from the pose."""
-        truth = self._truth
+        truth = self.truth
         if truth is None:
             return None
         turned = abs(math.remainder(truth.heading_rad - pose.heading_rad, math.tau))
@@ -296,7 +283,7 @@ class RoomMap(Drawing):
             shapes.append(robot_corners(view, scene.truth))
         said: Mapping[int, object] = dict(enumerate(self._entries(scene, view)))
         dots = [[(round(x), round(y)) for x, y in shape] for shape in shapes]
-        return (dots, dict(scene.rays), scene.bounds, scene.goal, self._occupancy, said, self._trail.revision)
+        return (dots, dict(scene.rays), scene.bounds, scene.goal, self.occupancy, said, self._trail.revision)
 
 
 def _legend_rows(extent: Extent, width: int, height: int) -> int:
@@ -329,7 +316,6 @@ class MapPanel(Panel):
         """The topic of the pose; empty until there is one."""
         self._heard_s = -math.inf
         self._placeholder: Placeholder | None = None
-        self._bounds = COURSE
 
     def compose(self) -> ComposeResult:
         yield RoomMap()
@@ -354,10 +340,9 @@ class MapPanel(Panel):
         room = newest(update, MAP)
         occupancy = None if room is None else occupancy_in(room.value)
         if occupancy is not None:
-            drawing.show_occupancy(occupancy)
+            drawing.occupancy = occupancy
         self._show_goal(update, drawing)
-        self._bounds = bounds_of(update, self._bounds)
-        drawing.show_bounds(self._bounds)
+        drawing.bounds = bounds_of(update, drawing.bounds)
         for place, topic in SONARS.items():
             self._show_ray(update, drawing, place, topic)
         self._show_pose(update, drawing)
@@ -368,7 +353,7 @@ class MapPanel(Panel):
 
     def _choose_pose(self, update: GraphUpdate, drawing: RoomMap) -> None:
         """Use odometry if there is any, otherwise the true pose of a simulated robot."""
-        topic = next((one for one in (ODOMETRY, MOCK_POSE) if _is_published(update, one)), "")
+        topic = next((one for one in (ODOMETRY, MOCK_POSE) if is_published(update, one)), "")
         if not topic or self._pose_topic in {topic, ODOMETRY}:
             return
         if self._pose_topic:
@@ -391,20 +376,20 @@ class MapPanel(Panel):
             drawing.show_pose(*found)
 
     def _show_truth(self, update: GraphUpdate, drawing: RoomMap) -> None:
-        if self._pose_topic != ODOMETRY or not _is_published(update, MOCK_POSE):
-            drawing.show_truth(None)
+        if self._pose_topic != ODOMETRY or not is_published(update, MOCK_POSE):
+            drawing.truth = None
             return
         sample = newest(update, MOCK_POSE)
         found = None if sample is None else pose_in(sample.value)
         if found is not None:
-            drawing.show_truth(found[0])
+            drawing.truth = found[0]
 
     def _show_goal(self, update: GraphUpdate, drawing: RoomMap) -> None:
         sample = newest(update, GOAL_POSE)
-        if not _is_published(update, GOAL_POSE):
-            drawing.show_goal(None)
+        if not is_published(update, GOAL_POSE):
+            drawing.goal = None
         elif sample is not None:
-            drawing.show_goal(goal_in(sample.value))
+            drawing.goal = goal_in(sample.value)
 
     def _show_ray(self, update: GraphUpdate, drawing: RoomMap, place: str, topic: str) -> None:
         row = row_of(update, topic)
@@ -430,8 +415,3 @@ class MapPanel(Panel):
             detail = f"{detail}. {hint}"
         # The age is shown in whole seconds, and not redrawn more often.
         return trouble, detail, None if age_s is None else age_s // 1
-
-
-def _is_published(update: GraphUpdate, topic: str) -> bool:
-    row = row_of(update, topic)
-    return row is not None and row.publishers > 0

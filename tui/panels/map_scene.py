@@ -1,4 +1,4 @@
-"""Which part of the floor is shown, and where a point of it is on the canvas.
+"""The map's floor: which part is shown, what messages say of it, and everything that is drawn on it.
 
 Seen from above as on paper: x to the right and y upwards, so that a left turn appears as a left
 turn. A metre has the same length in both directions.
@@ -19,15 +19,15 @@ from robot.world.world import Body, SimulatedSonar
 from space.reading.fields import NotDrawnError
 from space.reading.fields import field as field_of
 from space.reading.grids import grid_cells
-from tui.panels.canvas import Canvas
 from tui.panels.sonar import COURSE, Bounds, ink_of
+from tui.widgets.canvas import Canvas
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from tui.panels.canvas import Point
+    from tui.widgets.canvas import Point
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
-"""The base of all panels: a titled frame, a widget in it, and the topics that feed it."""
+"""The base of all panels, and what they read of an update: rows, troubles, other types, joints."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.cells import cell_len
 from textual.containers import Vertical
@@ -144,6 +144,11 @@ def row_of(update: GraphUpdate, topic: str) -> TopicRow | None:
     return next((row for row in update.topics if row.name == topic), None)
 
 
+def is_published(update: GraphUpdate, topic: str) -> bool:
+    row = row_of(update, topic)
+    return row is not None and row.publishers > 0
+
+
 def newest(update: GraphUpdate, topic: str) -> Sample | None:
     """Return the newest sample of a topic, None if none has come."""
     samples = update.samples.get(topic)
@@ -167,11 +172,7 @@ def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, fl
 def first_published(update: GraphUpdate, topics: Iterable[str]) -> str:
     """Return the first topic that somebody publishes, otherwise the first of all."""
     names = list(topics)
-    for name in names:
-        row = row_of(update, name)
-        if row is not None and row.publishers:
-            return name
-    return names[0]
+    return next((name for name in names if is_published(update, name)), names[0])
 
 
 LONGEST = 200
@@ -194,7 +195,18 @@ def _short(type_name: str) -> str:
 TYPE = "sensor_msgs/msg/JointState"
 ANOTHER_S = 2.0
 """A readable message counts for this long: two publishers may alternate."""
-LONGEST = 200
+
+
+def has_joints(value: Mapping[str, Any], joints: Iterable[str]) -> bool:
+    """Whether a sensor_msgs/JointState is about any of these joints."""
+    return not set(joints).isdisjoint(map(str, value.get("name", ())))
+
+
+def joint_number(value: Mapping[str, Any], array: str, joint: str) -> float:
+    """What an array of a JointState, such as `position`, says of a joint; nan if it does not."""
+    names, numbers = [str(name) for name in value.get("name", ())], value.get(array, ())
+    at = names.index(joint) if joint in names else len(numbers)
+    return float(numbers[at]) if at < len(numbers) else math.nan
 
 
 class Joints:

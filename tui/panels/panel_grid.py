@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from textual.binding import Binding, BindingType
 from textual.containers import Container
 from textual.message import Message
 
+from launcher.profile.panels import PANELS
 from text.i18n import _
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from textual.events import Click, Resize
 
@@ -46,13 +48,21 @@ class PanelGrid(Container, can_focus=True):
     PanelGrid.-thin:focus > Panel.-chosen { border: none; border-top: solid $accent; }
     """
 
-    def __init__(self, panels: Sequence[Panel], id: str | None = None) -> None:
-        super().__init__(*panels, id=id)
-        self._panels = list(panels)
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._panels: list[Panel] = []
         self._page = 0
         self._frame = 2
         self._pages: list[list[list[Panel]]] = []
         self._chosen: Panel | None = None
+
+    async def put_up(self, names: Iterable[str]) -> None:
+        """Make the panels of these names in place of those that are there."""
+        await self.remove_children()
+        self._panels = [made(name) for name in names if name in PANELS]
+        self._chosen, self._page, self._pages = None, 0, []
+        await self.mount_all(self._panels)
+        self._fit(*self.size)
 
     @property
     def chosen(self) -> Panel | None:
@@ -116,7 +126,9 @@ class PanelGrid(Container, can_focus=True):
 
     def on_resize(self, event: Resize) -> None:
         """Place the panels in the new size."""
-        width, height = event.size
+        self._fit(*event.size)
+
+    def _fit(self, width: int, height: int) -> None:
         self._frame = 2 if width >= BESIDE_FROM else 1
         self.set_class(self._frame == 1, "-thin")
         before = self.pages
@@ -153,6 +165,12 @@ class PanelGrid(Container, can_focus=True):
         chosen = self.chosen
         for panel in self._panels:
             panel.set_class(panel is chosen, "-chosen")
+
+
+def made(name: str) -> Panel:
+    """Make the panel of this name: the class `SonarPanel` of the module `tui.panels.sonar`."""
+    panel: Panel = getattr(import_module(f"tui.panels.{name}"), f"{name.title()}Panel")()
+    return panel
 
 
 def in_rows(panels: Sequence[Panel], width: int) -> list[Row]:

@@ -1,4 +1,4 @@
-"""The meaning of a distance: free, close, stop, or no reading at all (REP-117)."""
+"""The Sonar panel: distances, what they mean (REP-117), and their trend; bounds, bar and words also for others."""
 
 from __future__ import annotations
 
@@ -8,23 +8,19 @@ from collections.abc import Iterable
 from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple
 
-from textual.containers import Container
 from textual.renderables.digits import DIGITS, DIGITS3X3_BOLD
 
-from graph.data import Trouble
 from robot.safety.gate_report import Gate, gate_in
 from robot.topics import SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.figures import figure, whole
 from text.i18n import N_, _, decimal
-from tui.panels.panel import ALWAYS, Panel, newest, other_type, row_of, trouble_of
+from tui.panels.panel import ALWAYS, Panel, is_published, newest, other_type, row_of, trouble_of
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-    from textual.events import Resize
 
     from graph.data import GraphUpdate
-    from tui.widgets.drawing import Placeholder
 
 FREE_FROM_M = 1.0
 """ai_brain drives ahead from this distance on."""
@@ -305,53 +301,6 @@ class Sonar(Drawing):
         return beside([Ink(words, "muted")], [Ink(_("now"), "muted")], width)
 
 
-class SonarView(Container):
-    """The front sonar and, if there is one, the rear sonar."""
-
-    DEFAULT_CSS = """
-    SonarView {
-        layout: vertical;
-        &.-flat { layout: horizontal; }
-        #rear { display: none; }
-        &.-both #rear { display: block; }
-        &.-both.-flat #rear { margin-left: 2; }
-    }
-    """
-
-    def compose(self) -> ComposeResult:
-        """The front sonar above, or to the left of, the rear one."""
-        yield Sonar(N_("front"), id="front")
-        yield Sonar(N_("rear"), id="rear")
-
-    def show(self, place: str, metres: float, time_s: float) -> None:
-        """Take a reading of the sonar at `front` or `rear`."""
-        self._sonar(place).show(metres, time_s)
-
-    def show_placeholder(self, place: str, words: Placeholder | None) -> None:
-        """Show these words in place of the sonar at `front` or `rear`; if empty, show it again."""
-        self._sonar(place).show_placeholder(words)
-
-    def show_trouble(self, place: str, trouble: Trouble | None, detail: str = "", age_s: float | None = None) -> None:
-        """Say why there are no readings of the sonar at `front` or `rear`."""
-        self._sonar(place).show_trouble(trouble, detail, age_s)
-
-    def set_bounds(self, bounds: Bounds) -> None:
-        """Show STOP and CLOSE below these distances from now on."""
-        for sonar in self.query(Sonar):
-            sonar.set_bounds(bounds)
-
-    def set_both(self, both: bool) -> None:
-        """Set whether there is a rear sonar to be shown."""
-        self.set_class(both, "-both")
-
-    def on_resize(self, event: Resize) -> None:
-        """Place them side by side if that leaves more lines to each."""
-        self.set_class(event.size.width >= 56 and event.size.height < 16, "-flat")
-
-    def _sonar(self, place: str) -> Sonar:
-        return self.query_one(f"#{place}", Sonar)
-
-
 TYPE = "std_msgs/msg/Float32"
 TOPICS = {"front": SONAR_FRONT, "rear": SONAR_REAR}
 
@@ -359,6 +308,15 @@ TOPICS = {"front": SONAR_FRONT, "rear": SONAR_REAR}
 class SonarPanel(Panel):
     """The front sonar, and the rear one if somebody publishes it."""
 
+    DEFAULT_CSS = """
+    SonarPanel {
+        #rear { display: none; }
+        &.-both #rear { display: block; }
+        &.-failed #rear { display: none; }
+        &.-flat { layout: horizontal; }
+        &.-both.-flat #rear { margin-left: 2; }
+    }
+    """
     title = N_("Sonar")
     least = 2
     weight = 2
@@ -369,7 +327,13 @@ class SonarPanel(Panel):
         self._bounds = COURSE
 
     def compose(self) -> ComposeResult:
-        yield SonarView()
+        """The front sonar above, or to the left of, the rear one."""
+        yield Sonar(N_("front"), id="front")
+        yield Sonar(N_("rear"), id="rear")
+
+    def on_resize(self) -> None:
+        """Place them side by side if that leaves more lines to each."""
+        self.set_class(self.size.width >= 56 and self.size.height < 16, "-flat")
 
     def watched(self) -> set[str]:
         return {*TOPICS.values(), SAFETY_STATE}
@@ -380,18 +344,17 @@ class SonarPanel(Panel):
 
     def show(self, update: GraphUpdate) -> None:
         """Show every reading, for the trend."""
-        gauges = self.query_one(SonarView)
-        rear = row_of(update, TOPICS["rear"])
-        if rear is not None and rear.publishers:
+        if is_published(update, SONAR_REAR):
             # One that has gone silent stays, with a remark.
-            gauges.set_both(True)
+            self.add_class("-both")
         self._bounds = bounds_of(update, self._bounds)
-        gauges.set_bounds(self._bounds)
         for place, topic in TOPICS.items():
+            sonar = self.query_one(f"#{place}", Sonar)
+            sonar.set_bounds(self._bounds)
             for sample in update.samples.get(topic, ()):
                 metres = sample.value.get("data")
                 if isinstance(metres, (int, float)):
-                    gauges.show(place, float(metres), sample.received_s)
+                    sonar.show(float(metres), sample.received_s)
             if topic in update.samples:
-                gauges.show_placeholder(place, other_type(newest(update, topic), TYPE))
-            gauges.show_trouble(place, *trouble_of(update, topic))
+                sonar.show_placeholder(other_type(newest(update, topic), TYPE))
+            sonar.show_trouble(*trouble_of(update, topic))

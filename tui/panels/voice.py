@@ -1,4 +1,4 @@
-"""The content of a sound message: text, as in the lessons, or PCM samples, or neither."""
+"""The Voice panel: who said what and when, text or sound, and the level of the microphone."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ SHOWN_BYTES = 12
 LEAST_PCM = 64
 """In bytes; anything shorter is not audible."""
 SLICES = 8
-QUIETEST_DB = -60.0
+QUIETEST_DB, LOUDEST_DB = -60.0, 0.0
+"""Ends of the bar."""
 LEVELS = "▁▂▃▄▅▆▇█"
 
 
@@ -90,8 +91,6 @@ def _levels(samples: NDArray[np.int16]) -> str:
     return levels
 
 
-QUIETEST_DB, LOUDEST_DB = -60.0, 0.0
-"""Ends of the bar."""
 FAINT_DB, LOUD_DB, CUT_DB = -50.0, -12.0, -4.0
 """Below: barely a sound; from here on: loud; so loud that samples are clipped."""
 LEAST_BAR = 6

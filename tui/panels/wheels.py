@@ -1,4 +1,4 @@
-"""The motion of the wheels, read from a JointState, and what it means."""
+"""The Wheels panel: how fast the wheels turn, or would, and how they are steered, from above."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from robot.kinematics import TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M, turning_radiu
 from robot.topics import DRIVE, WHEEL_COMMANDS
 from text.figures import figure, short
 from text.i18n import N_, _, decimal
-from tui.panels.canvas import Canvas, rectangle
-from tui.panels.panel import Joints, Panel, first_published, newest, other_type, trouble_of
+from tui.panels.panel import Joints, Panel, first_published, has_joints, joint_number, newest, other_type, trouble_of
+from tui.widgets.canvas import Canvas, rectangle
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 
 if TYPE_CHECKING:
@@ -72,20 +72,10 @@ def wheels_in(value: Mapping[str, Any], wheel_radius_m: float = WHEEL_RADIUS_M) 
 
     A missing joint is read as nan.
     """
-    names = [str(name) for name in value.get("name", ())]
-    if REAR_LEFT_WHEEL not in names and REAR_RIGHT_WHEEL not in names:
+    if not has_joints(value, (REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL)):
         return None
-
-    def read(array: str, joint: str) -> float:
-        numbers = value.get(array, ())
-        at = names.index(joint) if joint in names else len(numbers)
-        return float(numbers[at]) if at < len(numbers) else math.nan
-
-    return WheelsReading(
-        read("velocity", REAR_LEFT_WHEEL) * wheel_radius_m,
-        read("velocity", REAR_RIGHT_WHEEL) * wheel_radius_m,
-        read("position", STEERING),
-    )
+    left, right = (joint_number(value, "velocity", wheel) for wheel in (REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL))
+    return WheelsReading(left * wheel_radius_m, right * wheel_radius_m, joint_number(value, "position", STEERING))
 
 
 WHEEL_M = (0.035, 0.085)

@@ -124,7 +124,7 @@ def copy_message(screen: TopicsScreen) -> None:
     footer=True,
     priority=True,
     anywhere=True,
-    when=lambda screen: screen.table.chosen is not None and not screen.plotting.covers_all,
+    when=lambda screen: bool(screen.table.chosen) and not screen.plotting.covers_all,
 )
 def filter_messages(screen: TopicsScreen) -> None:
     screen.filter_messages()

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from textual.geometry import Size
 
     from graph.data import Sample, TopicRow
-    from tui.widgets.half_blocks import Pixels
-    from tui.widgets.image_view import ImageScale
 
 LONGEST_ARRAY = 2000
 """Elements of an array that are copied: the clipboard of a terminal (OSC 52) is small."""
@@ -184,13 +182,6 @@ class TopicDetail(Vertical, Working):
         if is_cut(message, LONGEST_ARRAY):
             words += " " + _("Long arrays were cut.")
         self.notify(words, markup=False)
-
-    def show_picture(self, rgb: Pixels, caption: str, scale: ImageScale | None, hz: str) -> None:
-        self.picture.show(rgb, caption, scale, hz)
-
-    def show_no_picture(self, headline: str, detail: str = "") -> None:
-        """Say why the newest message cannot be shown as a picture."""
-        self.picture.show_words(headline, detail)
 
     @property
     def as_picture(self) -> bool:

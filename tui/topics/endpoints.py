@@ -2,40 +2,39 @@
 
 from __future__ import annotations
 
+import textwrap
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from rich.segment import Segment
+from rich.cells import cell_len
 from textual.binding import Binding, BindingType
-from textual.geometry import Size
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
+from textual.containers import VerticalScroll
+from textual.content import Content
+from textual.widgets import Static
 
-from tui.topics.endpoint_lines import endpoint_lines
+from graph.qos_compatibility import LEASE, LIVELINESS, mismatches
+from text.i18n import _, localized, ngettext
+from text.plain import plain
+from tui.widgets.drawing import Ink, Line, fit
+from tui.widgets.figures import UNKNOWN, seconds_text
+from tui.widgets.qos_words import pair_words
+from tui.widgets.trouble import names
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from textual.app import ComposeResult
 
     from graph.data import EndpointInfo, TopicRow
-    from tui.widgets.drawing import Line
+    from graph.qos_compatibility import Mismatch
 
 
-class TopicEndpoints(ScrollView, can_focus=True):
+class TopicEndpoints(VerticalScroll, can_focus=True):
     """Shows publishers and subscribers of a topic, and before them what is incompatible."""
 
-    ALLOW_SELECT = False
-    COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "topic-endpoints--bad",
-        "topic-endpoints--good",
-        "topic-endpoints--muted",
-        "topic-endpoints--strong",
-    }
     DEFAULT_CSS = """
     TopicEndpoints {
-        width: 1fr; height: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
-        &> .topic-endpoints--bad { color: $text-error; text-style: bold; }
-        &> .topic-endpoints--good { color: $text-success; text-style: bold; }
-        &> .topic-endpoints--muted { color: $text-muted; }
-        &> .topic-endpoints--strong { text-style: bold; }
+        width: 1fr; height: 1fr; scrollbar-size-vertical: 1;
+        Static { width: 1fr; text-wrap: nowrap; }
     }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -43,27 +42,20 @@ class TopicEndpoints(ScrollView, can_focus=True):
         Binding("j", "scroll_down", show=False),
     ]
 
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
+    def __init__(self) -> None:
+        super().__init__()
         self._row: TopicRow | None = None
-        self._shown: tuple[str, Sequence[EndpointInfo], Sequence[EndpointInfo], int] | None = None
-        self._lines: list[Line] = []
+
+    def compose(self) -> ComposeResult:
+        yield Static(markup=False)
 
     def show(self, row: TopicRow | None) -> None:
-        """Show the endpoints of this topic; wrapped again only if they have changed."""
+        """Show the endpoints of this topic; another one is shown from its beginning."""
         other = row is None or self._row is None or row.name != self._row.name
         self._row = row
-        shown = None if row is None else (row.name, row.published_by, row.subscribed_by, row.own_publishers)
-        if shown != self._shown:
-            self._shown = shown
-            self._fold()
+        self._fold()
         if other:
             self.scroll_to(0, 0, animate=False, immediate=True)
-
-    @property
-    def text(self) -> str:
-        """The whole text as wrapped now."""
-        return "\n".join("".join(ink.text for ink in line).rstrip() for line in self._lines)
 
     def on_language_changed(self) -> None:
         self._fold()
@@ -80,21 +72,204 @@ class TopicEndpoints(ScrollView, can_focus=True):
         """Wrap what was set while the widget was hidden."""
         self._fold()
 
-    def render_line(self, y: int) -> Strip:
-        width, base = self.scrollable_size.width, self.rich_style
-        index = y + self.scroll_offset.y
-        if index >= len(self._lines):
-            return Strip.blank(width, base)
-        segments = []
-        for text, look in self._lines[index]:
-            style = self.get_component_rich_style(f"topic-endpoints--{look}") if look else base
-            segments.append(Segment(text, style))
-        return Strip(segments).adjust_cell_length(width, base)
-
     def _fold(self) -> None:
-        width = self.scrollable_size.width
+        width = self.scrollable_content_region.width
         if width < 1 or not self.is_mounted:
             return
-        self._lines = [] if self._row is None else endpoint_lines(self._row, width)
-        self.virtual_size = Size(width, len(self._lines))
-        self.refresh()
+        lines = [] if self._row is None else endpoint_lines(self._row, width)
+        words = Content("\n").join(Content.assemble(*((ink.text, LOOKS[ink.look]) for ink in line)) for line in lines)
+        shown = self.query_one(Static)
+        if words != shown.content:
+            shown.update(words)
+
+
+LOOKS = {"": "", "bad": "bold $text-error", "good": "bold $text-success", "muted": "$text-muted", "strong": "bold"}
+MARK = 2
+MOST_PAIRS = 12
+LONGEST = 400
+FITS, MISMATCH = "✓", "✗"
+LONGEST_NAME = 256
+WIDEST_NODE = 44
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A publisher and a subscriber that the middleware does not connect, and by which policy."""
+
+    publisher: EndpointInfo
+    subscriber: EndpointInfo
+    mismatch: Mismatch
+
+
+def mismatched_pairs(row: TopicRow) -> list[Pair]:
+    """Return every incompatible pair of the same type."""
+    return [
+        Pair(publisher, subscriber, found)
+        for publisher in row.published_by
+        for subscriber in row.subscribed_by
+        if subscriber.type_name == publisher.type_name
+        for found in mismatches([publisher], [subscriber])
+    ]
+
+
+def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
+    """Return the topic's endpoints in this width: what to fix, publishers, subscribers."""
+    pairs = mismatched_pairs(row)
+    disagree = len(_types(row)) > 1
+    columns = columns_for(width - MARK)
+    lines = [*_types_lines(row, width)] if disagree else []
+    lines += _pair_lines(pairs, width)
+    if not lines and row.published_by and row.subscribed_by:
+        lines.append([Ink(f"{FITS} ", "good"), Ink(_("every subscriber hears every publisher"))])
+    for is_publisher, ends in ((True, row.published_by), (False, row.subscribed_by)):
+        lines.append([])
+        lines.append(_title(is_publisher, len(ends), columns))
+        for end in ends:
+            at = [pair for pair in pairs if end is (pair.publisher if is_publisher else pair.subscriber)]
+            bad = frozenset(_column(pair.mismatch.policy) for pair in at)
+            lines += _end_lines(end, columns, bad, width, with_type=disagree)
+        if is_publisher and row.own_publishers:
+            lines.append([Ink(" " * MARK), Ink(_("Deck itself publishes here"))])
+        elif not ends:
+            nobody = _("nobody publishes") if is_publisher else _("nobody listens")
+            lines.append([Ink(" " * MARK), Ink(nobody, "muted")])
+    return [*lines, [], *_notes(row, width)]
+
+
+def _column(policy: str) -> str:
+    """Return the column that shows the policy: the lease is shown beside the kind."""
+    return LIVELINESS if policy == LEASE else policy
+
+
+def _types(row: TopicRow) -> list[str]:
+    ends = (*row.published_by, *row.subscribed_by)
+    return list(dict.fromkeys(end.type_name for end in ends))
+
+
+def _types_lines(row: TopicRow, width: int) -> Iterator[Line]:
+    words = _("The endpoints use different types; a message passes only between equal types.")
+    yield from _wrapped(MISMATCH, words, width, "bad")
+    for type_name in _types(row):
+        publishers = [end for end in row.published_by if end.type_name == type_name]
+        subscribers = [end for end in row.subscribed_by if end.type_name == type_name]
+        parts = []
+        if publishers:
+            parts.append(_("published by {nodes}").format(nodes=names(publishers)))
+        if subscribers:
+            parts.append(_("expected by {nodes}").format(nodes=names(subscribers)))
+        yield from _wrapped("", f"{plain(type_name, LONGEST)}: {', '.join(parts)}", width)
+
+
+def _pair_lines(pairs: Sequence[Pair], width: int) -> list[Line]:
+    # If a node has two identical endpoints, its pairs produce the same text.
+    told = list(dict.fromkeys(pair_words(pair.mismatch) for pair in pairs))
+    lines: list[Line] = []
+    for words in told[:MOST_PAIRS]:
+        lines += _wrapped(MISMATCH, words, width, "bad")
+    rest = len(told) - MOST_PAIRS
+    if rest > 0:
+        more = ngettext("… and {n} more pair", "… and {n} more pairs", rest).format(n=rest)
+        lines.append([Ink(" " * MARK), Ink(more, "muted")])
+    return lines
+
+
+def _title(is_publisher: bool, count: int, columns: Sequence[EndpointColumn]) -> Line:
+    title = _("Publishers") if is_publisher else _("Subscribers")
+    texts = [f"{title} ({count})", *(column.title for column in columns[1:])]
+    return [Ink(" " * MARK), *_cells(texts, columns, ["strong", *["muted"] * len(columns)])]
+
+
+def _end_lines(
+    end: EndpointInfo, columns: Sequence[EndpointColumn], bad: frozenset[str], width: int, *, with_type: bool
+) -> Iterator[Line]:
+    mark = Ink(f"{MISMATCH} ", "bad") if bad else Ink(" " * MARK)
+    looks = ["bad" if column.id in bad else "" for column in columns]
+    texts = [column.text(end) for column in columns]
+    yield [mark, *_cells(texts, columns, looks)]
+    below = [texts[0]] if cell_len(texts[0]) > columns[0].width else []
+    below += [plain(end.type_name, LONGEST)] if with_type else []
+    below += [f"{column.title} {column.text(end)}" for column in left_over(columns)]
+    if below:
+        yield from _wrapped("", " · ".join(below), width, "muted", indent=2 * MARK)
+
+
+def _cells(texts: Sequence[str], columns: Sequence[EndpointColumn], looks: Sequence[str]) -> Line:
+    last = len(columns) - 1
+    return [
+        Ink(fit(text, column.width) + ("" if place == last else " "), look)
+        for place, (text, column, look) in enumerate(zip(texts, columns, looks, strict=False))
+    ]
+
+
+def _notes(row: TopicRow, width: int) -> Iterator[Line]:
+    ends = (*row.published_by, *row.subscribed_by)
+    if any(not end.history or not end.liveliness for end in ends):
+        words = _("“–” is unknown: the middleware does not send it.")
+        yield from _wrapped("", words, width, "muted")
+
+
+def _wrapped(mark: str, text: str, width: int, look: str = "", *, indent: int = MARK) -> Iterator[Line]:
+    """Yield a mark and a wrapped text beside it; if there is a mark, it carries the look."""
+    room = max(8, width - indent)
+    for place, part in enumerate(textwrap.wrap(text, room)):
+        head = Ink((mark if not place else "").ljust(indent), look if mark else "")
+        yield [head, Ink(part, "" if mark else look)]
+
+
+@dataclass(frozen=True)
+class EndpointColumn:
+    """One column; `id` is the name of the policy if it shows one."""
+
+    id: str
+    title: str
+    """The names of the policies are those of ROS in every language, because users type them."""
+    width: int
+    text: Callable[[EndpointInfo], str]
+
+
+def history_text(end: EndpointInfo) -> str:
+    """`keep_last 10`, `keep_all`, or whatever is known of it."""
+    if end.history == "keep_last" and end.depth:
+        return f"{end.history} {end.depth}"
+    if not end.history and end.depth:
+        return str(end.depth)
+    return end.history or UNKNOWN
+
+
+def time_text(seconds: float | None) -> str:
+    """Return a time that was requested or offered, or say that there is none."""
+    return _("none") if seconds is None else seconds_text(seconds)
+
+
+def liveliness_text(end: EndpointInfo) -> str:
+    """Return the kind, and how long without a sign of life it still counts as alive."""
+    if not end.liveliness:
+        return UNKNOWN
+    lease = "" if end.lease_s is None else f" {seconds_text(end.lease_s)}"
+    return end.liveliness + lease
+
+
+NODE = EndpointColumn("node", "", 20, lambda end: plain(localized(end.called), LONGEST_NAME))
+POLICIES = (
+    EndpointColumn("reliability", "reliability", 11, lambda end: end.reliability or UNKNOWN),
+    EndpointColumn("durability", "durability", 15, lambda end: end.durability or UNKNOWN),
+    EndpointColumn("history", "history", 13, history_text),
+    EndpointColumn("deadline", "deadline", 8, lambda end: time_text(end.deadline_s)),
+    EndpointColumn("lifespan", "lifespan", 8, lambda end: time_text(end.lifespan_s)),
+    EndpointColumn("liveliness", "liveliness", 22, liveliness_text),
+)
+"""In the order on the screen; the last ones are dropped first when room is short."""
+
+
+def columns_for(width: int) -> tuple[EndpointColumn, ...]:
+    """Return the columns that fit, with one blank between them; the node takes the rest."""
+    kept = list(POLICIES)
+    while kept and NODE.width + sum(column.width + 1 for column in kept) > width:
+        kept.pop()
+    spare = width - sum(column.width + 1 for column in kept)
+    return (replace(NODE, width=max(1, min(spare, WIDEST_NODE))), *kept)
+
+
+def left_over(columns: Sequence[EndpointColumn]) -> tuple[EndpointColumn, ...]:
+    """Return the policies without a column."""
+    return POLICIES[len(columns) - 1 :]

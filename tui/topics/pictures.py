@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 from graph.pictures.picture import Picture, ramp_colours
 from graph.pictures.pixels import ImageError, UnknownEncodingError
-from graph.pictures.reading import COMPRESSED, IMAGE, read_picture
+from graph.pictures.reading import COMPRESSED, IMAGE
 from text.i18n import _, decimal, localized
 from text.plain import plain
-from tui.topics.table.columns import hz_text
-from tui.widgets.image_view import ImageScale
-from tui.widgets.newest_picture import NewestPicture
+from tui.topics.table import hz_text
+from tui.widgets.image_view import ImageScale, NewestPicture
 
 if TYPE_CHECKING:
     from graph.data import Sample, TopicRow
@@ -44,18 +43,11 @@ class TopicPictures:
         self._detail = detail
         self._is_wanted = is_wanted
         self._row = row
-        self._compressed = NewestPicture(detail, self._fit, self._show, self._refuse_wanted)
+        self._newest = NewestPicture(detail, self._fit, self._show, self._refuse_wanted)
 
     def show(self, sample: Sample) -> None:
         """Show this image; a compressed one after decoding it."""
-        if sample.type_name == IMAGE:
-            # It takes a millisecond: less than switching to another thread and back.
-            try:
-                self._put(read_picture(IMAGE, sample.value, self._detail.picture.wanted))
-            except ImageError as error:
-                self._refuse(sample, error)
-            return
-        self._compressed.take(sample)
+        self._newest.take(sample)
 
     def _fit(self, width: int, height: int) -> tuple[int, int]:
         return self._detail.picture.wanted(width, height)
@@ -71,7 +63,7 @@ class TopicPictures:
     def _put(self, picture: Picture) -> None:
         row = self._row()
         if picture.is_empty_depth:
-            self._detail.show_no_picture(
+            self._detail.picture.show_words(
                 _("no valid depth"), _("no reading is a distance: each is NaN, infinite or 0")
             )
             return
@@ -81,7 +73,7 @@ class TopicPictures:
             near, far = (_("{n} m").format(n=decimal(f"{metres:g}")) for metres in picture.range_m)
             first = _("near {distance}").format(distance=near)
             scale = ImageScale(first, _("{distance} far").format(distance=far), ramp_colours())
-        self._detail.show_picture(picture.rgb, size, scale, hz_text(row.hz if row else None))
+        self._detail.picture.show(picture.rgb, size, scale, hz_text(row.hz if row else None))
 
     def _refuse(self, sample: Sample, error: ImageError) -> None:
         headline = _("this picture cannot be shown")
@@ -89,4 +81,4 @@ class TopicPictures:
             encoding = str(sample.value.get("encoding"))
             words = _("pictures of the encoding {encoding} cannot be shown")
             headline = words.format(encoding=plain(encoding, LONGEST))
-        self._detail.show_no_picture(headline, localized(error.words))
+        self._detail.picture.show_words(headline, localized(error.words))

@@ -6,14 +6,14 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 from text.i18n import _
-from tui.topics.plot.field import PlotField
+from tui.topics.plot_history import PlotField
 
 if TYPE_CHECKING:
     from textual.screen import Screen
 
     from tui.topics.detail import TopicDetail
-    from tui.topics.plot.plot import TopicPlot
-    from tui.topics.table.table import TopicsTable
+    from tui.topics.plot import TopicPlot
+    from tui.topics.table import TopicsTable
 
 
 class PlotPlace(Enum):
@@ -63,7 +63,7 @@ class Plotting:
         """The number at the cursor, None if it is not one."""
         echo = self._detail.echo
         topic, path, message = self._table.chosen, echo.at_cursor, echo.message
-        if topic is None or path is None or message is None:
+        if not topic or path is None or message is None:
             return None
         field = PlotField(topic, path)
         return None if field.number(message) is None else field
@@ -92,7 +92,7 @@ class Plotting:
 
     def mark_fields(self) -> None:
         """Show the letters of the plot in the message."""
-        self._detail.echo.mark(self.plot.marks(self._table.chosen or ""))
+        self._detail.echo.mark(self.plot.marks(self._table.chosen))
 
     def _warn(self, words: str) -> None:
         self._screen.notify(words, severity="warning", markup=False)

@@ -20,10 +20,10 @@ from tui.topics.actions import TOPICS_ACTIONS
 from tui.topics.detail import TopicDetail
 from tui.topics.echo_filter import EchoFilter
 from tui.topics.pictures import TopicPictures, carries_images, is_image
-from tui.topics.plot.plot import TopicPlot
+from tui.topics.plot import TopicPlot
 from tui.topics.plotting import PlotPlace, Plotting
-from tui.topics.table.table import TopicsTable
-from tui.topics.why_empty import why_empty
+from tui.topics.table import TopicsTable
+from tui.topics.words import why_empty
 from tui.widgets.field import Field
 
 if TYPE_CHECKING:
@@ -128,14 +128,14 @@ class TopicsScreen(DeckScreen):
 
     def watch_topics(self) -> set[str]:
         """The chosen topic; of one with images only its messages as a tree."""
-        if self.table.chosen is None or (self.shows_image and not self._shows_tree):
+        if not self.table.chosen or (self.shows_image and not self._shows_tree):
             return set()
         return {self.table.chosen}
 
     def picture_topics(self) -> set[str]:
         """The chosen topic if it is one with images, unless they are shown as a tree."""
         hidden = self.detail.as_endpoints or self._shows_tree or not self.shows_image
-        return set() if hidden or self.table.chosen is None else {self.table.chosen}
+        return set() if hidden or not self.table.chosen else {self.table.chosen}
 
     @property
     def _shows_tree(self) -> bool:
@@ -158,13 +158,13 @@ class TopicsScreen(DeckScreen):
         """Show rates, and the newest message of the chosen topic."""
         update = message.update
         self.plot.take(update)
-        samples = update.samples.get(self.table.chosen or "", ())
+        samples = update.samples.get(self.table.chosen, ())
         self._missed = self.detail.fitting(samples) or self._missed
         if self.feed.front is not self:
             return
         if self._is_time_for_rates(update.time_s):
             self._listed = tuple(row for row in update.topics if self._is_listed(row))
-            self.table.show(self._listed)
+            self.table.show_topics(self._listed)
             self.detail.show_topic(self.table.chosen_row)
             self._count()
         if not self.table.shown:
@@ -181,7 +181,7 @@ class TopicsScreen(DeckScreen):
         del message
         if self.feed.link is None:
             self._listed = ()
-            self.table.show(())
+            self.table.show_topics(())
             self.plot.clear()
             self._label()
 
@@ -189,7 +189,7 @@ class TopicsScreen(DeckScreen):
         del message
         self._label()
 
-    @on(TopicsTable.TopicChosen)
+    @on(TopicsTable.Highlighted)
     def _chosen(self) -> None:
         self.detail.show_topic(self.table.chosen_row)
         self.plotting.mark_fields()
@@ -216,7 +216,7 @@ class TopicsScreen(DeckScreen):
     def _expression_done(self) -> None:
         self.detail.echo.focus()
 
-    @on(TopicsTable.TopicOpened)
+    @on(TopicsTable.Opened)
     def _opened(self) -> None:
         front = self.detail.front
         (front if front.can_focus else self.detail.echo).focus()
@@ -322,7 +322,7 @@ class TopicsScreen(DeckScreen):
 
     def open_publish(self) -> None:
         """Open the dialog that publishes, for the chosen topic."""
-        from tui.topics.publish.dialog import PublishDialog
+        from tui.topics.publish import PublishDialog
 
         row = self.table.chosen_row
         self.app.push_screen(PublishDialog(row, lambda: self.detail.sample))

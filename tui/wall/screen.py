@@ -21,8 +21,7 @@ from tui.panels.panel import row_of
 from tui.panels.sonar import COURSE, bounds_of
 from tui.panels.voice import VoicePanel
 from tui.wall.actions import WALL_ACTIONS
-from tui.wall.figure import BigNumber, big_word
-from tui.wall.reading import WallReader
+from tui.wall.numbers import BigNumber, WallReader, big_word
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, cast
+import asyncio
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias, cast
 
+import numpy as np
 from rich.cells import cell_len
 from rich.color import Color
 from rich.segment import Segment
@@ -12,7 +16,9 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from graph.pictures.pixels import shrink
+from graph.pictures.picture import IMAGE, Picture
+from graph.pictures.pixels import ImageError, shrink
+from graph.pictures.reading import COMPRESSED, read_picture
 from text.figures import figure
 from text.i18n import _, decimal
 from text.plain import plain
@@ -22,11 +28,13 @@ from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, in_row, word_strips
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from textual.events import Resize
     from textual.timer import Timer
 
+    from graph.data import Sample
+    from graph.pictures.picture import Fit
     from tui.terminal.bandwidth import Bandwidth, HasBandwidth
-    from tui.widgets.half_blocks import Pixels
 
 CAPTION_FROM = 4
 """Number of rows from which on one of them is used for the caption."""
@@ -131,13 +139,11 @@ class ImageView(OneStyle, Widget):
         Twice as many pixels as are shown in each direction: a pixel on the screen is the mean of
         four.
         """
-        from tui.widgets import half_blocks
-
         columns, rows = self.pixel_size[0], self.pixel_size[1] // 2
         if columns < 1 or rows < 1:
             # It is not on the screen yet, and there may never be another picture.
             columns, rows = UNPLACED
-        wide, high = half_blocks.fitting_size(width, height, columns, rows)
+        wide, high = fitting_size(width, height, columns, rows)
         return 2 * wide, 2 * high
 
     @property
@@ -162,8 +168,6 @@ class ImageView(OneStyle, Widget):
         top, left = self._margins(self._shown, width, height)
         if not 0 <= y - top < self._shown.shape[0] // 2:
             return Strip.blank(width, self.rich_style)
-        from tui.widgets.half_blocks import row_segments
-
         strip = Strip(row_segments(self._shown, y - top), self._shown.shape[1])
         return in_row(strip, left, width, self.rich_style)
 
@@ -212,24 +216,20 @@ class ImageView(OneStyle, Widget):
         return words.format(shown=figure(shown, 1), hz=hz, limit=limit)
 
     def _draw(self, source: Pixels) -> None:
-        from tui.widgets import half_blocks
-
         width, height = self.size
         rows = height - self._caption_rows(height)
         if width < 1 or rows < 1:
             return
         had = self._shown
-        shape = half_blocks.fitting_size(source.shape[1], source.shape[0], width, rows)
+        shape = fitting_size(source.shape[1], source.shape[0], width, rows)
         fresh = shrink(source, *shape)
         if had is None or had.shape != fresh.shape:
-            self._shown = half_blocks.coarser(fresh, self._bits)
+            self._shown = coarser(fresh, self._bits)
             self.refresh()
             return
-        now = self._shown = half_blocks.steadied(had, fresh, self._bits)
+        now = self._shown = steadied(had, fresh, self._bits)
         top, left = self._margins(now, width, height)
-        regions = [
-            Region(left + column, top + row, cells, 1) for row, column, cells in half_blocks.changed_spans(had, now)
-        ]
+        regions = [Region(left + column, top + row, cells, 1) for row, column, cells in changed_spans(had, now)]
         if regions:
             self.refresh(*regions)
 
@@ -280,3 +280,137 @@ class ImageView(OneStyle, Widget):
         if 0 <= line < len(strips):
             return strips[line]
         return Strip.blank(width, self.rich_style)
+
+
+Pixels: TypeAlias = "NDArray[np.uint8]"
+"""Shape (height, width, 3), RGB."""
+
+UPPER_HALF = "▀"
+FULL_DEPTH = 8
+JUMP = 4
+"""A run of unchanged cells this short is cheaper to redraw than to skip."""
+MOST_STYLES = 4096
+MOST_COLOURS = 8192
+"""Kept for the next picture: three megabytes, and two for the styles."""
+
+
+def fitting_size(width: int, height: int, columns: int, rows: int) -> tuple[int, int]:
+    """Width and height in pixels of the largest picture of this shape within the given cells.
+
+    A cell is about twice as high as wide, so half of one is about square. The height is even.
+    """
+    scale = min(columns / width, 2 * rows / height)
+    fit_width = min(columns, max(1, round(width * scale)))
+    fit_height = min(2 * rows, max(2, 2 * round(height * scale / 2)))
+    return fit_width, fit_height
+
+
+def coarser(picture: Pixels, bits: int) -> Pixels:
+    """The picture with this many bits in each channel; black stays black and white stays white."""
+    if bits >= FULL_DEPTH:
+        return picture
+    levels = (1 << bits) - 1
+    table = (np.arange(256) * levels + 127) // 255 * 255 // levels
+    coarse: Pixels = table.astype(np.uint8)[picture]
+    return coarse
+
+
+def steadied(before: Pixels, fresh: Pixels, bits: int) -> Pixels:
+    """The new picture, coarser, keeping pixels of the previous one where they hardly differ.
+
+    A pixel between two levels of colour must not flicker with the camera's noise.
+    """
+    moved = np.abs(fresh.astype(np.int16) - before) > (256 >> bits)
+    now: Pixels = np.where(moved.any(axis=2, keepdims=True), coarser(fresh, bits), before)
+    return now
+
+
+def changed_spans(before: Pixels, after: Pixels) -> list[tuple[int, int, int]]:
+    """Where two pictures of the same shape differ, as (row of cells, first column, columns).
+
+    Differences that are close together in a row form one span: moving the cursor costs bytes too.
+    """
+    differ = (before != after).any(axis=2)
+    cells = differ[0::2] | differ[1::2]
+    spans: list[tuple[int, int, int]] = []
+    for row in np.flatnonzero(cells.any(axis=1)):
+        columns = np.flatnonzero(cells[row])
+        breaks = np.flatnonzero(np.diff(columns) > JUMP)
+        starts = columns[np.concatenate(([0], breaks + 1))]
+        ends = columns[np.concatenate((breaks, [len(columns) - 1]))]
+        spans.extend((int(row), int(a), int(b - a + 1)) for a, b in zip(starts, ends, strict=True))
+    return spans
+
+
+def row_segments(picture: Pixels, row: int) -> list[Segment]:
+    """One row of cells of a picture of even height; equal neighbours share a segment."""
+    wide = picture[2 * row : 2 * row + 2].astype(np.int64)
+    packed = (wide[..., 0] << 16) | (wide[..., 1] << 8) | wide[..., 2]
+    pairs = (packed[0] << 24) | packed[1]
+    starts = np.flatnonzero(np.diff(pairs, prepend=-1))
+    ends = np.append(starts[1:], len(pairs))
+    return [_segment(int(pairs[start]), int(end - start)) for start, end in zip(starts, ends, strict=True)]
+
+
+def _segment(pair: int, cells: int) -> Segment:
+    upper, lower = pair >> 24, pair & 0xFFFFFF
+    if upper == lower:
+        return Segment(" " * cells, _style(None, lower))
+    return Segment(UPPER_HALF * cells, _style(upper, lower))
+
+
+@lru_cache(maxsize=MOST_STYLES)
+def _style(upper: int | None, lower: int) -> Style:
+    foreground = None if upper is None else _color(upper)
+    return Style.from_color(foreground, _color(lower))
+
+
+@lru_cache(maxsize=MOST_COLOURS)
+def _color(packed: int) -> Color:
+    return Color.from_rgb(packed >> 16, packed >> 8 & 255, packed & 255)
+
+
+class NewestPicture:
+    """Reads one picture after the other; those compressed ones that are outdated by then are left out."""
+
+    def __init__(
+        self,
+        widget: Widget,
+        fit: Fit,
+        show: Callable[[Sample, Picture], None],
+        refuse: Callable[[Sample, ImageError], None],
+    ) -> None:
+        """`fit` as for `read_picture`; `show` or `refuse` is called with each that is read."""
+        self._widget = widget
+        self._fit = fit
+        self._show = show
+        self._refuse = refuse
+        self._waiting: Sample | None = None
+        """The newest one that came while another was being decoded."""
+        self._decoding = False
+
+    def take(self, sample: Sample) -> None:
+        if sample.type_name == IMAGE:
+            # It takes a millisecond: less than switching to another thread and back.
+            try:
+                self._show(sample, read_picture(IMAGE, sample.value, self._fit))
+            except ImageError as error:
+                self._refuse(sample, error)
+            return
+        self._waiting = sample
+        if not self._decoding:
+            self._decoding = True
+            self._widget.run_worker(self._decode(), group="pictures")
+
+    async def _decode(self) -> None:
+        try:
+            while self._waiting is not None:
+                sample, self._waiting = self._waiting, None
+                try:
+                    found = await asyncio.to_thread(read_picture, COMPRESSED, sample.value, self._fit)
+                except ImageError as error:
+                    self._refuse(sample, error)
+                else:
+                    self._show(sample, found)
+        finally:
+            self._decoding = False

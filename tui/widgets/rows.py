@@ -30,6 +30,8 @@ class Column(NamedTuple):
     title: str
     width: int = 0
     right: bool = False
+    look: str = ""
+    """Of the title: `sorted` or none."""
 
 
 class Cell(NamedTuple):
@@ -75,6 +77,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         "rows--warn",
         "rows--bad",
         "rows--dim",
+        "rows--sorted",
     }
     DEFAULT_CSS = """
     Rows {
@@ -84,6 +87,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         &> .rows--warn { color: $text-warning; }
         &> .rows--bad { color: $text-error; text-style: bold; }
         &> .rows--dim { color: $text-muted; }
+        &> .rows--sorted { color: $text; text-style: bold; }
         &> .rows--cursor { background: $block-cursor-blurred-background; }
         &:focus > .rows--cursor {
             color: $block-cursor-foreground; background: $block-cursor-background;
@@ -159,7 +163,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         width, base = self.size.width, self.rich_style
         if y < self._top:
             style = self.get_component_rich_style("rows--header")
-            return self._strip([Cell(column.title) for column in self._columns], "  ", style, width)
+            return self._strip([Cell(column.title, column.look) for column in self._columns], "  ", style, width)
         index = y - self._top + self.scroll_offset.y
         if index >= len(self._rows):
             return Strip.blank(width, base)
@@ -296,7 +300,8 @@ class Rows(OneStyle, ScrollView, can_focus=True):
             right = column.right and len(cells) == len(self._columns)
             segments.append(Segment(_fitted(cell.text, room, right), style))
             segments.append(Segment(" ", base))
-        return Strip(segments).adjust_cell_length(width, base)
+        # Every segment costs about forty bytes of colour sequences.
+        return Strip(segments).simplify().adjust_cell_length(width, base)
 
 
 def _widths(columns: Sequence[Column], width: int) -> tuple[int, ...]:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from text.yaml_scalars import escaped
-from tui.widgets.marked_editor import MarkedEditor
-from tui.yaml_form.tokens import tokens
+from text.yaml_scalars import escaped, meaning
+from tui.widgets.marked_editor import MarkedEditor, Token
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-    from tui.widgets.marked_editor import Token
 
 
 class YamlEditor(MarkedEditor):
@@ -22,3 +21,35 @@ class YamlEditor(MarkedEditor):
 
     def tokens_of(self, line: str) -> Iterable[Token]:
         return tokens(line)
+
+
+_TOKEN = re.compile(
+    r"""
+    (?P<comment>(?:^|(?<=\s))\#.*)
+    | (?P<string>"(?:[^"\\]|\\.)*"? | '(?:[^']|'')*'?)
+    | (?P<mark>[\[\]{},] | [-:](?=\s|$))
+    | (?P<plain>(?:[^\s\[\]{},:] | :(?!\s|$))+)
+    """,
+    re.VERBOSE,
+)
+_KEY_FOLLOWS = re.compile(r"\s*:(?=\s|$)")
+
+
+def tokens(line: str) -> Iterator[Token]:
+    """Yield the tokens of a line in order; accepts any text."""
+    for match in _TOKEN.finditer(line):
+        yield Token(match.start(), match.end(), _kind(match, line))
+
+
+def _kind(match: re.Match[str], line: str) -> str:
+    kind = match.lastgroup or "plain"
+    if kind in {"comment", "mark"}:
+        return kind
+    if _KEY_FOLLOWS.match(line, match.end()):
+        return "key"
+    if kind == "string":
+        return kind
+    value = meaning(match.group())
+    if isinstance(value, str):
+        return "string"
+    return "word" if value is None or isinstance(value, bool) else "number"

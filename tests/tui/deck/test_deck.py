@@ -18,14 +18,13 @@ from tests.tui.snapshots import opened, settle
 from text.sentences import say
 from tui.app import DeckApp
 from tui.deck.nodes_table import NodesTable
-from tui.deck.panels import made
 from tui.deck.screen import LessonDeck
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
 from tui.panels.camera import CameraPanel
 from tui.panels.head import HeadPanel
 from tui.panels.panel import Panel
-from tui.panels.panel_grid import PanelGrid, heights, in_rows, paged
+from tui.panels.panel_grid import PanelGrid, heights, in_rows, made, paged
 from tui.panels.sonar import SonarPanel
 from tui.panels.voice import VoicePanel
 from tui.panels.wheels import WheelsPanel

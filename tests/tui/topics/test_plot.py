@@ -14,11 +14,8 @@ from graph.data import GraphUpdate, Sample
 from tests.tui.panel_stage import Bare, rows
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.snapshots import Look, settle
-from tui.topics.plot.axis import axis_for
-from tui.topics.plot.curve import curve
-from tui.topics.plot.field import PlotField
-from tui.topics.plot.history import History
-from tui.topics.plot.plot import TopicPlot
+from tui.topics.plot import TopicPlot, axis_for, curve
+from tui.topics.plot_history import History, PlotField
 from tui.topics.plotting import PlotPlace
 from tui.topics.screen import TopicsScreen
 
@@ -60,8 +57,8 @@ def test_any_number_of_a_message_can_be_had(path: tuple[str | int, ...], value: 
 
 
 def drawn_in(dots: NDArray[Any]) -> NDArray[np.bool_]:
-    """Of each column whether anything is drawn in it."""
-    drawn: NDArray[np.bool_] = np.any(dots, axis=0)
+    """Of each column of cells whether anything is drawn in it."""
+    drawn: NDArray[np.bool_] = np.any(dots, axis=0).reshape(-1, 2).any(axis=1)
     return drawn
 
 

@@ -18,8 +18,7 @@ from tests.tui.snapshots import opened
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.emergency.state import TOPIC_TYPE
-from tui.topics.publish.dialog import PublishDialog
-from tui.topics.publish.publication_list import PublicationList
+from tui.topics.publish import PublicationList, PublishDialog
 from tui.topics.screen import TopicsScreen
 
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"

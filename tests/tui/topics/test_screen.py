@@ -18,7 +18,7 @@ from tests.tui.topics_stage import CAMERA, SONAR, TopicsStage, jpeg_message, ope
 from tests.waiting import until
 from tui.frame.key_bar import KeyBar
 from tui.session.past import SONARS
-from tui.widgets import newest_picture
+from tui.widgets import image_view as newest_picture
 
 ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
 

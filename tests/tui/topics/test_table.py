@@ -16,10 +16,8 @@ from tests.tui.panel_stage import Bare
 from tests.tui.recorded import TOPICS, topic
 from tests.tui.snapshots import seen
 from text.i18n import _, set_language
-from tui.topics.endpoint_lines import endpoint_lines
-from tui.topics.table.columns import COLUMNS, age_text, bandwidth_text, placed, state_text
-from tui.topics.table.order import TopicsOrder
-from tui.topics.table.table import TopicsTable
+from tui.topics.endpoints import endpoint_lines
+from tui.topics.table import COLUMNS, TopicsOrder, TopicsTable, age_text, bandwidth_text, placed, state_text
 
 FLOAT = "std_msgs/msg/Float32"
 
@@ -77,7 +75,7 @@ def test_rows_are_sorted_by_any_column_and_equal_ones_by_name() -> None:
 async def test_the_first_topic_is_chosen_and_keys_choose_another() -> None:
     table = TopicsTable()
     async with Bare(table).run_test(size=(80, 12)) as pilot:
-        table.show(TOPICS)
+        table.show_topics(TOPICS)
         table.focus()
         await pilot.press("down", "down", "up", "end", "home", "pagedown")
         await pilot.pause()
@@ -88,9 +86,9 @@ async def test_the_first_topic_is_chosen_and_keys_choose_another() -> None:
 async def test_the_chosen_topic_stays_chosen_when_rows_come_and_the_order_changes() -> None:
     table = TopicsTable()
     async with Bare(table).run_test(size=(80, 12)) as pilot:
-        table.show(TOPICS)
+        table.show_topics(TOPICS)
         table.choose("/drive")
-        table.show([topic("/aaa", FLOAT, 1.0), *TOPICS])
+        table.show_topics([topic("/aaa", FLOAT, 1.0), *TOPICS])
         table.reorder(TopicsOrder().by("hz"))
         await pilot.pause()
         assert table.chosen == "/drive"
@@ -100,7 +98,7 @@ async def test_the_chosen_topic_stays_chosen_when_rows_come_and_the_order_change
 async def test_a_click_on_a_title_sorts_and_a_click_on_a_row_chooses() -> None:
     table = TopicsTable()
     async with Bare(table).run_test(size=(120, 20)) as pilot:
-        table.show(TOPICS)
+        table.show_topics(TOPICS)
         await pilot.pause()
         header = seen(pilot.app).splitlines()[0]
         await pilot.click(TopicsTable, offset=(header.index("Hz"), 0))
@@ -114,14 +112,14 @@ async def test_a_click_on_a_title_sorts_and_a_click_on_a_row_chooses() -> None:
 async def test_an_update_draws_only_the_cells_whose_text_changed(monkeypatch: pytest.MonkeyPatch) -> None:
     table = TopicsTable()
     async with Bare(table).run_test(size=(80, 20)) as pilot:
-        table.show(TOPICS)
+        table.show_topics(TOPICS)
         await pilot.pause()
         asked: list[Region] = []
         monkeypatch.setattr(table, "refresh", lambda *regions, **_options: asked.extend(regions))
-        table.show([replace(row, count=row.count + 1) for row in TOPICS])
+        table.show_topics([replace(row, count=row.count + 1) for row in TOPICS])
         assert asked == []
         faster = [replace(row, hz=11.0) if row.name == "/drive" else row for row in TOPICS]
-        table.show(faster)
+        table.show_topics(faster)
         hz = next(place for place in table._places if place.column.id == "hz")
         row = [row.name for row in table.shown].index("/drive")
         assert asked == [Region(2 + hz.x, 1 + row, hz.width, 1)]

@@ -19,8 +19,7 @@ from tui.frame.title_bar import TitleBar
 from tui.panels.camera import CameraPanel
 from tui.panels.sonar import COURSE
 from tui.panels.voice import VoicePanel
-from tui.wall.figure import BigNumber, big_word
-from tui.wall.reading import WallNumber, WallReader
+from tui.wall.numbers import BigNumber, WallNumber, WallReader, big_word
 from tui.wall.screen import WallScreen
 from tui.widgets.image_view import ImageView
 

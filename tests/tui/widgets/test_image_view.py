@@ -9,8 +9,7 @@ from textual.geometry import Region
 
 from tests.waiting import until
 from tui.terminal.bandwidth import Bandwidth
-from tui.widgets.half_blocks import Pixels, fitting_size
-from tui.widgets.image_view import ImageView
+from tui.widgets.image_view import ImageView, Pixels, fitting_size
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
 

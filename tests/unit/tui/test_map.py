@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.motion.odometry import Pose
-from tui.panels.canvas import Canvas
 from tui.panels.map_scene import FRONT, REAR, Extent, Scene, Viewport, draw_scene, fitted
+from tui.widgets.canvas import Canvas
 from tui.widgets.drawing import Line
 
 ROOM = Extent(-1.0, 4.0, -2.0, 2.0)
@@ -65,12 +65,3 @@ def test_a_ray_ends_where_the_sonar_found_something(heading: float, place: str, 
     y = -0.1 + (1.5 + offset) * math.sin(heading + turn)
     end = view.place(x, y)
     assert signs(lines, "●") == [(int(end[0]) // 2, int(end[1]) // 4)]
-
-
-# ---------------------------------------------------------------- the path
-
-
-# ---------------------------------------------------------------- what is read
-
-
-# ---------------------------------------------------------------- the legend

@@ -44,6 +44,18 @@ class Canvas:
         self._on[row, column] = True
         self._looks[row // 4, column // 2] = _NUMBER[look]
 
+    def mask(self, on: NDArray[np.bool_], look: str = "") -> None:
+        """Set the dots that are on in an array of this size."""
+        self._on |= on
+        touched = on.reshape(self.rows, 4, self.columns, 2).any(axis=(1, 3))
+        self._looks[touched] = _NUMBER[look]
+
+    def dotted(self, row: int, look: str = "") -> None:
+        """Put a dot into every fourth cell of a row, where nothing is drawn."""
+        for column in range(0, self.columns, 4):
+            if not self._on[4 * row : 4 * row + 4, 2 * column : 2 * column + 2].any():
+                self.sign((2.0 * column, 4.0 * row), "·", look)
+
     def line(self, start: Point, end: Point, look: str = "", dash: tuple[int, int] = (1, 0)) -> None:
         """Draw a straight line; `dash` is how many dots are set and how many left out in turn."""
         inside = clipped(start, end, self.width, self.height)

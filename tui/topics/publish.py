@@ -1,19 +1,25 @@
-"""The dialog from which messages are published: once, or at a rate."""
+"""The dialog that publishes a message: its destination, its text as a form, its rate, and what is going on."""
 
 from __future__ import annotations
 
 import asyncio
 from typing import TYPE_CHECKING, ClassVar
 
+from rich.cells import cell_len
 from textual import on
-from textual.containers import Vertical
+from textual.containers import Horizontal, Vertical
 from textual.content import Content
+from textual.widgets import Input, Static
 
+from graph.messages.browse import interfaces
 from graph.messages.yaml_form import filled
 from graph.messages.yaml_text import is_cut
 from graph.observer.requests import Publish, StartPublishing, StopPublishing
+from graph.publishing.outbox import LEAST_HZ, MOST_HZ
 from text import ros2_words
-from text.i18n import _, decimal, ngettext
+from text.i18n import _, decimal, localized, ngettext
+from text.plain import plain
+from text.ros_names import TOPIC_NAME
 from tui.actions import bindings
 from tui.dialogs.dialog import Dialog
 from tui.dialogs.ros2 import copy_dialog_as_ros2
@@ -21,10 +27,10 @@ from tui.frame import title
 from tui.frame.actions.app import emergency_stop
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
-from tui.topics.publish.actions import PUBLISH_ACTIONS
-from tui.topics.publish.publication_list import PublicationList
-from tui.topics.publish.rate import PublishRate
-from tui.topics.publish.target import PublishTarget
+from tui.topics.actions_of_publish import PUBLISH_ACTIONS
+from tui.widgets.field import Field
+from tui.widgets.rows import Cell, Column, Row, Rows
+from tui.widgets.working import Working
 from tui.yaml_form.form import YamlForm
 from tui.yaml_form.type_field import TypeField
 from tui.yaml_form.words import reason_words
@@ -37,6 +43,176 @@ if TYPE_CHECKING:
 
     from graph.data import Publication, Sample, TopicRow, Value
     from tui.session.ports import GraphLink
+
+
+class PublishTarget(Vertical, Working):
+    """Two lines; the second is completed from the installed types."""
+
+    DEFAULT_CSS = """
+    PublishTarget {
+        height: auto;
+        .target-row { height: auto; }
+        .target-label { width: 8; color: $text-muted; }
+        #target-topic { width: 1fr; }
+    }
+    """
+
+    def compose(self) -> ComposeResult:
+        """The topic above its type."""
+        with Horizontal(classes="target-row"):
+            yield Static(id="target-topic-label", classes="target-label", markup=False)
+            yield Field(id="target-topic", compact=True, select_on_focus=False)
+        with Horizontal(classes="target-row"):
+            yield Static(id="target-type-label", classes="target-label", markup=False)
+            yield TypeField()
+
+    def on_mount(self) -> None:
+        """Read the installed types."""
+        self.on_language_changed()
+        self.run_worker(self._learn_types(), group="types")
+
+    @property
+    def field(self) -> Input:
+        return self.query_one("#target-topic", Input)
+
+    @property
+    def type(self) -> TypeField:
+        return self.query_one(TypeField)
+
+    @property
+    def topic(self) -> str:
+        """The topic that was entered; a relative name is below the root."""
+        name = self.field.value.strip()
+        return name if not name or name.startswith(("/", "~")) else f"/{name}"
+
+    @property
+    def is_name(self) -> bool:
+        return TOPIC_NAME.fullmatch(self.topic) is not None
+
+    def on_language_changed(self) -> None:
+        self.query_one("#target-topic-label", Static).update(_("Topic"))
+        self.query_one("#target-type-label", Static).update(_("Type"))
+        self.field.placeholder = _("/name of an existing or a new topic")
+        self.type.field.placeholder = _("words of its name: float32, twist")
+
+    async def _learn_types(self) -> None:
+        names = await asyncio.to_thread(interfaces)
+        self.type.know(tuple(name for name in names if "/msg/" in name))
+
+
+LONGEST = 300
+
+
+class PublishRate(Horizontal):
+    """A field for the rate, and on its right a remark in the current language."""
+
+    DEFAULT_CSS = """
+    PublishRate {
+        height: auto;
+        #rate-label { width: 8; color: $text-muted; }
+        #rate-hz { width: 8; }
+        #rate-unit { width: auto; padding: 0 2 0 0; color: $text-muted; }
+        #rate-said { width: 1fr; height: auto; max-height: 3; }
+        #rate-said.-good { color: $text-success; }
+        #rate-said.-bad { color: $text-error; text-style: bold; }
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._words: Callable[[], str] = lambda: ""
+        self._look = ""
+
+    def compose(self) -> ComposeResult:
+        yield Static(id="rate-label", markup=False)
+        yield Field("10", id="rate-hz", compact=True, select_on_focus=False)
+        yield Static(id="rate-unit", markup=False)
+        yield Static(id="rate-said", markup=False)
+
+    def on_mount(self) -> None:
+        self.on_language_changed()
+
+    @property
+    def field(self) -> Input:
+        return self.query_one(Input)
+
+    @property
+    def says_bad(self) -> bool:
+        """Whether the remark reports a failure."""
+        return self._look == "bad"
+
+    def rate_hz(self) -> float | None:
+        """Return the rate; if it is invalid, say what is allowed and return None."""
+        try:
+            hz = float(self.field.value.replace(",", "."))
+        except ValueError:
+            hz = 0.0
+        if LEAST_HZ <= hz <= MOST_HZ:
+            return hz
+        self.tell(_limits, "bad")
+        self.field.focus()
+        return None
+
+    def tell(self, words: Callable[[], str], look: str = "") -> None:
+        """Show a remark as `good`, `bad` or neither; `words` is called again in a new language."""
+        self._words, self._look = words, look
+        shown = self.query_one("#rate-said", Static)
+        shown.set_class(look == "good", "-good")
+        shown.set_class(look == "bad", "-bad")
+        shown.update(plain(words(), LONGEST))
+
+    def on_language_changed(self) -> None:
+        self.query_one("#rate-label", Static).update(_("Rate"))
+        self.query_one("#rate-unit", Static).update(_("Hz"))
+        self.tell(self._words, self._look)
+
+
+def _limits() -> str:
+    limits = {"least": decimal(f"{LEAST_HZ:g}"), "greatest": f"{MOST_HZ:g}"}
+    return _("The rate is {least} to {greatest} Hz.").format(**limits)
+
+
+MOST_LINES = 5
+
+
+class PublicationList(Rows):
+    """One row for each; Enter stops the chosen one. It is hidden while there is none."""
+
+    DEFAULT_CSS = """
+    PublicationList { display: none; border-top: solid $panel; }
+    PublicationList.-some { display: block; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._shown: tuple[Publication, ...] = ()
+
+    def show_publications(self, publications: tuple[Publication, ...]) -> None:
+        self._shown = publications
+        columns = (
+            Column(_("Publishing")),
+            Column(_("Hz"), 7, right=True),
+            Column(_("Sent"), max(8, cell_len(_("Sent"))), right=True),
+            Column(_("Subscribers"), 11, right=True),
+        )
+        self.show(columns, [_row(one) for one in publications])
+        self.set_class(bool(publications), "-some")
+        # The header and the line above it are in addition to the rows.
+        self.styles.height = min(MOST_LINES, len(publications)) + 2
+
+    @property
+    def chosen_number(self) -> int | None:
+        return int(self.chosen) if self._shown and self.chosen else None
+
+
+def _row(one: Publication) -> Row:
+    if one.error:
+        words = Cell(f"✗ {plain(one.topic, 100)}: {plain(localized(one.error), 200)}", "bad")
+        return Row(str(one.number), (words,))
+    heard = Cell(str(one.subscribers), "" if one.subscribers else "warn")
+    cells = (Cell(plain(one.topic, 200)), Cell(decimal(f"{one.hz:g}")), Cell(str(one.sent)), heard)
+    return Row(str(one.number), cells)
+
 
 LOOK_S = 0.25
 DONE_WITHIN_S = 8.0
@@ -185,7 +361,7 @@ class PublishDialog(Dialog[None]):
         else:
             self.dismiss(None)
 
-    @on(PublishTarget.TopicChanged)
+    @on(Input.Changed, "#target-topic")
     def _follow_topic(self) -> None:
         row = self._known(self.target.topic)
         if row is not None and row.type_names and row.type_names[0] != self.form.type_name:
@@ -193,11 +369,11 @@ class PublishDialog(Dialog[None]):
             self.form.load(row.type_names[0])
         self.refresh_bindings()
 
-    @on(PublishTarget.TopicDone)
+    @on(Input.Submitted, "#target-topic")
     def _topic_done(self) -> None:
         (self.form.editor if self.form.type_name else self.target.type.field).focus()
 
-    @on(PublishRate.RateDone)
+    @on(Input.Submitted, "#rate-hz")
     def _rate_done(self) -> None:
         self.publish_at_rate()
 

@@ -8,7 +8,7 @@ from text.i18n import N_
 from tui.actions.action import Announce, actions_of
 
 if TYPE_CHECKING:
-    from tui.topics.publish.dialog import PublishDialog
+    from tui.topics.publish import PublishDialog
 
 action: Announce[PublishDialog] = Announce()
 

@@ -1,1 +1,0 @@
-"""Publishing from the Topics screen: `dialog.PublishDialog`, and `actions` for the palette."""
