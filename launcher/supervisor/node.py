@@ -150,7 +150,8 @@ class SupervisedNode:
         """
         self._again = False
         if self.at_work and self._task is not None:
-            self._go_down(now=now or self._asked_before())
+            asked_before = self._down and self._around.clock.now() - self._asked_at > ASKED_TWICE_S
+            self._go_down(now=now or asked_before)
             stuck = asyncio.create_task(self._stuck.wait())
             await asyncio.wait([self._task, stuck], return_when=asyncio.FIRST_COMPLETED)
             stuck.cancel()
@@ -236,9 +237,6 @@ class SupervisedNode:
         """Check again whether everything it needs is there."""
         if self.state is NodeState.WAITING:
             self._nudge.set()
-
-    def _asked_before(self) -> bool:
-        return self._down and self._around.clock.now() - self._asked_at > ASKED_TWICE_S
 
     def _tell_fault(self, task: asyncio.Task[None]) -> None:
         """Report an exception in Deck itself, so that the node does not seem to be healthy."""

@@ -53,7 +53,7 @@ class OwnFiles:
         try:
             while True:
                 self._changed.clear()
-                folders = {_folder(file) for file in self._file_of().values()}
+                folders = {file.rpartition("/")[0] for file in self._file_of().values()}
                 if not folders:
                     await self._changed.wait()
                     continue
@@ -104,10 +104,6 @@ class OwnFiles:
             if (file in written or written & modules_of(file)) and not _is_empty(file):
                 self.note(node, file)
                 self._saved(node, look_at(file))
-
-
-def _folder(path: str) -> str:
-    return path.rpartition("/")[0]
 
 
 def _existing(folders: Iterable[str]) -> list[str]:

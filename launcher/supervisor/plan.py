@@ -155,12 +155,8 @@ def stop_waves(names: Iterable[str], needs: Mapping[str, Sequence[str]]) -> list
     left = list(names)
     waves = []
     while left:
-        still_needed = {other for name in left for other in _all_needs(name, needs)}
+        still_needed = {other for name in left for other in with_needs([name], needs) if other != name}
         wave = [name for name in left if name not in still_needed]
         waves.append(wave)
         left = [name for name in left if name in still_needed]
     return waves
-
-
-def _all_needs(name: str, needs: Mapping[str, Sequence[str]]) -> set[str]:
-    return set(with_needs([name], needs)) - {name}

@@ -144,7 +144,9 @@ class Readiness:
 
     async def _one_probe(self) -> None:
         """Start a probe and listen to it until it ends."""
-        async with helping(self._spawner, self._reaper, self._request()) as reports:
+        wanted = json.dumps([_asked(condition) for condition in self._conditions])
+        request = SpawnRequest("probe", "deck_probe", "deck: probe", (wanted,), "/", self._env)
+        async with helping(self._spawner, self._reaper, request) as reports:
             async for line in reports:
                 told = read_json(line)
                 self._learn(
@@ -171,10 +173,6 @@ class Readiness:
                 future.set_result(None)
             elif condition in seen and seen[condition] != before.get(condition):
                 tell(seen[condition])
-
-    def _request(self) -> SpawnRequest:
-        wanted = json.dumps([_asked(condition) for condition in self._conditions])
-        return SpawnRequest("probe", "deck_probe", "deck: probe", (wanted,), "/", self._env)
 
 
 def _asked(condition: Ready) -> tuple[str, str | None, str, float]:

@@ -54,8 +54,8 @@ MAX_HISTORY_CHARS = 8 << 20
 """Most characters of a history; of a longer one only the newest lines are sent."""
 MODULE = re.compile(r"nodes\.[a-z][a-z0-9_]*")
 """A node of Deck."""
-SaidNs = Annotated[int, Field(gt=0, lt=1 << 62)]
-"""Unix time."""
+SaidNs = Annotated[int, Field(gt=0, lt=1 << 62, default_factory=time.time_ns)]
+"""Unix time; by default that at which a request arrives."""
 LAST_WORDS = "supervisor"
 """Name of the log with the supervisor's own output, above all its tracebacks."""
 HURRIED_S = 5.0
@@ -285,15 +285,13 @@ class Supervisor:
         self._find_strays()
 
     @request
-    async def emergency_stop(self, _client: Client, said_ns: SaidNs | None = None) -> None:
+    async def emergency_stop(self, _client: Client, said_ns: SaidNs) -> None:
         """Give an emergency stop by the file that the nodes watch."""
-        stop = Stop(time.time_ns() if said_ns is None else said_ns)
-        _check(await asyncio.to_thread(self._stop_file.give, stop, BY_SCREEN))
+        _check(await asyncio.to_thread(self._stop_file.give, Stop(said_ns), BY_SCREEN))
 
     @request
-    async def emergency_release(self, _client: Client, said_ns: SaidNs | None = None) -> None:
+    async def emergency_release(self, _client: Client, said_ns: SaidNs) -> None:
         """Release what was given before this time in the same way."""
-        said_ns = time.time_ns() if said_ns is None else said_ns
         _check(await asyncio.to_thread(self._stop_file.release, said_ns))
 
     @request
@@ -410,7 +408,7 @@ class Supervisor:
 
     async def _look_for_strays(self) -> None:
         self._find_strays()
-        await asyncio.to_thread(self._prune_logs)
+        await asyncio.to_thread(prune_runs, Path(self.info.log_dir).parent)
         if self.strays:
             await asyncio.sleep(STRAYS_AGAIN_S)
             self._find_strays()
@@ -422,9 +420,6 @@ class Supervisor:
         if strays != self.strays:
             self.strays = strays
             self.control.strays_changed(strays)
-
-    def _prune_logs(self) -> None:
-        prune_runs(Path(self.info.log_dir).parent)
 
 
 async def _relay_pictures(plan: Plan, spawner: Spawner, reaper: Reaper) -> None:

@@ -12,7 +12,6 @@ from launcher.faults.crash import crash_of, refused_arguments, stuck_in, warning
 from launcher.faults.source import look_at, spun_in_turn, unspun
 from launcher.faults.telling import fault_in
 from launcher.logs.session_log import SessionLog
-from launcher.processes.table import Process
 from launcher.processes.usage import UsageMeter
 from launcher.profile.node import Node, Ready
 from launcher.status import LogLine, NodeFault, NodeState, Severity
@@ -76,7 +75,7 @@ class Session:
         """Start these nodes and everything they need; all nodes if none is named."""
         chosen = self._chosen(names)
         # The probe goes first: nodes that appear while it watches are found sooner.
-        if self._is_watched():
+        if any(node.plan.conditions or node.plan.file for node in self.nodes.values()):
             self._readiness.expect()
         for name in with_needs(chosen, self.plan.needs):
             if name in chosen or not self.nodes[name].at_work:
@@ -145,7 +144,8 @@ class Session:
             for name, node in self.nodes.items():
                 if node.state.alive:
                     node.usage = usages.get(name)
-                    node.halted(_halted_of(members.get(name, ())))
+                    suspended = (process.pid for process in members.get(name, ()) if process.suspended)
+                    node.halted(next(suspended, 0))
                     self._on_change(name)
 
     # The `NodeContext` of the nodes, which says what these do.
@@ -216,9 +216,6 @@ class Session:
             if node.plan.file and node.fault is None:
                 node.warn(warning_in(line.text, node.plan.file))
 
-    def _is_watched(self) -> bool:
-        return any(node.plan.conditions or node.plan.file for node in self.nodes.values())
-
     def _tell_turns(self, name: str, pid: int) -> None:
         """Tell a learner's own program once of a node whose turn to be spun does not come."""
         node = self.nodes[name]
@@ -258,11 +255,6 @@ class Session:
         for other in self.nodes.values():
             if name in other.plan.needs:
                 other.needs_changed()
-
-
-def _halted_of(processes: Iterable[Process]) -> int:
-    """Return one of these that a signal has suspended, 0 if there is none."""
-    return next((process.pid for process in processes if process.suspended), 0)
 
 
 def _with_state(node: SupervisedNode) -> str:
