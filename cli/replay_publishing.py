@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cli.running_domain import running_domain
+from cli.domains import running_domain
 from graph.bag.errors import BagError, nothing_to_publish
 from launcher.errors import UsageError
 from launcher.processes.ending import stop_by_signals
