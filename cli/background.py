@@ -7,12 +7,11 @@ import sys
 from typing import TYPE_CHECKING
 
 from cli.commands import command
+from cli.domains import in_own_domain, stop_is_kept, stop_words
 from cli.health import settled, well
 from cli.options import add_json, add_profile, add_profile_options, add_running, count
 from cli.report import TextReport
 from cli.sessions import as_json, show, silent_as_json, silent_words
-from cli.shared_domain import in_own_domain
-from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.client import client
 from launcher.client.inbox import newer
 from launcher.client.running import find_running, kill_supervisor, left_of, nodes_of

@@ -11,8 +11,8 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from cli.commands import command
+from cli.domains import beyond_this_machine, running_domain
 from cli.options import add_graph, add_json, seconds
-from cli.running_domain import beyond_this_machine, running_domain
 from launcher.errors import UsageError
 from text.i18n import _, localized
 from text.output import DIM, RED, Paint, json_text, keep_stdout_to_ourselves, table, write

@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from cli.commands import command
+from cli.domains import beyond_this_machine
 from cli.observing import domain_view
 from cli.options import add_graph
-from cli.running_domain import beyond_this_machine
 from graph.inner_states import LOG_LEVELS
 from text.i18n import _, localized
 from text.output import say_error, write

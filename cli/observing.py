@@ -9,7 +9,7 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from cli.running_domain import running_domain
+from cli.domains import running_domain
 from launcher.errors import UsageError
 from text.output import keep_stdout_to_ourselves, say_error
 from text.sentences import say

@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cli.commands import command
+from cli.domains import beyond_this_machine, running_domain
 from cli.options import add_graph, add_json, folder, seconds
-from cli.running_domain import beyond_this_machine, running_domain
 from graph.bag.errors import BagError
 from graph.heavy_types import IMAGES, POINT_CLOUD
 from launcher.errors import UsageError

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cli.commands import command
+from cli.domains import running_domain
 from cli.options import add_graph, add_screen, rate, seconds
-from cli.running_domain import running_domain
 from cli.screen import has_terminal
 from graph.bag.errors import BagError, nothing_to_publish
 from graph.bag.listing import bags_in

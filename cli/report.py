@@ -14,7 +14,7 @@ JSON has one object per line, distinguished by `event`:
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, TypeAlias
 
 from launcher.status import NodeState, Severity
 from text.i18n import LocalizedFloat, _, localized, ngettext
@@ -54,28 +54,6 @@ class Summary:
     def exit_code(self) -> int:
         """The exit code of `deck run`."""
         return 0 if self.well else 1
-
-
-class Report(Protocol):
-    """Reports on a run in progress."""
-
-    def session(self, session: SessionInfo) -> None:
-        """Report what was started."""
-
-    def status(self, node: NodeStatus) -> None:
-        """Report a change of a node's state or detail."""
-
-    def log(self, line: LogLine) -> None:
-        """Report a line of a node."""
-
-    def skipped(self, node: str, lines: int) -> None:
-        """Report that lines were left out."""
-
-    def note(self, text: str) -> None:
-        """Report something about the run itself."""
-
-    def summary(self, summary: Summary) -> None:
-        """Report the result."""
 
 
 class TextReport:
@@ -231,3 +209,6 @@ def status_fields(node: NodeStatus) -> dict[str, object]:
         "exit_code": node.exit_code,
         "signal": node.signal,
     }
+
+
+Report: TypeAlias = TextReport | JsonReport

@@ -8,12 +8,11 @@ import time
 from typing import TYPE_CHECKING
 
 from cli.commands import command
+from cli.domains import in_own_domain, stop_is_kept, stop_words
 from cli.health import over, settled, well
 from cli.line_writer import LineWriter
 from cli.options import add_json, add_profile, add_profile_options, seconds
 from cli.report import JsonReport, Summary, TextReport
-from cli.shared_domain import in_own_domain
-from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.errors import SessionError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.processes.ending import ENDING

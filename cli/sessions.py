@@ -5,9 +5,9 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+from cli.domains import stop_is_kept
 from cli.health import well
 from cli.report import status_fields
-from cli.stop_in_force import stop_is_kept
 from text.i18n import _, decimal, localized, pick
 from text.output import BOLD, DIM, RED, Paint, table, write
 from text.plain import plain

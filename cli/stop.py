@@ -10,8 +10,8 @@ import time
 from typing import TYPE_CHECKING
 
 from cli.commands import command
+from cli.domains import stop_is_kept, stop_words
 from cli.observing import domain_view
-from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.client.running import find_running, running_records
 from launcher.client.stop_road import StopRoad
 from launcher.errors import LauncherError, NotRunningError

@@ -13,11 +13,11 @@ import sys
 import threading
 import webbrowser
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, NoReturn, Protocol, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeVar
 
 from cli.commands import command
+from cli.domains import running_domain
 from cli.options import add_graph, port
-from cli.running_domain import running_domain
 from launcher.errors import LauncherError, UsageError
 from launcher.processes.ending import stop_by_signals
 from text.i18n import _
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from cli.commands import Parser
+    from view.sharing import Sharing
+    from view.showing import Showing
 
 T = TypeVar("T")
 
@@ -44,13 +46,6 @@ class ViewOpened(NamedTuple):
     url: str
     ports: tuple[int, ...]
     domain: int
-
-
-class Waiting(Protocol):
-    """A viewer that is open."""
-
-    def wait(self, stop: threading.Event) -> None:
-        """Wait until it ends or `stop` is set. Raises ViewError if it broke."""
 
 
 def _view_options(parser: Parser) -> None:
@@ -135,7 +130,7 @@ def _have(find: Callable[[], T]) -> T:
         raise UsageError(reason_of(error)) from error
 
 
-def _wait(viewer: Waiting, stop: threading.Event) -> int:
+def _wait(viewer: Showing | Sharing, stop: threading.Event) -> int:
     try:
         viewer.wait(stop)
     except ViewError as error:

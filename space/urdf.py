@@ -12,10 +12,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
 from space.robot_model import ModelJoint, ModelLink, RobotModel
-from space.urdf_parts import Materials, read_joint, read_link
-from space.urdf_values import name_of, written
-from space.xml_elements import Element, XmlError, read_elements
-from space.xml_encoding import decoded
+from space.urdf_parts import Materials, name_of, read_joint, read_link, written
+from space.xml_elements import Element, XmlError, decoded, read_elements
 from text.sentences import reason_of, say
 from text.suggestions import did_you_mean
 

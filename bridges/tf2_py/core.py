@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import threading
+from bisect import bisect_left
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from geometry_msgs.msg import TransformStamped
@@ -18,11 +20,185 @@ from tf2_py.exceptions import (
     LookupException,
     TransformException,
 )
-from tf2_py.history import NEWEST, History, Sample, seconds
-from tf2_py.motion import Motion, unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+_NEARLY_PARALLEL = 0.9995
+"""Above this cosine the straight line differs from the arc by less than rounding does."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Where a child frame is in its parent."""
+
+    translation: Vector = (0.0, 0.0, 0.0)
+    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
+
+    def then(self, inner: Motion) -> Motion:
+        """Return `inner`, which is within this one, as seen from outside."""
+        moved = rotate(self.rotation, inner.translation)
+        return Motion(added(self.translation, moved), product(self.rotation, inner.rotation))
+
+    def inverse(self) -> Motion:
+        """Return where the parent is in the child."""
+        x, y, z, w = self.rotation
+        back = (-x, -y, -z, w)
+        a, b, c = rotate(back, self.translation)
+        return Motion((-a, -b, -c), back)
+
+    def towards(self, other: Motion, share: float) -> Motion:
+        """Return what is between two motions; `share` 0 is this one, 1 the other."""
+        a, b = self.translation, other.translation
+        moved = (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, a[2] + (b[2] - a[2]) * share)
+        return Motion(moved, slerp(self.rotation, other.rotation, share))
+
+
+def added(a: Vector, b: Vector) -> Vector:
+    """Return the sum of two vectors."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def product(a: Quaternion, b: Quaternion) -> Quaternion:
+    """Return the rotation `b` followed by the rotation `a`."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def rotate(turn: Quaternion, vector: Vector) -> Vector:
+    """Return a vector after a rotation."""
+    x, y, z, w = turn
+    inside = product(product(turn, (*vector, 0.0)), (-x, -y, -z, w))
+    return inside[0], inside[1], inside[2]
+
+
+def unit(turn: Quaternion) -> Quaternion:
+    """Return a quaternion of length 1."""
+    length = math.hypot(*turn)
+    return turn[0] / length, turn[1] / length, turn[2] / length, turn[3] / length
+
+
+def slerp(a: Quaternion, b: Quaternion, share: float) -> Quaternion:
+    """Return the rotation between two, by the shorter way round."""
+    cosine = sum(p * q for p, q in zip(a, b, strict=True))
+    sign = -1.0 if cosine < 0 else 1.0
+    cosine = abs(cosine)
+    if cosine > _NEARLY_PARALLEL:
+        left, right = 1.0 - share, share
+    else:
+        angle = math.acos(cosine)
+        left = math.sin((1.0 - share) * angle) / math.sin(angle)
+        right = math.sin(share * angle) / math.sin(angle)
+    right *= sign
+    return unit(
+        (
+            a[0] * left + b[0] * right,
+            a[1] * left + b[1] * right,
+            a[2] * left + b[2] * right,
+            a[3] * left + b[3] * right,
+        )
+    )
+
+
+NEWEST = 0
+"""The time that stands for the newest there is."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Where a frame was at one time."""
+
+    stamp: int
+    parent: str
+    motion: Motion
+
+
+class History:
+    """The samples of one frame, oldest first; a static frame has one, good for all time."""
+
+    def __init__(self, length: int, *, static: bool) -> None:
+        self.static = static
+        self.authority = ""
+        self._length = length
+        self._samples: list[Sample] = []
+
+    def add(self, sample: Sample) -> str | None:
+        """Keep a sample; return why not, if it is not kept."""
+        if self.static:
+            self._samples = [sample]
+            return None
+        if self._samples and sample.stamp < self.newest - self._length:
+            return "it is older than the buffer is long"
+        place = bisect_left(self._samples, sample.stamp, key=lambda each: each.stamp)
+        if place < len(self._samples) and self._samples[place].stamp == sample.stamp:
+            return "there is one of that time already"
+        self._samples.insert(place, sample)
+        kept = self.newest - self._length
+        del self._samples[: bisect_left(self._samples, kept, key=lambda each: each.stamp)]
+        return None
+
+    @property
+    def newest(self) -> int:
+        """The time of the newest sample."""
+        return self._samples[-1].stamp
+
+    @property
+    def oldest(self) -> int:
+        """The time of the oldest sample."""
+        return self._samples[0].stamp
+
+    @property
+    def parent(self) -> str:
+        """The parent in the newest sample."""
+        return self._samples[-1].parent
+
+    def __len__(self) -> int:
+        return len(self._samples)
+
+    def at(self, time: int) -> Sample:
+        """Return the sample of a time, between two if need be; raise ExtrapolationException."""
+        samples = self._samples
+        if self.static or time in {NEWEST, self.newest}:
+            return samples[-1]
+        if len(samples) == 1:
+            raise ExtrapolationException(
+                f"Lookup would require extrapolation at time {seconds(time)}, "
+                f"but only time {seconds(self.newest)} is in the buffer"
+            )
+        if time > self.newest:
+            raise ExtrapolationException(
+                f"Lookup would require extrapolation into the future.  Requested time "
+                f"{seconds(time)} but the latest data is at time {seconds(self.newest)}"
+            )
+        if time < self.oldest:
+            raise ExtrapolationException(
+                f"Lookup would require extrapolation into the past.  Requested time "
+                f"{seconds(time)} but the earliest data is at time {seconds(self.oldest)}"
+            )
+        place = bisect_left(samples, time, key=lambda each: each.stamp)
+        after = samples[place]
+        if after.stamp == time:
+            return after
+        before = samples[place - 1]
+        if before.parent != after.parent:
+            return Sample(time, before.parent, before.motion)
+        share = (time - before.stamp) / (after.stamp - before.stamp)
+        return Sample(time, before.parent, before.motion.towards(after.motion, share))
+
+
+def seconds(time: int) -> str:
+    """Return a time as tf2 writes it."""
+    return f"{time / 1e9:.6f}"
+
 
 DEEPEST = 1000
 """A way longer than this goes in a circle."""

@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cli.commands import command
+from cli.domains import running_domain
 from cli.options import add_graph
-from cli.running_domain import running_domain
 from cli.shell.elsewhere import for_bash, for_fish, for_zsh
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment

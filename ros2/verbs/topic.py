@@ -10,10 +10,10 @@ from functools import partial
 from statistics import fmean, pstdev
 from typing import TYPE_CHECKING, Any
 
-from ros2 import filtering, naming, options, rows
+from ros2 import naming, options, rows
 from ros2.filling import filled, read
 from ros2.joining import SPIN_S, joined
-from ros2.printing import Shape, to_csv, to_yaml
+from ros2.printing import to_yaml
 from ros2.verb import arg, either, flag, verb
 from text.plain import plain
 from text.ros_names import EMERGENCY_STOP
@@ -182,12 +182,6 @@ def matching_qos(me: Guest, topic: str, *, words: bool = True) -> QoSProfile:
     arg("topic_name", help="Name of the ROS topic to listen to (e.g. '/chatter')"),
     arg("message_type", nargs="?", help="Type of the ROS message (e.g. 'std_msgs/msg/String')"),
     options.qos("subscribe", "sensor_data"),
-    flag(
-        "--csv",
-        help="Output all recursive fields separated by commas (e.g. for plotting). If "
-        "--include-message-info is also passed, the following fields are prepended: "
-        "source_timestamp, received_timestamp, publication_sequence_number, reception_sequence_number",
-    ),
     arg(
         "--field", metavar="FIELD_NAME",
         help="Echo a selected field of a message. Use '.' to select sub-fields. For example, to "
@@ -203,17 +197,10 @@ def matching_qos(me: Guest, topic: str, *, words: bool = True) -> QoSProfile:
         "--truncate-length", "-l", type=options.unsigned_int, default=LONGEST,
         help=f"The length to truncate arrays, bytes, and string to (default: {LONGEST})",
     ),
-    flag("--no-arr", help="Don't print array fields of messages"),
-    flag("--no-str", help="Don't print string fields of messages"),
     flag("--flow-style", help="Print collections in the block style"),
     flag("--lost-messages", help="DEPRECATED: Does nothing"),
     flag("--no-lost-messages", help="Don't report when a message is lost"),
     flag("--raw", help="Echo the raw binary representation"),
-    arg(
-        "--filter", dest="filter_expr",
-        help="Python expression to filter messages that are printed. Expression can use Python "
-        "builtins as well as m (the message).",
-    ),
     flag("--once", help="Print the first message received and then exit."),
     arg("--timeout", metavar="N", type=float, help="Wait for a message up to N seconds"),
     flag("--include-message-info", help="Shows the associated message info."),
@@ -247,7 +234,8 @@ def echo(args: argparse.Namespace) -> int | str | None:
         while end is None or time.monotonic() < end:
             me.spin_once(SPIN_S)
             for message, info in came:
-                if show(message, info) and args.once:
+                show(message, info)
+                if args.once:
                     return None
                 end = None if args.timeout is None else time.monotonic() + args.timeout
             came.clear()
@@ -261,27 +249,19 @@ def _steps(field: str) -> list[str]:
     return steps
 
 
-def _shower(args: argparse.Namespace, steps: list[str]) -> Callable[[Any, Any], bool]:
+def _shower(args: argparse.Namespace, steps: list[str]) -> Callable[[Any, Any], None]:
     longest = None if args.full_length else args.truncate_length
-    shape = Shape(longest, not args.no_arr, not args.no_str, args.flow_style)
-    wanted = filtering.wanted(args.filter_expr)
 
-    def show(message: Any, info: Any) -> bool:  # noqa: ANN401 - generated
+    def show(message: Any, info: Any) -> None:  # noqa: ANN401 - generated
         part = _part(message, steps)
-        if not wanted(part):
-            return False
         if not hasattr(part, "get_fields_and_field_types"):
             if args.include_message_info:
                 print(f"---Got new message, message info:---\n{info}\n---Message data:---")
             print(part, end="\n---\n", flush=True)
-        elif args.csv:
-            told = [str(each) for each in info.values()] if args.include_message_info else []
-            print(",".join([*told, to_csv(part, shape)]), flush=True)
         else:
             if args.include_message_info:
                 print("".join(f"{key}: {info[key]}\n" for key in sorted(info)), end="---\n")
-            print(to_yaml(part, shape), end="---\n", flush=True)
-        return True
+            print(to_yaml(part, longest, flow=args.flow_style), end="---\n", flush=True)
 
     return show
 
@@ -303,10 +283,6 @@ def _part(message: Any, steps: list[str]) -> Any:  # noqa: ANN401 - generated
         "--window", "-w", type=options.positive_int, default=WINDOW, metavar="WINDOW",
         help=f"window size, in # of messages, for calculating rate (default: {WINDOW})",
     ),
-    arg(
-        "--filter", dest="filter_expr", metavar="EXPR",
-        help="only measure messages matching the specified Python expression",
-    ),
     flag(
         "--wall-time",
         help="calculates rate using wall time which can be helpful when clock is not published during simulation",
@@ -315,7 +291,6 @@ def _part(message: Any, steps: list[str]) -> Any:  # noqa: ANN401 - generated
 )  # fmt: skip
 def hz(args: argparse.Namespace) -> None:
     """Print the rate each second in which a message has come."""
-    wanted = filtering.wanted(args.filter_expr)
     with joined(args) as me:
         cls = awaited_type(me, args.topic_name)
         qos = matching_qos(me, args.topic_name, words=False)
@@ -325,16 +300,14 @@ def hz(args: argparse.Namespace) -> None:
         last, printed = 0.0, 0.0
         clock = me.node.get_clock() if args.use_sim_time and not args.wall_time else None
 
-        def hear(message: Any) -> None:  # noqa: ANN401 - generated
+        def hear(_message: bytes) -> None:
             nonlocal last
-            if not wanted(message):
-                return
             now = time.monotonic() if clock is None else clock.now().nanoseconds / 1e9
             if last:
                 gaps.append(now - last)
             last = now
 
-        me.node.create_subscription(cls, args.topic_name, hear, qos, raw=args.filter_expr is None)
+        me.node.create_subscription(cls, args.topic_name, hear, qos, raw=True)
         while True:
             me.spin_once()
             if gaps and not printed:

@@ -16,9 +16,9 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from graph.pictures.picture import IMAGE, Picture
+from graph.pictures.picture import Picture
 from graph.pictures.pixels import ImageError, shrink
-from graph.pictures.reading import COMPRESSED, read_picture
+from graph.pictures.reading import COMPRESSED, IMAGE, read_picture
 from text.figures import figure
 from text.i18n import _, decimal
 from text.plain import plain

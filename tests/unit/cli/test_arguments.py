@@ -14,7 +14,7 @@ import pytest
 from cli import main
 from cli import main as cli_main
 from cli.commands import COMMANDS, Place, split
-from cli.running_domain import running_domain
+from cli.domains import running_domain
 from text.i18n import set_language
 
 
