@@ -199,8 +199,8 @@ class RowPainter:
             style = self._muted
         elif alarm and not self._columns.word:
             style = severity
-        said = (when, muted), (word[:-1], severity), (word[-1:], muted), (node, node_style + under)
-        line = Text.assemble(*said, (text, style + under))
+        said = [(when, muted), (word[:-1], severity), (word[-1:], muted)] if alarm else [(when + word, muted)]
+        line = Text.assemble(*said, (node, node_style + under), (text, style + under))
         return line, len(when) + len(word) + len(node)
 
     def _strip(self, text: Text) -> Strip:
