@@ -175,15 +175,16 @@ class RowPainter:
         start, end, more = self._piece(text, part)
         gutter = line[:lead]
         if part:
-            gutter = Text((CHOSEN if chosen else " ").ljust(self._columns.gutter), self._muted + under)
+            blank = (CHOSEN if chosen else " ").ljust(self._columns.gutter)
+            gutter = Text.assemble((blank, self._muted + under))
         elif chosen:
-            gutter = Text(CHOSEN, gutter.get_style_at_offset(self._console, 0)) + gutter[1:]
+            gutter = Text.assemble((CHOSEN, gutter.get_style_at_offset(self._console, 0)), gutter[1:])
         strips = [self._strip(gutter), self._strip(line[lead + start : lead + end])]
         if not part:
             strips[0] = strips[0].apply_offsets(0, entry.id)
         strips[1] = strips[1].apply_offsets(lead + start, entry.id)
         if more:
-            strips.append(self._strip(Text(MORE, self._muted + under)))
+            strips.append(self._strip(Text.assemble((MORE, self._muted + under))))
         return Strip.join(strips).extend_cell_length(self._columns.gutter + self._width, self._base + under)
 
     def _line(self, entry: LogEntry, text: str, node_style: Style, under: Style) -> tuple[Text, int]:
@@ -198,11 +199,12 @@ class RowPainter:
             style = self._muted
         elif alarm and not self._columns.word:
             style = severity
-        said = (when, muted), (word[:-1], severity), (word[-1:], muted), (node, node_style + under)
-        line = Text.assemble(*said, (text, style + under))
+        said = [(when, muted), (word[:-1], severity), (word[-1:], muted)] if alarm else [(when + word, muted)]
+        line = Text.assemble(*said, (node, node_style + under), (text, style + under))
         return line, len(when) + len(word) + len(node)
 
     def _strip(self, text: Text) -> Strip:
+        # Of a text without spans, `render` leaves out the style.
         return Strip(segment for segment in text.render(self._console) if segment.text)
 
     def _piece(self, text: str, part: int) -> tuple[int, int, bool]:
