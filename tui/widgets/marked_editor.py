@@ -150,7 +150,8 @@ class MarkedEditor(TextArea):
     def get_line(self, line_index: int) -> Text:
         """Return the line with its tokens coloured."""
         source = self.document.get_line(line_index)
-        line = Text(source, end="", no_wrap=True)
+        line = Text(source, no_wrap=True)
+        line.end = ""
         for token in self.tokens_of(source) if len(source) <= LONGEST_COLOURED else ():
             line.stylize(self._style(token.kind), token.start, token.end)
         for place in self._places:
