@@ -10,7 +10,7 @@ from functools import partial
 from statistics import fmean, pstdev
 from typing import TYPE_CHECKING, Any
 
-from ros2 import naming, options, rows
+from ros2 import filtering, naming, options, rows
 from ros2.filling import filled, read
 from ros2.joining import SPIN_S, joined
 from ros2.printing import to_yaml
@@ -198,6 +198,11 @@ def matching_qos(me: Guest, topic: str, *, words: bool = True) -> QoSProfile:
         help=f"The length to truncate arrays, bytes, and string to (default: {LONGEST})",
     ),
     flag("--flow-style", help="Print collections in the block style"),
+    arg(
+        "--filter", dest="filter_expr",
+        help="Python expression to filter messages that are printed. Expression can use Python "
+        "builtins as well as m (the message).",
+    ),
     flag("--lost-messages", help="DEPRECATED: Does nothing"),
     flag("--no-lost-messages", help="Don't report when a message is lost"),
     flag("--raw", help="Echo the raw binary representation"),
@@ -234,8 +239,7 @@ def echo(args: argparse.Namespace) -> int | str | None:
         while end is None or time.monotonic() < end:
             me.spin_once(SPIN_S)
             for message, info in came:
-                show(message, info)
-                if args.once:
+                if show(message, info) and args.once:
                     return None
                 end = None if args.timeout is None else time.monotonic() + args.timeout
             came.clear()
@@ -249,11 +253,15 @@ def _steps(field: str) -> list[str]:
     return steps
 
 
-def _shower(args: argparse.Namespace, steps: list[str]) -> Callable[[Any, Any], None]:
+def _shower(args: argparse.Namespace, steps: list[str]) -> Callable[[Any, Any], bool]:
     longest = None if args.full_length else args.truncate_length
 
-    def show(message: Any, info: Any) -> None:  # noqa: ANN401 - generated
+    wanted = filtering.wanted(args.filter_expr)
+
+    def show(message: Any, info: Any) -> bool:  # noqa: ANN401 - generated
         part = _part(message, steps)
+        if not wanted(part):
+            return False
         if not hasattr(part, "get_fields_and_field_types"):
             if args.include_message_info:
                 print(f"---Got new message, message info:---\n{info}\n---Message data:---")
@@ -262,6 +270,7 @@ def _shower(args: argparse.Namespace, steps: list[str]) -> Callable[[Any, Any], 
             if args.include_message_info:
                 print("".join(f"{key}: {info[key]}\n" for key in sorted(info)), end="---\n")
             print(to_yaml(part, longest, flow=args.flow_style), end="---\n", flush=True)
+        return True
 
     return show
 

@@ -104,15 +104,19 @@ class Announce(Generic[Target]):
         pressable: Condition[Target] | None = None,
         shown: Condition[Target] = always,
         label: Callable[[Target], str] | None = None,
+        module: str = "",
     ) -> Callable[[Callable[[Target], object]], Action[Target]]:
-        """Make an action of the function below; what each of these is says `Action`."""
+        """Make an action of the function below; what each of these is says `Action`.
+
+        `module` is where it counts as defined, if that is not where the function stands.
+        """
 
         def announce(do: Callable[[Target], object]) -> Action[Target]:
             if id in REGISTRY:
                 raise TypeError(f"two actions are called {id!r}")
             made = Action(
                 id, key, title, tooltip, do, means, footer, priority, palette, anywhere, when, pressable,
-                shown, label, do.__module__,
+                shown, label, module or do.__module__,
             )  # fmt: skip
             REGISTRY[id] = made
             return made

@@ -24,6 +24,11 @@ class HasLog(Protocol):
 action: Announce[HasLog] = Announce()
 
 
+def _folder(id: str) -> str:
+    """Return the module of actions of the screen that an id begins with."""
+    return f"tui.{id.partition('.')[0]}.actions"
+
+
 def pausing(id: str, when: Condition = always) -> None:
     """Announce the key that pauses the log."""
 
@@ -36,6 +41,7 @@ def pausing(id: str, when: Condition = always) -> None:
         anywhere=True,
         when=when,
         label=lambda screen: N_("Pause") if screen.pane.view.following else N_("Resume"),
+        module=_folder(id),
     )
     def pause(screen: HasLog) -> None:
         screen.pane.view.toggle_following()
@@ -54,17 +60,26 @@ def searching(room: str, when: Condition = always, *, footer: bool = False) -> N
         priority=True,
         anywhere=True,
         when=lambda screen: when(screen) and not screen.pane.prompt.kind,
+        module=_folder(room),
     )
     def search(screen: HasLog) -> None:
         screen.pane.search()
 
-    @action(f"{room}.next", "n", N_("Next"), N_("Go to the next line found."), means="next", when=when)
+    @action(
+        f"{room}.next",
+        "n",
+        N_("Next"),
+        N_("Go to the next line found."),
+        means="next",
+        when=when,
+        module=_folder(room),
+    )
     def find_next(screen: HasLog) -> None:
         screen.pane.find(1)
 
     said = N_("Go to the previous line found.")
 
-    @action(f"{room}.previous", "N", N_("Previous"), said, means="previous", when=when)
+    @action(f"{room}.previous", "N", N_("Previous"), said, means="previous", when=when, module=_folder(room))
     def find_previous(screen: HasLog) -> None:
         screen.pane.find(-1)
 
@@ -80,6 +95,7 @@ def folding(room: str, when: Condition = always) -> None:
         footer=True,
         anywhere=True,
         when=when,
+        module=_folder(room),
     )
     def fold(screen: HasLog) -> None:
         screen.pane.view.set_fold(not screen.pane.view.fold)
@@ -95,6 +111,7 @@ def taking(room: str, when: Condition = always) -> None:
         N_("Copy the selected lines to the clipboard of your terminal."),
         footer=True,
         when=when,
+        module=_folder(room),
     )
     def copy(screen: HasLog) -> None:
         screen.pane.copy()
@@ -107,6 +124,7 @@ def taking(room: str, when: Condition = always) -> None:
         means="write to a file",
         footer=True,
         when=when,
+        module=_folder(room),
     )
     def save(screen: HasLog) -> None:
         screen.pane.save()

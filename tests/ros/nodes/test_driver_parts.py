@@ -32,7 +32,7 @@ def link() -> Iterator[tuple[SerialLink, Log]]:
     log = Log()
     said: Any = TranslatedLogger(log, "en")  # type: ignore[arg-type]
     node: Any = SimpleNamespace(
-        say=said, text=lambda _name: "/dev/ttyACM0", quick_publisher=lambda *_: None, every=lambda *_: None
+        say=said, values={"port": "/dev/ttyACM0"}, quick_publisher=lambda *_: None, every=lambda *_: None
     )
     link = SerialLink(node, 9600, lambda _: None, lambda: None, lambda: None)
     yield link, log

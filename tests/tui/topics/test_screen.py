@@ -43,7 +43,7 @@ async def test_walking_past_topics_subscribes_none_of_them(
     # The one that is chosen first is asked for at first.
     await until(lambda: stage.graph.wanted.watched - set(SONARS), "the first topic asked for")
     asked: list[set[str]] = []
-    monkeypatch.setattr(stage.graph, "watch", lambda topics: asked.append(set(topics)))
+    monkeypatch.setattr(stage.graph, "want", lambda interest: asked.append(set(interest.watched)))
     # However long the keys take here, they come before the walk is over.
     monkeypatch.setattr("tui.topics.screen.SETTLED_S", 3600.0)
     await stage.pilot.press("down", "down", "down")

@@ -146,7 +146,7 @@ UNGRADED = grade(*[State.UNJUDGED] * 5)
         (["2", "{place}/anna", "--bag", "{place}/bags"], "is there already"),
         (["2", "{place}/anna", "--output", "/no/such/folder/file"], "cannot be written"),
         (["2", "{place}/anna", "--format", "classroom50"], "CLASSROOM"),
-        (["2", "{place}/anna", "{place}/boris", "--format", "gradescope"], "one folder"),
+        (["2", "{place}/anna", "{place}/boris", "--format", "classroom50"], "one folder"),
         (["2", "{place}/anna", "--jobs", "2", "--domain", "7"], "one job"),
         (["no-such-lesson", "{place}/anna"], "no lesson"),
         (["2"], "deck new 02-sonar-safety"),
