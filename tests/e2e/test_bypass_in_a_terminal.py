@@ -21,13 +21,13 @@ def test_a_bypass_is_named_for_as_long_as_it_is_there(deck: Deck, ros_domain: in
     assert "Foreign" not in terminal.text()
     with Peer(ros_domain, "evil") as evil:
         evil.publisher("/wheel_commands", JointState)
-        wait_until(lambda: WORDS in terminal.text().splitlines()[0], "the title of the lesson")
-        column = terminal.text().splitlines()[0].index(WORDS)
-        wait_until(lambda: terminal.ground(column, 0) == RED, "red")
+        wait_until(lambda: WORDS in terminal.text().splitlines()[1], "the title of the lesson")
+        column = terminal.text().splitlines()[1].index(WORDS)
+        wait_until(lambda: terminal.ground(column, 1) == RED, "red")
         # The toast beside it goes by itself.
         terminal.press("4")
-        wait_until(lambda: WORDS in terminal.text().splitlines()[0], "the title of the logs")
+        wait_until(lambda: WORDS in terminal.text().splitlines()[1], "the title of the logs")
         terminal.wait_for("is also published by ")
-    wait_until(lambda: WORDS not in terminal.text().splitlines()[0], "a title without it")
+    wait_until(lambda: WORDS not in terminal.text().splitlines()[1], "a title without it")
     terminal.press("q")
     assert terminal.wait_exit() == 0

@@ -61,7 +61,7 @@ def test_a_stop_that_outlives_its_screen_is_released_from_the_next(deck: Deck) -
 
 
 def title(screen: str) -> str:
-    return screen.partition("\n")[0]
+    return "\n".join(screen.splitlines()[:2])
 
 
 def supervisors(mark: str) -> list[int]:
