@@ -185,8 +185,8 @@ def _is_right(row: TopicRow | None, topic: str) -> bool:
 @NIGHTLY
 @pytest.mark.usefixtures("load")
 def test_all_eleven_rates_are_right(module_domain: int) -> None:
-    watcher = Watcher(module_domain, period_s=0.25)
-    watcher.want(all_topics=True)
+    watcher = Watcher(module_domain)
+    watcher.want(all_topics=True, period_s=0.25)
     try:
         wait_until(lambda: all(_is_right(watcher.row(t), t) for t in EXPECTED_HZ), "right rates")
         image = watcher.row(LOAD)
@@ -236,7 +236,7 @@ def test_while_nobody_looks_slow_topics_are_measured_and_costly_ones_left_alone(
     row = watcher.row(large)
     assert row is not None
     assert not row.measured
-    watcher.want(all_topics=True)
+    watcher.want(all_images=True, all_fast=True)
     watcher.wait_for(fast, lambda row: row.hz is not None, "is measured for whoever looks")
     assert watcher.wait_for(slow, lambda row: row.hz is not None, "has its rate still").count > 1
     for topic in (slow, fast, large):
