@@ -111,7 +111,7 @@ class AgentRequests:
         self._desk.join(client, key, plain(name), approval)
 
     @request
-    async def ask(self, client: Hashable, key: Short, lines: Lines, anew: bool = False) -> str:  # noqa: FBT
+    async def ask(self, client: Hashable, key: Short, lines: Lines, anew: bool = False) -> str:
         """Ask a person; return the verdict."""
         if not self._desk.knows(client, key):
             raise BadRequestError(say("an agent has to join before it asks"))

@@ -256,7 +256,7 @@ class Supervisor:
             self._session.start(nodes)
 
     @request
-    async def stop(self, _client: Client, nodes: tuple[str, ...] = (), now: bool = False) -> None:  # noqa: FBT
+    async def stop(self, _client: Client, nodes: tuple[str, ...] = (), now: bool = False) -> None:
         """Stop nodes; raises `StillRunningError` if they do not end."""
         await self._session.stop(nodes, now=now)
 
@@ -295,7 +295,7 @@ class Supervisor:
         _check(await asyncio.to_thread(self._stop_file.release, said_ns))
 
     @request
-    def shutdown(self, client: Client, now: bool = False) -> None:  # noqa: FBT
+    def shutdown(self, client: Client, now: bool = False) -> None:
         """Begin to stop all nodes and then the supervisor."""
         if client.pid == self.info.started_by.pid:
             reason = say("stopped")
