@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict
 
@@ -16,11 +17,14 @@ from launcher.consent import AgentRules
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
 from launcher.faults import CHECK_FIELDS
-from launcher.profile.model import Profile
 from launcher.profile.node import Node
 from launcher.ros_tools import ros_tools, without_wheels
 from launcher.status import SessionInfo
 from text.nested import read_json
+
+if TYPE_CHECKING:
+    # It brings the steps of lessons with it, which a supervisor has no use for.
+    from launcher.profile.model import Profile
 
 Changes = dict[str, str | None]
 """Changes to the supervisor's environment; None unsets."""
