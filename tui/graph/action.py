@@ -139,8 +139,6 @@ class ActionPane(AskPane):
 
     def _cancel_of_others(self, goal: SeenGoal, wanted: bool | None) -> None:
         graph = self.deck.feed.graph
-        if graph is not None and goal is not None:
-            graph.ask(CancelSeenGoal(goal.action, goal.goal_id))
         if graph is not None and wanted:
             graph.ask(CancelSeenGoal(goal.action, goal.goal_id))
 
