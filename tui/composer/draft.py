@@ -113,7 +113,7 @@ class Draft(Vertical, Working):
             self._worker.cancel()
         await self.models.close()
 
-    def relabel(self) -> None:
+    def on_language_changed(self) -> None:
         self.verdict.redraw()
         self.read_settings()
         self._changed()

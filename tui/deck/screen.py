@@ -411,10 +411,10 @@ class LessonDeck(DeckScreen):
             await self._watch(message.update, self.feed.session)
         for panel in self.panels:
             panel.take(message.update, seen=self.feed.front is self)
-        if message.update.lifecycles != self._lifecycles:
+        is_new = self.table.outside != self.feed.outside.now
+        if is_new or message.update.lifecycles != self._lifecycles:
             self._show_nodes()
-        if self.table.outside != self.feed.outside.now:
-            self._show_nodes()
+        if is_new:
             self._lay_out(self.size.height)
             self.refresh_bindings()
         row = row_of(message.update, AI_COMMAND)
@@ -433,6 +433,7 @@ class LessonDeck(DeckScreen):
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
         self._show_nodes()
+        self._lay_out(self.size.height)
         self._say_small()
 
     def on_rows_highlighted(self, message: Rows.Highlighted) -> None:

@@ -264,7 +264,6 @@ class DevicesScreen(DeckScreen):
     def _name_lines(self) -> None:
         self.pane.view.minimum_words = _("only noise and bad frames")
         self.pane.view.know_nodes(_(way) for way in WAYS.values())
-        self.pane.on_language_changed()
 
     def _look(self) -> None:
         # Without its parts it is just being opened or closed.

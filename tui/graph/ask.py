@@ -166,10 +166,6 @@ class AskPane(GraphPane):
             self._could_cancel = self.can_cancel
             self.screen.refresh_bindings()
 
-    def relabel(self) -> None:
-        self.form.relabel()
-        self.redraw()
-
     def first(self) -> Widget:
         return self.form.editor
 

@@ -155,10 +155,6 @@ class NodePane(GraphPane):
         if not rows:
             words.show(_("it talks to nobody"), _("It neither publishes nor subscribes, serves nor calls anything."))
 
-    def relabel(self) -> None:
-        self.parameters.redraw()
-        self.redraw()
-
     def first(self) -> Widget:
         """Return the parameters if nothing else is visible, otherwise the links."""
         return self.links if self.links.display else self.parameters.table

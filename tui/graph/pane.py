@@ -213,7 +213,7 @@ class GraphPane(Vertical, Working):
     def redraw(self) -> None:
         """Show the current state in the current language."""
 
-    def relabel(self) -> None:
+    def on_language_changed(self) -> None:
         self.redraw()
 
     def first(self) -> Widget:

@@ -186,6 +186,9 @@ class GraphParameters(Vertical, Working):
     def on_resize(self) -> None:
         self.redraw()
 
+    def on_language_changed(self) -> None:
+        self.redraw()
+
     def redraw(self) -> None:
         if not self.is_mounted:
             return

@@ -239,8 +239,6 @@ class GraphScreen(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        for pane in self._panes.values():
-            pane.relabel()
         self.redraw()
 
     @on(Rows.Highlighted, "GraphList")

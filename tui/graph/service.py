@@ -73,7 +73,7 @@ class CallTimeout(Horizontal):
             return None
         return typed_s if math.isfinite(typed_s) and LEAST_S <= typed_s <= MOST_S else None
 
-    def relabel(self) -> None:
+    def on_language_changed(self) -> None:
         self.query_one(".timeout-label", Static).update(_("Time-out"))
         self.query_one(".timeout-unit", Static).update(_("s"))
         limits = {"least": decimal(f"{LEAST_S:g}"), "greatest": f"{MOST_S:g}"}
@@ -81,12 +81,12 @@ class CallTimeout(Horizontal):
         self.query_one(".timeout-bad", Static).update(wrong)
 
     def on_mount(self) -> None:
-        self.relabel()
+        self.on_language_changed()
 
     @on(Input.Changed)
     def _changed(self, event: Input.Changed) -> None:
         event.stop()
-        self.relabel()
+        self.on_language_changed()
 
 
 @dataclass
@@ -166,10 +166,6 @@ class ServicePane(AskPane):
             self._timeouts[self.name_shown] = self.timeout.field.value
             self.timeout.field.value = self._timeouts.get(name, USUAL_S)
         super().show_name(name)
-
-    def relabel(self) -> None:
-        super().relabel()
-        self.timeout.relabel()
 
     def ends(self) -> tuple[Sequence[str], Sequence[str], Sequence[str]] | None:
         update = self.graph_now

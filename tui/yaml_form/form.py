@@ -110,7 +110,7 @@ class YamlForm(Vertical, Acting, Working):
         if self.type_name:
             self.load(self.type_name)
         else:
-            self.relabel()
+            self.on_language_changed()
 
     @property
     def editor(self) -> YamlEditor:
@@ -159,9 +159,6 @@ class YamlForm(Vertical, Acting, Working):
             self._take(self.text, _checked(self.type_name, self.text))
 
     def on_language_changed(self) -> None:
-        self.relabel()
-
-    def relabel(self) -> None:
         """Show the verdict in the current language."""
         words = "✓ " + _("valid {type}").format(type=plain(self.type_name, 100))
         if self._loading or (self.type_is_given and not self.type_name):
@@ -220,7 +217,7 @@ class YamlForm(Vertical, Acting, Working):
     def _forget(self) -> None:
         self._checked = self._value = self.error = None
         self.editor.show_problems(())
-        self.relabel()
+        self.on_language_changed()
 
     def _take(self, text: str, found: Mapping[str, Value] | Wrong) -> None:
         self._checked = text
@@ -230,7 +227,7 @@ class YamlForm(Vertical, Acting, Working):
             self.error, self._value = None, found
         place = None if self.error is None else place_of(self.error)
         self.editor.show_problems(() if place is None else (place,))
-        self.relabel()
+        self.on_language_changed()
         self.post_message(self.Checked(self))
 
 
