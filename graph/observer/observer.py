@@ -149,6 +149,11 @@ class ObserverProcess:
         except (EOFError, ConnectionError) as error:
             if not said:
                 raise EOFError from error
+        except BlockingIOError:
+            raise
+        except Exception as error:
+            # What cannot be read is no better than no word: another process takes its place.
+            raise EOFError from error
         return said
 
     def end(self, within_s: float) -> None:
@@ -529,9 +534,8 @@ class Observer:
             repeated = [_Asked(Order(0, request, time.monotonic())) for request in (*self._prepared, *cancelling)]
             kept = [asked for asked in self._waiting.values() if asked.order.request.lasts]
             lost = [asked for asked in self._waiting.values() if not asked.order.request.lasts]
-            unsent = {asked.order.number for asked in self._unsent}
             self._waiting = {asked.order.number: asked for asked in kept}
-            self._unsent[:0] = [*repeated, *(asked for asked in kept if asked.order.number not in unsent)]
+            self._unsent[:0] = [*repeated, *kept]
         self._late.clear()
         # The receiver may ask for something else at once.
         for asked in lost:

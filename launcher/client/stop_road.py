@@ -66,7 +66,7 @@ class StopRoad:
                 word = self._words.popleft()
             try:
                 self._ask(word)
-            except (OSError, ValueError, RuntimeError):
+            except Exception:  # noqa: BLE001 - whatever went wrong there, the stop goes the other way
                 self._write(word)
 
     def _ask(self, word: _Word) -> None:
