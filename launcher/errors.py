@@ -25,9 +25,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from launcher.status import SessionInfo
 from text.sentences import Words, say
+
+if TYPE_CHECKING:
+    from launcher.status import SessionInfo
 
 
 class LauncherError(Exception):

@@ -29,7 +29,6 @@ from nodes.parts.pictures import BadPictureError, jpeg_of
 from nodes.parts.runner import run
 from nodes.parts.sound import sound_message, sound_of
 from nodes.parts.stop_news import StopNews
-from nodes.thinking.mind import ModelMind
 from robot.commands.brain import Decision, asks_to_stop, decide, spoken
 from robot.commands.schema import DriveCommand, LlmResponse, SpokenResponse
 from robot.safety.distance import Reading, range_state
@@ -40,6 +39,7 @@ from text.i18n import N_
 
 if TYPE_CHECKING:
     from brain.situation import Situation
+    from nodes.thinking.mind import ModelMind
 
 LOOK_PAN_DEG, LOOK_TILT_DEG = 45, 0
 FORWARD, STOP_WORD = WORDS["ru"][0], WORDS["ru"][4]

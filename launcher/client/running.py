@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
 import signal
 import time
@@ -89,6 +88,9 @@ async def kill_supervisor(run_id: str) -> Words:
 
 async def left_behind(run_id: str) -> list[Process]:
     """Return what a supervisor that has said its last word leaves; it has 3 s to be gone itself."""
+    # `deck stop` begins here, and needs none of it.
+    import asyncio
+
     deadline = time.monotonic() + GONE_WITHIN_S
     while (left := left_of(run_id)) and time.monotonic() < deadline:  # noqa: ASYNC110 - not ours
         await asyncio.sleep(_LOOK_EVERY_S)

@@ -16,8 +16,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-import psutil
-
 from launcher.processes.owner import user_name
 
 FIRST_PORT, PORTS_OF_A_DOMAIN = 7400, 250
@@ -134,6 +132,9 @@ def _owners(sockets: Mapping[int, Socket]) -> dict[int, int]:
     """Return the processes of these ports, as far as this user may see them."""
     found: dict[int, int] = {}
     if sockets:
+        # A supervisor looks only where somebody else is in its domain.
+        import psutil
+
         with suppress(OSError, psutil.Error):
             found = {one.laddr.port: one.pid for one in psutil.net_connections("udp") if one.pid and one.laddr}
     return {port: found[port] for port in sockets if port in found}
