@@ -53,11 +53,12 @@ class ClientFeed:
         """Mark the statuses of these nodes to be sent."""
         self._changed.update(dict.fromkeys(names))
 
-    def status_news(self, statuses: Mapping[str, NodeStatus]) -> dict[str, Any] | None:
+    def status_news(self, statuses: Callable[[], Mapping[str, NodeStatus]]) -> dict[str, Any] | None:
         """Return the message about changed nodes, None if there are none."""
         if not self._changed:
             return None
-        nodes = tuple(statuses[name] for name in self._changed)
+        now = statuses()
+        nodes = tuple(now[name] for name in self._changed)
         self._changed.clear()
         return pack_event(StatusEvent(nodes))
 
@@ -176,10 +177,9 @@ class ControlServer:
 
     def _tell_statuses(self) -> None:
         self._status_timer = None
-        statuses = self._statuses()
         for client in self._clients:
             if client.takes_more():
-                client.tell(client.feed.status_news(statuses))
+                client.tell(client.feed.status_news(self._statuses))
 
     def _tell_lines(self) -> None:
         self._log_timer = None
@@ -187,7 +187,7 @@ class ControlServer:
         behind = False
         for client in tuple(self._clients):
             if client.takes_more():
-                client.tell(client.feed.status_news(self._statuses()))
+                client.tell(client.feed.status_news(self._statuses))
                 client.tell(client.feed.log_news())
             else:
                 behind = True
@@ -275,7 +275,7 @@ class ControlServer:
             raise
         else:
             # A client that reads the reply must already have the resulting status.
-            client.tell(client.feed.status_news(self._statuses()))
+            client.tell(client.feed.status_news(self._statuses))
             client.tell({"reply": request_id, "result": result})
 
 

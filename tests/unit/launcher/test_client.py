@@ -160,10 +160,10 @@ def test_of_many_changes_of_a_node_the_last_is_told() -> None:
     for _change in range(100):
         feed.status_changed(["sonar"])
     status = NodeStatus("sonar", "nodes.mock_sonar", NodeState.READY)
-    news = feed.status_news({"sonar": status})
+    news = feed.status_news(lambda: {"sonar": status})
     assert news is not None
     assert [node["state"] for node in news["nodes"]] == ["ready"]
-    assert feed.status_news({"sonar": status}) is None
+    assert feed.status_news(lambda: {"sonar": status}) is None
 
 
 ARGPARSE = """\
