@@ -102,7 +102,6 @@ async def stop(call: Call) -> Facts:
 
 
 def _is_heard(view: GraphView) -> bool:
-    """Engage the emergency stop at once. Needs no consent. Only a person releases it."""
     row = view.topic(EMERGENCY_STOP)
     return row is not None and row.subscribers > 0
 
@@ -166,7 +165,7 @@ async def call(call: Call, service: RosName, request: Request) -> Facts:
 
 
 def check_publish(topic: str, type_name: str, listed: tuple[str, ...]) -> None:
-    """Call a service that the robot's profile lists."""
+    """Raise RefusedError for a topic or type that no agent may publish."""
     if topic not in map(full_name, listed):
         raise refused("the profile does not list {name} below `agents: publish:`", name=topic)
     if topic in KEPT or moves(topic, type_name):

@@ -1,4 +1,4 @@
 """A bag instead of a robot: the same interface as the observer's, without ROS.
 
-Other rooms may import `replay.Replay` and its `state`.
+Other rooms may import `replay.Replay` and `player.ReplayState`.
 """

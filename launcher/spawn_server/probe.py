@@ -117,7 +117,7 @@ class MessageRates:
 
 
 class _Wanted(NamedTuple):
-    """The counterpart of `launcher.supervisor.readiness.ReadyCondition`."""
+    """The counterpart of `launcher.profile.node.Ready`."""
 
     kind: str
     name: str

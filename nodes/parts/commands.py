@@ -52,7 +52,7 @@ _LONGEST_WAY_S = 2.0
 """The maximum transport delay of a command, for nodes without an age limit."""
 _AHEAD_S = 0.5
 _ANOTHER_CLOCK_S = 30.0
-"""No message takes this long to arrive."""
+"""No message takes this long to arrive: a greater difference comes from the clocks."""
 
 _NO_NUMBER = N_("{source} asks for {value:g} {unit}, which is not a number: refused, stop")
 _BEYOND = N_("{source} asks for {value:g} {unit}, the limit is {limit:g} {unit}: refused, stop")
@@ -130,8 +130,6 @@ class CommandRefusals:
 _DRAIN_S = 0.5
 """How long it takes to deliver what has waited, on a machine that is also busy."""
 _DRAIN_UNDER_LOAD_S = 3.0
-_ANOTHER_CLOCK_S = 30.0
-"""A greater difference comes from the clocks, and does not show how long it waited."""
 
 
 class StallDetector:
