@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 from agents.refusal import refused
 from agents.tools import Call, Camera, Count, Facts, Part, RosName, Seconds, Width, tool
+from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.messages.yaml_text import to_yaml
-from graph.pictures.reading import COMPRESSED, IMAGE, read_picture
+from graph.pictures.reading import read_picture
 from robot.safety.gate_report import gate_in
 from robot.topics import BATTERY, CAMERA, HEAD_STATE, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.plain import plain, plain_lines
@@ -93,7 +94,7 @@ async def see(call: Call, topic: Camera = None, width: Width = 640) -> tuple[str
     session, topic = call.session, topic or CAMERA
     row = session.view.topic(topic)
     kinds = () if row is None else row.type_names
-    if not {IMAGE, COMPRESSED} & set(kinds):
+    if not {IMAGE, COMPRESSED_IMAGE} & set(kinds):
         raise refused("nobody publishes pictures on {topic}", topic=topic)
     with session.view.looking_at(topic):
         if not await session.view.until(lambda: session.view.newest(topic, SEEN_WITHIN_S) is not None, SEEN_WITHIN_S):

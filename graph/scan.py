@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from rclpy.duration import Duration
     from rclpy.node import Node
 
-    from graph.data import ActionRow, NodeRow, ServiceRow
-
 
 INFINITE_NS = 2**63 - 1
 """Source: rmw, `RMW_DURATION_INFINITE` in time.h; 0 there means that the policy was not set."""

@@ -101,6 +101,7 @@ DIALOGS = (
     "tui.dialogs.choice",
     "tui.help.screen",
     "tui.lifecycle.dialogs",
+    "tui.topics.actions_of_publish",
     "tui.tour.screen",
 )
 """Modules that define actions of their own, imported when first shown."""

@@ -8,11 +8,12 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.housekeeping import is_hidden
 from graph.pictures.compressed import to_jpeg
 from graph.pictures.picture import METRES
 from graph.pictures.pixels import ImageError, pixels_of
-from graph.pictures.reading import COMPRESSED, IMAGE, read_picture
+from graph.pictures.reading import read_picture
 from robot.topics import ROBOT_DESCRIPTION, TF, TF_STATIC
 from space.reading.fields import NotDrawnError
 from text.i18n import localized
@@ -109,7 +110,7 @@ def compressed(topic: str, message: Message, *, compact: bool) -> list[Drawn]:
     if kind and compact:
         shape = rerun.EncodedImage(contents=data, media_type=kind)
     else:
-        shape = _picture(COMPRESSED, message, compact=compact)
+        shape = _picture(COMPRESSED_IMAGE, message, compact=compact)
     return [Drawn(topic_path(PICTURES, topic), (shape,))]
 
 
@@ -203,7 +204,7 @@ PLOTTED: dict[str, Callable[[Message], Iterator[_Named]]] = {
 
 # ---------------------------------------------------------------- all
 
-PICTURE_TYPES = frozenset({IMAGE, COMPRESSED})
+PICTURE_TYPES = frozenset({IMAGE, COMPRESSED_IMAGE})
 MARKER, MARKERS = "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray"
 LOG_LINE = "rcl_interfaces/msg/Log"
 EVERY_ONE = PICTURE_TYPES | {MARKER, MARKERS, LOG_LINE}
@@ -239,7 +240,7 @@ class ViewScene:
             MARKER: (marker,),
             MARKERS: (several,),
             IMAGE: (partial(image, compact=compact),),
-            COMPRESSED: (partial(compressed, compact=compact),),
+            COMPRESSED_IMAGE: (partial(compressed, compact=compact),),
         }
         for type_name in PLOTTED:
             known = self._readers.get(type_name, ())

@@ -18,8 +18,7 @@ from text.i18n import N_
 from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from concurrent.futures import Future
+    from collections.abc import Callable
 
     from graph.calls.services import Calls
     from graph.data import NodeRow, ServiceRow, Value

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-    from graph.calls.action_client import GoalAnswers, PolledActionClient
+    from graph.calls.action_client import GoalAnswers
     from graph.data import ActionRow, Value
     from graph.messages.making import Draft
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
 
     from graph.calls.exchanges import Exchange, Exchanges
-    from graph.data import ParameterRow, Value
+    from graph.data import Value
 
 
 SERVICES = ServiceSet(

@@ -27,9 +27,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
     from graph.frames.book import FrameBook
-    from graph.messages.types import UnknownTypeError
     from graph.qos_compatibility import Mismatch
-    from graph.scan import TopicEnds
 
 
 MOST_PAIRS = 5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from graph.heavy_types import COMPRESSED_IMAGE
 from graph.pictures.compressed import read_compressed
 from graph.pictures.picture import Picture, numbers_picture, thinned
 from graph.pictures.pixels import DEPTHS, coloured, pixels_of
@@ -14,15 +15,13 @@ if TYPE_CHECKING:
     from graph.data import Value
     from graph.pictures.picture import Fit
 
-IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
-
 
 def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Picture:
     """Return the picture of a `sensor_msgs/Image` or `CompressedImage`, thinned out to `fit`.
 
     Raises ImageError. A compressed picture takes milliseconds: do not call this where others wait.
     """
-    if type_name == COMPRESSED:
+    if type_name == COMPRESSED_IMAGE:
         return read_compressed(value, fit)
     pixels, encoding = pixels_of(value), str(value["encoding"])
     height, width = pixels.shape[:2]

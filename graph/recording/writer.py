@@ -19,9 +19,8 @@ from mcap.data_stream import RecordBuilder
 from mcap.records import DataEnd, Footer
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 
-from graph.bag.errors import BagError
-from text.os_words import os_reason
-from text.sentences import Words, say
+from graph.bag.errors import not_made, not_written
+from text.sentences import Words
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -109,11 +108,8 @@ class BagFile:
             self._writer.start("ros2", "deck")
             self._stream.flush()
             self._renew()
-        except FileExistsError as error:
-            words = say("{path} already exists: choose another folder, or remove it", path=folder)
-            raise BagError(words) from error
         except OSError as error:
-            raise BagError(say("{path} cannot be created: {reason}", path=folder, reason=os_reason(error))) from error
+            raise not_made(folder, error) from error
         self._sound = _Sound(self._stream.tell())
 
     def add_topic(self, topic: BagTopic, text: str) -> None:
@@ -313,12 +309,7 @@ class RecordingWriter:
     def _give_up(self, error: OSError) -> None:
         """Close the file as well as possible, and count what is not in it."""
         with self._news:
-            self.error = say(
-                "recording has stopped: {path} cannot be written ({reason}); what was recorded before "
-                "can be replayed. Free some space and record again",
-                path=self._file.path,
-                reason=os_reason(error),
-            )
+            self.error = not_written(self._file.path, error)
             for item in (*self._in_hand, *self._waiting):
                 if isinstance(item, Message):
                     self.dropped[item.topic.name] += 1

@@ -25,7 +25,6 @@ from text.run_path import run_folder
 if TYPE_CHECKING:
     from brain.budget import TokenUsage
     from brain.client import ModelClient
-    from brain.faults import ModelError
     from brain.ladder import Ladder
     from brain.settings import ModelSettings
 

@@ -23,7 +23,8 @@ from tui.composer.sent import Sent, sent_path
 from tui.frame.screen import DeckScreen
 from tui.outcome.trail import FOLLOWED, OutcomeTrail
 from tui.outcome.view import Outcome
-from tui.widgets.trouble import names
+from tui.panels.panel import row_of
+from tui.widgets.trouble import listeners
 from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:
@@ -147,7 +148,7 @@ class ComposerScreen(DeckScreen):
 
     def on_graph_changed(self, message: GraphChanged) -> None:
         update = message.update
-        self._listener = next((row for row in update.topics if row.name == LLM_RAW_JSON), None)
+        self._listener = row_of(update, LLM_RAW_JSON)
         if self._trail is not None and not self._trail.over(clock.now()):
             self._trail.see(update.samples)
         self.draft.senses.see(update.samples)
@@ -157,7 +158,6 @@ class ComposerScreen(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        self.draft.relabel()
         self._say()
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
@@ -232,10 +232,7 @@ class ComposerScreen(DeckScreen):
             self.draft.editor.replace_all(text)
 
     def _listeners(self) -> list[str]:
-        row = self._listener
-        if row is None or not row.subscribers:
-            return []
-        return [names(row.subscribed_by) or str(row.subscribers)]
+        return listeners(self._listener)
 
     def _say(self) -> None:
         if not self.is_mounted:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.i18n import N_
-from tui.actions.action import REGISTRY, Announce
+from tui.actions.action import Announce, actions_of
 from tui.devices.drivers import BATTERY, NOISE, SILENCE, UNPLUGGED, SimulatedTrouble
 from tui.log_view.actions import folding, pausing, searching, taking
 
@@ -141,4 +141,4 @@ _making(
     *("devices.battery", "B", BATTERY, N_("Low battery")),
     N_("Simulated robot: the battery of Pico and servos is weak; press again to charge it."),
 )
-DEVICES_ACTIONS = [each for id, each in REGISTRY.items() if id.startswith("devices.")]
+DEVICES_ACTIONS = actions_of(__name__)

@@ -16,6 +16,7 @@ from robot.topics import DIAGNOSTICS
 from text.figures import elapsed, whole
 from text.i18n import N_, _, localized
 from text.plain import plain
+from tui.panels.panel import row_of
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
@@ -228,7 +229,7 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
         return [_("no lesson is running")]
     if update is not None and update.error:
         return [feed.blind, plain(localized(update.error))]
-    row = next((row for row in update.topics if row.name == DIAGNOSTICS), None) if update else None
+    row = row_of(update, DIAGNOSTICS) if update else None
     if row is not None and row.publishers:
         said_by = ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
         words = _("{topic} is published by {nodes}; waiting for the first message.")

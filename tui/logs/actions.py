@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from text.i18n import N_
-from tui.actions.action import REGISTRY, Announce
+from tui.actions.action import Announce, actions_of
 from tui.log_view.actions import folding, pausing, searching, taking
 
 if TYPE_CHECKING:
@@ -128,4 +128,4 @@ def copy_whole_log(screen: LogsScreen) -> None:
     screen.pane.copy_all()
 
 
-LOGS_ACTIONS = [each for id, each in REGISTRY.items() if id.startswith("logs.")]
+LOGS_ACTIONS = actions_of(__name__)

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate, Sample
     from graph.pictures.picture import Picture
-    from graph.pictures.pixels import ImageError
 
 PERIOD_S = 0.3
 """Three pictures a second are enough for a terminal, and for SSH."""

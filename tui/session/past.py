@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from graph.data import GraphUpdate, TopicRow, Trouble
+from graph.data import TopicRow, Trouble
 from graph.observer.updates import merged
 from robot.topics import (
     AI_COMMAND,

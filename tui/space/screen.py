@@ -18,6 +18,7 @@ from tui import clock
 from tui.actions import bindings
 from tui.dialogs.choice import ChoiceScreen
 from tui.frame.screen import DeckScreen
+from tui.panels.panel import row_of
 from tui.space.actions import SPACE_ACTIONS, disarm, publish_aim
 from tui.space.aiming import LONGEST, Aim, AimKind, armed_words, sent_words
 from tui.space.layers import CLOUD
@@ -25,7 +26,7 @@ from tui.space.rows import FRAMES, LayerRows
 from tui.space.stage import Stage
 from tui.space.view import SpaceView
 from tui.widgets.scale_bar import scale_bar
-from tui.widgets.trouble import names
+from tui.widgets.trouble import listeners
 from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:
@@ -322,13 +323,8 @@ class SpaceScreen(DeckScreen):
         self.notify(failure, severity="error", markup=False)
 
     def _listeners(self, kind: AimKind) -> list[str]:
-        """Return who hears what is published, all in one text; nothing if nobody does."""
         update = self.feed.update
-        rows = () if update is None else update.topics
-        row = next((one for one in rows if one.name == kind.topic), None)
-        if row is None or not row.subscribers:
-            return []
-        return [names(row.subscribed_by) or str(row.subscribers)]
+        return listeners(None if update is None else row_of(update, kind.topic))
 
     def _aim_changed(self) -> None:
         self._show(by_user=True)

@@ -23,7 +23,7 @@ from tui.actions import REGISTRY, Acting, bindings
 from tui.emergency.gate import gate_words
 from tui.frame.actions.app import emergency_release
 from tui.frame.host import Host, host_of
-from tui.panels.panel import newest, row_of
+from tui.panels.panel import is_published, newest
 from tui.panels.wheels import WheelsReading, wheels_in
 from tui.teleop.actions import MOVES, TELEOP_ACTIONS, open_teleop
 from tui.teleop.keys import DRIVE_TYPE, NOTHING, RATE_HZ, Move, Route, TeleopLimits, command, route
@@ -201,8 +201,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         turned = newest(update, WHEEL_COMMANDS)
         self._wheels = (None if turned is None else wheels_in(turned.value)) or self._wheels
         for topic in (DRIVE_SAFE, WHEEL_COMMANDS):
-            row = row_of(update, topic)
-            if row is not None and row.publishers:
+            if is_published(update, topic):
                 continue
             if topic == DRIVE_SAFE:
                 self._allowed = self._gate = None

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.pictures.picture import Picture, ramp_colours
 from graph.pictures.pixels import ImageError, UnknownEncodingError
-from graph.pictures.reading import COMPRESSED, IMAGE
 from text.i18n import _, decimal, localized
 from text.plain import plain
 from tui.topics.table import hz_text
@@ -22,12 +22,12 @@ LONGEST = 80
 
 def carries_images(row: TopicRow | None) -> bool:
     """Whether the messages of this topic are images."""
-    return row is not None and not {IMAGE, COMPRESSED}.isdisjoint(row.type_names)
+    return row is not None and not {IMAGE, COMPRESSED_IMAGE}.isdisjoint(row.type_names)
 
 
 def is_image(sample: Sample) -> bool:
     """Whether this message is an image."""
-    return sample.type_name in {IMAGE, COMPRESSED}
+    return sample.type_name in {IMAGE, COMPRESSED_IMAGE}
 
 
 class TopicPictures:

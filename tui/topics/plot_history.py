@@ -12,10 +12,9 @@ import numpy as np
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from graph.data import Sample, Value
-
-if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from graph.data import Sample, Value
 
     Numbers: TypeAlias = NDArray[np.float64]
 

@@ -27,6 +27,7 @@ from tui.frame import title
 from tui.frame.actions.app import emergency_stop
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
+from tui.panels.panel import row_of
 from tui.topics.actions_of_publish import PUBLISH_ACTIONS
 from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row, Rows
@@ -263,7 +264,6 @@ class PublishDialog(Dialog[None]):
         # A tab would replace this screen and put its own above the topics.
         self.query_one(TitleBar).disabled = True
         self.redraw()
-        self._look()
         self.set_interval(LOOK_S, self._look)
         if self._row is None:
             self.target.field.focus()
@@ -451,8 +451,7 @@ class PublishDialog(Dialog[None]):
 
     def _known(self, topic: str) -> TopicRow | None:
         update = self.deck.feed.update
-        rows = () if update is None else update.topics
-        return next((row for row in rows if row.name == topic), None)
+        return None if update is None else row_of(update, topic)
 
     def _look(self) -> None:
         """Update the list of publications, and whether the robot is held."""

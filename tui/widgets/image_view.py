@@ -16,9 +16,10 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
+from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.pictures.picture import Picture
 from graph.pictures.pixels import ImageError, shrink
-from graph.pictures.reading import COMPRESSED, IMAGE, read_picture
+from graph.pictures.reading import read_picture
 from text.figures import figure
 from text.i18n import _, decimal
 from text.plain import plain
@@ -407,7 +408,7 @@ class NewestPicture:
             while self._waiting is not None:
                 sample, self._waiting = self._waiting, None
                 try:
-                    found = await asyncio.to_thread(read_picture, COMPRESSED, sample.value, self._fit)
+                    found = await asyncio.to_thread(read_picture, COMPRESSED_IMAGE, sample.value, self._fit)
                 except ImageError as error:
                     self._refuse(sample, error)
                 else:

@@ -109,6 +109,11 @@ def _remark(row: TopicRow) -> str:
     return plain(row.detail, LONGEST)
 
 
+def listeners(row: TopicRow | None) -> list[str]:
+    """Return who hears a topic, all in one text; nothing if nobody does."""
+    return [names(row.subscribed_by) or str(row.subscribers)] if row is not None and row.subscribers else []
+
+
 def names(endpoints: Sequence[EndpointInfo], *, counted: bool = False) -> str:
     """The nodes of these endpoints, each once, without the slash of the root namespace.
 

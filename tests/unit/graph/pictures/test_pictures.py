@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from graph.data import Value
+from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.pictures.compressed import thinned_picture
 from graph.pictures.pixels import ImageError, to_rgb
-from graph.pictures.reading import COMPRESSED, IMAGE, read_picture
+from graph.pictures.reading import read_picture
 
 ORANGE = (250, 120, 10)
 
@@ -62,7 +63,7 @@ def test_depth_is_told_in_metres_and_near_is_bright(
 @pytest.mark.parametrize(("ending", "encoding"), [(".jpg", "jpeg"), (".png", "png")])
 def test_compressed_pictures_have_their_colours_and_size(ending: str, encoding: str) -> None:
     pixels = np.full((720, 1280, 3), ORANGE[::-1], np.uint8)
-    picture = read_picture(COMPRESSED, compressed(pixels, ending), small)
+    picture = read_picture(COMPRESSED_IMAGE, compressed(pixels, ending), small)
     assert (picture.width, picture.height, picture.encoding) == (1280, 720, encoding)
     assert picture.rgb.shape == (4, 8, 3)
     assert np.abs(picture.rgb.astype(int) - ORANGE).max() <= 3
@@ -74,7 +75,7 @@ def test_thinned_depth_stays_depth(encoding: str, unit: float) -> None:
     metres = np.full((480, 640), 2.0)
     metres[:, 320:] = 4.0
     words, data = thinned_picture(image((metres * unit).astype(kind), encoding))
-    picture = read_picture(COMPRESSED, {"format": words, "data": data}, whole)
+    picture = read_picture(COMPRESSED_IMAGE, {"format": words, "data": data}, whole)
     assert picture.range_m == pytest.approx((2.0, 4.0), abs=0.1)
 
 
@@ -105,13 +106,13 @@ JPEG_BYTES = bytes(compressed(NOISE)["data"])  # type: ignore[arg-type]
 )
 def test_what_cannot_be_decoded_is_named(value: dict[str, Value], words: str) -> None:
     with pytest.raises(ImageError, match=words):
-        read_picture(COMPRESSED, value, whole)
+        read_picture(COMPRESSED_IMAGE, value, whole)
 
 
 def test_too_many_bytes_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("graph.pictures.compressed.MOST_BYTES", 100)
     with pytest.raises(ImageError, match="too large"):
-        read_picture(COMPRESSED, {"format": "jpeg", "data": JPEG_BYTES}, whole)
+        read_picture(COMPRESSED_IMAGE, {"format": "jpeg", "data": JPEG_BYTES}, whole)
 
 
 def test_no_damage_ends_in_anything_but_a_word() -> None:
@@ -121,7 +122,7 @@ def test_no_damage_ends_in_anything_but_a_word() -> None:
         for place in random.integers(2, len(data) - 2, 20):
             data[place] = random.integers(0, 256)
         try:
-            picture = read_picture(COMPRESSED, {"format": "jpeg", "data": bytes(data)}, small)
+            picture = read_picture(COMPRESSED_IMAGE, {"format": "jpeg", "data": bytes(data)}, small)
         except ImageError:
             continue
         assert picture.rgb.size
