@@ -4,7 +4,8 @@
 PROFILE ?=
 ARGS ?=
 PYTHON ?=
-export PYTHON
+ROS ?=
+export PYTHON ROS
 
 # A sourced ROS, or a Deck that this make runs under, would put its libraries
 # before those of .venv.
@@ -16,7 +17,7 @@ endif
 # Keep compiled modules: the tests start nodes by the hundred.
 unexport PYTHONDONTWRITEBYTECODE
 
-ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
+ifneq ($(shell PYTHON='$(PYTHON)' ROS='$(ROS)' sh scripts/sound.sh && echo yes),yes)
 .PHONY: .venv/.ready
 endif
 
@@ -31,7 +32,7 @@ help:
 	@echo 'make test   set up if needed, then run the tests; ARGS="-k sonar"'
 	@echo 'make test-all  also the slow tests and those that need more of the machine, such as a browser'
 	@echo 'make lint   style, types and who may import whom'
-	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python'
+	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python, ROS=kilted the ROS in place of jazzy'
 	@echo 'make lock   ask for newer libraries and write down which, with their hashes'
 	@echo 'make architecture  redraw the picture in ARCHITECTURE.md from the code'
 	@echo 'make clean  remove what the others made'

@@ -27,6 +27,7 @@ from brain.key import key_of
 from brain.settings import load
 from cli.child_python import python as child_python
 from cli.doctor.finding import Finding, fail, ok, warn
+from graph.distro import TESTED, wheel_of
 from launcher.domain.discovery import set_discovery, why_open
 from launcher.domain.domain import LAST_SAFE_DOMAIN, choose_domain, default_domain
 from launcher.errors import DomainError, LauncherError
@@ -168,10 +169,10 @@ def ros(
         yield fail("ros.rclpy", _("ROS 2: rclpy cannot be imported ({reason})").format(reason=error), get_ros)
         return
     text = f"ROS 2 {_origin(rclpy, environ)} ({rclpy})"
-    if environ.get("ROS_DISTRO", "jazzy") == "jazzy":
+    if environ.get("ROS_DISTRO", TESTED[0]) in TESTED:
         yield ok("ros.distro", text)
     else:
-        yield warn("ros.distro", text, _("Deck is tested with jazzy only; others may work"))
+        yield warn("ros.distro", text, _("Deck is tested with jazzy and kilted only; others may work"))
     if error:
         fix = _("try: unset RMW_IMPLEMENTATION, or install that middleware")
         text = _("rclpy is installed, but no node can be created: {reason}").format(reason=error)
@@ -193,12 +194,10 @@ def ros(
 def _origin(rclpy: str, environ: Mapping[str, str]) -> str:
     """Say where this ROS 2 comes from."""
     distro, conda = environ.get("ROS_DISTRO", ""), environ.get("CONDA_PREFIX", "")
-    try:
-        wheel = metadata.distribution("ros-jazzy-rclpy")
-        if rclpy.startswith(str(wheel.locate_file(""))):
-            return _("jazzy, wheels from PyPI (rclpy {version})").format(version=wheel.version)
-    except metadata.PackageNotFoundError:
-        pass
+    for name in TESTED:
+        wheel = wheel_of(name)
+        if wheel is not None and rclpy.startswith(str(wheel.locate_file(""))):
+            return _("{distro}, wheels from PyPI (rclpy {version})").format(distro=name, version=wheel.version)
     if rclpy.startswith("/opt/ros/"):
         return _("{distro} from the distribution").format(distro=rclpy.split("/")[3])
     if conda and rclpy.startswith(conda):

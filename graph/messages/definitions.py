@@ -1,6 +1,6 @@
 """The definitions of message types as text, as a bag stores them, and messages decoded by such a text.
 
-Where a type is installed, its text comes from the library's own store of ROS 2 Jazzy, else from the `.msg` files of
+Where a type is installed, its text comes from the library's own store of this ROS 2, else from the `.msg` files of
 its package, or, where that has none, is made from the fields of its class. Decoding needs no ROS: a type in a bag may
 belong to a package that is not installed, or to another distribution. The trees are those of `graph.data.Value`.
 """
@@ -14,6 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from graph.distro import distro
 from graph.messages.fields import BYTES, DUMMY, FieldType, parse, to_tree
 from graph.messages.types import UnknownTypeError, load_action, load_message, load_service
 from text.sentences import say
@@ -220,7 +221,7 @@ def definition(type_name: str, digest: str = "") -> str:
     `digest`, `RIHS01_...`, is the publisher's hash of its type: a definition in the store with
     another hash is not used. Raises UnknownTypeError for a type that is not installed.
     """
-    store = jazzy()
+    store = typestore()
     if type_name in store.fielddefs and digest in {"", store.hash_rihs01(type_name)}:
         return store.generate_msgdef(type_name, ros_version=2)[0]
     return _gathered(type_name)
@@ -228,16 +229,17 @@ def definition(type_name: str, digest: str = "") -> str:
 
 def hash_of(type_name: str) -> str:
     """Return the hash of a type in the store, empty for any other."""
-    store = jazzy()
+    store = typestore()
     return store.hash_rihs01(type_name) if type_name in store.fielddefs else ""
 
 
 @lru_cache(maxsize=1)
-def jazzy() -> Typestore:
-    """Return the library's types of ROS 2 Jazzy; a tenth of a second the first time."""
+def typestore() -> Typestore:
+    """Return the library's types of this ROS 2, else of its newest; a tenth of a second the first time."""
     from rosbags.typesys import Stores, get_typestore
 
-    return get_typestore(Stores.ROS2_JAZZY)
+    name = f"ros2_{distro()}"
+    return get_typestore(Stores(name) if name in {each.value for each in Stores} else Stores.LATEST)
 
 
 def _gathered(type_name: str) -> str:

@@ -7,6 +7,7 @@ import threading
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from graph.distro import distro
 from text.sentences import Words, say
 from text.suggestions import nearest
 
@@ -184,12 +185,12 @@ def _no_such_name(module: object, package: str, kind: str, name: str) -> Words:
 def install_names(package: str) -> dict[str, str]:
     """Return the package's name for `pip`, `apt` and `pixi`; those without it are left out.
 
-    apt (packages.ros.org) and RoboStack have everything that is released into Jazzy under the same
+    apt (packages.ros.org) and RoboStack have everything that is released into a ROS under the same
     name; whether this package is released cannot be known here.
     """
     if package in OURS:
         return {}
-    name = f"ros-jazzy-{package.replace('_', '-')}"
+    name = f"ros-{distro()}-{package.replace('_', '-')}"
     names = {"apt": name, "pixi": name}
     return {"pip": name, **names} if package in ON_PYPI else names
 

@@ -20,6 +20,7 @@ from mcap.records import DataEnd, Footer
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 
 from graph.bag.errors import not_made, not_written
+from graph.distro import distro
 from text.sentences import Words
 
 if TYPE_CHECKING:
@@ -194,7 +195,7 @@ class BagFile:
             # Made anew: YAML would write one object in two places as an alias.
             "files": [{"path": self.path.name, **self._facts()}],
             "custom_data": None,
-            "ros_distro": os.environ.get("ROS_DISTRO", "jazzy"),
+            "ros_distro": distro(),
         }
 
     def _facts(self) -> dict[str, object]:

@@ -15,6 +15,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from graph.distro import distro
 from graph.messages.condition import ConditionError, MessageFilter
 from graph.messages.fields import FieldType, parse
 from graph.messages.types import UnknownTypeError, load_message, load_service
@@ -251,10 +252,10 @@ NOBODY = TopicEnds("/t", ())
 
 
 def test_a_missing_package_is_told_with_its_names_and_a_missing_type_without() -> None:
-    with pytest.raises(UnknownTypeError, match="'apt install ros-jazzy-foo-msgs'") as found:
+    with pytest.raises(UnknownTypeError, match=f"'apt install ros-{distro()}-foo-msgs'") as found:
         load_message("foo_msgs/msg/Bar")
     facts = structural(NOBODY, "foo_msgs/msg/Bar", found.value).facts
-    assert facts["apt"] == facts["pixi"] == "ros-jazzy-foo-msgs"
+    assert facts["apt"] == facts["pixi"] == f"ros-{distro()}-foo-msgs"
     assert "pip" not in facts
     with pytest.raises(UnknownTypeError, match="without msg/Flot32; did you mean") as found:
         load_message("std_msgs/msg/Flot32")
