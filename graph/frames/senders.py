@@ -6,7 +6,7 @@ In a live graph they do, see `graph.observer.taking`; in a recording nothing of 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from text.sentences import say
 
@@ -18,6 +18,8 @@ SETTLED_S = 3.0
 """Endpoints, and their names, become known a little later than the messages arrive."""
 RECENT_S = 5.0
 """Whoever has not sent a moving frame for so long no longer does."""
+Fields: TypeAlias = "tuple[Any, ...]"
+"""Of one transform: its stamp in seconds, x, y, z, and the quaternion x, y, z, w."""
 TOGETHER_S = 0.5
 """Two latched messages that come so close together are of two nodes: a restart takes longer."""
 REPLACED_S = 30.0
@@ -65,7 +67,7 @@ class _Sent(NamedTuple):
     """The last that a publisher has sent before another one did."""
 
     arrived_s: float
-    fields: tuple[Any, ...]
+    fields: Fields
     beside: bool
     """Whether it was there at the same time as that other one, for sure."""
 
@@ -83,7 +85,7 @@ class Senders:
         self._candidates: AbstractSet[str] | None = None
         self._gone_s = float("inf")
 
-    def hand_over(self, sender: bytes | None, arrived_s: float, fields: tuple[Any, ...], passed_s: float) -> None:
+    def hand_over(self, sender: bytes | None, arrived_s: float, fields: Fields, passed_s: float) -> None:
         """Say that `sender` sends the next; the one before has sent `fields`, at `arrived_s`.
 
         `passed_s` is the time since then.
@@ -115,13 +117,13 @@ class Senders:
         names = tuple(name for name, _ in sorted(found))
         return PublishedBy(names, certain=True, gone="" if names else topic.known[self.newest])
 
-    def disagree(self, topic: Publishers, fields: tuple[Any, ...], arrived_s: float, now_s: float) -> bool:
+    def disagree(self, topic: Publishers, fields: Fields, arrived_s: float, now_s: float) -> bool:
         """Return whether others that are there have sent other numbers than `fields`, the newest.
 
-        The first four fields are stamps and names, which do not matter.
+        The first field is the stamp, which does not matter.
         """
         return self.newest in topic.there and any(
-            sent.fields and sent.fields[4:] != fields[4:] for _, sent in self._beside(topic, arrived_s, now_s)
+            sent.fields and sent.fields[1:] != fields[1:] for _, sent in self._beside(topic, arrived_s, now_s)
         )
 
     def _is_news(self, topic: Publishers, now_s: float) -> bool:

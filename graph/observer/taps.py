@@ -9,8 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from graph.data import Interest, Sample, TopicRow, Trouble
-from graph.frames.book import FRAME_TOPICS
-from graph.frames.reading import TF_MESSAGE
+from graph.frames.book import FRAME_TOPICS, TF_MESSAGE
 from graph.heavy_types import IMAGES
 from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.observer.rates import QUIET_S

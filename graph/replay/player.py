@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from graph.data import EndpointInfo, NodeRow, Sample, TopicRow, Trouble
-from graph.frames.book import FRAME_TOPICS, FrameBook
-from graph.frames.reading import TF_MESSAGE
+from graph.frames.book import FRAME_TOPICS, TF_MESSAGE, FrameBook
 from graph.messages.definitions import bag_decoder, begins_with_header
 from graph.messages.stamps import frame_id
 from graph.messages.types import UnknownTypeError, not_decoded
@@ -21,7 +20,7 @@ from text.ros_names import TF_STATIC
 
 if TYPE_CHECKING:
     from graph.bag.reading import Bag, TopicInBag
-    from graph.data import FrameRow, Interest, Value
+    from graph.data import FrameRow, Interest
 
 RATES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 """Factors of the original speed."""
@@ -149,7 +148,7 @@ class ReplayTopics:
         kinds: dict[str, list[TopicInBag]] = {}
         for topic in topics:
             kinds.setdefault(topic.name, []).append(topic)
-        self._frames = FrameBook(_tree_reader(kinds))
+        self._frames = FrameBook()
         self._topics = {name: ReplayTopic(kinds[name], self._frames) for name in sorted(kinds)}
         self.node = NodeRow(NODE, publishes=tuple(self._topics))
 
@@ -311,13 +310,3 @@ def _still_row(kinds: Sequence[TopicInBag], shown: TopicInBag) -> TopicRow:
         return row
     facts = {"types": ", ".join(types), "shown": shown.kind.name}
     return replace(row, detail=f"more than one type: {facts['types']}", facts=facts)
-
-
-def _tree_reader(kinds: Mapping[str, Sequence[TopicInBag]]) -> Callable[[bytes], dict[str, Value]]:
-    """Return what decodes the messages of /tf and /tf_static in another representation."""
-    found = [each.kind for name in FRAME_TOPICS for each in kinds.get(name, ())]
-
-    def read(raw: bytes) -> dict[str, Value]:
-        return bag_decoder(next(kind for kind in found if kind.name == TF_MESSAGE))(raw)
-
-    return read
