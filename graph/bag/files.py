@@ -6,7 +6,7 @@ import os
 import re
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path, PureWindowsPath
 from typing import Any, BinaryIO, NamedTuple
 
@@ -51,15 +51,6 @@ class Offer(NamedTuple):
 
 
 @dataclass(frozen=True)
-class StatedTopic:
-    """A topic in the metadata."""
-
-    name: str
-    messages: int
-    offer: Offer
-
-
-@dataclass(frozen=True)
 class Stated:
     """What a bag's `metadata.yaml` says, of any version of rosbag2, as far as it can be understood."""
 
@@ -67,7 +58,8 @@ class Stated:
     files: tuple[str, ...] = ()
     """Names of its files: the first rosbag2 put the folder in front, readers ignore that."""
     messages: int | None = None
-    topics: tuple[StatedTopic, ...] = ()
+    offers: Mapping[str, Offer] = field(default_factory=dict)
+    """Of each topic that is named."""
     seconds: float | None = None
     compression: str = ""
     """Of files or messages: `zstd`; empty for none."""
@@ -274,23 +266,16 @@ def stated_in(folder: Path) -> Stated | None:
     if not isinstance(inner, Mapping):
         return Stated(trouble=say("metadata.yaml is damaged: only the files themselves count"))
     nanoseconds = _whole(_within(inner, "duration").get("nanoseconds"))
-    topics = _listed(inner.get("topics_with_message_count"))
+    topics = [_within(each, "topic_metadata") for each in _listed(inner.get("topics_with_message_count"))]
     packed = _text(inner.get("compression_mode")).lower() not in {"", "none"}
     return Stated(
         storage=_text(inner.get("storage_identifier")),
         files=tuple(PureWindowsPath(str(name)).name for name in _listed(inner.get("relative_file_paths"))),
         messages=_whole(inner.get("message_count")),
-        topics=tuple(_topic(each) for each in topics if "name" in _within(each, "topic_metadata")),
+        offers={_text(each["name"]): offer_in(each.get("offered_qos_profiles")) for each in topics if "name" in each},
         seconds=None if nanoseconds is None else nanoseconds / 1e9,
         compression=_text(inner.get("compression_format")) if packed else "",
         distro=_text(inner.get("ros_distro")),
-    )
-
-
-def _topic(each: Any) -> StatedTopic:  # noqa: ANN401 - a mapping of YAML
-    about = _within(each, "topic_metadata")
-    return StatedTopic(
-        _text(about["name"]), _whole(each.get("message_count")) or 0, offer_in(about.get("offered_qos_profiles"))
     )
 
 

@@ -15,6 +15,7 @@ from graph.calls.exchanges import NodeRequest, ServiceSet, full_name
 from graph.data import ANSWER_WITHIN_S
 from graph.inner_states import ComponentRow, ContainerRow, LifecycleRow, TransitionResult
 from graph.messages.types import load_message
+from graph.ros import subscribe, taken, unsubscribe
 from text.i18n import N_
 from text.sentences import say
 
@@ -163,7 +164,7 @@ class Lifecycles:
         """Follow exactly the nodes that have a lifecycle in this graph."""
         there = managed(services)
         for name in self._followed.keys() - there:
-            self._node.destroy_subscription(self._followed.pop(name).subscription)
+            unsubscribe(self._node, self._followed.pop(name).subscription)
         processes = {row.name: row.processes for row in nodes}
         for name in there:
             now = processes.get(name, ())
@@ -203,21 +204,14 @@ class Lifecycles:
 
     def close(self) -> None:
         while self._followed:
-            self._node.destroy_subscription(self._followed.popitem()[1].subscription)
+            unsubscribe(self._node, self._followed.popitem()[1].subscription)
 
     def _listen(self, name: str) -> Subscription:
-        return self._node.create_subscription(
-            load_message(EVENT_TYPE), f"{name}/{EVENT}", lambda _event: None, EVENTS
-        )
+        return subscribe(self._node, load_message(EVENT_TYPE), f"{name}/{EVENT}", EVENTS)
 
     def _take_events(self, followed: _Followed) -> None:
-        subscription: Any = followed.subscription
-        while True:
-            with subscription.handle:
-                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-            if taken is None:
-                return
-            state = str(taken[0].goal_state.label)
+        for event, _info in taken(followed.subscription, EVENTS):
+            state = str(event.goal_state.label)
             followed.row = replace(followed.row, state=state, transitions=(), error="")
             followed.again = True
             if state == ERROR_PROCESSING:
