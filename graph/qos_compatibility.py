@@ -65,21 +65,10 @@ class Mismatch:
             template = N_("Let {publisher} offer {requested} or less, or let {subscriber} ask for none.")
         return say(template, **self._shown())
 
-    def facts(self) -> dict[str, str]:
-        """Return the same as names and values, for a sentence in another language."""
-        return {
-            "policy": self.policy,
-            "publisher": self.publisher,
-            "subscriber": self.subscriber,
-            "offered": self.offered,
-            "requested": self.requested,
-        }
-
     def _shown(self) -> dict[str, str]:
-        shown = self.facts()
-        if self.policy in TIMES:
-            shown["requested"], shown["offered"] = _time(self.requested), _time(self.offered)
-        return shown
+        values = self.offered, self.requested
+        offered, requested = map(_time, values) if self.policy in TIMES else values
+        return {**vars(self), "offered": offered, "requested": requested}
 
 
 def mismatches(publishers: Sequence[EndpointInfo], subscribers: Sequence[EndpointInfo]) -> list[Mismatch]:

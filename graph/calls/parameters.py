@@ -140,16 +140,8 @@ class ParameterCalls:
 
 
 TYPES = (
-    "not_set",
-    "bool",
-    "integer",
-    "double",
-    "string",
-    "byte_array",
-    "bool_array",
-    "integer_array",
-    "double_array",
-    "string_array",
+    *("not_set", "bool", "integer", "double", "string", "byte_array", "bool_array", "integer_array"),
+    *("double_array", "string_array"),
 )
 """By their numbers (source: rcl_interfaces/msg/ParameterType)."""
 _FIELDS = {

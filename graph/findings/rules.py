@@ -457,8 +457,6 @@ def _simulated(update: GraphUpdate, row: TopicRow) -> Iterator[GraphFinding]:
 
 STREAMS = "sensor_msgs/msg/"
 """Types whose messages come all the time, if they come at all."""
-RECORDED = "recorded"
-"""The fact of a topic in a recording, which has no node to look at."""
 
 
 def _silences(update: GraphUpdate, norms: GraphNorms) -> Iterator[GraphFinding]:
@@ -467,7 +465,7 @@ def _silences(update: GraphUpdate, norms: GraphNorms) -> Iterator[GraphFinding]:
     Whatever is published now and then, such as commands, may rest.
     """
     for row in update.topics:
-        if row.trouble is not Trouble.QUIET or RECORDED in row.facts or is_housekeeping(row.name):
+        if row.trouble is not Trouble.QUIET or row.recorded or is_housekeeping(row.name):
             continue
         if any(norms.moves(row.name, kind) for kind in row.type_names):
             continue

@@ -100,14 +100,13 @@ def bag_decoder(kind: TypeText) -> Callable[[bytes], dict[str, Value]]:
     """
     store = _store(kind)
     if kind.name not in store.fielddefs:
-        raise _unknown(
-            kind,
+        raise UnknownTypeError(
             say(
                 "type {type} is not defined in the bag, and is not one of ROS's own; record "
                 "the bag again with its definitions: `deck record`, or `ros2 bag record -s "
                 "mcap`",
                 type=kind.name,
-            ),
+            )
         )
     read = _reader(store, kind.name)
     plan = store.get_msgdef(kind.name)
@@ -160,12 +159,8 @@ def _store(kind: TypeText) -> Typestore:
             store.register(found)
     except (TypesysError, ValueError, KeyError) as error:
         words = say("the definition of type {type} in the bag cannot be read: {reason}", type=kind.name, reason=error)
-        raise _unknown(kind, words) from error
+        raise UnknownTypeError(words) from error
     return store
-
-
-def _unknown(kind: TypeText, words: str) -> UnknownTypeError:
-    return UnknownTypeError(kind.name, kind.name.partition("/")[0], words)
 
 
 def _reader(store: Typestore, type_name: str) -> Callable[[Any], dict[str, Value]]:

@@ -14,9 +14,10 @@ from graph.messages.definitions import bag_decoder, begins_with_header
 from graph.messages.stamps import frame_id
 from graph.messages.types import UnknownTypeError, not_decoded
 from graph.observer.rates import QUIET_S, WINDOW_S, Arrival, RateMeter
-from graph.observer.taps import quiet
 from graph.qos import TRANSIENT_LOCAL
+from text.i18n import N_
 from text.ros_names import TF_STATIC
+from text.sentences import say
 
 if TYPE_CHECKING:
     from graph.bag.reading import Bag, TopicInBag
@@ -33,8 +34,7 @@ BEFORE_NS = int(WINDOW_S / NANOSECONDS)
 """Seconds read before the target of a jump, so that rates and newest messages are there at once."""
 LONGEST_TURN_S = 0.2
 """Limit per step: a bag that cannot be read fast enough is played more slowly."""
-RECORDED = {"recorded": ""}
-"""Fact of a topic that is silent in a bag: there is no node to look at."""
+SILENT = N_("Nothing of it was recorded around here: go on, or jump.")
 
 
 @dataclass(frozen=True)
@@ -188,9 +188,7 @@ class ReplayTopics:
         """Return a row for each topic of the bag and each that is wanted, sorted by name."""
         rows = {name: topic.row(now_s, begun_s) for name, topic in self._topics.items()}
         for name in interest.named - rows.keys():
-            rows[name] = TopicRow(
-                name, (), 0, 0, trouble=Trouble.NO_PUBLISHER, detail="not in this recording", facts=RECORDED
-            )
+            rows[name] = TopicRow(name, (), 0, 0, trouble=Trouble.NO_PUBLISHER, detail=say(SILENT), recorded=True)
         return tuple(rows[name] for name in sorted(rows))
 
 
@@ -273,15 +271,10 @@ class ReplayTopic:
     def _with_trouble(self, row: TopicRow, now_s: float, begun_s: float) -> TopicRow:
         if self._broken:
             return replace(row, trouble=Trouble.UNKNOWN_TYPE, detail=self._broken)
-        if self.is_latched:
-            return row
-        if row.age_s is None and now_s - begun_s > QUIET_S:
-            finding = quiet(now_s - begun_s, ever=False)
-        elif row.age_s is not None and self._meter.is_quiet(now_s):
-            finding = quiet(row.age_s, ever=True)
-        else:
-            return row
-        return replace(row, trouble=finding.trouble, detail=finding.detail, facts={**finding.facts, **RECORDED})
+        quiet = now_s - begun_s > QUIET_S if row.age_s is None else self._meter.is_quiet(now_s)
+        if quiet and not self.is_latched:
+            return replace(row, trouble=Trouble.QUIET, detail=say(SILENT))
+        return row
 
     def _sample(self, message: Newest, wall_s: float, now_ns: int) -> Sample | None:
         kind = self._shown.kind
@@ -305,8 +298,10 @@ def _still_row(kinds: Sequence[TopicInBag], shown: TopicInBag) -> TopicRow:
         EndpointInfo(NODE, each.kind.name, each.reliability or "unknown", each.durability or "unknown")
         for each in kinds
     )
-    row = TopicRow(shown.name, types, len(ends), 0, measured=True, published_by=ends)
+    row = TopicRow(shown.name, types, len(ends), 0, measured=True, recorded=True, published_by=ends)
     if len(types) == 1:
         return row
-    facts = {"types": ", ".join(types), "shown": shown.kind.name}
-    return replace(row, detail=f"more than one type: {facts['types']}", facts=facts)
+    words = say(
+        "The endpoints use different types: {types}; shown is {shown}.", types=", ".join(types), shown=shown.kind.name
+    )
+    return replace(row, detail=words)

@@ -20,8 +20,6 @@ from graph.messages.condition import ConditionError, MessageFilter
 from graph.messages.fields import FieldType, parse
 from graph.messages.types import UnknownTypeError, load_message, load_service
 from graph.messages.yaml_text import is_cut, read_message, to_yaml
-from graph.observer.taps import structural
-from graph.scan import TopicEnds
 from text.yaml_faults import YamlError
 from text.yaml_tree import plain
 
@@ -240,18 +238,14 @@ def test_what_a_message_cannot_answer_is_told_with_its_place(text: str, told: st
     assert told in str(error.value)
 
 
-NOBODY = TopicEnds("/t", ())
-
-
 def test_a_missing_package_is_told_with_its_names_and_a_missing_type_without() -> None:
     with pytest.raises(UnknownTypeError, match=f"'apt install ros-{distro()}-foo-msgs'") as found:
         load_message("foo_msgs/msg/Bar")
-    facts = structural(NOBODY, "foo_msgs/msg/Bar", found.value).facts
-    assert facts["apt"] == facts["pixi"] == f"ros-{distro()}-foo-msgs"
-    assert "pip" not in facts
+    assert f"'pixi add ros-{distro()}-foo-msgs'" in str(found.value)
+    assert "pip install" not in str(found.value)
     with pytest.raises(UnknownTypeError, match="without msg/Flot32; did you mean") as found:
         load_message("std_msgs/msg/Flot32")
-    assert "apt" not in structural(NOBODY, "std_msgs/msg/Flot32", found.value).facts
+    assert "apt install" not in str(found.value)
 
 
 class HalfLoaded(type):
