@@ -31,7 +31,7 @@ def load(type_name: str, kind: str) -> type[Any]:
     try:
         return _LOAD[kind](type_name if "/" in name else f"{package}/{kind}/{name}")
     except UnknownTypeError as error:
-        raise RuntimeError(localized(error.reason)) from error
+        raise RuntimeError(localized(error.words)) from error
 
 
 def read(text: str) -> Mapping[str, Any]:

@@ -185,7 +185,7 @@ class BagPublisher:
             kind = load_message(topic.kind.name)
             publisher = self._ros.node.create_publisher(kind, topic.name, profile(qos, DEPTH))
         except UnknownTypeError as error:
-            self.progress.left_out[topic.name] = error.reason
+            self.progress.left_out[topic.name] = error.words
         except InvalidTopicNameException:
             # Programs outside ROS write MCAP files, too.
             self.progress.left_out[topic.name] = say("not a valid name of a ROS topic")

@@ -45,7 +45,7 @@ class TopicInBag:
 class Note(NamedTuple):
     """Something about a bag that whoever opens it has to know."""
 
-    words: Words
+    words: str
     incomplete: bool = False
     """Whether messages are missing that the recording should have."""
 

@@ -388,14 +388,11 @@ def _other_clock(off_s: float) -> tuple[str, str]:
         "Stamp messages with the clock of the node (`get_clock().now()`), and set the clock of the "
         "computer or board that they come from."
     )
-    days, minutes = abs(off_s) / DAY_S, abs(off_s) / 60.0
+    days = abs(off_s) / DAY_S
+    time = say("{n:.0f} min", n=abs(off_s) / 60.0) if days < 1.0 else say("{n:.0f} days", n=days)
     if off_s > 0:
-        if days < 1.0:
-            return say("Its stamps are {minutes:.0f} min behind this computer.", minutes=minutes), mend
-        return say("Its stamps are {days:.0f} days behind this computer.", days=days), mend
-    if days < 1.0:
-        return say("Its stamps are {minutes:.0f} min ahead of this computer.", minutes=minutes), mend
-    return say("Its stamps are {days:.0f} days ahead of this computer.", days=days), mend
+        return say("Its stamps are {time} behind this computer.", time=time), mend
+    return say("Its stamps are {time} ahead of this computer.", time=time), mend
 
 
 def _ahead(seconds: float) -> tuple[str, str]:

@@ -68,7 +68,7 @@ class FrameRecord:
         self._turns = 0
         """How often another publisher than before has sent one that moves, as far as is known."""
         self._points: deque[_Counted] = deque()
-        self._senders = Senders(arrived_s)
+        self._senders = Senders()
 
     def take(self, fields: Fields, arrived_s: float, number: int, sender: bytes | None) -> None:
         """Take the next transform; `number` counts the messages of its publisher, `sender`."""
@@ -225,12 +225,12 @@ class FrameBook:
             if record is not None:
                 record.take(_fields(one), arrived_s, number, sender)
 
-    def published_by(self, topic: str, there: Mapping[bytes, str], now_s: float) -> None:
+    def published_by(self, topic: str, there: Mapping[bytes, str]) -> None:
         """Say who publishes one of the topics now: the gid of each publisher to its node.
 
         The name is empty while it is unknown.
         """
-        self._publishers[topic].are(there, now_s)
+        self._publishers[topic].are(there)
 
     def rows(self, now_s: float) -> tuple[FrameRow, ...]:
         """Return the rows at this unix time, sorted by frame and parent."""

@@ -239,14 +239,30 @@ def _gone(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:
 def _clocks(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:
     moving = [one for one in heard if not one.is_static and one.count > one.faults]
     for found in _together(moving, lambda one: (kind := _clock(one)) and (kind, one.publishers, one.certain)):
-        first = found[0]
-        values: dict[str, object] = {
-            "frames": listed(_names(found)),
-            "node": by_whom([first]),
-            "seconds": abs(first.delay_s),
-            "stamp": first.newest.stamp_s,
-        }
-        text, advice = _CLOCK_WORDS[_clock(first)](values)
+        first, kind = found[0], _clock(found[0])
+        frames, node, seconds = listed(_names(found)), by_whom(found[:1]), abs(first.delay_s)
+        if kind == "other start":
+            stamp = first.newest.stamp_s
+            text = say(
+                "{frames}: stamped {stamp:.1f} s, which cannot be the present time", frames=frames, stamp=stamp
+            )
+            advice = say(
+                "have {node} stamp with its clock, node.get_clock().now(); in simulated time set "
+                "use_sim_time for all nodes or for none",
+                node=node,
+            )
+        elif kind == "future":
+            text = say("{frames}: stamped {seconds:.1f} s in the future", frames=frames, seconds=seconds)
+            advice = say(
+                "set the clocks of both machines by the same server (chrony); {node} must not add time to its stamps",
+                node=node,
+            )
+        else:
+            text = say("{frames}: stamped {seconds:.1f} s before it arrives", frames=frames, seconds=seconds)
+            advice = say(
+                "set the clocks of both machines by the same server (chrony), or find out what holds {node} up",
+                node=node,
+            )
         yield _found("clock", _names(found), text, advice)
 
 
@@ -257,39 +273,6 @@ def _clock(one: FrameRow) -> str:
     if one.delay_s < -FUTURE_S:
         return "future"
     return "behind" if one.delay_s > BEHIND_S else ""
-
-
-def _of_other_start(values: dict[str, object]) -> tuple[str, str]:
-    return (
-        say("{frames}: stamped {stamp:.1f} s, which cannot be the present time", **values),
-        say(
-            "have {node} stamp with its clock, node.get_clock().now(); in simulated time set "
-            "use_sim_time for all nodes or for none",
-            **values,
-        ),
-    )
-
-
-def _of_future(values: dict[str, object]) -> tuple[str, str]:
-    return (
-        say("{frames}: stamped {seconds:.1f} s in the future", **values),
-        say(
-            "set the clocks of both machines by the same server (chrony); {node} must not add time to its stamps",
-            **values,
-        ),
-    )
-
-
-def _of_past(values: dict[str, object]) -> tuple[str, str]:
-    return (
-        say("{frames}: stamped {seconds:.1f} s before it arrives", **values),
-        say(
-            "set the clocks of both machines by the same server (chrony), or find out what holds {node} up", **values
-        ),
-    )
-
-
-_CLOCK_WORDS = {"other start": _of_other_start, "future": _of_future, "behind": _of_past}
 
 
 def _static_moved(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:

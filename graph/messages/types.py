@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from graph.distro import distro
-from text.sentences import Words, say
+from text.sentences import SaidError, Words, say
 from text.suggestions import nearest
 
 FEEDBACK = "_FeedbackMessage"
@@ -30,13 +30,8 @@ ON_PYPI = frozenset(
 OURS = frozenset({"deck_interfaces"})
 
 
-class UnknownTypeError(Exception):
+class UnknownTypeError(SaidError):
     """No such type is installed here; str() says what to do about it."""
-
-    def __init__(self, reason: str) -> None:
-        """Store the reason, made by `text.sentences.say`."""
-        super().__init__(reason)
-        self.reason = reason
 
 
 def kind_of(type_name: str, *kinds: str) -> str:

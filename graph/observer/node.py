@@ -163,7 +163,7 @@ class ObserverNode:
             ends = self._scan.topics.get(topic)
             everyone = ends.everyone_publishing if ends else ()
             there = {end.gid: end.node if end.is_named else "" for end in everyone}
-            self._frames.published_by(topic, there, now_s)
+            self._frames.published_by(topic, there)
         return self._frames.rows(now_s)
 
     def _update(self, samples: dict[str, tuple[Sample, ...]], frames: tuple[FrameRow, ...]) -> GraphUpdate | None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from graph.data import ANSWER_WITHIN_S, CallResult, ParametersResult, SetResult
 from graph.inner_states import LevelResult, TransitionResult
-from text.sentences import reason_of
+from text.sentences import SaidError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -31,13 +31,8 @@ WITHDRAWN_LATE_S = 0.5
 T = TypeVar("T")
 
 
-class ObserverError(Exception):
+class ObserverError(SaidError):
     """The observer cannot work, or has been stopped; `words` says why."""
-
-    def __init__(self, words: str) -> None:
-        """Store the reason, made by `text.sentences.say`."""
-        super().__init__(words)
-        self.words = words
 
 
 @dataclass(frozen=True)

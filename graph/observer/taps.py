@@ -35,7 +35,7 @@ def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | Non
     `shown_type` is the type that Deck decodes, `unknown` why it cannot.
     """
     if unknown is not None:
-        return Trouble.UNKNOWN_TYPE, unknown.reason
+        return Trouble.UNKNOWN_TYPE, unknown.words
     if not ends.everyone_publishing:
         return Trouble.NO_PUBLISHER, ""
     # Two identical endpoints of one node give the same sentence.

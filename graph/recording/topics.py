@@ -241,7 +241,7 @@ class RecordingTopics:
             tap = RecordingTap(self._node, topic, qos)
             tap.listen(wanted=self._choice.asked_for(topic))
         except UnknownTypeError as error:
-            self.skipped[name] = error.reason
+            self.skipped[name] = error.words
             return None
         except Exception as error:  # noqa: BLE001 - a second type under one name, for one
             self.skipped[name] = not_subscribed(name, type_name, error)

@@ -170,7 +170,7 @@ class ReplayTopics:
     def frames(self, now_s: float) -> tuple[FrameRow, ...]:
         """Return a row for each frame as of `now_s`, unix time in the bag."""
         for topic in FRAME_TOPICS:
-            self._frames.published_by(topic, {b"": NODE}, now_s)
+            self._frames.published_by(topic, {b"": NODE})
         return self._frames.rows(now_s)
 
     def samples(
@@ -281,7 +281,7 @@ class ReplayTopic:
         try:
             value = bag_decoder(kind)(message.raw)
         except UnknownTypeError as error:
-            self._broken = error.reason
+            self._broken = error.words
             return None
         except Exception as error:  # noqa: BLE001 - no content of a bag must end the replay
             self._broken = not_decoded(kind.name, error)

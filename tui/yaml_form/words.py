@@ -29,7 +29,7 @@ def wrong_words(error: Wrong) -> str:
     place = place_of(error)
     line = "" if place is None else _("line {line}").format(line=place.line)
     field = error.field if isinstance(error, FieldError) else ""
-    message = error.reason if isinstance(error, UnknownTypeError) else error.message
+    message = error.words if isinstance(error, UnknownTypeError) else error.message
     return plain(": ".join(part for part in (line, field, localized(message)) if part), LONGEST)
 
 

@@ -34,7 +34,7 @@ def test_errors_come_back_with_all_that_they_say() -> None:
     back = there_and_back(wrong)
     assert (type(back), back.field, back.message, back.line) == (NoSuchFieldError, "a.b", wrong.message, 3)
     unknown = there_and_back(UnknownTypeError(say("gone")))
-    assert (type(unknown), unknown.reason) == (UnknownTypeError, "gone")
+    assert (type(unknown), unknown.words) == (UnknownTypeError, "gone")
     why = there_and_back(ObserverError(say("no: {why}", why=OSError("it is gone")))).words
     assert isinstance(why, Words)
     assert (why, why.template) == ("no: it is gone", "no: {why}")

@@ -128,7 +128,7 @@ def send_frame_senders(book: FrameBook, sender: bytes, at_s: float, x: float = 0
 def seen(book: FrameBook, now_s: float, there: Mapping[bytes, str]) -> FrameRow:
     """The row of the frame while these are there."""
     for topic in (TF, TF_STATIC):
-        book.published_by(topic, there, now_s)
+        book.published_by(topic, there)
     (found,) = book.rows(now_s)
     return found
 
