@@ -54,7 +54,6 @@ class Offer(NamedTuple):
 class Stated:
     """What a bag's `metadata.yaml` says, of any version of rosbag2, as far as it can be understood."""
 
-    storage: str = ""
     files: tuple[str, ...] = ()
     """Names of its files: the first rosbag2 put the folder in front, readers ignore that."""
     messages: int | None = None
@@ -118,8 +117,9 @@ def _files(path: Path) -> BagFiles:
     if not named:
         _refuse_foreign(path, [*found.values()])
         raise _no_bag(path, say("it has neither metadata.yaml nor an .mcap file"))
-    if stated is not None:
-        _refuse_unknown(path, stated, named)
+    if stated is not None and stated.compression.lower() not in {"", ZSTD}:
+        words = say("it is packed by {kind}, and only zstd is known", kind=stated.compression)
+        raise BagError(say("{path} cannot be read: {reason}", path=path, reason=words))
     return BagFiles(path, stated, tuple(named), tuple(others), tuple(missing))
 
 
@@ -156,23 +156,6 @@ def _refuse_foreign(path: Path, files: list[Path]) -> None:
     for file in files:
         if (other := foreign(file)) is not None:
             raise BagError(say("{path} cannot be read: {reason}", path=path, reason=other))
-
-
-def _refuse_unknown(path: Path, stated: Stated, files: list[Path]) -> None:
-    """Raise BagError for a storage or packing that Deck does not read."""
-    if stated.compression.lower() not in {"", ZSTD}:
-        kind = stated.compression
-        raise BagError(
-            say("{path} cannot be read: it is packed by {kind}, and only zstd is known", path=path, kind=kind)
-        )
-    if stated.storage not in {"", MCAP, SQLITE} and not any(storage_of(file) for file in files):
-        words = say(
-            "{path}: storage {storage!r} is not known, only mcap and sqlite3; where ROS is "
-            "installed with its plugin, `ros2 bag convert` makes one of the other",
-            path=path,
-            storage=stated.storage,
-        )
-        raise BagError(words)
 
 
 # What a file is.
@@ -269,7 +252,6 @@ def stated_in(folder: Path) -> Stated | None:
     topics = [_within(each, "topic_metadata") for each in _listed(inner.get("topics_with_message_count"))]
     packed = _text(inner.get("compression_mode")).lower() not in {"", "none"}
     return Stated(
-        storage=_text(inner.get("storage_identifier")),
         files=tuple(PureWindowsPath(str(name)).name for name in _listed(inner.get("relative_file_paths"))),
         messages=_whole(inner.get("message_count")),
         offers={_text(each["name"]): offer_in(each.get("offered_qos_profiles")) for each in topics if "name" in each},

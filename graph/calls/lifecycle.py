@@ -184,7 +184,7 @@ class Lifecycles:
             if due and not followed.asking:
                 self._ask(name, followed)
 
-    def change(self, node: str, transition: str, timeout_s: float, future: Future[TransitionResult]) -> None:
+    def change(self, node: str, transition: str, future: Future[TransitionResult]) -> None:
         """Have a node make a transition; the result says in words why it was not made."""
         node = full_name(node)
         facts = ChangeFacts()
@@ -200,7 +200,7 @@ class Lifecycles:
             why = error or why_not(node, transition, facts, erred=erred)
             future.set_result(TransitionResult(node, transition, facts.after.state, why))
 
-        self._exchanges.begin(node, change(transition, facts), SERVICES, timeout_s, end)
+        self._exchanges.begin(node, change(transition, facts), SERVICES, ANSWER_WITHIN_S, end)
 
     def close(self) -> None:
         while self._followed:

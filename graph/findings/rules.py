@@ -24,8 +24,7 @@ from graph.findings.finding import (
     meant,
 )
 from graph.housekeeping import is_hidden, is_housekeeping
-from graph.qos import BEST_EFFORT, TRANSIENT_LOCAL
-from graph.qos_compatibility import mismatches
+from graph.qos import BEST_EFFORT, TRANSIENT_LOCAL, mismatches
 from text.sentences import say
 
 if TYPE_CHECKING:

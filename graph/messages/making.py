@@ -248,10 +248,9 @@ class Draft:
     stamps: tuple[Path, ...] = ()
     """The fields that hold the time of sending."""
 
-    def dated(self, now_ns: int | None = None) -> Any:  # noqa: ANN401 - generated, no base class
-        """Return the message as it should be sent at this moment, or else by the system clock."""
-        now_ns = time.time_ns() if now_ns is None else now_ns
-        seconds, nanoseconds = divmod(now_ns, NANOSECONDS_PER_S)
+    def dated(self) -> Any:  # noqa: ANN401 - generated, no base class
+        """Return the message as it should be sent at this moment."""
+        seconds, nanoseconds = divmod(time.time_ns(), NANOSECONDS_PER_S)
         for path in self.stamps:
             field = self.message
             for step in path:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from graph.data import Sample
 from graph.heavy_types import IMAGE, POINT_CLOUD
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
     from rclpy.subscription import Subscription
+
+    TakeEvery: TypeAlias = Callable[[bytes, float, int | None, bytes | None], None]
+    """Takes each message of a topic: when it arrived, its number at its publisher, and which one that is."""
 
 
 class Losses:
@@ -57,13 +60,6 @@ class Losses:
         if self._event is not None:
             self._event.destroy_when_not_in_use()
             self._event = None
-
-
-class TakeEvery(Protocol):
-    """Takes each message of a topic."""
-
-    def __call__(self, raw: bytes, arrived_s: float, number: int | None, sender: bytes | None) -> None:
-        """Take the next: when it arrived, its number at its publisher, and which one that is."""
 
 
 DEEP = 200

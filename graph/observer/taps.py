@@ -15,8 +15,7 @@ from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.observer.rates import QUIET_S
 from graph.observer.tap import FOLLOWED, LARGE_TYPES, Tap, first_depth
 from graph.pictures.source import THINNED, host_of, is_away, picture_source, raw_from_afar, to_see
-from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
-from graph.qos_compatibility import mismatches
+from graph.qos import TRANSIENT_LOCAL, Qos, mismatches, to_hear
 from graph.scan import Scan, TopicEnds
 from text.ros_names import TF_STATIC
 from text.sentences import say

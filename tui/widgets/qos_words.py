@@ -8,7 +8,7 @@ from text.i18n import localized
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from graph.qos_compatibility import Mismatch
+    from graph.qos import Mismatch
 
 LONGEST = 400
 

@@ -12,7 +12,7 @@ from textual.widgets import Static
 from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
 from graph.pictures.picture import Picture
 from graph.pictures.reading import read_picture
-from graph.qos_compatibility import Mismatch
+from graph.qos import Mismatch
 from launcher.status import NodeState
 from tests.tui.recorded import NOW_S, RecordedSession, lesson_update, sample
 from tests.tui.topics_stage import CAMERA, SONAR, TopicsStage, jpeg_message, opened, row, with_camera, with_row

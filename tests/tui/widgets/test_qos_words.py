@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graph.qos_compatibility import Mismatch
+from graph.qos import Mismatch
 from tests.tui.panel_stage import Bare
 from tests.waiting import until
 from tui.widgets.qos_words import pair_words

@@ -14,8 +14,7 @@ from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, GraphFi
 from graph.findings.rules import CHANGING_S, LastingFindings, examine
 from graph.messages.types import UnknownTypeError
 from graph.observer.taps import structural
-from graph.qos import Qos, to_be_heard, to_hear
-from graph.qos_compatibility import mismatches
+from graph.qos import Qos, mismatches, to_be_heard, to_hear
 from graph.scan import TopicEnds
 from tui.session.bypass import NORMS
 
