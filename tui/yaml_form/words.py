@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TypeAlias
 
 from graph.messages.making import FieldError
@@ -37,4 +38,6 @@ def reason_words(error: Exception) -> str:
     """Return why something was not sent, for any exception."""
     if isinstance(error, (YamlError, FieldError, UnknownTypeError)):
         return wrong_words(error)
+    if isinstance(error, asyncio.TimeoutError):
+        return _("ROS did not accept it in time")
     return plain(localized(reason_of(error)), LONGEST)
