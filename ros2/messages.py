@@ -74,20 +74,36 @@ def _tree(value: Any) -> Any:  # noqa: ANN401 - a message, or what a field holds
     return to_tree(value) if hasattr(value, "get_fields_and_field_types") else value
 
 
+class _Dumper(yaml.SafeDumper):
+    """Writes the texts of a message."""
+
+
+class _InLine(str):
+    """A text beside other fields, such as the name of a frame: it begins no line of its own."""
+
+    __slots__ = ()
+
+
+_Dumper.add_representer(
+    _InLine, lambda dumper, text: dumper.represent_scalar("tag:yaml.org,2002:str", str(text), style='"')
+)
+
+
 def to_yaml(message: Any, longest: int | None = None) -> str:  # noqa: ANN401 - generated
     """Return a message as YAML; `longest`: elements of an array and characters of a text, None for all."""
-    tree = _shown(to_tree(message), longest)
-    text: str = yaml.safe_dump(tree, sort_keys=False, allow_unicode=True, width=sys.maxsize)
+    tree = _shown(to_tree(message), longest, alone=True)
+    text: str = yaml.dump(tree, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=sys.maxsize)
     return text
 
 
-def _shown(value: Any, longest: int | None) -> Any:  # noqa: ANN401 - see `graph.data.Value`
+def _shown(value: Any, longest: int | None, *, alone: bool) -> Any:  # noqa: ANN401 - see `graph.data.Value`
     if isinstance(value, Mapping):
-        return {name: _shown(each, longest) for name, each in value.items()}
+        return {name: _shown(each, longest, alone=len(value) < 2) for name, each in value.items()}
     if isinstance(value, str):
-        return value if longest is None or len(value) <= longest else f"{value[:longest]}..."
+        text = value if longest is None or len(value) <= longest else f"{value[:longest]}..."
+        return text if alone or "\n" not in text else _InLine(text)
     if isinstance(value, (bool, int, float)):
         return value
     part = value[:longest]
-    elements = part.tolist() if hasattr(part, "tolist") else [_shown(each, longest) for each in part]
+    elements = part.tolist() if hasattr(part, "tolist") else [_shown(each, longest, alone=alone) for each in part]
     return [*elements, "..."] if len(part) < len(value) else elements

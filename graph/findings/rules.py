@@ -246,32 +246,28 @@ def _losses(update: GraphUpdate) -> Iterator[GraphFinding]:
         lost = row.lost or 0
         if lost < FEWEST_LOST or lost < LOST_SHARE * (row.count + lost) or is_hidden(row.name):
             continue
-        unreliable = any(end.reliability == BEST_EFFORT for end in row.published_by)
-        yield _on(row, WARNING, "lost", *(_lost_best_effort(row, lost) if unreliable else _lost_reliable(row, lost)))
-
-
-def _lost_best_effort(row: TopicRow, lost: int) -> tuple[str, str]:
-    what = say(
-        "{lost} of {sent} messages were lost on the way; with best_effort nobody sends them again.",
-        lost=lost,
-        sent=row.count + lost,
-    )
-    return what, say("Publish smaller messages or fewer a second; or offer reliable, if each of them matters.")
-
-
-def _lost_reliable(row: TopicRow, lost: int) -> tuple[str, str]:
-    what = say(
-        "{lost} of {sent} messages were lost, although reliable: newer ones have replaced them in "
-        "the publisher's queue.",
-        lost=lost,
-        sent=row.count + lost,
-    )
-    depth = min((end.depth for end in row.published_by if end.depth), default=0)
-    if 0 < depth < SHALLOW:
-        return what, say(
-            "Give the publisher a deeper queue than {depth}, or let it publish less at once.", depth=depth
-        )
-    return what, say("Give the publisher a deeper queue, or let it publish less at once.")
+        sent = row.count + lost
+        depth = min((end.depth for end in row.published_by if end.depth), default=0)
+        if any(end.reliability == BEST_EFFORT for end in row.published_by):
+            what = say(
+                "{lost} of {sent} messages were lost on the way; with best_effort nobody sends them again.",
+                lost=lost,
+                sent=sent,
+            )
+            mend = say("Publish smaller messages or fewer a second; or offer reliable, if each of them matters.")
+        else:
+            what = say(
+                "{lost} of {sent} messages were lost, although reliable: newer ones have replaced them in "
+                "the publisher's queue.",
+                lost=lost,
+                sent=sent,
+            )
+            mend = say("Give the publisher a deeper queue, or let it publish less at once.")
+            if 0 < depth < SHALLOW:
+                mend = say(
+                    "Give the publisher a deeper queue than {depth}, or let it publish less at once.", depth=depth
+                )
+        yield _on(row, WARNING, "lost", what, mend)
 
 
 # ---------------------------------------------------------------- who waits in vain

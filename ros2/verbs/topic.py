@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from ros2.joining import Guest
 
-AGAIN_S = 0.1
+NOT_YET = "WARNING: topic [{}] does not appear to be published yet"
 LONGEST, WINDOW, DEPTH = 128, 10_000, 5
 EVERY_S = 1.0
 LOOK_S = 0.1
@@ -111,7 +111,6 @@ def _type_of(me: Guest, topic: str) -> type[Any] | None:
         return bool(found)
 
     if not me.await_until(there):
-        print(f"WARNING: topic [{topic}] does not appear to be published yet", flush=True)
         return None
     if len(found) > 1:
         raise RuntimeError(f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(found)}]")
@@ -146,6 +145,7 @@ def echo(args: argparse.Namespace) -> None:
     with joined(args) as me:
         cls = load(args.message_type, "msg") if args.message_type else _type_of(me, args.topic_name)
         if cls is None:
+            print(NOT_YET.format(args.topic_name))
             raise RuntimeError("Could not determine the type for the passed topic")
         came: list[Any] = []
         qos = chosen_qos(args, partial(_matching_qos, me, args.topic_name))
@@ -199,8 +199,11 @@ def _part(message: Any, steps: list[str]) -> Any:  # noqa: ANN401 - generated
 def hz(args: argparse.Namespace) -> None:
     """Print the rate each second in which a message has come."""
     with joined(args) as me:
-        while (cls := _type_of(me, args.topic_name)) is None:
-            time.sleep(AGAIN_S)
+        cls = _type_of(me, args.topic_name)
+        if cls is None:
+            print(NOT_YET.format(args.topic_name), flush=True)
+        while cls is None:
+            cls = _type_of(me, args.topic_name)
         gaps: deque[float] = deque(maxlen=args.window)
         last, printed = 0.0, 0.0
 
