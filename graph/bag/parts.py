@@ -106,6 +106,7 @@ class SqlitePart:
     stack: ExitStack
     said: int | None = None
     cut_bytes: int | None = None
+    broken_ns: int | None = None
 
     def __init__(self, file: Path, content: Path, stack: ExitStack) -> None:
         """Read `content`, which is called `file`. Raises BagError and what the library raises."""
@@ -181,6 +182,8 @@ class McapPart:
         self.file = file
         self.cut_bytes: int | None = None
         """Length of what cannot be read at the end; None if everything can, as far as is known."""
+        self.broken_ns: int | None = None
+        """Unix time of the last message before the place where it has turned out to be damaged."""
         self._content = content
         self._reader = SeekingReader(stack.enter_context(content.open("rb")), validate_crcs=True)
         summary = None
@@ -204,10 +207,14 @@ class McapPart:
     def messages(self, start_ns: int | None, numbers: Collection[int]) -> Iterator[Found]:
         """Yield messages of these channels in the order of their times, up to the first damaged place."""
         wanted, begin_ns = frozenset(numbers), start_ns or 0
-        with suppress(Exception):  # the disk, a decompressor, or the content: who reads counts what has come
+        last_ns = max(begin_ns, self.start_ns)
+        try:
             for message in self._indexed(begin_ns, wanted) if self._is_indexed else self._streamed():
                 if message.channel_id in wanted and message.log_time >= begin_ns:
-                    yield message.log_time, message.channel_id, message.data
+                    last_ns = message.log_time
+                    yield last_ns, message.channel_id, message.data
+        except Exception:  # noqa: BLE001 - the disk, a decompressor, or the content
+            self.broken_ns = last_ns
 
     def _indexed(self, begin_ns: int, wanted: Collection[int]) -> Iterator[Message]:
         topics = {channel.topic for channel in self.channels if channel.number in wanted}

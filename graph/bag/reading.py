@@ -93,8 +93,7 @@ class Bag:
         """Every topic, sorted by name, those in other serialization formats too."""
         self.topics = tuple(topic for topic in self.all_topics if topic.encoding == CDR)
         """Every topic of ROS 2, sorted by name."""
-        self.damage: Words | None = None
-        """What has turned out to be missing when all was read."""
+        self._fewer: Words | None = None
         with_messages = [part for part in parts if part.end_ns]
         self.start_ns = min((part.start_ns for part in with_messages), default=0)
         self.end_ns = max((part.end_ns for part in with_messages), default=0)
@@ -104,6 +103,19 @@ class Bag:
     @property
     def name(self) -> str:
         return self.path.stem if self.path.suffix in SUFFIXES else self.path.name
+
+    @property
+    def damage(self) -> Words | None:
+        """What has turned out to be missing so far: how much is known when all was read."""
+        broken_ns = [part.broken_ns for part in self._parts if part.broken_ns is not None]
+        if self._fewer is not None or not broken_ns:
+            return self._fewer
+        seconds = (min(broken_ns) - self.start_ns) / 1e9
+        return say(
+            "{path} is damaged: it cannot be read further than {seconds:.1f} s after its beginning",
+            path=self.path,
+            seconds=seconds,
+        )
 
     @property
     def length_s(self) -> float:
@@ -128,7 +140,7 @@ class Bag:
         if start_ns is None or start_ns <= self.start_ns:
             said = sum(topic.messages for topic in wanted)
             if read < said:
-                self.damage = say(
+                self._fewer = say(
                     "{path} is damaged: of {said} messages only {read} could be read",
                     path=self.path,
                     said=said,

@@ -100,7 +100,7 @@ async def test_a_damaged_place_is_told_when_it_is_come_to(tmp_path: Path) -> Non
         await until(lambda: "⚠ damaged" in seen(app), "the mark")
         await until(lambda: app._notifications, "what is lost")
         (told,) = app._notifications
-        assert "is damaged: messages lost: " in told.message
+        assert "is damaged: it cannot be read further than 1596.0 s" in told.message
 
 
 AT_S = 1_700_000_000
