@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from launcher.consent import Agents
-from launcher.status import NodeStatus, SentLine, SessionInfo, Stray
+from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
 from launcher.wire import VERSION, Sentence, pack, unpack
 
 
@@ -35,7 +35,7 @@ class StatusEvent:
 class LogEvent:
     """A batch of lines, bounded for each node."""
 
-    lines: tuple[SentLine, ...]
+    lines: tuple[LogLine, ...]
     skipped: Mapping[str, int] = field(default_factory=dict)
     """Node to the number of its lines that this batch leaves out; the log file has them all."""
 
@@ -86,4 +86,5 @@ def pack_event(event: Event) -> dict[str, Any]:
 def unpack_event(message: Mapping[str, Any]) -> Event | None:
     """Return the event of a message; None if it tells none that is known. Raises ValueError."""
     kind = _KINDS.get(message.get("event", ""))
-    return None if kind is None else unpack(kind, message)
+    found: Event | None = None if kind is None else unpack(kind, message)
+    return found

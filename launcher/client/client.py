@@ -38,7 +38,7 @@ from launcher.processes.table import read_process
 from launcher.run_id import supervisor_of
 from launcher.rundir import log_dir, run_dir
 from launcher.serial_ports import serial_ports
-from launcher.status import unpack_line
+from launcher.status import LogLine
 from launcher.supervisor.words import who
 from launcher.wire import MAX_MESSAGE_BYTES, VERSION, encode, pack, unpack
 from text.nested import read_json
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from launcher.consent import Approval, ConsentAnswer
     from launcher.processes.table import Process
     from launcher.profile.load import Profile
-    from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
+    from launcher.status import NodeStatus, SessionInfo, Severity, Stray
     from text.sentences import Words
 
 HELLO_WITHIN_S = 10.0
@@ -323,7 +323,7 @@ class SupervisorClient:
     async def history(self, node: str | None, limit: int) -> list[LogLine]:
         """Return the newest lines, oldest first, of one node, or of all nodes in order of time."""
         lines = await self._ask("history", node=node, limit=limit)
-        return [unpack_line(line) for line in lines]
+        return [LogLine.unpacked(line) for line in lines]
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """End these processes of an earlier run; return when they have ended."""

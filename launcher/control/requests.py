@@ -5,25 +5,25 @@ Those of agents, and of the screens that answer them, are here as well.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Awaitable, Callable, Hashable, Mapping
 from typing import Annotated, Any, TypeVar
-
-from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, validate_call
 
 from launcher.consent import Approval, ConsentAnswer
 from launcher.control.consent import ConsentDesk
 from launcher.status import Severity
-from launcher.wire import Sentence, encode
+from launcher.wire import encode, unpack
+from text.packing import unpack_text
 from text.plain import plain
-from text.sentences import Words, say
+from text.sentences import say
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 _MARK = "is_request"
-_CONFIG = ConfigDict(arbitrary_types_allowed=True)
 MAX_QUESTION_LINES = 6
 MAX_SENTENCE_BYTES = 4000
 """Most bytes of a sentence of a question, or of a line for the log, packed."""
+LONGEST_NAME = 80
 
 
 class BadRequestError(Exception):
@@ -37,9 +37,9 @@ def request(function: F) -> F:
 
 
 def requests_of(*servers: object) -> dict[str, Callable[..., Any]]:
-    """Return the methods that are marked so, by name; they check their arguments."""
+    """Return the methods that are marked so, by name."""
     return {
-        name: validate_call(config=_CONFIG)(getattr(server, name))
+        name: getattr(server, name)
         for server in servers
         for name, method in vars(type(server)).items()
         if hasattr(method, _MARK)
@@ -56,16 +56,26 @@ async def serve(requests: Mapping[str, Callable[..., Any]], client: Hashable, me
     serves = requests.get(op) if isinstance(op, str) else None
     if serves is None:
         raise BadRequestError(say("unknown request {op!r}", op=op))
-    try:
-        result = serves(client, **{name: value for name, value in message.items() if name not in ("id", "op")})
-        return await result if isinstance(result, Awaitable) else result
-    except ValidationError as error:
-        raise BadRequestError(_first(error)) from error
+    result = serves(client, **_arguments(serves, message))
+    return await result if isinstance(result, Awaitable) else result
 
 
-def _first(error: ValidationError) -> Words:
-    first = error.errors(include_url=False)[0]
-    return say("{field}: {reason}", field=".".join(map(str, first["loc"])), reason=first["msg"])
+def _arguments(serves: Callable[..., Any], message: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments of a request, each of the type that what serves it says."""
+    _client, *wanted = inspect.signature(serves, eval_str=True).parameters.values()
+    unknown = message.keys() - {"id", "op", *(each.name for each in wanted)}
+    arguments = {}
+    for name in unknown:
+        raise BadRequestError(say("{field}: {reason}", field=name, reason="unexpected"))
+    for each in wanted:
+        if each.name in message:
+            try:
+                arguments[each.name] = unpack(each.annotation, message[each.name])
+            except ValueError as error:
+                raise BadRequestError(say("{field}: {reason}", field=each.name, reason=str(error))) from error
+        elif each.default is each.empty:
+            raise BadRequestError(say("{field}: {reason}", field=each.name, reason="missing"))
+    return arguments
 
 
 def _bounded(packed: object) -> object:
@@ -74,10 +84,22 @@ def _bounded(packed: object) -> object:
     return packed
 
 
-Short = Annotated[str, Field(max_length=80)]
+def _short(name: object) -> object:
+    if isinstance(name, str) and len(name) > LONGEST_NAME:
+        raise ValueError(f"expected at most {LONGEST_NAME} characters")
+    return name
+
+
+def _few(lines: object) -> object:
+    if isinstance(lines, list) and not 1 <= len(lines) <= MAX_QUESTION_LINES:
+        raise ValueError(f"expected 1 to {MAX_QUESTION_LINES} lines")
+    return lines
+
+
+Short = Annotated[str, _short]
 """The name of an agent, or what distinguishes those of one connection."""
-BoundedSentence = Annotated[Sentence, BeforeValidator(_bounded)]
-Lines = Annotated[tuple[BoundedSentence, ...], Field(min_length=1, max_length=MAX_QUESTION_LINES)]
+BoundedSentence = Annotated[str, _bounded, unpack_text]
+Lines = Annotated[tuple[BoundedSentence, ...], _few]
 
 
 class AgentRequests:

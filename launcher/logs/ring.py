@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from itertools import chain, islice
 from typing import NamedTuple
 
-from launcher.status import LogLine, pack_line, unpack_line
+from launcher.status import LogLine
 from text.nested import read_json
 
 BLOCK_LINES = 250
@@ -57,13 +57,13 @@ class KeptLines:
 
 
 def _packed(lines: list[LogLine]) -> _Block:
-    rows = json.dumps([pack_line(line) for line in lines])
+    rows = json.dumps([line.packed() for line in lines])
     characters = sum(len(line.text) for line in lines)
     return _Block(len(lines), characters, zlib.compress(rows.encode(), FASTEST))
 
 
 def _unpacked(block: _Block) -> list[LogLine]:
-    return [unpack_line(row) for row in read_json(zlib.decompress(block.packed))]
+    return [LogLine.unpacked(row) for row in read_json(zlib.decompress(block.packed))]
 
 
 MAX_LINES = 5000

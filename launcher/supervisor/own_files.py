@@ -13,7 +13,6 @@ import os
 import time
 from collections.abc import Callable, Iterable, Mapping
 
-from launcher.faults.source import look_at, modules_of
 from launcher.status import NodeFault
 
 QUIET_S = 0.5
@@ -47,6 +46,8 @@ class OwnFiles:
 
     def note(self, node: str, file: str) -> None:
         """Note that this node is about to be started from this file."""
+        from launcher.faults.source import modules_of  # Large, and only learners need it.
+
         self._started[node] = {path: _stamp(path) for path in (file, *modules_of(file))}
 
     async def watch(self) -> None:
@@ -99,6 +100,8 @@ class OwnFiles:
         self._timer = asyncio.get_running_loop().call_later(max(quiet_s, 0.0), self._restart)
 
     def _restart(self) -> None:
+        from launcher.faults.source import look_at, modules_of
+
         written, self._pending = self._pending, set()
         for node, file in self._file_of().items():
             if (file in written or written & modules_of(file)) and not _is_empty(file):

@@ -14,8 +14,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field
-
 from launcher.control.requests import BadRequestError, request
 from launcher.control.server import Client, ControlServer
 from launcher.domain.discovery import why_open
@@ -35,7 +33,7 @@ from launcher.runs.shared_domain import Neighbour, free_domain, rival
 from launcher.runs.strays import end_strays, find_strays, forget_ended_runs
 from launcher.spawn_server.spawner import Spawner, SpawnError, SpawnRequest
 from launcher.spawn_server.start import SpawnServerHandle
-from launcher.status import LogLine, NodeFault, Severity, Stray, pack_line
+from launcher.status import LogLine, NodeFault, Severity, Stray
 from launcher.supervisor.own_files import OwnFiles
 from launcher.supervisor.plan import Plan
 from launcher.supervisor.process import Orphans, ProcessLauncher, ProcessScan, helping
@@ -54,8 +52,7 @@ MAX_HISTORY_CHARS = 8 << 20
 """Most characters of a history; of a longer one only the newest lines are sent."""
 MODULE = re.compile(r"nodes\.[a-z][a-z0-9_]*")
 """A node of Deck."""
-SaidNs = Annotated[int, Field(gt=0, lt=1 << 62, default_factory=time.time_ns)]
-"""Unix time; by default that at which a request arrives."""
+MAX_NS = 1 << 62
 LAST_WORDS = "supervisor"
 """Name of the log with the supervisor's own output, above all its tracebacks."""
 HURRIED_S = 5.0
@@ -167,6 +164,22 @@ def _newest(lines: Sequence[LogLine], max_chars: int) -> Sequence[LogLine]:
     return lines
 
 
+def _natural(number: object) -> object:
+    if isinstance(number, int) and number < 0:
+        raise ValueError(f"{number} is negative")
+    return number
+
+
+def _time_ns(number: object) -> object:
+    if isinstance(number, int) and not 0 < number < MAX_NS:
+        raise ValueError(f"{number} is no time")
+    return number
+
+
+SaidNs = Annotated[int, _time_ns]
+"""Unix time; by default that at which a request arrives."""
+
+
 class Supervisor:
     """One run, from start to end."""
 
@@ -243,12 +256,12 @@ class Supervisor:
     # Requests of clients; where nodes are named, they raise `UnknownNodeError`.
 
     @request
-    def history(self, _client: Client, node: str | None, limit: Annotated[int, Field(ge=0)]) -> list[Any]:
+    def history(self, _client: Client, node: str | None, limit: Annotated[int, _natural]) -> list[Any]:
         """Return the newest lines of one node or of all."""
         if node is not None and node not in self._log.rings:
             raise UnknownNodeError(node, self._session.nodes)
         lines = self._log.newest(node, min(limit, MAX_HISTORY_LINES))
-        return [pack_line(line) for line in _newest(lines, MAX_HISTORY_CHARS)]
+        return [line.packed() for line in _newest(lines, MAX_HISTORY_CHARS)]
 
     @request
     def start(self, _client: Client, nodes: tuple[str, ...] = ()) -> None:
@@ -285,14 +298,14 @@ class Supervisor:
         self._find_strays()
 
     @request
-    async def emergency_stop(self, _client: Client, said_ns: SaidNs) -> None:
+    async def emergency_stop(self, _client: Client, said_ns: SaidNs = 0) -> None:
         """Give an emergency stop by the file that the nodes watch."""
-        _check(await asyncio.to_thread(self._stop_file.give, Stop(said_ns), BY_SCREEN))
+        _check(await asyncio.to_thread(self._stop_file.give, Stop(said_ns or time.time_ns()), BY_SCREEN))
 
     @request
-    async def emergency_release(self, _client: Client, said_ns: SaidNs) -> None:
+    async def emergency_release(self, _client: Client, said_ns: SaidNs = 0) -> None:
         """Release what was given before this time in the same way."""
-        _check(await asyncio.to_thread(self._stop_file.release, said_ns))
+        _check(await asyncio.to_thread(self._stop_file.release, said_ns or time.time_ns()))
 
     @request
     def shutdown(self, client: Client, now: bool = False) -> None:

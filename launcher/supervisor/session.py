@@ -1,15 +1,17 @@
-"""The session: all nodes of a profile, the operations on them, and their resource use."""
+"""The session: all nodes of a profile, the operations on them, and their resource use.
+
+What explains the mistakes of a learner's own node is large, and loaded once there is such a node.
+"""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from launcher.clock import Clock, MonotonicClock
 from launcher.errors import StillRunningError, UnknownNodeError
-from launcher.faults.crash import crash_of, refused_arguments, stuck_in, warning_in
-from launcher.faults.source import look_at, spun_in_turn, unspun
 from launcher.faults.telling import fault_in
 from launcher.logs.session_log import SessionLog
 from launcher.processes.usage import UsageMeter
@@ -180,6 +182,8 @@ class Session:
         told = self._faults.get(plan.name)
         if told is not None:
             return told
+        from launcher.faults.crash import crash_of, refused_arguments
+
         lines = [line.text for line in self.log.since_start(plan.name)]
         return crash_of(lines, plan.file.rpartition("/")[0]) or refused_arguments(lines, plan.file)
 
@@ -188,6 +192,8 @@ class Session:
         node = self.nodes.get(name)
         if node is None or not node.plan.file:
             return
+        from launcher.faults.crash import stuck_in
+
         fault = fault_in(told)
         if fault is not None and fault.kind in ("crash", "syntax"):
             self._faults[name] = fault
@@ -202,11 +208,13 @@ class Session:
 
     def exchange(self, name: str, program: str | None) -> None:
         """Run a file or a module in the place of a node's program, or the program itself again."""
+        from launcher.faults.source import look_at
+
         self._chosen([name])
         (plan,) = (plan for plan in self.plan.nodes if plan.name == name)
         if program is not None:
             # With the same name, parameters, remaps and needs.
-            plan = plan.model_copy(update={"run": program, "exec": None, "warm": plan.is_forked})
+            plan = replace(plan, run=program, exec=None, warm=plan.is_forked)
         self.nodes[name].exchange(plan, look_at(plan.file) if plan.file else None)
 
     def heard(self, line: LogLine) -> None:
@@ -214,6 +222,8 @@ class Session:
         if line.severity.rank >= Severity.WARN.rank and line.node in self.nodes:
             node = self.nodes[line.node]
             if node.plan.file and node.fault is None:
+                from launcher.faults.crash import warning_in
+
                 node.warn(warning_in(line.text, node.plan.file))
 
     def _tell_turns(self, name: str, pid: int) -> None:
@@ -221,6 +231,8 @@ class Session:
         node = self.nodes[name]
         if not node.plan.file or self._looked_at.get(name) == pid:
             return
+        from launcher.faults.source import spun_in_turn
+
         self._looked_at[name] = pid
         fault = spun_in_turn(node.plan.file)
         if fault is not None:
@@ -234,6 +246,8 @@ class Session:
                 node.clashes(clash_of(f"/{name}", node.plan.file, clashes))
 
     def ended_early(self, plan: Node) -> NodeFault | None:
+        from launcher.faults.source import unspun
+
         return unspun(plan.file)
 
     def own_files(self) -> dict[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from launcher.processes.exit import Exit
@@ -20,7 +21,7 @@ PLAN = Node(name="sonar", exec=("sonar",), restart="on-failure")
 
 
 def planned(**changes: Any) -> Node:
-    return PLAN.model_copy(update=changes)
+    return replace(PLAN, **changes)
 
 
 class FakeProcess:

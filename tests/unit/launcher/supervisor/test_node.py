@@ -250,9 +250,7 @@ async def test_a_process_that_cannot_be_started_is_tried_again(session: FakeSess
 
 OPTIONAL = planned(optional=True)
 MODULE = planned(run="nodes.sonar", exec=None)
-PUBLISHES, SERVES, IS_THERE = (
-    planned(ready=Ready.model_validate({kind: "/x"})) for kind in ("topic", "service", "node")
-)
+PUBLISHES, SERVES, IS_THERE = (planned(ready=Ready(**{kind: "/x"})) for kind in ("topic", "service", "node"))
 ABSENT = "deck: command not found: sonar"
 LESSON_GOES_ON = "not installed; the lesson continues without it"
 
@@ -265,9 +263,9 @@ LESSON_GOES_ON = "not installed; the lesson continues without it"
         (PLAN, 127, "", "FAILED", "exit code 127"),
         (PLAN, 127, ABSENT, "FAILED", "sonar is not installed"),
         (OPTIONAL, 127, ABSENT, "EXITED", "sonar is not installed; the lesson continues without it"),
-        (OPTIONAL.model_copy(update={"restart": "never"}), 127, "x", "EXITED", "exit code 127: x"),
+        (replace(OPTIONAL, restart="never"), 127, "x", "EXITED", "exit code 127: x"),
         (MODULE, 2, "no such port", "FAILED", "exit code 2: no such port"),
-        (MODULE.model_copy(update={"restart": "always"}), 2, "", "FAILED", "exit code 2"),
+        (replace(MODULE, restart="always"), 2, "", "FAILED", "exit code 2"),
         (PUBLISHES, 0, "", "FAILED", "ended by itself, but should still publish /x"),
         (SERVES, 0, "", "FAILED", "ended by itself, but should still serve /x"),
         (IS_THERE, 0, "", "EXITED", "ended"),
