@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     from launcher.supervisor.plan import Plan
 
-LESSON_PACKAGES = ("nodes",)
-"""The nodes of most profiles are in this package. It is only named here, not imported."""
 ANSWER_WITHIN_S = 30.0
 END_WITHIN_S = 4.0
 """How long a supervisor that is no longer wanted may take to stop what it has started."""
@@ -43,7 +41,7 @@ class StartingSupervisor:
         self._begun = False
         self._words = os.memfd_create("supervisor")
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "launcher.supervisor", *LESSON_PACKAGES, ROOM_ARGUMENT],
+            [sys.executable, "-m", "launcher.supervisor", ROOM_ARGUMENT],
             # In that folder `launcher` is this package, whatever else the user's folder may
             # contain.
             cwd=Path(launcher.__file__).parent.parent,

@@ -6,14 +6,27 @@ import os
 import signal
 import socket
 import sys
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from launcher.processes.table import RUN_MARK, read_process
 from launcher.processes.title import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+
+@dataclass(frozen=True)
+class SpawnRequest:
+    """One process to be started."""
+
+    kind: str
+    """`module`: run in the warm interpreter; `exec`: a program; `probe`: the graph probe;
+    `lifecycle`: watch one node's lifecycle."""
+    name: str
+    title: str
+    argv: tuple[str, ...]
+    """For `module`: the module or file with its arguments; for `exec`: the command line."""
+    cwd: str
+    env: Mapping[str, str | None] = field(default_factory=dict)
+    """Changes to the supervisor's environment; None unsets."""
 
 
 @dataclass(frozen=True)
@@ -26,10 +39,8 @@ class SpawnServerHandle:
     warm: bool
 
 
-def fork_spawn_server(run_id: str, packages: Sequence[str]) -> SpawnServerHandle:
+def fork_spawn_server(run_id: str) -> SpawnServerHandle:
     """Fork a warm server from this process, which becomes the parent of its nodes.
-
-    It begins with the shared modules of `packages`, before there is a plan.
 
     This is faster than starting another Python, and only possible while this one has done nothing
     else. In the server, and in everything forked from it, this function does not return.
@@ -50,7 +61,7 @@ def fork_spawn_server(run_id: str, packages: Sequence[str]) -> SpawnServerHandle
 
     from launcher.spawn_server.server import serve
 
-    serve(theirs, supervisor, packages, cold=False)
+    serve(theirs, supervisor, cold=False)
     sys.exit()
 
 

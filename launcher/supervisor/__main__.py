@@ -1,7 +1,6 @@
 """The supervisor: starts a session's nodes, monitors them, and ends them.
 
-`python -m launcher.supervisor PACKAGE... ROOM` is started by `launcher.client.client.launch`.
-PACKAGE names packages that its nodes will probably come from. It reads its plan as one line from
+`python -m launcher.supervisor ROOM` is started by `launcher.client.client.launch`. It reads its plan as one line from
 stdin, which then stays open as long as the client lives: a foreground session ends when it is
 closed. It answers with one line on stdout: where to connect, or why it cannot run.
 """
@@ -9,7 +8,6 @@ closed. It answers with one line on stdout: where to connect, or why it cannot r
 from __future__ import annotations
 
 import os
-import sys
 
 from launcher.processes.prctl import become_subreaper
 from launcher.run_id import new_run_id
@@ -25,7 +23,7 @@ def main() -> None:
     become_subreaper()
     run_id = new_run_id()
     # This comes first: its imports take longer than everything done here in the meantime.
-    spawn_server = fork_spawn_server(run_id, sys.argv[1:-1])
+    spawn_server = fork_spawn_server(run_id)
 
     import asyncio
 

@@ -57,12 +57,6 @@ class Plan:
     def warm(self) -> bool:
         return any(node.is_forked for node in self.nodes)
 
-    @property
-    def packages(self) -> set[str]:
-        """The packages of the modules that are to be forked warm."""
-        modules = (node.run for node in self.nodes if node.is_forked and node.run is not None)
-        return {module.rpartition(".")[0] for module in modules if "/" not in module} - {""}
-
     def env_of(self, node: Node) -> Changes:
         # Mistakes of a learner's own node show at the line where they are made.
         own: Changes = {CHECK_FIELDS: os.environ.get(CHECK_FIELDS, "1")} if node.file else {}

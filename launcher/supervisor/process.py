@@ -16,7 +16,8 @@ from launcher.processes.members import Members, is_marked
 from launcher.processes.signal import send
 from launcher.processes.table import Process, processes
 from launcher.profile.node import Node
-from launcher.spawn_server.spawner import SpawnedProcess, Spawner, SpawnRequest
+from launcher.spawn_server.spawner import SpawnedProcess, Spawner
+from launcher.spawn_server.start import SpawnRequest
 from launcher.supervisor.plan import Plan
 
 _ENDS_WITHIN_S = 3.0
@@ -86,7 +87,6 @@ class NodeProcess:
         for reader in self._readers:
             reader.close()
         self._launcher.scan.members.remove(self.pid)
-        self._launcher.spawner.forget(self.pid)
 
     def _on_end(self, _ended: object) -> None:
         self._launcher.scan.forget()
@@ -193,14 +193,13 @@ async def helping(spawner: Spawner, reaper: Reaper, request: SpawnRequest) -> As
         os.close(hold)
         os.close(report)
         if spawned is not None:
-            _ = asyncio.create_task(_see_off(spawned, spawner, reaper))  # noqa: RUF006 - it ends by itself
+            _ = asyncio.create_task(_see_off(spawned, reaper))  # noqa: RUF006 - it ends by itself
 
 
-async def _see_off(spawned: SpawnedProcess, spawner: Spawner, reaper: Reaper) -> None:
+async def _see_off(spawned: SpawnedProcess, reaper: Reaper) -> None:
     ended = reaper.exit_of(spawned.pid, spawned.started_ticks)
     try:
         await asyncio.wait_for(asyncio.shield(ended), _ENDS_WITHIN_S)
     except asyncio.TimeoutError:
         send(spawned, signal.SIGKILL)
         await ended
-    spawner.forget(spawned.pid)

@@ -15,7 +15,8 @@ from typing import NamedTuple
 
 from launcher.processes.exit import Reaper
 from launcher.profile.node import Ready
-from launcher.spawn_server.spawner import Spawner, SpawnError, SpawnRequest
+from launcher.spawn_server.spawner import Spawner, SpawnError
+from launcher.spawn_server.start import SpawnRequest
 from launcher.status import NodeFault
 from launcher.supervisor.process import helping
 from text.nested import read_json

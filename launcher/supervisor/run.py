@@ -31,8 +31,8 @@ from launcher.runs.record import RunRecord, exclusively, supervisors
 from launcher.runs.run_folder import RunFolder
 from launcher.runs.shared_domain import Neighbour, free_domain, rival
 from launcher.runs.strays import end_strays, find_strays, forget_ended_runs
-from launcher.spawn_server.spawner import Spawner, SpawnError, SpawnRequest
-from launcher.spawn_server.start import SpawnServerHandle
+from launcher.spawn_server.spawner import Spawner, SpawnError
+from launcher.spawn_server.start import SpawnRequest, SpawnServerHandle
 from launcher.status import LogLine, NodeFault, Severity, Stray
 from launcher.supervisor.own_files import OwnFiles
 from launcher.supervisor.plan import Plan
@@ -195,7 +195,6 @@ class Supervisor:
         self._spawner = Spawner(self.info.run_id, spawn_server, self._warn)
         if not plan.warm:
             self._spawner.go_cold()
-        self._spawner.preload(plan.packages)
         self._files = LogFiles(Path(self.info.log_dir), self._log_failed)
         self.control = ControlServer(
             self, self._hello, lambda: self._log.rings, lambda severity, words: self._log.say(AGENT, severity, words)
