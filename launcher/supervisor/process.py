@@ -47,7 +47,7 @@ class ProcessScan:
 
 
 class NodeProcess:
-    """One process that was started for a node; a `RunningProcess`."""
+    """One process that was started for a node, with all its descendants."""
 
     def __init__(
         self,

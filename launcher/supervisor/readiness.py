@@ -1,4 +1,4 @@
-"""Waiting until a node can be used, that is, its name, topic or service is in the ROS graph.
+"""Waiting until a node can be used, that is, its name, topic or service is in the ROS graph: what is said meanwhile.
 
 The graph is watched by a probe process (`launcher.spawn_server.probe`) that exists only while a
 node is waited for, and each wait for a lifecycle has a process of its own.
@@ -11,17 +11,24 @@ import contextlib
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from launcher.processes.exit import Reaper
 from launcher.profile.node import Ready
 from launcher.spawn_server.spawner import Spawner, SpawnError
 from launcher.spawn_server.start import SpawnRequest
-from launcher.status import NodeFault
+from launcher.status import NodeFault, NodeState, Severity
 from launcher.supervisor.process import helping
+from launcher.supervisor.words import instead, late, not_brought_up, what
 from text.nested import read_json
 from text.sentences import say
 
+if TYPE_CHECKING:
+    from launcher.supervisor.node import SupervisedNode
+    from launcher.supervisor.session import Session
+
+LATE_S = 60.0
+"""How long after its time limit a node may still become ready."""
 MAX_PROBES = 3
 """After this many processes have died in a row, the graph counts as unwatchable."""
 LINGER_S = 5.0
@@ -238,3 +245,51 @@ def clash_of(node: str, file: str, clashes: Sequence[Clash]) -> NodeFault | None
                 meaning=say("A topic has one type: messages of another do not arrive."),
             )
     return None
+
+
+async def bring_up(node: SupervisedNode, session: Session) -> str:
+    """Wait for all that a node has to be; return why it will never be ready, empty if it may."""
+    plan = node.plan
+    if not plan.conditions:
+        node.become(NodeState.RUNNING, serves=True)
+        return ""
+    try:
+        for condition in plan.conditions:
+            if not await _comes_true(condition, node, session):
+                return ""
+        node.become(NodeState.READY, serves=True)
+    except UnwatchableError:
+        node.become(NodeState.RUNNING, say("whether it is ready cannot be determined"), serves=True)
+    except NotBroughtUpError as error:
+        return not_brought_up(error.transition, error.state, session.log.last_words(plan.name))
+    return ""
+
+
+async def _comes_true(condition: Ready, node: SupervisedNode, session: Session) -> bool:
+    """Wait for a condition; return False if it does not come to hold in the longest time."""
+    within_s, clock = node.plan.within_s, session.clock
+    node.become(NodeState.STARTING, say("waiting for {what}", what=what(condition)))
+    seen: Seen | None = None
+
+    def tell(found: Seen) -> None:
+        nonlocal seen
+        seen = found
+        if node.state is NodeState.STARTING:
+            node.become(NodeState.STARTING, instead(condition, found))
+        elif node.state is NodeState.RUNNING:
+            node.become(NodeState.RUNNING, late(condition, found, within_s))
+
+    ready = asyncio.ensure_future(session.ready(condition, tell))
+    came = asyncio.Event()
+    ready.add_done_callback(lambda _ready: came.set())
+    try:
+        if not await clock.wait(came, within_s):
+            words = late(condition, seen, within_s)
+            node.become(NodeState.RUNNING, words)
+            node.say(Severity.WARN, words)
+            if not await clock.wait(came, LATE_S):
+                return False
+        ready.result()
+    finally:
+        ready.cancel()
+    return True

@@ -288,7 +288,7 @@ class Supervisor:
 
     def _saved(self, name: str, fault: NodeFault | None) -> None:
         if not self._end.is_set():
-            self._session.saved(name, fault)
+            self._session.nodes[name].saved(fault)
 
     @request
     async def stop_strays(self, _client: Client, strays: tuple[Stray, ...]) -> None:

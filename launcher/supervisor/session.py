@@ -28,7 +28,7 @@ USAGE_EVERY_S = 2.0
 
 
 class Session:
-    """All nodes of a profile; implements `NodeContext` for each of them."""
+    """All nodes of a profile."""
 
     def __init__(
         self,
@@ -150,9 +150,10 @@ class Session:
                     node.halted(next(suspended, 0))
                     self._on_change(name)
 
-    # The `NodeContext` of the nodes, which says what these do.
+    # What its nodes use.
 
     async def launch(self, plan: Node) -> NodeProcess:
+        """Start the process of a node; raises `SpawnError`."""
         if plan.name in self.processes:
             # It may have died without notice, and a probe that saw it alive still sees it.
             self._readiness.renew()
@@ -166,19 +167,22 @@ class Session:
         return process
 
     async def ready(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
+        """Return once the condition holds; `tell` gets other states.
+
+        Raises `UnwatchableError`, and `NotBroughtUpError` for a lifecycle.
+        """
         waits = self._lifecycles if condition.lifecycle else self._readiness
         await waits.until(condition, tell)
 
     def missing(self, plan: Node) -> str:
+        """Say which needed nodes are not ready yet; empty if all are."""
         absent = [self.nodes[name] for name in plan.needs if not self.nodes[name].serves]
         if not absent:
             return ""
         return say("waiting for {nodes}", nodes=", ".join(map(_with_state, absent)))
 
-    def last_words(self, name: str) -> str:
-        return self.log.last_words(name)
-
     def crash(self, plan: Node) -> NodeFault | None:
+        """Return what the last output of a learner's own node tells of its end."""
         told = self._faults.get(plan.name)
         if told is not None:
             return told
@@ -198,7 +202,7 @@ class Session:
         if fault is not None and fault.kind in ("crash", "syntax"):
             self._faults[name] = fault
         elif fault is not None and fault.kind == "warning":
-            self.say(name, Severity.WARN, fault.words)
+            node.say(Severity.WARN, fault.words)
             node.warn(fault)
         elif fault is not None:
             node.ail(fault)
@@ -236,7 +240,7 @@ class Session:
         self._looked_at[name] = pid
         fault = spun_in_turn(node.plan.file)
         if fault is not None:
-            self.say(name, Severity.WARN, fault.words)
+            node.say(Severity.WARN, fault.words)
             node.warn(fault)
 
     def _tell_clashes(self, clashes: Sequence[Clash]) -> None:
@@ -246,6 +250,7 @@ class Session:
                 node.clashes(clash_of(f"/{name}", node.plan.file, clashes))
 
     def ended_early(self, plan: Node) -> NodeFault | None:
+        """Return why a learner's own node has ended without an error; None if it was to."""
         from launcher.faults.source import unspun
 
         return unspun(plan.file)
@@ -253,13 +258,6 @@ class Session:
     def own_files(self) -> dict[str, str]:
         """Return the file of each node that is the learner's own."""
         return {name: node.plan.file for name, node in self.nodes.items() if node.plan.file}
-
-    def saved(self, name: str, fault: NodeFault | None) -> None:
-        """Restart a node whose file was saved, or say what is wrong with the file."""
-        self.nodes[name].saved(fault)
-
-    def say(self, name: str, severity: Severity, words: str) -> None:
-        self.log.say(name, severity, words)
 
     def changed(self, name: str, state: NodeState) -> None:
         """Notify the clients, and the nodes that need this one."""

@@ -6,7 +6,7 @@ import asyncio
 import signal
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 from launcher.processes.exit import Exit
 from launcher.processes.table import Process
@@ -62,9 +62,10 @@ class FakeProcess:
 
 
 class FakeSession:
-    """Fits `launcher.supervisor.readying.NodeContext`."""
+    """Does what a node asks of its session, and of the log of that."""
 
     def __init__(self) -> None:
+        self.log = self
         self.clock = ManualClock()
         self.started: list[FakeProcess] = []
         self.ends_by: set[int] = {signal.SIGINT}
@@ -128,7 +129,7 @@ async def crash(session: FakeSession) -> None:
 
 
 async def started(session: FakeSession, plan: Node = PLAN) -> SupervisedNode:
-    node = SupervisedNode(plan, session)
+    node = SupervisedNode(plan, cast("Any", session))
     node.start()
     await settle()
     return node
