@@ -6,11 +6,14 @@ What explains the mistakes of a learner's own node is large, and loaded once the
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterable, Sequence
+import os
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 from launcher.clock import Clock, MonotonicClock
+from launcher.control.requests import BadRequestError, request
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.telling import fault_in
 from launcher.logs.session_log import SessionLog
@@ -18,6 +21,7 @@ from launcher.processes.usage import UsageMeter
 from launcher.profile.node import Node, Ready
 from launcher.status import LogLine, NodeFault, NodeState, Severity
 from launcher.supervisor.node import SupervisedNode
+from launcher.supervisor.own_files import OwnFiles
 from launcher.supervisor.plan import Plan, stop_waves, with_needs
 from launcher.supervisor.process import NodeProcess, ProcessLauncher
 from launcher.supervisor.readiness import Clash, LifecycleWaits, Readiness, Seen, clash_of
@@ -25,24 +29,34 @@ from launcher.supervisor.words import who
 from text.sentences import say
 
 USAGE_EVERY_S = 2.0
+MAX_HISTORY_LINES = 20_000
+MAX_HISTORY_CHARS = 8 << 20
+"""Most characters of a history; of a longer one only the newest lines are sent."""
+MODULE = re.compile(r"nodes\.[a-z][a-z0-9_]*")
+"""A node of Deck."""
+
+
+def _newest(lines: Sequence[LogLine], max_chars: int) -> Sequence[LogLine]:
+    for position in range(len(lines) - 1, -1, -1):
+        max_chars -= len(lines[position].text)
+        if max_chars < 0:
+            return lines[position + 1 :]
+    return lines
+
+
+def _natural(number: object) -> object:
+    if isinstance(number, int) and number < 0:
+        raise ValueError(f"{number} is negative")
+    return number
 
 
 class Session:
     """All nodes of a profile."""
 
     def __init__(
-        self,
-        plan: Plan,
-        launcher: ProcessLauncher,
-        log: SessionLog,
-        on_change: Callable[[str], None],
-        on_start: Callable[[str, str], None] = lambda _name, _file: None,
+        self, plan: Plan, launcher: ProcessLauncher, log: SessionLog, on_change: Callable[[str], None]
     ) -> None:
-        """`on_change` is called with the name of each node whose status has changed.
-
-        `on_start` is called with the name and the file of each node of the learner's own that is
-        about to be started.
-        """
+        """`on_change` is called with the name of each node whose status has changed."""
         self.clock: Clock = MonotonicClock()
         self.plan = plan
         self.log = log
@@ -54,7 +68,9 @@ class Session:
         self.nodes = {node.name: SupervisedNode(node, self) for node in plan.nodes}
         self._launcher = launcher
         self._on_change = on_change
-        self._on_start = on_start
+        self.own_files = OwnFiles(self._own_files, self._saved)
+        self.ends = False
+        """Whether nothing is started any more."""
         self._meter = UsageMeter()
         self._readiness = Readiness(
             [each for node in plan.nodes for each in node.conditions if not each.lifecycle],
@@ -71,11 +87,14 @@ class Session:
         self._restarting: asyncio.Task[None] | None = None
         self._hurry = asyncio.Event()
 
-    # Requests.
+    # Requests of clients. They raise `UnknownNodeError`.
 
-    def start(self, names: Iterable[str] = ()) -> None:
+    @request
+    def start(self, nodes: tuple[str, ...] = ()) -> None:
         """Start these nodes and everything they need; all nodes if none is named."""
-        chosen = self._chosen(names)
+        chosen = self._chosen(nodes)
+        if self.ends:
+            return
         # The probe goes first: nodes that appear while it watches are found sooner.
         if any(node.plan.conditions or node.plan.file for node in self.nodes.values()):
             self._readiness.expect()
@@ -83,13 +102,14 @@ class Session:
             if name in chosen or not self.nodes[name].at_work:
                 self.nodes[name].start()
 
-    async def stop(self, names: Iterable[str] = (), *, now: bool = False) -> None:
+    @request
+    async def stop(self, nodes: tuple[str, ...] = (), now: bool = False) -> None:
         """Stop these nodes, dependants first; all nodes if none is named.
 
         Raises:
             StillRunningError: if some of their processes have not ended by SIGKILL.
         """
-        chosen = self._chosen(names)
+        chosen = self._chosen(nodes)
         self._to_return.difference_update(chosen)
         await self._stop(chosen, now=now)
         left = [process for name in chosen for process in self.nodes[name].outlived]
@@ -106,15 +126,25 @@ class Session:
             in_a_hurry = self._hurry.is_set()
             await asyncio.gather(*(self.nodes[name].stop(now=in_a_hurry) for name in wave))
 
-    def restart(self, names: Iterable[str] = ()) -> None:
+    @request
+    def restart(self, nodes: tuple[str, ...] = ()) -> None:
         """Begin to restart these nodes, dependants first; all nodes if none is named."""
-        chosen = self._chosen(names)
+        chosen = self._chosen(nodes)
+        if self.ends:
+            return
         if len(chosen) == 1:
             self.nodes[chosen[0]].restart()
             return
         self._to_return.update(chosen)
         if self._restarting is None or self._restarting.done():
             self._restarting = asyncio.create_task(self._restart())
+
+    @request
+    def history(self, node: str | None, limit: Annotated[int, _natural]) -> Sequence[LogLine]:
+        """Return the newest lines of one node or of all."""
+        if node is not None and node not in self.log.rings:
+            raise UnknownNodeError(node, self.nodes)
+        return _newest(self.log.newest(node, min(limit, MAX_HISTORY_LINES)), MAX_HISTORY_CHARS)
 
     async def _restart(self) -> None:
         stopped: set[str] = set()
@@ -126,14 +156,13 @@ class Session:
         returning = [name for name in self.nodes if name in self._to_return]
         self._to_return.clear()
         if returning:
-            self.start(returning)
+            self.start(tuple(returning))
 
-    def _chosen(self, names: Iterable[str]) -> list[str]:
-        names = list(names)
+    def _chosen(self, names: tuple[str, ...]) -> list[str]:
         for name in names:
             if name not in self.nodes:
                 raise UnknownNodeError(name, self.nodes)
-        return names or list(self.nodes)
+        return list(names or self.nodes)
 
     async def measure(self) -> None:
         """Measure the resource use of the nodes periodically."""
@@ -158,7 +187,7 @@ class Session:
             # It may have died without notice, and a probe that saw it alive still sees it.
             self._readiness.renew()
         if plan.file:
-            self._on_start(plan.name, plan.file)
+            self.own_files.note(plan.name, plan.file)
             # Also where it has no condition: are its topics of the types that others use?
             self._readiness.expect()
         self._faults.pop(plan.name, None)
@@ -210,16 +239,22 @@ class Session:
         if stuck is not None:
             node.go_on() if stuck[1] else node.ail(stuck[0])
 
-    def exchange(self, name: str, program: str | None) -> None:
-        """Run a file or a module in the place of a node's program, or the program itself again."""
+    @request
+    def exchange(self, node: str, run: str | None = None) -> None:
+        """Run this file or module in the place of a node's program, or again that itself (None)."""
         from launcher.faults.source import look_at
 
-        self._chosen([name])
-        (plan,) = (plan for plan in self.plan.nodes if plan.name == name)
-        if program is not None:
+        if run is not None and not (os.path.isabs(run) or MODULE.fullmatch(run)):  # noqa: PTH117
+            raise BadRequestError(say("run: expected an absolute path or a module, found {x!r}", x=run))
+        self._chosen((node,))
+        if self.ends:
+            return
+        (plan,) = (plan for plan in self.plan.nodes if plan.name == node)
+        if run is not None:
             # With the same name, parameters, remaps and needs.
-            plan = replace(plan, run=program, exec=None, warm=plan.is_forked)
-        self.nodes[name].exchange(plan, look_at(plan.file) if plan.file else None)
+            plan = replace(plan, run=run, exec=None, warm=plan.is_forked)
+        self.nodes[node].exchange(plan, look_at(plan.file) if plan.file else None)
+        self.own_files.look_again()
 
     def heard(self, line: LogLine) -> None:
         """Look for a mistake in a line that a learner's own node has written."""
@@ -255,7 +290,11 @@ class Session:
 
         return unspun(plan.file)
 
-    def own_files(self) -> dict[str, str]:
+    def _saved(self, name: str, fault: NodeFault | None) -> None:
+        if not self.ends:
+            self.nodes[name].saved(fault)
+
+    def _own_files(self) -> dict[str, str]:
         """Return the file of each node that is the learner's own."""
         return {name: node.plan.file for name, node in self.nodes.items() if node.plan.file}
 

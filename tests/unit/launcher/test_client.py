@@ -8,6 +8,7 @@ import sys
 from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -16,7 +17,7 @@ from launcher.client import inbox as client_inbox
 from launcher.client.client import SupervisorClient, attach
 from launcher.client.inbox import Inbox, newer
 from launcher.consent import Approval, ConsentAnswer
-from launcher.control.server import MAX_LINES, ClientFeed
+from launcher.control.server import MAX_LINES, Client
 from launcher.errors import ConnectionLostError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent, pack_event
 from launcher.faults.crash import refused_arguments
@@ -137,6 +138,9 @@ def test_what_is_known_does_not_come_again(known: dict[str, int], event: LogEven
     assert newer(event, known) == expected
 
 
+NOBODY: Any = None
+
+
 def fill(ring: LogRing, node: str, count: int, time_s: float = 0.0) -> None:
     for _line in range(count):
         ring.append(LogLine(node, ring.last_seq + 1, time_s, Severity.INFO, "x"))
@@ -144,7 +148,7 @@ def fill(ring: LogRing, node: str, count: int, time_s: float = 0.0) -> None:
 
 def test_a_flood_of_one_node_skips_none_of_another() -> None:
     rings = {"flood": LogRing(), "sonar": LogRing()}
-    feed = ClientFeed(rings)
+    feed = Client(NOBODY, rings)
     fill(rings["flood"], "flood", 5 * MAX_LINES)
     fill(rings["sonar"], "sonar", 3)
     news = feed.log_news()
@@ -156,9 +160,9 @@ def test_a_flood_of_one_node_skips_none_of_another() -> None:
 
 
 def test_of_many_changes_of_a_node_the_last_is_told() -> None:
-    feed = ClientFeed({})
+    feed = Client(NOBODY, {})
     for _change in range(100):
-        feed.status_changed(["sonar"])
+        feed.changed["sonar"] = None
     status = NodeStatus("sonar", "nodes.mock_sonar", NodeState.READY)
     news = feed.status_news(lambda: {"sonar": status})
     assert news is not None
