@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, get_args
 
 from launcher.consent import Agents
 from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
@@ -67,20 +67,12 @@ class ClosedEvent:
 
 
 Event: TypeAlias = StatusEvent | LogEvent | StraysEvent | AgentsEvent | UnguardedEvent | ClosedEvent
-_KINDS: dict[str, type[Event]] = {
-    "status": StatusEvent,
-    "log": LogEvent,
-    "strays": StraysEvent,
-    "agents": AgentsEvent,
-    "unguarded": UnguardedEvent,
-    "closed": ClosedEvent,
-}
+_KINDS: dict[str, type[Event]] = {kind.__name__.removesuffix("Event").lower(): kind for kind in get_args(Event)}
 
 
 def pack_event(event: Event) -> dict[str, Any]:
     """Return the message that tells an event."""
-    name = next(name for name, kind in _KINDS.items() if type(event) is kind)
-    return {"event": name, **pack(event)}
+    return {"event": type(event).__name__.removesuffix("Event").lower(), **pack(event)}
 
 
 def unpack_event(message: Mapping[str, Any]) -> Event | None:

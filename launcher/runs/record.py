@@ -13,7 +13,7 @@ import fcntl
 import json
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -40,8 +40,6 @@ class RunRecord:
     folder: Path
     session: SessionInfo
     nodes: tuple[str, ...]
-    processes: Mapping[str, tuple[int, int]]
-    """Node to the number and the start, in ticks, of its process."""
     drives: bool = False
     """Whether any of the nodes commands the wheels."""
 

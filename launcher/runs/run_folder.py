@@ -26,7 +26,7 @@ from text.sentences import Words, say
 
 if TYPE_CHECKING:
     import socket
-    from collections.abc import Awaitable, Callable, Mapping
+    from collections.abc import Awaitable, Callable
 
     from launcher.runs.record import RunRecord
 
@@ -58,12 +58,6 @@ class RunFolder:
         server = listen(self.record.folder)
         self._socket = os.stat(SOCKET_NAME, dir_fd=self._descriptor)
         return server
-
-    def note(self, processes: Mapping[str, tuple[int, int]]) -> None:
-        """Record the processes of the nodes, for cleaning up after a sudden end."""
-        self.record = replace(self.record, processes=dict(processes))
-        if self._is_in_place():
-            self.record.write()
 
     async def keep(self, serve: Callable[[socket.socket], Awaitable[None]], tell: Callable[[Words], None]) -> None:
         """Create it again whenever it disappears; `serve` gets each new socket, `tell` messages."""

@@ -76,7 +76,7 @@ def _unknown(supervisor: FoundSupervisor) -> RunRecord:
         domain=supervisor.domain,
         supervisor_pid=supervisor_of(supervisor.run_id),
     )
-    return RunRecord(supervisor.folder, session, (), {})
+    return RunRecord(supervisor.folder, session, ())
 
 
 def refuse_shared_domain(profile: Profile) -> None:

@@ -37,23 +37,15 @@ INTERRUPT_S = 2.0
 """From SIGINT to SIGKILL, and the longest wait after SIGKILL."""
 
 
-def find_strays(run_dir: Path) -> tuple[Stray, ...]:
+def find_strays() -> tuple[Stray, ...]:
     """Return the processes left over from runs whose supervisor is gone."""
-    recorded = {
-        key: (record.session.run_id, node)
-        for record in read_records(run_dir)
-        if not record.runs
-        for node, key in record.processes.items()
-    }
     booted = boot_time_s()
     strays = []
     table = {process.pid: process for process in processes()}
     for process in table.values():
         if process.zombie or _is_guarded(process, table):
             continue
-        run_id, node = recorded.get((process.pid, process.started_ticks), ("", ""))
-        if not run_id:
-            run_id, node = _marked(process)
+        run_id, node = _marked(process)
         if run_id:
             started_s = booted + process.started_ticks / TICKS_PER_S
             command = command_line(process.pid) or process.name

@@ -72,7 +72,7 @@ class OwnFiles:
         stop = asyncio.Event()
         ending = asyncio.ensure_future(self._changed.wait())
         ending.add_done_callback(lambda _ended: stop.set())
-        there = _existing(folders)
+        there = [folder for folder in folders if os.path.isdir(folder)]  # noqa: PTH112
         if not there:
             await asyncio.sleep(AGAIN_S)
             return
@@ -104,13 +104,9 @@ class OwnFiles:
 
         written, self._pending = self._pending, set()
         for node, file in self._file_of().items():
-            if (file in written or written & modules_of(file)) and not _is_empty(file):
+            if (file in written or written & modules_of(file)) and _stamp(file)[2]:
                 self.note(node, file)
                 self._saved(node, look_at(file))
-
-
-def _existing(folders: Iterable[str]) -> list[str]:
-    return [folder for folder in folders if os.path.isdir(folder)]  # noqa: PTH112
 
 
 def _stamp(file: str) -> _Stamp:
@@ -123,15 +119,6 @@ def _stamp(file: str) -> _Stamp:
 
 
 def _age_s(file: str) -> float:
-    """Return how long ago a file was written, or put in its place."""
-    try:
-        return max(time.time() - os.stat(file).st_ctime, 0.0)  # noqa: PTH116
-    except OSError:
-        return 0.0
-
-
-def _is_empty(file: str) -> bool:
-    try:
-        return os.path.getsize(file) == 0  # noqa: PTH202
-    except OSError:
-        return True
+    """Return how long ago a file was written, or put in its place; 0 if it is not there."""
+    changed_ns = _stamp(file)[1]
+    return max(time.time() - changed_ns / 1e9, 0.0) if changed_ns else 0.0

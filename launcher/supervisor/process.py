@@ -6,8 +6,7 @@ import asyncio
 import contextlib
 import os
 import signal
-import time
-from collections.abc import AsyncIterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Sequence
 
 from launcher.logs.reader import PipeReader, node_pipe
 from launcher.logs.session_log import SessionLog
@@ -22,28 +21,6 @@ from launcher.supervisor.plan import Plan
 
 _ENDS_WITHIN_S = 3.0
 """How long a helper may take to end once its stdin is closed."""
-_FRESH_S = 0.02
-"""A scan of all processes of at most this age also serves other nodes that are stopping."""
-
-
-class ProcessScan:
-    """The processes of all nodes, scanned only as often as useful."""
-
-    def __init__(self, members: Members) -> None:
-        self.members = members
-        self._found: Mapping[str, Sequence[Process]] = {}
-        self._at = float("-inf")
-
-    def look(self, max_age_s: float = _FRESH_S) -> Mapping[str, Sequence[Process]]:
-        """Return the living processes of each node."""
-        now = time.monotonic()
-        if now - self._at > max_age_s:
-            self._found, self._at = self.members.scan(), now
-        return self._found
-
-    def forget(self) -> None:
-        """Drop the cached scan: a process was started or has ended."""
-        self._at = float("-inf")
 
 
 class NodeProcess:
@@ -71,8 +48,8 @@ class NodeProcess:
 
     def left(self) -> Sequence[Process]:
         """Return its living processes; that there are none is not taken from an earlier look."""
-        scan = self._launcher.scan
-        return scan.look().get(self.name) or scan.look(0.0).get(self.name, ())
+        members = self._launcher.members
+        return members.look().get(self.name) or members.look(0.0).get(self.name, ())
 
     def look_for_end(self) -> None:
         """Look anew for the end of the process itself, of which nobody has told."""
@@ -86,10 +63,10 @@ class NodeProcess:
         """Read its last output and forget it."""
         for reader in self._readers:
             reader.close()
-        self._launcher.scan.members.remove(self.pid)
+        self._launcher.members.remove(self.pid)
 
     def _on_end(self, _ended: object) -> None:
-        self._launcher.scan.forget()
+        self._launcher.members.look_anew()
         for reader in self._readers:
             reader.drain()
 
@@ -103,10 +80,10 @@ async def _inner_exit(ended: asyncio.Future[Exit]) -> Exit:
 class ProcessLauncher:
     """Starts processes for nodes, and reads their output into the log."""
 
-    def __init__(self, plan: Plan, spawner: Spawner, reaper: Reaper, scan: ProcessScan, log: SessionLog) -> None:
+    def __init__(self, plan: Plan, spawner: Spawner, reaper: Reaper, members: Members, log: SessionLog) -> None:
         self.spawner = spawner
         self.reaper = reaper
-        self.scan = scan
+        self.members = members
         self._plan = plan
         self._log = log
 
@@ -135,8 +112,7 @@ class ProcessLauncher:
         finally:
             os.close(out_write)
             os.close(err_write)
-        self.scan.members.add(node.name, spawned)
-        self.scan.forget()
+        self.members.add(node.name, spawned)
         return NodeProcess(node.name, spawned, self, readers, confined=bool(within))
 
 

@@ -34,7 +34,7 @@ from launcher.spawn_server.spawner import Spawner, SpawnError
 from launcher.spawn_server.start import SpawnRequest, SpawnServerHandle
 from launcher.status import Severity, Stray
 from launcher.supervisor.plan import Plan
-from launcher.supervisor.process import Orphans, ProcessLauncher, ProcessScan, helping
+from launcher.supervisor.process import Orphans, ProcessLauncher, helping
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
 from launcher.wire import MAX_MESSAGE_BYTES, encode, pack
@@ -91,7 +91,7 @@ def _record(plan: Plan, run_id: str, client: int) -> RunRecord:
         since_s=time.time(),
     )
     nodes = tuple(node.name for node in plan.nodes)
-    return RunRecord(Path(plan.run_dir, run_id), session, nodes, {}, plan.drives)
+    return RunRecord(Path(plan.run_dir, run_id), session, nodes, plan.drives)
 
 
 def _claim(run_folder: RunFolder, plan: Plan) -> bool:
@@ -179,9 +179,9 @@ class Supervisor:
             self._hello, lambda: self._log.rings, lambda severity, words: self._log.say(AGENT, severity, words)
         )
         self._log = SessionLog((node.name for node in plan.nodes), self._files, self.control.lines_came)
-        scan = ProcessScan(Members(self.info.run_id))
-        launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._log)
-        self._session = Session(plan, launcher, self._log, self._status_changed)
+        members = Members(self.info.run_id)
+        launcher = ProcessLauncher(plan, self._spawner, self._reaper, members, self._log)
+        self._session = Session(plan, launcher, self._log, self.control.status_changed)
         open_because = why_open(os.environ, plan.session.discovery)
         if open_because:
             self._log.say(DECK, Severity.WARN, open_because)
@@ -189,8 +189,6 @@ class Supervisor:
         self._end = asyncio.Event()
         self._hurry = asyncio.Event()
         self._reason = ""
-        self._record_failed = False
-        self._pids: dict[str, int | None] = {}
 
     async def run(self, stdin: asyncio.StreamReader) -> None:
         self._reaper.install(self._loop)
@@ -326,24 +324,6 @@ class Supervisor:
             # An end that it had begun is carried out as it was asked for.
             self._finish(say("the screen that started it is gone"), now=not self._end.is_set())
 
-    def _status_changed(self, name: str) -> None:
-        status = self._session.nodes[name].status()
-        if self._pids.get(name) != status.pid:
-            self._pids[name] = status.pid
-            self._write_record()
-        self.control.status_changed(name)
-
-    def _write_record(self) -> None:
-        """Record the processes of the nodes, for cleaning up after a sudden end."""
-        try:
-            self._run_folder.note(self._session.processes)
-        except OSError as problem:
-            if not self._record_failed:
-                self._record_failed = True
-                self._log.say(DECK, Severity.ERROR, _no_room(self._run_folder.record.folder, problem))
-        else:
-            self._record_failed = False
-
     def _warn(self, words: Words) -> None:
         self._log.say(DECK, Severity.WARN, words)
 
@@ -371,7 +351,7 @@ class Supervisor:
 
     def _find_strays(self) -> None:
         run_dir = self._run_folder.run_dir
-        strays = find_strays(run_dir)
+        strays = find_strays()
         forget_ended_runs(run_dir, strays)
         if strays != self.strays:
             self.strays = strays

@@ -170,7 +170,7 @@ class Session:
             await asyncio.sleep(USAGE_EVERY_S)
             if not any(node.state.alive for node in self.nodes.values()):
                 continue
-            members = self._launcher.scan.look(0.0)
+            members = self._launcher.members.look(0.0)
             usages = self._meter.measure(members, self.clock.now())
             for name, node in self.nodes.items():
                 if node.state.alive:

@@ -147,7 +147,7 @@ HELLO = "nodes: {hello: {run: nodes.hello}}"
 def beside(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Somebody who has logged in from 10.0.0.1 runs a lesson in whatever domain is asked for."""
     session = SessionInfo(new_run_id(), "", "02-sonar-safety", started_by=Who(host="10.0.0.1"))
-    neighbour = Neighbour(RunRecord(tmp_path, session, (), {}), "", "")
+    neighbour = Neighbour(RunRecord(tmp_path, session, ()), "", "")
     monkeypatch.setattr(shared_domain, "neighbours", lambda _everyone, _domain: [neighbour])
     monkeypatch.setattr(shared_domain, "supervisors", list)
 

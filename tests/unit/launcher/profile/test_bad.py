@@ -13,9 +13,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from launcher.errors import ProfileError
+from launcher.parts import Given, marked
 from launcher.profile.load import load_profile
 from launcher.profile.model import Profile
-from launcher.profile.node import Document, Given, Node, Ready, marked
+from launcher.profile.node import Node, Ready
 from launcher.profile.panels import PANELS
 from tests.unit.profile_files import refused, told, written
 
@@ -137,7 +138,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("above", "model"), [("{key}: 1", Profile), ("nodes: {{a: {{exec: [x], {key}: 1}}}}", Node)])
-def test_what_the_loader_gives_cannot_be_written(above: str, model: type[Document], tmp_path: Path) -> None:
+def test_what_the_loader_gives_cannot_be_written(above: str, model: type, tmp_path: Path) -> None:
     for key in marked(model, Given):
         text = above.format(key=key) if model is Node else above.format(key=key) + "\nnodes: {a: {exec: [x]}}"
         (message,) = told(tmp_path, text)
