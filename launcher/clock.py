@@ -4,21 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import time
-from typing import Protocol
 
 
-class Clock(Protocol):
-    """A monotonic clock with a way to wait."""
-
-    def now(self) -> float:
-        """Return monotonic seconds."""
-
-    async def wait(self, event: asyncio.Event, within_s: float) -> bool:
-        """Wait for `event`, at most `within_s`; return whether it was set."""
-
-
-class MonotonicClock:
-    """The machine's monotonic clock."""
+class Clock:
+    """The machine's monotonic clock, with a way to wait."""
 
     def now(self) -> float:
         return time.monotonic()

@@ -25,8 +25,8 @@ import socket
 import sys
 from typing import TYPE_CHECKING, Any
 
-from launcher.processes.abandoned import end_all
 from launcher.processes.members import is_marked
+from launcher.processes.signal import end_all
 from launcher.processes.table import RUN_MARK, processes, read_process
 from launcher.spawn_server.node import ENDING, become
 from launcher.spawn_server.preload import Preload

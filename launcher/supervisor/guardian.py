@@ -11,8 +11,8 @@ import os
 import signal
 from typing import TYPE_CHECKING, NoReturn
 
-from launcher.processes.abandoned import end_all
 from launcher.processes.prctl import become_subreaper
+from launcher.processes.signal import end_all
 from launcher.processes.table import GUARDIAN_NAME, processes
 from launcher.processes.title import show_name, show_title
 

@@ -382,7 +382,7 @@ class SupervisedNode:
     async def _end_all_of_it(self, now: _Now) -> None:
         """Stop what is left: everything if the node is to stop, else what its process left."""
         now.stop = StagedStop(
-            now.process, self._session.clock, self._held_up, QUICK if self._hurried else PATIENT, self._outlived
+            now.process.left, self._session.clock, self._held_up, QUICK if self._hurried else PATIENT, self._outlived
         )
         if now.process.ended.done() and not self._down:
             left = now.process.left()

@@ -72,7 +72,7 @@ class OwnFiles:
         stop = asyncio.Event()
         ending = asyncio.ensure_future(self._changed.wait())
         ending.add_done_callback(lambda _ended: stop.set())
-        there = [folder for folder in folders if os.path.isdir(folder)]  # noqa: PTH112
+        there = [folder for folder in folders if os.path.isdir(folder)]  # noqa: ASYNC240, PTH112
         if not there:
             await asyncio.sleep(AGAIN_S)
             return

@@ -55,10 +55,6 @@ class NodeProcess:
         """Look anew for the end of the process itself, of which nobody has told."""
         self._launcher.reaper.look_for(self.pid, self.started_ticks)
 
-    def signal(self, process: Process, number: signal.Signals) -> None:
-        """Send one of them a signal, and wake it if it is suspended, so that it handles it."""
-        send(process, number, signal.SIGCONT)
-
     async def close(self) -> None:
         """Read its last output and forget it."""
         for reader in self._readers:
@@ -116,28 +112,17 @@ class ProcessLauncher:
         return NodeProcess(node.name, spawned, self, readers, confined=bool(within))
 
 
-class Orphans:
-    """The remaining processes of a run whose nodes are gone; a `launcher.processes.stop.Target`."""
-
-    def __init__(self, run_id: str, spawner: Spawner) -> None:
-        """The spawn server is not an orphan: it is needed to the end."""
-        self._run_id = run_id
-        self._spawner = spawner
-
-    def left(self) -> Sequence[Process]:
-        """Return the processes with the run's mark, and the children we have adopted."""
-        us = os.getpid()
-        return [
-            process
-            for process in processes()
-            if process.pid not in (us, self._spawner.server_pid)
-            and not process.zombie
-            and (process.parent == us or is_marked(process, self._run_id))
-        ]
-
-    def signal(self, process: Process, number: signal.Signals) -> None:
-        """Send one of them a signal, and wake it so that it handles it."""
-        send(process, number, signal.SIGCONT)
+def orphans(run_id: str, spawner: Spawner) -> Sequence[Process]:
+    """Return the remaining processes of a run whose nodes are gone: with its mark, or adopted by us."""
+    # The spawn server is needed to the end.
+    needed = (os.getpid(), spawner.server_pid)
+    return [
+        process
+        for process in processes()
+        if process.pid not in needed
+        and not process.zombie
+        and (process.parent == os.getpid() or is_marked(process, run_id))
+    ]
 
 
 @contextlib.asynccontextmanager

@@ -34,7 +34,7 @@ from launcher.spawn_server.spawner import Spawner, SpawnError
 from launcher.spawn_server.start import SpawnRequest, SpawnServerHandle
 from launcher.status import Severity, Stray
 from launcher.supervisor.plan import Plan
-from launcher.supervisor.process import Orphans, ProcessLauncher, helping
+from launcher.supervisor.process import ProcessLauncher, helping, orphans
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
 from launcher.wire import MAX_MESSAGE_BYTES, encode, pack
@@ -276,8 +276,8 @@ class Supervisor:
             await asyncio.wait(stopping, timeout=HURRIED_S)
         hurry.cancel()
         # Processes that can no longer be attributed to their node.
-        orphans = Orphans(self.info.run_id, self._spawner)
-        left = await end_all(orphans, self._session.clock, HURRIED_S)
+        run_id, spawner = self.info.run_id, self._spawner
+        left = await end_all(lambda: orphans(run_id, spawner), self._session.clock, HURRIED_S)
         if left:
             words = say("{reason}; still running: {who}", reason=self._reason, who=who(left))
             self._reason = words

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Annotated, Any
 
-from launcher.clock import Clock, MonotonicClock
+from launcher.clock import Clock
 from launcher.control.requests import BadRequestError, request
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.telling import fault_in
@@ -57,7 +57,7 @@ class Session:
         self, plan: Plan, launcher: ProcessLauncher, log: SessionLog, on_change: Callable[[str], None]
     ) -> None:
         """`on_change` is called with the name of each node whose status has changed."""
-        self.clock: Clock = MonotonicClock()
+        self.clock = Clock()
         self.plan = plan
         self.log = log
         log.heard, log.told = self.heard, self._take_told

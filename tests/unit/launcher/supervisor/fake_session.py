@@ -42,11 +42,11 @@ class FakeProcess:
     def left(self) -> list[Process]:
         return [Process(pid, "fake", "S", 1, self.pid, self.pid, pid, 0) for pid in self._living]
 
-    def signal(self, process: Process, number: signal.Signals) -> None:
-        self.heard.append((process.pid, number))
+    def hear(self, pid: int, number: signal.Signals) -> None:
+        self.heard.append((pid, number))
         kills = number == signal.SIGKILL and not self.immortal
-        if number in self._living[process.pid] or kills:
-            self.end(process.pid, Exit(None, number.name))
+        if number in self._living[pid] or kills:
+            self.end(pid, Exit(None, number.name))
 
     def end(self, pid: int, how: Exit) -> None:
         del self._living[pid]
@@ -82,6 +82,9 @@ class FakeSession:
         self.said_last = "no such port"
         self.fault: NodeFault | None = None
         self.early: NodeFault | None = None
+
+    def send(self, process: Process, number: signal.Signals, _wakes: signal.Signals) -> None:
+        self.process.hear(process.pid, number)
 
     @property
     def process(self) -> FakeProcess:
