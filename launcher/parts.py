@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from inspect import get_annotations
 from typing import Annotated, Any, ClassVar, TypeVar
 
@@ -62,6 +63,7 @@ class Checked:
         return handler(schema) if self.schema is None else dict(self.schema)
 
 
+@cache
 def marked(kind: type, mark: type[M]) -> dict[str, M]:
     """Return the fields with a mark of this type, by name."""
     marks = {name: getattr(hint, "__metadata__", ()) for name, hint in get_annotations(kind, eval_str=True).items()}

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import ctypes
 
-from launcher.processes.prctl import set_short_name
 from launcher.processes.table import NODE_MARK, RUN_MARK, SUPERVISOR_MARK, stat_fields
 
 ROOM_ARGUMENT = "-" * 160
@@ -30,11 +29,6 @@ def show_title(title: str) -> None:
     """Make this process appear as `title`."""
     areas = _areas()
     _write(areas[_ARG_START], areas[_ARG_END], title.encode())
-
-
-def show_name(name: str) -> None:
-    """Set the name that `top` shows for this process."""
-    set_short_name(name)
 
 
 def show_mark(mark: str, text: str) -> bool:

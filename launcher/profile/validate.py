@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from contextlib import suppress
 from dataclasses import replace
+from functools import cache
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
@@ -94,7 +95,7 @@ def _validated(model: type[D], data: Any, where: Where, problems: Problems) -> D
         if data.pop(key, None) is not None:
             problems.at((*where, key), *_unknown((*where, key), problems.tree), key=True)
     try:
-        return TypeAdapter(model).validate_python(data)
+        return _adapter(model).validate_python(data)
     except ValidationError as error:
         faults = error.errors(include_url=False)
     for details in faults:
@@ -104,8 +105,13 @@ def _validated(model: type[D], data: Any, where: Where, problems: Problems) -> D
         return None
     at_fault = {details["loc"][0] for details in faults if details["loc"]}
     with suppress(ValidationError):
-        return TypeAdapter(model).validate_python({k: v for k, v in data.items() if k not in at_fault})
+        return _adapter(model).validate_python({k: v for k, v in data.items() if k not in at_fault})
     return None
+
+
+@cache
+def _adapter(model: type[D]) -> TypeAdapter[D]:
+    return TypeAdapter(model)
 
 
 def _only_follows(details: ErrorDetails) -> bool:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 from launcher import node_program
 from launcher.faults import CHECK_FIELDS
-from launcher.processes.prctl import die_with_parent, leave_libraries_alone_at_exit
+from launcher.processes.prctl import die_with_parent, leave_libraries_alone_at_exit, set_short_name
 from launcher.processes.table import NODE_MARK
-from launcher.processes.title import show_mark, show_name, show_title
+from launcher.processes.title import show_mark, show_title
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def become(request: SpawnRequest, fds: Sequence[int], supervisor: int, preload: 
     elif request.kind == "module" and preload.broken:
         _execute((sys.executable, node_program.__file__, *request.argv))
     show_title(request.title)
-    show_name(request.name)
+    set_short_name(request.name)
     show_mark(NODE_MARK, request.name)
     renew_streams()
     if request.kind == "module":

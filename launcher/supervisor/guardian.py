@@ -11,10 +11,10 @@ import os
 import signal
 from typing import TYPE_CHECKING, NoReturn
 
-from launcher.processes.prctl import become_subreaper
+from launcher.processes.prctl import become_subreaper, set_short_name
 from launcher.processes.signal import end_all
 from launcher.processes.table import GUARDIAN_NAME, processes
-from launcher.processes.title import show_name, show_title
+from launcher.processes.title import show_title
 
 if TYPE_CHECKING:
     from launcher.processes.table import Process
@@ -35,7 +35,7 @@ def _guard(supervisor: int) -> NoReturn:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     show_title("deck: guardian")
-    show_name(GUARDIAN_NAME)
+    set_short_name(GUARDIAN_NAME)
     nowhere = os.open(os.devnull, os.O_RDWR)
     for fd in range(3):
         # A reader that waits for the end of the supervisor's output must not wait for us.
