@@ -89,9 +89,7 @@ def _single(kind: Any, packed: Any) -> Any:  # noqa: ANN401 - of that type
     if hasattr(kind, "unpacked"):
         return _read(kind.unpacked, packed)
     if is_dataclass(kind) and isinstance(packed, dict):
-        kinds = _kinds(kind)
-        given = {name: _part(name, kinds[name], packed[name]) for name in kinds if name in packed}
-        return _read(lambda parts: kind(**parts), given)
+        return _dataclass(kind, packed)
     if issubclass(kind, Enum):
         return kind(packed)
     if isinstance(packed, kind) and (type(packed) is not bool or kind is bool):
@@ -109,6 +107,12 @@ def _one_of(kinds: tuple[Any, ...], packed: object) -> Any:  # noqa: ANN401 - of
     with suppress(ValueError):
         return unpack(first, packed)
     return _one_of(tuple(others), packed)
+
+
+def _dataclass(kind: Any, packed: Mapping[str, Any]) -> Any:  # noqa: ANN401 - of that type
+    kinds = _kinds(kind)
+    given = {name: _part(name, kinds[name], packed[name]) for name in kinds if name in packed}
+    return _read(lambda parts: kind(**parts), given)
 
 
 @cache

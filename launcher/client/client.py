@@ -210,7 +210,8 @@ async def _greeted(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, f
         writer.write(encode({"deck": VERSION}))
         said: dict[str, Any] = read_json(await _first_line(reader, supervisor_of(folder.name)))
         if said.get("deck") == VERSION:
-            return unpack(Hello, said)
+            hello: Hello = unpack(Hello, said)
+            return hello
     except asyncio.TimeoutError as problem:
         raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
     except (OSError, ValueError) as problem:

@@ -94,10 +94,13 @@ def _validated(model: type[D], data: Any, where: Where, problems: Problems) -> D
     for key in marked(model, Given) if isinstance(data, dict) else ():
         if data.pop(key, None) is not None:
             problems.at((*where, key), *_unknown((*where, key), problems.tree), key=True)
+    found: D
     try:
-        return _adapter(model).validate_python(data)
+        found = _adapter(model).validate_python(data)
     except ValidationError as error:
         faults = error.errors(include_url=False)
+    else:
+        return found
     for details in faults:
         if not _only_follows(details):
             _add(details, where, problems)
@@ -105,12 +108,13 @@ def _validated(model: type[D], data: Any, where: Where, problems: Problems) -> D
         return None
     at_fault = {details["loc"][0] for details in faults if details["loc"]}
     with suppress(ValidationError):
-        return _adapter(model).validate_python({k: v for k, v in data.items() if k not in at_fault})
+        found = _adapter(model).validate_python({k: v for k, v in data.items() if k not in at_fault})
+        return found
     return None
 
 
 @cache
-def _adapter(model: type[D]) -> TypeAdapter[D]:
+def _adapter(model: Any) -> TypeAdapter[Any]:  # noqa: ANN401 - a model or a dataclass
     return TypeAdapter(model)
 
 
@@ -194,8 +198,8 @@ def _likely_kind(check: object) -> str:
 def _unknown(where: Where, tree: Branch) -> tuple[str, str]:
     model = _model(where[:-1], tree)
     given = marked(model, Given)
-    names = model.model_fields if issubclass(model, BaseModel) else model.__dataclass_fields__
-    known = [name for name in names if name not in given]
+    fields = getattr(model, "model_fields" if issubclass(model, BaseModel) else "__dataclass_fields__")
+    known = [name for name in fields if name not in given]
     hint = did_you_mean(str(where[-1]), known) or say("known: {keys}", keys=", ".join(known))
     return say("unknown key"), hint
 

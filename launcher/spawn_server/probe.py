@@ -81,7 +81,7 @@ class MessageRates:
     def __init__(self, node: Node) -> None:
         """`node`: the node that subscribes."""
         self._node = node
-        self._counted: dict[tuple[str, str], tuple[Subscription[Any], ArrivalRate]] = {}
+        self._counted: dict[tuple[str, str], tuple[Subscription, ArrivalRate]] = {}
 
     def rate_hz(self, topic: str, type_name: str) -> float | None:
         """Return messages per second, 0 until enough have arrived; None if their type is not installed."""
@@ -100,7 +100,7 @@ class MessageRates:
                 return rate.hz(time.time())
             rate.add(taken[1]["source_timestamp"] / 1e9, taken[1]["received_timestamp"] / 1e9)
 
-    def _subscribed(self, topic: str, kind: type[Any]) -> Subscription[Any]:
+    def _subscribed(self, topic: str, kind: type[Any]) -> Subscription:
         from rclpy.qos import QoSProfile, ReliabilityPolicy
 
         # This receives from reliable and best-effort publishers.

@@ -250,7 +250,8 @@ async def test_a_process_that_cannot_be_started_is_tried_again(session: FakeSess
 
 OPTIONAL = planned(optional=True)
 MODULE = planned(run="nodes.sonar", exec=None)
-PUBLISHES, SERVES, IS_THERE = (planned(ready=Ready(**{kind: "/x"})) for kind in ("topic", "service", "node"))
+PUBLISHES, SERVES = planned(ready=Ready(topic="/x")), planned(ready=Ready(service="/x"))
+IS_THERE = planned(ready=Ready(node="/x"))
 ABSENT = "deck: command not found: sonar"
 LESSON_GOES_ON = "not installed; the lesson continues without it"
 
