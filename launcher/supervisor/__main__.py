@@ -8,6 +8,7 @@ closed. It answers with one line on stdout: where to connect, or why it cannot r
 from __future__ import annotations
 
 import os
+import sys
 
 from launcher.processes.prctl import become_subreaper
 from launcher.run_id import new_run_id
@@ -25,7 +26,11 @@ def main() -> None:
     # This comes first: its imports take longer than everything done here in the meantime.
     spawn_server = fork_spawn_server(run_id)
 
+    # asyncio does without it where there is none; nobody here speaks TLS, for which it takes 1.4 MB.
+    sys.modules["ssl"] = None  # type: ignore[assignment]
     import asyncio
+
+    del sys.modules["ssl"]
 
     from launcher.supervisor.run import run
 
