@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from launcher.processes.exit import UNSEEN, Exit
 from launcher.processes.stop import PATIENT, QUICK, StagedStop
@@ -326,14 +326,19 @@ class SupervisedNode:
     async def _launched(self) -> NodeProcess | None:
         """Start a process; None if the node is to stop before there is one."""
         launching = asyncio.ensure_future(self._session.launch(self.plan))
-        launching.add_done_callback(lambda _launched: self._nudge.set())
-        while not launching.done() and not self._down:
-            self._nudge.clear()
-            await self._nudge.wait()
+        await self._until_down_or(launching)
         if not launching.done():
             launching.cancel()
             await asyncio.wait([launching])
         return None if launching.cancelled() else launching.result()
+
+    async def _until_down_or(self, *futures: asyncio.Future[Any]) -> None:
+        """Wait until the node is to stop, or one of these is done."""
+        for future in futures:
+            future.add_done_callback(lambda _done: self._nudge.set())
+        while not self._down and not any(future.done() for future in futures):
+            self._nudge.clear()
+            await self._nudge.wait()
 
     async def _see_through(self, process: NodeProcess) -> tuple[Exit, float, str]:
         """Follow a process; return its end, its age in seconds, and why it was ended by Deck."""
@@ -343,13 +348,11 @@ class SupervisedNode:
         if not self._does_not_compile:
             self.fault = None
         self.say(Severity.INFO, say("started, pid {pid}", pid=process.pid))
-        process.ended.add_done_callback(lambda _ended: self._nudge.set())
         ready = asyncio.create_task(bring_up(self, self._session))
-        ready.add_done_callback(lambda _ready: self._nudge.set())
-        while not (process.ended.done() or self._down or now.failure):
-            self._nudge.clear()
-            await self._nudge.wait()
-            now.failure = ready.result() if ready.done() and not ready.cancelled() else ""
+        await self._until_down_or(process.ended, ready)
+        now.failure = ready.result() if ready.done() else ""
+        if not now.failure:
+            await self._until_down_or(process.ended)
         ready.cancel()
         lasted = clock.now() - now.started
         if now.failure:

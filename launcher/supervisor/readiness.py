@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -68,21 +68,21 @@ class NotBroughtUpError(Exception):
 
 
 class Readiness:
-    """Reports when conditions are met; all conditions are known from the start."""
+    """Reports when conditions are met."""
 
     def __init__(
         self,
-        conditions: Sequence[Ready],
+        conditions: Iterable[Ready],
         spawner: Spawner,
         reaper: Reaper,
         env: Mapping[str, str | None],
         on_clashes: Callable[[Sequence[Clash]], None],
     ) -> None:
-        """`env`: the variables that the probe needs to watch the right domain.
+        """`conditions`: all that will be waited for; `env`: the variables to watch the right domain.
 
         `on_clashes` is called with the topics of several types as often as the probe reports.
         """
-        self._conditions = list(dict.fromkeys(conditions))
+        self._conditions = list(dict.fromkeys(each for each in conditions if not each.lifecycle))
         self._spawner = spawner
         self._reaper = reaper
         self._env = env
@@ -103,8 +103,12 @@ class Readiness:
         """Return once `condition` holds; until then `tell` gets every new state of the topic.
 
         Raises:
+            NotBroughtUpError: if a transition to the state of a lifecycle has failed.
             UnwatchableError: if the graph cannot be watched.
         """
+        if condition.lifecycle:
+            await self._comes_to_live(condition, tell)
+            return
         if condition in self._holding:
             return
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -117,6 +121,22 @@ class Readiness:
         finally:
             self._waiters.pop(future, None)
             self._stop_later()
+
+    async def _comes_to_live(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
+        """Wait for the state of a lifecycle by a process of its own, which ends with the wait."""
+        wanted = json.dumps([condition.node, condition.lifecycle, condition.goes])
+        request = SpawnRequest("lifecycle", "deck_lifecycle", "deck: lifecycle", (wanted,), "/", self._env)
+        for _attempt in range(MAX_PROBES):
+            with contextlib.suppress(SpawnError, ValueError):
+                async with helping(self._spawner, self._reaper, request) as reports:
+                    async for line in reports:
+                        told = read_json(line)
+                        if told["state"] == condition.lifecycle:
+                            return
+                        if "failed" in told:
+                            raise NotBroughtUpError(told["failed"], told["state"])
+                        tell(Seen((told["state"],)))
+        raise UnwatchableError
 
     def renew(self) -> None:
         """Start a new probe: one that has seen a node alive keeps seeing it after its death."""
@@ -157,20 +177,10 @@ class Readiness:
         async with helping(self._spawner, self._reaper, request) as reports:
             async for line in reports:
                 told = read_json(line)
-                self._learn(
-                    frozenset(self._conditions[position] for position in told["met"]),
-                    {
-                        self._conditions[position]: Seen(tuple(types), rate_hz)
-                        for position, types, rate_hz in told["seen"]
-                    },
-                )
+                seen = {self._conditions[at]: Seen(tuple(types), rate_hz) for at, types, rate_hz in told["seen"]}
+                self._learn(frozenset(self._conditions[at] for at in told["met"]), seen)
                 if told["clashes"] is not None:
-                    self._on_clashes(
-                        [
-                            Clash(topic, tuple((user, kind) for user, kind in users))
-                            for topic, users in told["clashes"]
-                        ]
-                    )
+                    self._on_clashes([Clash(topic, tuple(map(tuple, users))) for topic, users in told["clashes"]])
 
     def _learn(self, holding: frozenset[Ready], seen: dict[Ready, Seen]) -> None:
         before, self._holding, self._seen = self._seen, holding, seen
@@ -187,43 +197,6 @@ def _asked(condition: Ready) -> tuple[str, str | None, str, float]:
     """Return a condition as the probe takes it: kind, name, type and rate."""
     kind = "topic" if condition.topic else "service" if condition.service else "node"
     return kind, getattr(condition, kind), condition.type or "", condition.rate or 0.0
-
-
-class LifecycleWaits:
-    """Each wait has a process of its own, which ends with it."""
-
-    def __init__(self, spawner: Spawner, reaper: Reaper, env: Mapping[str, str | None]) -> None:
-        """`env`: the variables that a process needs to join the right domain."""
-        self._spawner = spawner
-        self._reaper = reaper
-        self._env = env
-
-    async def until(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
-        """Return once the node is in the wanted state; until then `tell` gets every other state.
-
-        Raises:
-            NotBroughtUpError: if a transition to that state has failed.
-            UnwatchableError: if the graph cannot be watched.
-        """
-        for _attempt in range(MAX_PROBES):
-            if await self._one_process(condition, tell):
-                return
-        raise UnwatchableError
-
-    async def _one_process(self, condition: Ready, tell: Callable[[Seen], None]) -> bool:
-        """Listen to one process; return whether the state was reached before it ended."""
-        wanted = json.dumps([condition.node, condition.lifecycle, condition.goes])
-        request = SpawnRequest("lifecycle", "deck_lifecycle", "deck: lifecycle", (wanted,), "/", self._env)
-        with contextlib.suppress(SpawnError, ValueError):
-            async with helping(self._spawner, self._reaper, request) as reports:
-                async for line in reports:
-                    told = read_json(line)
-                    if told["state"] == condition.lifecycle:
-                        return True
-                    if "failed" in told:
-                        raise NotBroughtUpError(told["failed"], told["state"])
-                    tell(Seen((told["state"],)))
-        return False
 
 
 def clash_of(node: str, file: str, clashes: Sequence[Clash]) -> NodeFault | None:
@@ -279,7 +252,7 @@ async def _comes_true(condition: Ready, node: SupervisedNode, session: Session) 
         elif node.state is NodeState.RUNNING:
             node.become(NodeState.RUNNING, late(condition, found, within_s))
 
-    ready = asyncio.ensure_future(session.ready(condition, tell))
+    ready = asyncio.ensure_future(session.readiness.until(condition, tell))
     came = asyncio.Event()
     ready.add_done_callback(lambda _ready: came.set())
     try:

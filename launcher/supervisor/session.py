@@ -18,13 +18,13 @@ from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.telling import fault_in
 from launcher.logs.session_log import SessionLog
 from launcher.processes.usage import UsageMeter
-from launcher.profile.node import Node, Ready
+from launcher.profile.node import Node
 from launcher.status import LogLine, NodeFault, NodeState, Severity
 from launcher.supervisor.node import SupervisedNode
 from launcher.supervisor.own_files import OwnFiles
 from launcher.supervisor.plan import Plan, stop_waves, with_needs
 from launcher.supervisor.process import NodeProcess, ProcessLauncher
-from launcher.supervisor.readiness import Clash, LifecycleWaits, Readiness, Seen, clash_of
+from launcher.supervisor.readiness import Clash, Readiness, clash_of
 from launcher.supervisor.words import who
 from text.sentences import say
 
@@ -72,14 +72,13 @@ class Session:
         self.ends = False
         """Whether nothing is started any more."""
         self._meter = UsageMeter()
-        self._readiness = Readiness(
-            [each for node in plan.nodes for each in node.conditions if not each.lifecycle],
+        self.readiness = Readiness(
+            (each for node in plan.nodes for each in node.conditions),
             launcher.spawner,
             launcher.reaper,
             plan.env,
             self._tell_clashes,
         )
-        self._lifecycles = LifecycleWaits(launcher.spawner, launcher.reaper, plan.env)
         self.processes: dict[str, tuple[int, int]] = {}
         """Node to the number and the start, in ticks, of its latest process."""
         self._to_return: set[str] = set()
@@ -97,7 +96,7 @@ class Session:
             return
         # The probe goes first: nodes that appear while it watches are found sooner.
         if any(node.plan.conditions or node.plan.file for node in self.nodes.values()):
-            self._readiness.expect()
+            self.readiness.expect()
         for name in with_needs(chosen, self.plan.needs):
             if name in chosen or not self.nodes[name].at_work:
                 self.nodes[name].start()
@@ -185,23 +184,15 @@ class Session:
         """Start the process of a node; raises `SpawnError`."""
         if plan.name in self.processes:
             # It may have died without notice, and a probe that saw it alive still sees it.
-            self._readiness.renew()
+            self.readiness.renew()
         if plan.file:
             self.own_files.note(plan.name, plan.file)
             # Also where it has no condition: are its topics of the types that others use?
-            self._readiness.expect()
+            self.readiness.expect()
         self._faults.pop(plan.name, None)
         process = await self._launcher.launch(plan)
         self.processes[plan.name] = (process.pid, process.started_ticks)
         return process
-
-    async def ready(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
-        """Return once the condition holds; `tell` gets other states.
-
-        Raises `UnwatchableError`, and `NotBroughtUpError` for a lifecycle.
-        """
-        waits = self._lifecycles if condition.lifecycle else self._readiness
-        await waits.until(condition, tell)
 
     def missing(self, plan: Node) -> str:
         """Say which needed nodes are not ready yet; empty if all are."""

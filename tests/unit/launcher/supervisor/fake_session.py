@@ -62,10 +62,10 @@ class FakeProcess:
 
 
 class FakeSession:
-    """Does what a node asks of its session, and of the log of that."""
+    """Does what a node asks of its session, of the log of that, and of what tells that nodes are ready."""
 
     def __init__(self) -> None:
-        self.log = self
+        self.log = self.readiness = self
         self.clock = ManualClock()
         self.started: list[FakeProcess] = []
         self.ends_by: set[int] = {signal.SIGINT}
@@ -97,7 +97,7 @@ class FakeSession:
         self.started.append(FakeProcess(number, self.ends_by, self.grandchild_ends_by))
         return self.process
 
-    async def ready(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
+    async def until(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
         self.tell = tell
         self.awaited.append(condition)
         if not self.watchable:
