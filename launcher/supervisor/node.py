@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     import signal
     from collections.abc import Sequence
 
+    from launcher.processes.members import Usage
     from launcher.processes.table import Process
-    from launcher.processes.usage import Usage
     from launcher.profile.node import Node
     from launcher.supervisor.process import NodeProcess
     from launcher.supervisor.session import Session
@@ -74,7 +74,7 @@ class SupervisedNode:
         self.detail = ""
         self.serves = False
         """Whether the nodes that need it may start."""
-        self.usage: Usage | None = None
+        self.usage: Usage = None, None
         self.fault: NodeFault | None = None
         """What is wrong with the learner's own file."""
         self._clash: NodeFault | None = None
@@ -103,7 +103,8 @@ class SupervisedNode:
         return self._task is not None and not self._task.done()
 
     def status(self) -> NodeStatus:
-        now, last, usage = self._now, self._last, self.usage
+        now, last = self._now, self._last
+        cpu_percent, memory_bytes = self.usage if now else (None, None)
         crash = self._recent_crash()
         fault = self.fault if self._suspended is None else self._suspended
         return NodeStatus(
@@ -116,8 +117,8 @@ class SupervisedNode:
             restarts=self._restarts,
             exit_code=last.code if last and not now else None,
             signal=last.signal if last and not now else None,
-            cpu_percent=usage.cpu_percent if usage and now else None,
-            memory_bytes=usage.memory_bytes if usage and now else None,
+            cpu_percent=cpu_percent,
+            memory_bytes=memory_bytes,
             needs=self.plan.needs,
             file=self.plan.file,
             fault=fault or (crash.fault if crash is not None else None),
@@ -344,7 +345,8 @@ class SupervisedNode:
         """Follow a process; return its end, its age in seconds, and why it was ended by Deck."""
         clock = self._session.clock
         self._now = now = _Now(process, clock.now())
-        self._last = self.usage = self._clash = self._suspended = None
+        self._last = self._clash = self._suspended = None
+        self.usage = None, None
         if not self._does_not_compile:
             self.fault = None
         self.say(Severity.INFO, say("started, pid {pid}", pid=process.pid))

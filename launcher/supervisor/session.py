@@ -17,7 +17,7 @@ from launcher.control.requests import BadRequestError, request
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.telling import fault_in
 from launcher.logs.session_log import SessionLog
-from launcher.processes.usage import UsageMeter
+from launcher.processes.members import UsageMeter
 from launcher.profile.node import Node
 from launcher.status import LogLine, NodeFault, NodeState, Severity
 from launcher.supervisor.node import SupervisedNode
@@ -173,7 +173,7 @@ class Session:
             usages = self._meter.measure(members, self.clock.now())
             for name, node in self.nodes.items():
                 if node.state.alive:
-                    node.usage = usages.get(name)
+                    node.usage = usages.get(name, (None, None))
                     suspended = (process.pid for process in members.get(name, ()) if process.suspended)
                     node.halted(next(suspended, 0))
                     self._on_change(name)
