@@ -123,19 +123,19 @@ class UsageMeter:
         self._cpu = {}
         self._turn += 1
         usages = {}
-        for position, (name, processes) in enumerate(members.items()):
+        for position, (name, own) in enumerate(members.items()):
             ticks = 0
-            for process in processes:
+            for process in own:
                 key = (process.pid, process.started_ticks)
                 self._cpu[key] = process.cpu_ticks
                 ticks += process.cpu_ticks - before.get(key, 0)
-            known = any((process.pid, process.started_ticks) in before for process in processes)
+            known = any((process.pid, process.started_ticks) in before for process in own)
             percent = 100.0 * ticks / TICKS_PER_S / elapsed if elapsed and known else None
-            usages[name] = percent, self._memory_of(name, processes, position)
+            usages[name] = percent, self._memory_of(name, own, position)
         return usages
 
-    def _memory_of(self, name: str, processes: Sequence[Process], position: int) -> int | None:
-        pids = frozenset(process.pid for process in processes)
+    def _memory_of(self, name: str, own: Sequence[Process], position: int) -> int | None:
+        pids = frozenset(process.pid for process in own)
         known = self._memory.get(name)
         if known is None or known[0] != pids or (self._turn + position) % self._MEMORY_EVERY == 0:
             known = self._memory[name] = (pids, proportional_memory(pids))

@@ -14,7 +14,7 @@ from launcher.processes.stop import PATIENT, QUICK, StagedStop
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import IDLE, STUCK, NodeFault, NodeState, NodeStatus, Severity
 from launcher.supervisor.readiness import bring_up
-from launcher.supervisor.restart_policy import Again, Finished, GivenUp, RestartPolicy
+from launcher.supervisor.restart_policy import Again, GivenUp, RestartPolicy
 from launcher.supervisor.words import NOT_EXECUTABLE, NOT_FOUND, end_words, left_undone, stopped_words, suspended, who
 from text.sentences import say
 
@@ -448,10 +448,10 @@ class SupervisedNode:
             return not self._down
         undone = next(filter(None, map(left_undone, self.plan.conditions[::-1])), "")
         idle = self.fault is not None and self.fault.kind == IDLE
-        if self.plan.optional or (isinstance(verdict, Finished) and not undone and not idle):
+        if self.plan.optional or (verdict is None and not undone and not idle):
             self.become(NodeState.EXITED, why)
             return False
-        if isinstance(verdict, Finished):
+        if verdict is None:
             why = why if self.fault is not None else undone
             if not idle:
                 self.say(Severity.ERROR, why)
