@@ -101,7 +101,7 @@ class StartingSupervisor:
         self._begun = True
         try:
             try:
-                answer = await asyncio.wait_for(self._give(plan), ANSWER_WITHIN_S)
+                answer = await asyncio.wait_for(self._answer(plan), ANSWER_WITHIN_S)
             except asyncio.TimeoutError:
                 await self._end()
                 words = say("the supervisor did not answer within {s:g} s", s=ANSWER_WITHIN_S)
@@ -150,15 +150,12 @@ class StartingSupervisor:
         else:
             self._process.kill()
 
-    async def _give(self, plan: Plan) -> dict[str, Any]:
-        stdin = self._process.stdin
-        assert stdin is not None
-        await _write(stdin.fileno(), plan.to_json().encode() + b"\n")
-        return await self._answer()
-
-    async def _answer(self) -> dict[str, Any]:
+    async def _answer(self, plan: Plan) -> dict[str, Any]:
+        """Return what it says to a plan."""
         import asyncio
 
+        assert self._process.stdin is not None
+        await _write(self._process.stdin.fileno(), plan.to_json().encode() + b"\n")
         reader = asyncio.StreamReader()
         transport, _protocol = await asyncio.get_running_loop().connect_read_pipe(
             lambda: asyncio.StreamReaderProtocol(reader), self._process.stdout

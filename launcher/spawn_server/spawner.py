@@ -19,10 +19,8 @@ from text.sentences import Words, say
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-MAX_ATTEMPTS = 4
-"""Attempts for one request, each with a new spawn server if the last one died."""
-MAX_HANGS = 2
-"""How many of them may fail to answer."""
+MAX_ATTEMPTS = 3
+"""Attempts for one request, each with a new spawn server if the last one died, or did not answer."""
 MAX_QUICK_DEATHS = 3
 """After this many spawn servers without a single answer, the next one is cold (no imports)."""
 ANSWER_WITHIN_S = 30.0
@@ -131,15 +129,10 @@ class Spawner:
         Raises:
             SpawnError: if the process was not started.
         """
-        hangs = 0
         for _attempt in range(MAX_ATTEMPTS):
-            server = self._present()
-            spawned = await self._ask(server, request, fds)
+            spawned = await self._ask(self._present(), request, fds)
             if spawned is not None:
                 return spawned
-            hangs += server.hung
-            if hangs == MAX_HANGS:
-                raise SpawnError(say("the spawn server does not answer"))
         raise SpawnError(say("the spawn server keeps ending"))
 
     async def _ask(self, server: _Server, request: SpawnRequest, fds: Sequence[int]) -> SpawnedProcess | None:
