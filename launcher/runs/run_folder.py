@@ -99,28 +99,15 @@ class RunFolder:
         return False
 
     def _made_again(self) -> socket.socket:
-        """Create folder, record and socket; on failure leave nothing that looks like a session."""
-        before, held = self.record.folder, os.dup(self._descriptor)
-        try:
-            self._settle_where_possible()
-            if not os.path.samestat(os.fstat(held), os.fstat(self._descriptor)):
-                _empty(held)
-                if before != self._proper:
-                    with suppress(OSError):
-                        before.rmdir()
-            return self.listen()
-        finally:
-            os.close(held)
-
-    def _settle_where_possible(self) -> None:
+        """Create folder, record and socket, in a place of last resort if necessary."""
         try:
             own_folder(self.run_dir)
             self.record = replace(self.record, folder=self._proper)
             self.settle()
         except (OSError, RunDirError):
-            folder = Path(tempfile.mkdtemp(prefix="deck-"))
-            self.record = replace(self.record, folder=folder)
+            self.record = replace(self.record, folder=Path(tempfile.mkdtemp(prefix="deck-")))
             self.settle()
+        return self.listen()
 
     def _hold(self) -> None:
         """Hold the folder open, under the same descriptor number as the one before."""
@@ -132,9 +119,3 @@ class RunFolder:
         else:
             os.dup2(descriptor, self._descriptor, inheritable=False)
             os.close(descriptor)
-
-
-def _empty(folder: int) -> None:
-    for name in (RECORD_NAME, SOCKET_NAME):
-        with suppress(OSError):
-            os.unlink(name, dir_fd=folder)
