@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from launcher.processes.table import Process
     from launcher.profile.node import Node
     from launcher.supervisor.process import NodeProcess
-    from launcher.supervisor.session import Session
+    from launcher.supervisor.readiness import NodeSession
 
 USAGE = 2
 """Exit code of a program that rejects its arguments; Deck's nodes use it for parameters."""
@@ -68,7 +68,7 @@ class _Now:
 class SupervisedNode:
     """One node of the session."""
 
-    def __init__(self, plan: Node, session: Session) -> None:
+    def __init__(self, plan: Node, session: NodeSession) -> None:
         self.plan = plan
         self.state = NodeState.WAITING
         self.detail = ""

@@ -11,21 +11,19 @@ import contextlib
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple, Protocol
 
+from launcher.clock import Clock
+from launcher.logs.session_log import SessionLog
 from launcher.processes.exit import Reaper
-from launcher.profile.node import Ready
+from launcher.profile.node import Node, Ready
 from launcher.spawn_server.spawner import Spawner, SpawnError
 from launcher.spawn_server.start import SpawnRequest
 from launcher.status import NodeFault, NodeState, Severity
-from launcher.supervisor.process import helping
+from launcher.supervisor.process import NodeProcess, helping
 from launcher.supervisor.words import instead, late, not_brought_up, what
 from text.nested import read_json
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from launcher.supervisor.node import SupervisedNode
-    from launcher.supervisor.session import Session
 
 LATE_S = 60.0
 """How long after its time limit a node may still become ready."""
@@ -220,7 +218,43 @@ def clash_of(node: str, file: str, clashes: Sequence[Clash]) -> NodeFault | None
     return None
 
 
-async def bring_up(node: SupervisedNode, session: Session) -> str:
+class NodeSession(Protocol):
+    """What a node uses of its session."""
+
+    clock: Clock
+    log: SessionLog
+    readiness: Readiness
+
+    async def launch(self, plan: Node) -> NodeProcess:
+        """Start the process of a node; raises `SpawnError`."""
+
+    def missing(self, plan: Node) -> str:
+        """Say which needed nodes are not ready yet; empty if all are."""
+
+    def crash(self, plan: Node) -> NodeFault | None:
+        """Return what the last output of a learner's own node tells of its end."""
+
+    def ended_early(self, plan: Node) -> NodeFault | None:
+        """Return why a learner's own node has ended without an error; None if it was to."""
+
+    def changed(self, name: str, state: NodeState) -> None:
+        """Notify the clients, and the nodes that need this one."""
+
+
+class StartedNode(Protocol):
+    """The node that is to be ready."""
+
+    plan: Node
+    state: NodeState
+
+    def become(self, state: NodeState, detail: str = "", *, serves: bool = False) -> None:
+        """Give it another state; `serves`: the nodes that need it may start."""
+
+    def say(self, severity: Severity, words: str) -> None:
+        """Add a line about it to its log."""
+
+
+async def bring_up(node: StartedNode, session: NodeSession) -> str:
     """Wait for all that a node has to be; return why it will never be ready, empty if it may."""
     plan = node.plan
     if not plan.conditions:
@@ -238,7 +272,7 @@ async def bring_up(node: SupervisedNode, session: Session) -> str:
     return ""
 
 
-async def _comes_true(condition: Ready, node: SupervisedNode, session: Session) -> bool:
+async def _comes_true(condition: Ready, node: StartedNode, session: NodeSession) -> bool:
     """Wait for a condition; return False if it does not come to hold in the longest time."""
     within_s, clock = node.plan.within_s, session.clock
     node.become(NodeState.STARTING, say("waiting for {what}", what=what(condition)))

@@ -178,10 +178,9 @@ class Session:
                     node.halted(next(suspended, 0))
                     self._on_change(name)
 
-    # What its nodes use.
+    # What its nodes use: a `NodeSession`, which says what these do.
 
     async def launch(self, plan: Node) -> NodeProcess:
-        """Start the process of a node; raises `SpawnError`."""
         if plan.name in self.processes:
             # It may have died without notice, and a probe that saw it alive still sees it.
             self.readiness.renew()
@@ -195,14 +194,12 @@ class Session:
         return process
 
     def missing(self, plan: Node) -> str:
-        """Say which needed nodes are not ready yet; empty if all are."""
         absent = [self.nodes[name] for name in plan.needs if not self.nodes[name].serves]
         if not absent:
             return ""
         return say("waiting for {nodes}", nodes=", ".join(map(_with_state, absent)))
 
     def crash(self, plan: Node) -> NodeFault | None:
-        """Return what the last output of a learner's own node tells of its end."""
         told = self._faults.get(plan.name)
         if told is not None:
             return told
@@ -276,7 +273,6 @@ class Session:
                 node.clashes(clash_of(f"/{name}", node.plan.file, clashes))
 
     def ended_early(self, plan: Node) -> NodeFault | None:
-        """Return why a learner's own node has ended without an error; None if it was to."""
         from launcher.faults.source import unspun
 
         return unspun(plan.file)
@@ -290,7 +286,6 @@ class Session:
         return {name: node.plan.file for name, node in self.nodes.items() if node.plan.file}
 
     def changed(self, name: str, state: NodeState) -> None:
-        """Notify the clients, and the nodes that need this one."""
         if state is NodeState.READY:
             self._tell_turns(name, self.processes[name][0])
         self._on_change(name)
