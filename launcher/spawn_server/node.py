@@ -21,8 +21,8 @@ from text.plain import plain
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from launcher.spawn_server import SpawnRequest
     from launcher.spawn_server.preload import Preload
-    from launcher.spawn_server.start import SpawnRequest
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
 NOT_EXECUTABLE = 126

@@ -28,9 +28,9 @@ from typing import TYPE_CHECKING, Any
 from launcher.processes.members import is_marked
 from launcher.processes.signal import end_all
 from launcher.processes.table import RUN_MARK, processes, read_process
+from launcher.spawn_server import SpawnRequest
 from launcher.spawn_server.node import ENDING, become
 from launcher.spawn_server.preload import Preload
-from launcher.spawn_server.start import SpawnRequest
 from launcher.wire import unpack
 from text.nested import read_json
 

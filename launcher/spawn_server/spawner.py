@@ -11,7 +11,8 @@ import socket
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from launcher.processes.signal import send
-from launcher.spawn_server.start import SpawnRequest, SpawnServerHandle, start_spawn_server
+from launcher.spawn_server import SpawnRequest
+from launcher.spawn_server.start import SpawnServerHandle, start_spawn_server
 from text.nested import read_json
 from text.os_words import os_reason
 from text.sentences import Words, say

@@ -6,27 +6,10 @@ import os
 import signal
 import socket
 import sys
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from launcher.processes.table import RUN_MARK, read_process
 from launcher.processes.title import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
-
-
-@dataclass(frozen=True)
-class SpawnRequest:
-    """One process to be started."""
-
-    kind: str
-    """`module`: run in the warm interpreter; `exec`: a program; `probe`: the graph probe;
-    `lifecycle`: watch one node's lifecycle."""
-    name: str
-    title: str
-    argv: tuple[str, ...]
-    """For `module`: the module or file with its arguments; for `exec`: the command line."""
-    cwd: str
-    env: Mapping[str, str | None] = field(default_factory=dict)
-    """Changes to the supervisor's environment; None unsets."""
 
 
 @dataclass(frozen=True)

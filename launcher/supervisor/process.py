@@ -15,8 +15,8 @@ from launcher.processes.members import Members, is_marked
 from launcher.processes.signal import send
 from launcher.processes.table import Process, processes
 from launcher.profile.node import Node
+from launcher.spawn_server import SpawnRequest
 from launcher.spawn_server.spawner import SpawnedProcess, Spawner
-from launcher.spawn_server.start import SpawnRequest
 from launcher.supervisor.plan import Plan
 
 _ENDS_WITHIN_S = 3.0

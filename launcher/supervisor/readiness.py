@@ -10,18 +10,17 @@ import asyncio
 import contextlib
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from launcher.clock import Clock
 from launcher.logs.session_log import SessionLog
 from launcher.processes.exit import Reaper
 from launcher.profile.node import Node, Ready
+from launcher.spawn_server import SpawnRequest
 from launcher.spawn_server.spawner import Spawner, SpawnError
-from launcher.spawn_server.start import SpawnRequest
 from launcher.status import NodeFault, NodeState, Severity
 from launcher.supervisor.process import NodeProcess, helping
-from launcher.supervisor.words import instead, late, not_brought_up, what
+from launcher.supervisor.words import Seen, instead, late, not_brought_up, what
 from text.nested import read_json
 from text.sentences import say
 
@@ -31,16 +30,6 @@ MAX_PROBES = 3
 """After this many processes have died in a row, the graph counts as unwatchable."""
 LINGER_S = 5.0
 """The probe stays this long when nothing is waited for: the next node may come soon."""
-
-
-@dataclass(frozen=True)
-class Seen:
-    """The state of a topic whose condition is not met, or that of a node's lifecycle."""
-
-    types: tuple[str, ...]
-    """The types of its publishers; for a lifecycle the one state."""
-    rate_hz: float | None = None
-    """The rate of its messages; None if it is not required or cannot be measured."""
 
 
 class Clash(NamedTuple):

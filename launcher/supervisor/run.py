@@ -30,8 +30,9 @@ from launcher.runs.record import RunRecord, exclusively, supervisors
 from launcher.runs.run_folder import RunFolder
 from launcher.runs.shared_domain import Neighbour, free_domain, rival
 from launcher.runs.strays import end_strays, find_strays, forget_ended_runs
+from launcher.spawn_server import SpawnRequest
 from launcher.spawn_server.spawner import Spawner, SpawnError
-from launcher.spawn_server.start import SpawnRequest, SpawnServerHandle
+from launcher.spawn_server.start import SpawnServerHandle
 from launcher.status import Severity, Stray
 from launcher.supervisor.plan import Plan
 from launcher.supervisor.process import ProcessLauncher, helping, orphans

@@ -14,7 +14,8 @@ from launcher.profile.node import Node, Ready
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import NodeFault, NodeState, Severity
 from launcher.supervisor.node import SupervisedNode
-from launcher.supervisor.readiness import NotBroughtUpError, Seen, UnwatchableError
+from launcher.supervisor.readiness import NotBroughtUpError, UnwatchableError
+from launcher.supervisor.words import Seen
 from tests.unit.manual_clock import ManualClock, settle
 
 PLAN = Node(name="sonar", exec=("sonar",), restart="on-failure")

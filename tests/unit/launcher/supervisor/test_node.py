@@ -11,7 +11,8 @@ from cli.health import well
 from launcher.processes.exit import Exit
 from launcher.profile.node import Node, Ready
 from launcher.status import IDLE, STUCK, NodeFault, NodeState, Severity
-from launcher.supervisor.readiness import NotBroughtUpError, Seen
+from launcher.supervisor.readiness import NotBroughtUpError
+from launcher.supervisor.words import Seen
 from tests.unit.launcher.supervisor.fake_session import PLAN, FakeSession, crash, planned, started
 from tests.unit.manual_clock import settle
 from text.i18n import localized
