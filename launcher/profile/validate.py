@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from contextlib import suppress
 from dataclasses import replace
-from functools import cache
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
@@ -35,6 +34,7 @@ WANTED = {
     "model_type": say("keys and values"),
 }
 _DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
+READERS: dict[type, TypeAdapter[Any]] = {kind: TypeAdapter(kind) for kind in (Profile, Node)}
 UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 MISSING = {"missing": say("`{key}` is missing"), "too_short": say("`{key}` is empty")}
 LIMITS = {
@@ -86,17 +86,18 @@ def _as_text(tree: Tree | None) -> Any:  # noqa: ANN401 - whatever stands there
     return tree.text if tree is not None and not empty(tree) else None
 
 
-def _validated(model: type[D], data: Any, where: Where, problems: Problems) -> D | None:  # noqa: ANN401 - any YAML
+def _validated(kind: type[D], data: Any, where: Where, problems: Problems) -> D | None:  # noqa: ANN401 - any YAML
     """Return the document; if there are problems, without the keys that cause them.
 
     So later checks can report other problems in the same run.
     """
+    model: Any = kind
     for key in marked(model, Given) if isinstance(data, dict) else ():
         if data.pop(key, None) is not None:
             problems.at((*where, key), *_unknown((*where, key), problems.tree), key=True)
     found: D
     try:
-        found = _adapter(model).validate_python(data)
+        found = READERS[model].validate_python(data)
     except ValidationError as error:
         faults = error.errors(include_url=False)
     else:
@@ -108,14 +109,9 @@ def _validated(model: type[D], data: Any, where: Where, problems: Problems) -> D
         return None
     at_fault = {details["loc"][0] for details in faults if details["loc"]}
     with suppress(ValidationError):
-        found = _adapter(model).validate_python({k: v for k, v in data.items() if k not in at_fault})
+        found = READERS[model].validate_python({k: v for k, v in data.items() if k not in at_fault})
         return found
     return None
-
-
-@cache
-def _adapter(model: Any) -> TypeAdapter[Any]:  # noqa: ANN401 - a model or a dataclass
-    return TypeAdapter(model)
 
 
 def _only_follows(details: ErrorDetails) -> bool:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from launcher.domain.discovery import settings_of_discovery
-from launcher.domain.domain import ros_environment
+from launcher.domain.domain import settings_of_domain
 from launcher.faults import CHECK_FIELDS
 from launcher.profile.node import Node
 from launcher.ros_tools import ros_tools, without_wheels
@@ -107,11 +107,10 @@ def plan_of(
 
 
 def _common_env(profile: Profile, node_lang: str) -> Changes:
-    wanted: Mapping[str, str] = ros_environment(os.environ, profile.domain, profile.discovery)
     env: Changes = {
-        name: wanted.get(name) for name in {*wanted, *os.environ} if wanted.get(name) != os.environ.get(name)
+        **settings_of_domain(profile.domain, profile.discovery),
+        **settings_of_discovery(os.environ, profile.discovery),
     }
-    env.update(settings_of_discovery(os.environ, profile.discovery))
     # A single format of log lines, which can be parsed.
     env["RCUTILS_CONSOLE_OUTPUT_FORMAT"] = None
     env["RCUTILS_COLORIZED_OUTPUT"] = "0"
