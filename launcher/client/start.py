@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import launcher
+from launcher.processes.prctl import ROOM_ARGUMENT, room_for_marks
 from launcher.processes.signal import send
 from launcher.processes.table import processes
-from launcher.processes.title import ROOM_ARGUMENT, room_for_marks
 from text.nested import read_json
 
 if TYPE_CHECKING:

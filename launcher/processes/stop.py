@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import signal
+import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,8 +13,22 @@ from launcher.processes.signal import KILLED_AFTER_S, send
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from launcher.clock import Clock
     from launcher.processes.table import Process
+
+
+class Clock:
+    """The machine's monotonic clock, with a way to wait; a test that need not wait has another."""
+
+    def now(self) -> float:
+        return time.monotonic()
+
+    async def wait(self, event: asyncio.Event, within_s: float) -> bool:
+        """Wait for `event`, at most `within_s`; return whether it was set."""
+        try:
+            await asyncio.wait_for(event.wait(), within_s)
+        except asyncio.TimeoutError:
+            return False
+        return True
 
 
 @dataclass(frozen=True)

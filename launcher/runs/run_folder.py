@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 
 from launcher.control.socket import SOCKET_NAME, listen
 from launcher.errors import RunDirError
+from launcher.processes.prctl import show_mark
 from launcher.processes.table import SUPERVISOR_MARK
-from launcher.processes.title import show_mark
 from launcher.rundir import own_folder
 from launcher.runs.record import RECORD_NAME
 from text.sentences import Words, say

@@ -10,8 +10,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from launcher.clock import Clock
-from launcher.processes.stop import StopTimeouts, end_all
+from launcher.processes.stop import Clock, StopTimeouts, end_all
 from launcher.processes.table import (
     GUARDIAN_NAME,
     NODE_MARK,

@@ -13,9 +13,14 @@ from typing import TYPE_CHECKING
 
 from launcher import node_program
 from launcher.faults import CHECK_FIELDS
-from launcher.processes.prctl import die_with_parent, leave_libraries_alone_at_exit, set_short_name
+from launcher.processes.prctl import (
+    die_with_parent,
+    leave_libraries_alone_at_exit,
+    set_short_name,
+    show_mark,
+    show_title,
+)
 from launcher.processes.table import NODE_MARK
-from launcher.processes.title import show_mark, show_title
 from text.plain import plain
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 The first one is forked from the supervisor before that has imported anything; later ones are
 started as `python -m launcher.spawn_server.server FD PID MODE ROOM`: FD is its end of a seqpacket
 socket, PID the supervisor, MODE `warm` or `cold`, and ROOM a filler that makes room for titles
-(`launcher.processes.title`).
+(`launcher.processes.prctl`).
 
 A request is one packet of descriptors: first that of a memory file with a JSON object, then the new
 process's stdin (optional), stdout and stderr. The answer is a packet of JSON,

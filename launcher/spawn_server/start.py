@@ -8,8 +8,8 @@ import socket
 import sys
 from dataclasses import dataclass
 
+from launcher.processes.prctl import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
 from launcher.processes.table import RUN_MARK, read_process
-from launcher.processes.title import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,9 @@ import os
 import signal
 from typing import TYPE_CHECKING, NoReturn
 
-from launcher.processes.prctl import become_subreaper, set_short_name
+from launcher.processes.prctl import become_subreaper, set_short_name, show_title
 from launcher.processes.signal import end_all
 from launcher.processes.table import GUARDIAN_NAME, processes
-from launcher.processes.title import show_title
 
 if TYPE_CHECKING:
     from launcher.processes.table import Process

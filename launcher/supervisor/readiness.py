@@ -12,9 +12,9 @@ import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
-from launcher.clock import Clock
 from launcher.logs.session_log import SessionLog
 from launcher.processes.exit import Reaper
+from launcher.processes.stop import Clock
 from launcher.profile.node import Node, Ready
 from launcher.spawn_server import SpawnRequest
 from launcher.spawn_server.spawner import Spawner, SpawnError

@@ -12,12 +12,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Annotated, Any
 
-from launcher.clock import Clock
 from launcher.control.requests import BadRequestError, request
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.faults.telling import fault_in
 from launcher.logs.session_log import SessionLog
 from launcher.processes.members import UsageMeter
+from launcher.processes.stop import Clock
 from launcher.profile.node import Node
 from launcher.status import LogLine, NodeFault, NodeState, Severity
 from launcher.supervisor.node import SupervisedNode
