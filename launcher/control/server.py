@@ -50,8 +50,6 @@ STUCK_S = 30.0
 MAX_CLIENTS = 64
 GREETED_WITHIN_S = 10.0
 """A connection that says nothing makes room for others after this time."""
-MAX_REQUESTS = 100
-"""Most requests of one client that are served at the same time."""
 
 
 class ControlServer:
@@ -267,9 +265,6 @@ class Client:
 
     def begin(self, serving: Coroutine[Any, Any, None]) -> None:
         """Serve a request alongside the others: stopping a node takes time."""
-        if len(self._requests) >= MAX_REQUESTS:
-            serving.close()
-            raise BadRequestError(say("too many requests at once"))
         task = asyncio.create_task(serving)
         self._requests.add(task)
         task.add_done_callback(self._requests.discard)

@@ -16,7 +16,6 @@ from launcher.client import client as client_module
 from launcher.client import inbox as client_inbox
 from launcher.client.client import SupervisorClient, attach
 from launcher.client.inbox import Inbox, newer
-from launcher.consent import Approval, ConsentAnswer
 from launcher.control.server import MAX_LINES, Client
 from launcher.errors import ConnectionLostError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent, pack_event
@@ -24,7 +23,7 @@ from launcher.faults.crash import refused_arguments
 from launcher.faults.explain import explained
 from launcher.logs.ring import LogRing
 from launcher.spawn_server.probe import COUNTED, ArrivalRate
-from launcher.status import LogLine, NodeState, NodeStatus, Severity, Stray
+from launcher.status import LogLine, NodeState, NodeStatus, Severity
 from launcher.wire import encode
 from tests.dying_supervisor import HELLO, DyingSupervisor
 
@@ -57,18 +56,7 @@ GONE = ClosedEvent(client_module.GONE)
 
 REQUESTS: dict[str, Callable[[SupervisorClient], Awaitable[object]]] = {
     "start": lambda client: client.start("sonar"),
-    "stop": lambda client: client.stop("sonar"),
-    "restart": lambda client: client.restart("sonar"),
-    "exchange": lambda client: client.exchange("sonar", "nodes.mock_sonar"),
-    "history": lambda client: client.history(None, 10),
-    "stop_strays": lambda client: client.stop_strays([Stray(1, 0.0, "sonar", "x", "run-0")]),
-    "attend": lambda client: client.attend(),
-    "answer": lambda client: client.answer(1, ConsentAnswer.ONCE),
-    "end_consent": lambda client: client.end_consent(),
-    "join": lambda client: client.join("key", "agent", Approval.ASK),
     "ask": lambda client: client.ask_consent("key", ["drive"]),
-    "withdraw": lambda client: client.withdraw(),
-    "tell": lambda client: client.tell(Severity.INFO, "words"),
 }
 
 
