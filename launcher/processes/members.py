@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TypeAlias
 
-from launcher.processes.table import NODE_MARK, RUN_MARK, TICKS_PER_S, processes, read_marks
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from launcher.processes.signal import Identified
-    from launcher.processes.table import Process
+from launcher.processes.signal import Identified
+from launcher.processes.table import NODE_MARK, RUN_MARK, TICKS_PER_S, Process, processes, read_marks
 
 _FRESH_S = 0.02
 """What was seen so long ago at most also serves other nodes that are stopping."""

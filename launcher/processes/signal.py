@@ -7,14 +7,10 @@ import errno
 import os
 import signal
 import time
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Callable, Iterator, Sequence
+from typing import Protocol
 
-from launcher.processes.table import read_process
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from launcher.processes.table import Process
+from launcher.processes.table import Process, read_process
 
 _NO_PIDFD = (errno.ENOSYS, errno.EPERM)
 """Errors of a kernel before 5.3, or of a container that does not allow the call."""

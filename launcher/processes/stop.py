@@ -5,15 +5,11 @@ from __future__ import annotations
 import asyncio
 import signal
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from launcher.processes.signal import KILLED_AFTER_S, send
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from launcher.processes.table import Process
+from launcher.processes.table import Process
 
 
 class Clock:

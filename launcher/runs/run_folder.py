@@ -10,25 +10,20 @@ from __future__ import annotations
 
 import asyncio
 import os
+import socket
 import tempfile
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from launcher.control.socket import SOCKET_NAME, listen
 from launcher.errors import RunDirError
 from launcher.processes.prctl import show_mark
 from launcher.processes.table import SUPERVISOR_MARK
 from launcher.rundir import own_folder
-from launcher.runs.record import RECORD_NAME
+from launcher.runs.record import RECORD_NAME, RunRecord
 from text.sentences import Words, say
-
-if TYPE_CHECKING:
-    import socket
-    from collections.abc import Awaitable, Callable
-
-    from launcher.runs.record import RunRecord
 
 LOOK_EVERY_S = 1.0
 

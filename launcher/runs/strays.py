@@ -29,7 +29,7 @@ from launcher.status import Stray
 from text.run_path import OWN_RUN_DIR
 
 _SAME_START_S = 1.5
-"""Tolerance: the kernel gives its boot time to the second, and it drifts with the clock."""
+"""Tolerance: the time of the boot is known to the second, and drifts with the clock."""
 INTERRUPT_S = 2.0
 """From SIGINT to SIGKILL, and the longest wait after that."""
 

@@ -12,6 +12,7 @@ import json
 import os
 import select
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +20,6 @@ from launcher.spawn_server.probe import hidden_node
 from text.nested import read_json
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rclpy.client import Client
     from rclpy.executors import Executor
     from rclpy.node import Node

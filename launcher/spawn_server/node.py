@@ -9,6 +9,7 @@ import os
 import runpy  # noqa: F401 - imported ahead for all forked nodes
 import signal
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from launcher import node_program
@@ -21,12 +22,10 @@ from launcher.processes.prctl import (
     show_title,
 )
 from launcher.processes.table import NODE_MARK
+from launcher.spawn_server import SpawnRequest
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from launcher.spawn_server import SpawnRequest
     from launcher.spawn_server.preload import Preload
 
 ENDING = (signal.SIGINT, signal.SIGTERM)

@@ -17,13 +17,10 @@ import inspect
 import os
 import sys
 import warnings
+from collections.abc import Iterator
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from launcher.node_program import INSTALLATION, is_ours
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 NODES = "nodes"
 _FIRST = ("rclpy", "rclpy.node", "rclpy.executors", "rclpy.action", "rclpy.signals")

@@ -18,6 +18,7 @@ import os
 import select
 import time
 from collections import deque
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -25,8 +26,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from text.nested import read_json
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from rclpy.node import Node
     from rclpy.subscription import Subscription
 

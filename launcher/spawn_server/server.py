@@ -23,21 +23,17 @@ import select
 import signal
 import socket
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 from launcher.processes.members import is_marked
 from launcher.processes.signal import end_all
-from launcher.processes.table import RUN_MARK, processes, read_process
+from launcher.processes.table import RUN_MARK, Process, processes, read_process
 from launcher.spawn_server import SpawnRequest
 from launcher.spawn_server.node import ENDING, become
 from launcher.spawn_server.preload import Preload
 from launcher.wire import unpack
 from text.nested import read_json
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from launcher.processes.table import Process
 
 MAX_FDS = 4
 COLLECT_EVERY_S = 0.05

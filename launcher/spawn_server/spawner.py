@@ -8,7 +8,8 @@ import json
 import os
 import signal
 import socket
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 from launcher.processes.signal import send
 from launcher.spawn_server import SpawnRequest
@@ -16,9 +17,6 @@ from launcher.spawn_server.start import SpawnServerHandle, start_spawn_server
 from text.nested import read_json
 from text.os_words import os_reason
 from text.sentences import Words, say
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 MAX_ATTEMPTS = 3
 """Attempts for one request, each with a new spawn server if the last one died, or did not answer."""

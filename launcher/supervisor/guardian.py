@@ -9,14 +9,11 @@ from __future__ import annotations
 
 import os
 import signal
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from launcher.processes.prctl import become_subreaper, set_short_name, show_title
 from launcher.processes.signal import end_all
-from launcher.processes.table import GUARDIAN_NAME, processes
-
-if TYPE_CHECKING:
-    from launcher.processes.table import Process
+from launcher.processes.table import GUARDIAN_NAME, Process, processes
 
 
 def fork_under_guardian() -> None:

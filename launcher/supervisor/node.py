@@ -6,27 +6,23 @@ It all happens in one task, so that nothing can start the node twice.
 from __future__ import annotations
 
 import asyncio
+import signal
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from launcher.processes.exit import UNSEEN, Exit
+from launcher.processes.members import Usage
 from launcher.processes.stop import PATIENT, QUICK, StagedStop
+from launcher.processes.table import Process
+from launcher.profile.node import Node
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import IDLE, STUCK, NodeFault, NodeState, NodeStatus, Severity
-from launcher.supervisor.readiness import bring_up
+from launcher.supervisor.process import NodeProcess
+from launcher.supervisor.readiness import NodeSession, bring_up
 from launcher.supervisor.restart_policy import Again, GivenUp, RestartPolicy
 from launcher.supervisor.words import NOT_EXECUTABLE, NOT_FOUND, end_words, left_undone, stopped_words, suspended, who
 from text.sentences import say
-
-if TYPE_CHECKING:
-    import signal
-    from collections.abc import Sequence
-
-    from launcher.processes.members import Usage
-    from launcher.processes.table import Process
-    from launcher.profile.node import Node
-    from launcher.supervisor.process import NodeProcess
-    from launcher.supervisor.readiness import NodeSession
 
 USAGE = 2
 """Exit code of a program that rejects its arguments; Deck's nodes use it for parameters."""
