@@ -68,7 +68,7 @@ class Session:
         self.nodes = {node.name: SupervisedNode(node, self) for node in plan.nodes}
         self._launcher = launcher
         self._on_change = on_change
-        self.own_files = OwnFiles(self._own_files, self._saved)
+        self.own_files = OwnFiles(self._learners_files, self._saved)
         self.ends = False
         """Whether nothing is started any more."""
         self._meter = UsageMeter()
@@ -79,8 +79,8 @@ class Session:
             plan.env,
             self._tell_clashes,
         )
-        self.processes: dict[str, tuple[int, int]] = {}
-        """Node to the number and the start, in ticks, of its latest process."""
+        self._pids: dict[str, int] = {}
+        """Node to its latest process."""
         self._to_return: set[str] = set()
         """Nodes that are being stopped for a restart."""
         self._restarting: asyncio.Task[None] | None = None
@@ -181,7 +181,7 @@ class Session:
     # What its nodes use: a `NodeSession`, which says what these do.
 
     async def launch(self, plan: Node) -> NodeProcess:
-        if plan.name in self.processes:
+        if plan.name in self._pids:
             # It may have died without notice, and a probe that saw it alive still sees it.
             self.readiness.renew()
         if plan.file:
@@ -190,7 +190,7 @@ class Session:
             self.readiness.expect()
         self._faults.pop(plan.name, None)
         process = await self._launcher.launch(plan)
-        self.processes[plan.name] = (process.pid, process.started_ticks)
+        self._pids[plan.name] = process.pid
         return process
 
     def missing(self, plan: Node) -> str:
@@ -281,13 +281,13 @@ class Session:
         if not self.ends:
             self.nodes[name].saved(fault)
 
-    def _own_files(self) -> dict[str, str]:
+    def _learners_files(self) -> dict[str, str]:
         """Return the file of each node that is the learner's own."""
         return {name: node.plan.file for name, node in self.nodes.items() if node.plan.file}
 
     def changed(self, name: str, state: NodeState) -> None:
         if state is NodeState.READY:
-            self._tell_turns(name, self.processes[name][0])
+            self._tell_turns(name, self._pids[name])
         self._on_change(name)
         for other in self.nodes.values():
             if name in other.plan.needs:
