@@ -20,6 +20,7 @@ import threading
 import time
 import tty
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -148,7 +149,7 @@ def nodes(folder: Path) -> Iterator[None]:
             own = dict(specs[name].params)
             if name in PORTS:
                 own["port"] = str(folder / PORTS[name])
-            stack.enter_context(running(*specs[name].model_copy(update={"params": own}).argv()[1:], domain=DOMAIN))
+            stack.enter_context(running(*replace(specs[name], params=own).argv()[1:], domain=DOMAIN))
         stack.enter_context(running("-m", "bench.stop", "command", domain=DOMAIN))
         yield
 

@@ -36,7 +36,6 @@ from launcher.serial_ports import serial_ports
 from text.i18n import LocalizedFloat, _, localized
 from text.nested import read_json
 from text.plain import plain
-from text.run_path import run_path
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -479,7 +478,8 @@ def runs() -> Iterator[Finding]:
     from launcher.runs.strays import find_strays
 
     try:
-        here, logs = found_run_dir() or run_path(os.environ), log_path()
+        found_run_dir()
+        logs = log_path()
         there = next(folder for folder in (logs, *logs.absolute().parents) if folder.exists())
         check_writable(there)
     except LauncherError as error:
@@ -504,7 +504,7 @@ def runs() -> Iterator[Finding]:
     if apart:
         text = _("also running, in a container or with another DECK_RUN_DIR: {names}")
         yield ok("apart", text.format(names=", ".join(apart)))
-    strays = find_strays(here)
+    strays = find_strays()
     if strays:
         text = _("left behind by an earlier run: {names}")
         fix = _("the screen offers to stop them; or: kill {pids}").format(

@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import random
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from course.judge.judge import judging
@@ -111,9 +111,9 @@ def _at_home(profile: Profile, lesson: LessonFolder, places: Places) -> Profile:
 
     def at_home(node: Node) -> Node:
         if node.is_ours:
-            return node.model_copy(update={"cwd": node.cwd or str(lesson.starter)})
+            return replace(node, cwd=node.cwd or str(lesson.starter))
         env = {**places.environment, **node.env}
-        return node.model_copy(update={"cwd": node.cwd or str(places.files), "env": env})
+        return replace(node, cwd=node.cwd or str(places.files), env=env)
 
     nodes = {name: at_home(node) for name, node in profile.nodes.items()}
     return profile.model_copy(update={"discovery": "localhost", "nodes": nodes})
