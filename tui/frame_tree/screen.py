@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
-    from graph.frames.findings import FrameFinding
+    from graph.findings.finding import GraphFinding
     from graph.frames.tree import TreeLine
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
@@ -79,7 +79,7 @@ class FramesScreen(DeckScreen):
         self._update: GraphUpdate | None = None
         self._tree = FrameTree(())
         self._lines: list[TreeLine] = []
-        self._findings: list[FrameFinding] = []
+        self._findings: list[GraphFinding] = []
         self._pairs = FramePairs()
         self._relative_to = ""
         """The frame that Enter has marked; empty for the root of the one at the cursor."""
@@ -230,7 +230,7 @@ class FramesScreen(DeckScreen):
 
     @property
     def _wrong(self) -> frozenset[str]:
-        return frozenset(frame for one in self._findings for frame in one.frames)
+        return frozenset(frame for one in self._findings for frame in one.nodes)
 
     def _show(self) -> None:
         # Without its parts it is just being opened or closed.

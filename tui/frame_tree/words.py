@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from graph.data import GraphUpdate
-    from graph.frames.findings import FrameFinding
+    from graph.findings.finding import GraphFinding
     from graph.frames.tree import TreeLine
     from tui.frame.host import Host
 
@@ -33,15 +33,15 @@ def fits(line: TreeLine, parts: Sequence[str]) -> bool:
     return all(part in text for part in parts)
 
 
-def finding_lines(findings: Sequence[FrameFinding], frame: str, width: int) -> list[tuple[str, str]]:
+def finding_lines(findings: Sequence[GraphFinding], frame: str, width: int) -> list[tuple[str, str]]:
     """Return what is wrong, line by line, each with its meaning; what is about `frame` first."""
     if not findings:
         return [(_("✓ nothing is wrong with the frames"), "good")]
     count = len(findings)
     lines = [(ngettext("{n} finding", "{n} findings", count).format(n=count), "bad")]
-    for one in sorted(findings, key=lambda one: frame not in one.frames)[:SHOWN]:
-        lines += [(line, "bad") for line in _wrapped("✗ ", localized(one.text), width)]
-        lines += [(line, "") for line in _wrapped("  → ", localized(one.advice), width)]
+    for one in sorted(findings, key=lambda one: frame not in one.nodes)[:SHOWN]:
+        lines += [(line, "bad") for line in _wrapped("✗ ", localized(one.what), width)]
+        lines += [(line, "") for line in _wrapped("  → ", localized(one.mend), width)]
     if count > SHOWN:
         lines.append((_("… and {n} more").format(n=count - SHOWN), ""))
     return lines

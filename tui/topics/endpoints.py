@@ -13,7 +13,7 @@ from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from graph.qos_compatibility import LEASE, LIVELINESS, mismatches
+from graph.qos import LEASE, LIVELINESS, mismatches
 from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui.widgets.drawing import Ink, Line, fit
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import EndpointInfo, TopicRow
-    from graph.qos_compatibility import Mismatch
+    from graph.qos import Mismatch
 
 
 class TopicEndpoints(VerticalScroll, can_focus=True):

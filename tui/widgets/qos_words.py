@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from graph.qos_compatibility import Mismatch
-from text.i18n import localized, ngettext
+from text.i18n import localized
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from graph.qos import Mismatch
 
 LONGEST = 400
 
@@ -17,12 +16,3 @@ LONGEST = 400
 def pair_words(pair: Mismatch) -> str:
     """Who does not hear whom, and the two fixes."""
     return plain(f"{localized(pair.what)} {localized(pair.mend)}", LONGEST)
-
-
-def misfit_words(facts: Mapping[str, str]) -> str:
-    """The first pair in a sentence and the number of further ones, from a trouble's facts."""
-    words = pair_words(Mismatch(**{name: facts[name] for name in Mismatch.__match_args__}))
-    more = int(facts.get("more", "0"))
-    if not more:
-        return words
-    return f"{words} {ngettext('… and {n} more pair', '… and {n} more pairs', more).format(n=more)}"
