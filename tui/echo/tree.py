@@ -5,27 +5,24 @@ A line is redrawn from the first character that has changed.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 from rich.cells import cell_len
 from rich.segment import Segment
 from textual.binding import Binding, BindingType
+from textual.events import Click
 from textual.geometry import Region, Size
 from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tui.echo.lines import EchoLine, echo_lines
+from tui.echo.lines import EchoLine, Path, echo_lines
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, word_strips
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from textual.events import Click
-
     from graph.data import Value
-    from tui.echo.lines import Path
 
 HUGE_JUMP = 1_000_000
 OPEN, CLOSED, LEAF = "▾ ", "▸ ", "  "

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from graph.data import FrameRow
 from graph.frames.findings import is_stale
 from text.figures import elapsed, figure
 from text.i18n import _, localized
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from graph.data import FrameRow
     from graph.frames.tree import TreeLine
 
 LONGEST = 120

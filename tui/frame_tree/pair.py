@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
 
+from graph.data import FrameRow
 from graph.frames.findings import by_whom
 from space.buffer import NoTransformError, TransformBuffer
+from space.transform import Transform
 from text import ros2_words
 from text.i18n import _, decimal, localized
 from text.plain import plain
 from text.sentences import reason_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from graph.data import FrameRow
-    from space.transform import Transform
 
 LONGEST = 60
 METRES, QUATERNION, DEGREES = 8, 7, 6

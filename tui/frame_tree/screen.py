@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from textual import on
+from textual.app import ComposeResult
 from textual.containers import Container, Vertical, VerticalScroll
 from textual.content import Content
 from textual.widgets import Input, Static
 
-from graph.frames.findings import findings_in
-from graph.frames.tree import FrameTree
+from graph.data import GraphUpdate
+from graph.frames.findings import FrameFinding, findings_in
+from graph.frames.tree import FrameTree, TreeLine
 from text import ros2_words
 from text.i18n import N_, _
 from tui.actions import bindings
@@ -19,15 +21,8 @@ from tui.frame_tree import words
 from tui.frame_tree.actions import FRAMES_ACTIONS
 from tui.frame_tree.pair import FramePair, FramePairs, pair_lines, pair_text, publisher_line
 from tui.frame_tree.table import FrameTable, frame_of, key_of
+from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 from tui.widgets.field import Field
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from graph.frames.findings import FrameFinding
-    from graph.frames.tree import TreeLine
-    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
 WIDE_FROM = 160
 """Width of the screen from which on names of nodes have more room."""

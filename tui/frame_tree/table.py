@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from text.i18n import _
@@ -9,8 +10,6 @@ from tui.frame_tree import cells
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from graph.frames.tree import TreeLine
 
 STATE, AGE = 11, 7

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from graph.data import Trouble
+from graph.data import GraphUpdate, Trouble
 from graph.frames.book import FRAME_TOPICS
 from text.i18n import _, localized, ngettext
 from text.plain import plain
@@ -14,9 +15,6 @@ from tui.frame import title
 from tui.widgets.trouble import advice
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from graph.data import GraphUpdate
     from graph.frames.findings import FrameFinding
     from graph.frames.tree import TreeLine
     from tui.frame.host import Host

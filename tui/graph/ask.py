@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.containers import Container, Vertical
+from textual.widget import Widget
 from textual.widgets import Static
 
 from text.i18n import _
@@ -12,17 +14,12 @@ from tui.echo.tree import EchoTree
 from tui.graph.pane import GraphLinks, GraphPane, heading, link, node_links
 from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
-from tui.widgets.rows import Rows
+from tui.widgets.rows import Column, Row, Rows
 from tui.yaml_form.actions import submit_form
 from tui.yaml_form.form import YamlForm
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from textual.app import ComposeResult
-    from textual.widget import Widget
-
-    from tui.widgets.rows import Column, Row
 
     Answer = tuple[str, str, "Mapping[str, Any] | tuple[str, str]"]
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from textual.content import Content
 from textual.widgets import Static
 
+from graph.data import GraphUpdate
+from graph.findings.finding import GraphFinding
 from text import ros2_words
 from text.i18n import _, localized
 from text.plain import plain
@@ -17,9 +19,6 @@ from tui.widgets.name_head import NameHead
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from graph.findings.finding import GraphFinding
 
 LONGEST = 600
 

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
+from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
 from graph.findings.finding import FindingLevel, GraphFinding
 from graph.findings.rules import LastingFindings
 from graph.housekeeping import is_housekeeping
-from launcher.status import NodeState
+from launcher.status import NodeState, NodeStatus
 from text.i18n import N_, _, localized
 from tui import clock
-from tui.graph.places import LISTED, GraphKind
+from tui.graph.places import LISTED, GraphKind, GraphPlace
 from tui.session.bypass import NORMS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
-    from launcher.status import NodeStatus
-    from tui.graph.places import GraphPlace
-
     Typed = TopicRow | ServiceRow | ActionRow
 
 LOOKS = {FindingLevel.ERROR: ("✗", N_("error"), "bad"), FindingLevel.WARNING: ("▲", N_("warning"), "warn")}

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import on
+from textual.widget import Widget
 
+from graph.data import GraphUpdate, NodeRow
 from graph.housekeeping import is_housekeeping
+from graph.inner_states import LifecycleRow
 from graph.observer.requests import ChangeState
+from launcher.status import NodeStatus
 from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
@@ -21,18 +26,10 @@ from tui.graph.places import GraphKind, GraphPlace
 from tui.log_level import change_log_level
 from tui.widgets.name_head import NameHead
 from tui.widgets.node_words import memory, percent, state_words, why
-from tui.widgets.rows import Rows
+from tui.widgets.rows import Row, Rows
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from textual.app import App, ComposeResult
-    from textual.widget import Widget
-
-    from graph.data import GraphUpdate, NodeRow
-    from graph.inner_states import LifecycleRow
-    from launcher.status import NodeStatus
-    from tui.widgets.rows import Row
 
 
 class NodePane(GraphPane):

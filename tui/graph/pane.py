@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from textual.containers import Vertical
 from textual.content import Content
+from textual.timer import Timer
+from textual.widget import Widget
 from textual.widgets import Static
 
+from graph.data import GraphUpdate
 from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import Host, host_of
@@ -17,12 +21,6 @@ from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from textual.timer import Timer
-    from textual.widget import Widget
-
-    from graph.data import GraphUpdate
     from tui.session.feed import Feed
 
 LONGEST = 300

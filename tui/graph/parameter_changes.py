@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -15,6 +15,7 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Input, Static
 
+from graph.data import ParameterRow, Value
 from graph.observer.requests import SetParameters
 from text import ros2_words
 from text.i18n import _, localized, ngettext
@@ -24,16 +25,11 @@ from tui.actions import bindings
 from tui.dialogs.dialog import Dialog
 from tui.dialogs.ros2 import copy_dialog_as_ros2
 from tui.frame.host import host_of
-from tui.graph.parameters import allowed_words, meant, typed
+from tui.graph.parameters import GraphParameters, allowed_words, meant, typed
 from tui.widgets.field import Field
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from textual.app import App, ComposeResult
-
-    from graph.data import ParameterRow, Value
-    from tui.graph.parameters import GraphParameters
 
 LONGEST = 400
 LONGEST_TITLE = 64

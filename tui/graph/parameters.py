@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import re
+from collections.abc import Iterable
+from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.containers import Vertical
 from textual.widgets import Static
 
+from graph.data import ParameterRow, ParametersResult, Sample, Value
 from graph.observer.requests import ReadParameters
 from text.i18n import N_, _, localized, ngettext
 from text.plain import is_plain, plain
@@ -20,12 +23,7 @@ from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from concurrent.futures import Future
-
     from textual.app import ComposeResult
-
-    from graph.data import ParameterRow, ParametersResult, Sample, Value
 
 ROOMY = 70
 """Cells from which on there are columns for type and limits."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import Any, ClassVar, cast
 
 from textual import on
+from textual.app import ComposeResult
 from textual.binding import Binding
 from textual.containers import Horizontal
 from textual.widgets import ContentSwitcher, Input, Static, TextArea
 
+from graph.data import GraphUpdate
 from text.i18n import N_, _
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
@@ -23,16 +25,10 @@ from tui.graph.parameters import PARAMETER_EVENTS
 from tui.graph.places import LISTED, TITLES, GraphKind, GraphPlace, PlaceHistory
 from tui.graph.service import ServicePane
 from tui.graph.type import TypePane
+from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 from tui.widgets.field import Field
 from tui.widgets.rows import Rows
 from tui.widgets.tab_line import TabEntry, TabLine
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
-
 
 SETTLE_S = 1.0
 """How often findings are looked at, whether or not anything arrives."""

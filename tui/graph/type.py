@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from graph.messages.browse import Constant, MessageField, definition
@@ -17,8 +18,6 @@ from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Row
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from textual.app import ComposeResult
 
 WIDEST = 2**63 - 1

@@ -8,20 +8,24 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import ClassVar, TypeAlias
 
 from rich.cells import cell_len
 from rich.segment import Segment
 from textual.binding import Binding, BindingType
 from textual.cache import LRUCache
+from textual.events import Click, Resize
 from textual.message import Message
 from textual.scroll_view import ScrollView
+from textual.selection import Selection
 from textual.strip import Strip
+from textual.widget import Widget
 
+from launcher.status import LogLine
 from text.i18n import _
 from text.plain import plain
-from tui.log_view.index import LineChoice, LogIndex
-from tui.log_view.ring import LineRing
+from tui.log_view.index import LineChoice, LogFilter, LogIndex
+from tui.log_view.ring import LineRing, LogEntry
 from tui.log_view.rows import (
     PALETTE_CLASSES,
     PALETTE_CSS,
@@ -35,15 +39,6 @@ from tui.log_view.rows import (
 from tui.log_view.tail import Tail
 from tui.session.past import KEPT_LINES
 from tui.widgets.one_style import OneStyle
-
-if TYPE_CHECKING:
-    from textual.events import Click, Resize
-    from textual.selection import Selection
-    from textual.widget import Widget
-
-    from launcher.status import LogLine
-    from tui.log_view.index import LogFilter
-    from tui.log_view.ring import LogEntry
 
 ColumnsFor: TypeAlias = "Callable[[int, int], LogColumns]"
 """Returns the columns in front of the text, for the given widths of a row and the longest node."""

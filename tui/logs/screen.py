@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from time import monotonic
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from textual import on
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 
@@ -17,18 +19,12 @@ from text.plain import plain
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
 from tui.log_level import change_log_level, full_name
+from tui.log_view.index import LogFilter
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
 from tui.logs.actions import LOGS_ACTIONS
+from tui.session.messages import LanguageChanged, LogArrived, SessionChanged, StatusChanged
 from tui.widgets.rows import Cell, Column, Row, Rows
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from textual.app import ComposeResult
-
-    from tui.log_view.index import LogFilter
-    from tui.session.messages import LanguageChanged, LogArrived, SessionChanged, StatusChanged
 
 COUNTS_EVERY_S = 0.5
 HEARD, MUTE, ALONE = "●", "○", "★"

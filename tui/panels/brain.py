@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from graph.data import GraphUpdate
 from robot.topics import BRAIN_STATE
 from text.i18n import N_
 from tui.log_view.index import folded
-from tui.outcome.model_usage import brain_reports, budget_words, usage_words
+from tui.outcome.model_usage import BrainReport, brain_reports, budget_words, usage_words
 from tui.panels.panel import Panel, newest, other_type, trouble_of
 from tui.widgets.drawing import Drawing, Ink, Line
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from tui.outcome.model_usage import BrainReport
 
 TYPE = "diagnostic_msgs/msg/DiagnosticArray"
 LOOKS = {0: "good", 1: "muted"}

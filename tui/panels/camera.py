@@ -5,7 +5,9 @@ from __future__ import annotations
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from graph.data import GraphUpdate, Sample
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
+from graph.pictures.picture import Picture
 from graph.pictures.pixels import ImageError
 from robot.topics import CAMERA
 from text.figures import whole
@@ -17,9 +19,6 @@ from tui.widgets.trouble import lost_words, trouble_words
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate, Sample
-    from graph.pictures.picture import Picture
 
 PERIOD_S = 0.3
 """Three pictures a second are enough for a terminal, and for SSH."""

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from textual.app import ComposeResult
+
+from graph.data import GraphUpdate, Sample
 from robot.topics import LLM_RAW_JSON
 from text.i18n import N_, _
 from tui import clock
@@ -14,9 +17,6 @@ from tui.outcome.view import Outcome
 from tui.panels.panel import Panel, row_of
 
 if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate, Sample
     from robot.commands.schema import LlmResponse
 
 

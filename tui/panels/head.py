@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from graph.data import GraphUpdate
 from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.topics import HEAD_STATE, LLM_RESULT
 from text.figures import whole
@@ -21,8 +22,6 @@ from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
 
 LIMIT_DEG = 90.0
 SAME_WITHIN_DEG = 0.5

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from graph.data import Trouble
+from graph.data import GraphUpdate, Trouble
+from robot.motion.odometry import Point, Pose
 from robot.topics import GOAL_POSE, MAP, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.figures import figure
 from text.i18n import N_, _, decimal
@@ -24,6 +26,7 @@ from tui.panels.map_scene import (
     DrivenPath,
     Extent,
     Layers,
+    OccupancyGrid,
     Scene,
     Viewport,
     along,
@@ -37,20 +40,12 @@ from tui.panels.map_scene import (
     robot_corners,
 )
 from tui.panels.panel import Panel, is_published, newest, other_type, row_of, trouble_of
-from tui.panels.sonar import COURSE, bounds_of, ink_of, remark
-from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
+from tui.panels.sonar import COURSE, Bounds, bounds_of, ink_of, remark
+from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, beside, cells_of, fit
 from tui.widgets.scale_bar import scale_bar
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from robot.motion.odometry import Point, Pose
-    from tui.panels.map_scene import OccupancyGrid
-    from tui.panels.sonar import Bounds
-    from tui.widgets.drawing import Placeholder
 
 GAP = "  "
 

@@ -7,11 +7,13 @@ turn. A metre has the same length in both directions.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robot.motion.odometry import Point as Place
 from robot.motion.odometry import Pose, yaw_from_quaternion
@@ -20,14 +22,7 @@ from space.reading.fields import NotDrawnError
 from space.reading.fields import field as field_of
 from space.reading.grids import grid_cells
 from tui.panels.sonar import COURSE, Bounds, ink_of
-from tui.widgets.canvas import Canvas
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-    from tui.widgets.canvas import Point
+from tui.widgets.canvas import Canvas, Point
 
 
 @dataclass(frozen=True)

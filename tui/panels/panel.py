@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from rich.cells import cell_len
 from textual.containers import Vertical
 from textual.content import Content
+from textual.visual import VisualType
 
-from graph.data import Trouble
+from graph.data import GraphUpdate, Sample, TopicRow, Trouble
 from text.i18n import _
 from text.plain import plain
 from tui.faults import report_fault
 from tui.widgets.drawing import Placeholder
-
-if TYPE_CHECKING:
-    from textual.visual import VisualType
-
-    from graph.data import GraphUpdate, Sample, TopicRow
 
 ALWAYS = 1_000_000
 CORNERS, SIDES = 2, 6

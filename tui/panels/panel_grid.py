@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from textual.binding import Binding, BindingType
 from textual.containers import Container
+from textual.events import Click, Resize
 from textual.message import Message
 
 from launcher.profile.panels import PANELS
 from text.i18n import _
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from textual.events import Click, Resize
-
     from tui.panels.panel import Panel
 
 Row: TypeAlias = "list[Panel]"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from textual.renderables.digits import DIGITS, DIGITS3X3_BOLD
 
+from graph.data import GraphUpdate
 from robot.safety.gate_report import Gate, gate_in
 from robot.topics import SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.figures import figure, whole
@@ -19,8 +20,6 @@ from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
 
 FREE_FROM_M = 1.0
 """ai_brain drives ahead from this distance on."""

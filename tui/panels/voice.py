@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.cells import cell_len
 
+from graph.data import GraphUpdate
 from robot.sound import RATE_HZ, SILENCE_DBFS, level_dbfs, samples_of, text_in
 from robot.topics import AUDIO_LEVEL, HEARD, MICROPHONE, SPEAKER
 from text.figures import whole
@@ -19,14 +21,10 @@ from tui.log_view.index import folded
 from tui.log_view.rows import clock
 from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
 from tui.panels.sonar import EIGHTHS
-from tui.widgets.drawing import Drawing, Ink, Line, cells_of, fit
+from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, cells_of, fit
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
     from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from tui.widgets.drawing import Placeholder
 
 LONGEST_TEXT = 2_000
 SHOWN_BYTES = 12

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.cells import cell_len
 
+from graph.data import GraphUpdate
 from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL, STEERING
 from robot.kinematics import TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M, turning_radius, wheel_speeds
 from robot.topics import DRIVE, WHEEL_COMMANDS
@@ -16,13 +17,10 @@ from text.figures import figure, short
 from text.i18n import N_, _, decimal
 from tui.panels.panel import Joints, Panel, first_published, has_joints, joint_number, newest, other_type, trouble_of
 from tui.widgets.canvas import Canvas, rectangle
-from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
+from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, beside, cells_of, fit
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from tui.widgets.drawing import Placeholder
 
 STANDING_BELOW_M_S = 0.005
 EVEN_WITHIN_M_S = 0.003

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
 
 from robot.topics import GOAL_POSE, INITIAL_POSE
 from space.drawing.paints import Tint
-from space.drawing.shapes import Strokes, arrow, places
+from space.drawing.shapes import Shape, Strokes, arrow, places
 from space.transform import Transform, quaternion_from_rpy
 from text.i18n import _, decimal
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from graph.data import Value
-    from space.drawing.shapes import Shape
 
 LONGEST = 40
 COVARIANCE = {0: 0.25, 7: 0.25, 35: (math.pi / 12) ** 2}

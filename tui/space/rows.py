@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
+from textual.events import Click
 
 from graph.data import Trouble
 from text.figures import figure
@@ -17,8 +18,6 @@ from tui.widgets.rows import MARK, Cell, Column, Row, Rows
 from tui.widgets.trouble import advice, no_data_words
 
 if TYPE_CHECKING:
-    from textual.events import Click
-
     from tui.space.layers import SpaceLayer
     from tui.space.stage import Stage
 

@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from typing import ClassVar
 
 from textual import on
+from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
 from textual.widgets import Static
 
 from graph.observer.requests import PreparePublisher, Publish
+from space.drawing.picture import CellPicture, SpaceCamera
 from text import ros2_words
 from text.i18n import N_, _, decimal
 from text.plain import plain
 from tui import clock
 from tui.actions import bindings
 from tui.dialogs.choice import ChoiceScreen
+from tui.emergency.messages import EmergencyChanged
 from tui.frame.screen import DeckScreen
 from tui.panels.panel import row_of
+from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 from tui.space.actions import SPACE_ACTIONS, disarm, publish_aim
 from tui.space.aiming import LONGEST, Aim, AimKind, armed_words, sent_words
 from tui.space.layers import CLOUD
@@ -28,16 +34,6 @@ from tui.space.view import SpaceView
 from tui.widgets.scale_bar import scale_bar
 from tui.widgets.trouble import listeners
 from tui.yaml_form.words import reason_words
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from concurrent.futures import Future
-
-    from textual.app import ComposeResult
-
-    from space.drawing.picture import CellPicture, SpaceCamera
-    from tui.emergency.messages import EmergencyChanged
-    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
 SENT_WITHIN_S = 3.0
 PERIOD_S, CLOUD_PERIOD_S = 0.1, 0.06

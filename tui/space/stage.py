@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from graph.data import FrameRow, GraphUpdate
 from robot.topics import SONAR_FRAMES
 from robot.world.world import Body
 from space.buffer import NoTransformError, TransformBuffer
-from space.drawing.picture import extent_of, picture
-from space.drawing.shapes import Speckles, places
+from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera, extent_of, picture
+from space.drawing.shapes import Shape, Speckles, places
 from space.placing import Placer, frame_shapes
-from space.transform import Transform
+from space.transform import Transform, Vector
 from text.sentences import say
 from tui.space.layers import SpaceLayers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from graph.data import FrameRow, GraphUpdate
-    from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera
-    from space.drawing.shapes import Shape
-    from space.transform import Vector
     from tui.space.aiming import Aim
 
 BODY = Body()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, cast
 
 import numpy as np
@@ -10,23 +11,19 @@ from rich.color import Color
 from rich.segment import Segment
 from rich.style import Style
 from textual.binding import Binding, BindingType
+from textual.events import MouseDown, MouseMove, MouseScrollDown, MouseScrollUp, MouseUp, Resize
 from textual.geometry import Region
 from textual.message import Message
 from textual.strip import Strip
+from textual.timer import Timer
 from textual.widget import Widget
 
 from space.drawing.paints import Tint, rgb_of
-from space.drawing.picture import SpaceCamera
+from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import word_strips
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from textual.events import MouseDown, MouseMove, MouseScrollDown, MouseScrollUp, MouseUp, Resize
-    from textual.timer import Timer
-
-    from space.drawing.picture import CellPicture, SpaceBox
     from tui.space.aiming import Aim
     from tui.terminal.bandwidth import HasBandwidth
 

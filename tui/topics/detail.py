@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from rich.cells import chop_cells
+from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.content import Content
+from textual.geometry import Size
 from textual.widget import Widget
 
-from graph.data import Trouble
+from graph.data import Sample, TopicRow, Trouble
 from graph.messages.yaml_text import is_cut, to_yaml
 from text.i18n import _
 from text.plain import plain
@@ -20,14 +22,6 @@ from tui.topics.words import ends, figures, packed, size_text
 from tui.widgets.image_view import ImageView
 from tui.widgets.trouble import advice
 from tui.widgets.working import Working
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from textual.app import ComposeResult
-    from textual.geometry import Size
-
-    from graph.data import Sample, TopicRow
 
 LONGEST_ARRAY = 2000
 """Elements of an array that are copied: the clipboard of a terminal (OSC 52) is small."""

@@ -13,7 +13,8 @@ from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from graph.qos_compatibility import LEASE, LIVELINESS, mismatches
+from graph.data import EndpointInfo, TopicRow
+from graph.qos_compatibility import LEASE, LIVELINESS, Mismatch, mismatches
 from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui.widgets.drawing import Ink, Line, fit
@@ -23,9 +24,6 @@ from tui.widgets.trouble import names
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-
-    from graph.data import EndpointInfo, TopicRow
-    from graph.qos_compatibility import Mismatch
 
 
 class TopicEndpoints(VerticalScroll, can_focus=True):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from graph.data import Sample, TopicRow
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.pictures.picture import Picture, ramp_colours
 from graph.pictures.pixels import ImageError, UnknownEncodingError
@@ -14,7 +15,6 @@ from tui.topics.table import hz_text
 from tui.widgets.image_view import ImageScale, NewestPicture
 
 if TYPE_CHECKING:
-    from graph.data import Sample, TopicRow
     from tui.topics.detail import TopicDetail
 
 LONGEST = 80

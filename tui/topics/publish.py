@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from typing import TYPE_CHECKING, ClassVar
 
 from rich.cells import cell_len
 from textual import on
+from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
 from textual.widgets import Input, Static
 
+from graph.data import Publication, Sample, TopicRow, Value
 from graph.messages.browse import interfaces
 from graph.messages.yaml_form import filled
 from graph.messages.yaml_text import is_cut
@@ -37,12 +41,6 @@ from tui.yaml_form.type_field import TypeField
 from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from concurrent.futures import Future
-
-    from textual.app import ComposeResult
-
-    from graph.data import Publication, Sample, TopicRow, Value
     from tui.session.ports import GraphLink
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from textual import on
+from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
+from textual.timer import Timer
 from textual.widgets import Input, Static
 
+from graph.data import Sample, TopicRow
 from graph.housekeeping import is_housekeeping
 from graph.qos import to_hear
 from text import ros2_words
@@ -16,6 +19,7 @@ from text.i18n import N_, _, ngettext
 from tui.actions import bindings
 from tui.echo.tree import EchoTree
 from tui.frame.screen import DeckScreen
+from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 from tui.topics.actions import TOPICS_ACTIONS
 from tui.topics.detail import TopicDetail
 from tui.topics.echo_filter import EchoFilter
@@ -25,13 +29,6 @@ from tui.topics.plotting import PlotPlace, Plotting
 from tui.topics.table import TopicsTable
 from tui.topics.words import why_empty
 from tui.widgets.field import Field
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-    from textual.timer import Timer
-
-    from graph.data import Sample, TopicRow
-    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
 SETTLED_S = 0.12
 """How long a choice must stand before its topic is subscribed, so that moving through the list

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from rich.cells import cell_len, set_cell_size
+from textual.events import Click
 from textual.message import Message
+from textual.strip import Strip
 
 from graph.data import TopicRow, Trouble
 from graph.housekeeping import is_housekeeping
@@ -17,10 +19,6 @@ from text.plain import plain
 from tui.widgets.figures import UNKNOWN, count_text, seconds_text
 from tui.widgets.rows import MARK, Cell, Column, Row, Rows
 from tui.widgets.words import word_strips
-
-if TYPE_CHECKING:
-    from textual.events import Click
-    from textual.strip import Strip
 
 SortKey: TypeAlias = "tuple[float, str]"
 UNITS = (N_("B/s"), N_("kB/s"), N_("MB/s"), N_("GB/s"))

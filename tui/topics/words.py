@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
 
-from graph.data import Trouble
+from graph.data import TopicRow, Trouble
 from graph.housekeeping import is_housekeeping
 from text.i18n import _, decimal, localized, ngettext
 from text.plain import plain
@@ -17,9 +18,6 @@ from tui.widgets.figures import count_text, seconds_text
 from tui.widgets.trouble import names, no_data_words
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from graph.data import TopicRow
     from tui.frame.host import Host
 
 KILO = 1000

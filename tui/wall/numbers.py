@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
 
 from textual.content import Content
 from textual.widget import Widget
 
+from graph.data import GraphUpdate
 from robot.topics import BATTERY, ODOMETRY, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
 from text.figures import figure, whole
 from text.i18n import N_, _
@@ -16,11 +18,6 @@ from tui.panels.panel import is_published, newest, trouble_of
 from tui.panels.sonar import Bounds, Zone, number, remark, zone_of
 from tui.panels.wheels import wheels_in
 from tui.widgets.trouble import no_data_words, trouble_words
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from graph.data import GraphUpdate
 
 MOVES_M_S = 0.005
 """Below this speed the robot stands."""

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Collection
+from typing import ClassVar
 
+from textual.app import ComposeResult
 from textual.containers import Container, Vertical
 from textual.widgets import Static
 
+from graph.data import GraphUpdate
 from launcher.profile.panels import panels_for
 from robot.topics import BATTERY, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
 from text.i18n import N_, _
 from text.plain import plain
 from tui.actions import bindings
+from tui.emergency.messages import EmergencyChanged
 from tui.emergency.state import held_reason
 from tui.emergency.words import stop_words
 from tui.frame.actions.app import emergency_release
@@ -20,17 +24,9 @@ from tui.panels.camera import CameraPanel
 from tui.panels.panel import row_of
 from tui.panels.sonar import COURSE, bounds_of
 from tui.panels.voice import VoicePanel
+from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 from tui.wall.actions import WALL_ACTIONS
 from tui.wall.numbers import BigNumber, WallReader, big_word
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from tui.emergency.messages import EmergencyChanged
-    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
 MOST = 4
 """Numbers on the wall."""

@@ -12,30 +12,28 @@ from rich.cells import cell_len
 from rich.color import Color
 from rich.segment import Segment
 from rich.style import Style
+from textual.events import Resize
 from textual.geometry import Region
 from textual.strip import Strip
+from textual.timer import Timer
 from textual.widget import Widget
 
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
-from graph.pictures.picture import Picture
+from graph.pictures.picture import Fit, Picture
 from graph.pictures.pixels import ImageError, shrink
 from graph.pictures.reading import read_picture
 from text.figures import figure
 from text.i18n import _, decimal
 from text.plain import plain
 from tui import clock
-from tui.terminal.bandwidth import PicturePace
+from tui.terminal.bandwidth import Bandwidth, HasBandwidth, PicturePace
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, in_row, word_strips
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-    from textual.events import Resize
-    from textual.timer import Timer
 
     from graph.data import Sample
-    from graph.pictures.picture import Fit
-    from tui.terminal.bandwidth import Bandwidth, HasBandwidth
 
 CAPTION_FROM = 4
 """Number of rows from which on one of them is used for the caption."""

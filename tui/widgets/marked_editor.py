@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from collections.abc import Iterable
+from typing import ClassVar, NamedTuple
 
 from rich.segment import Segment
+from rich.style import Style
 from rich.text import Text
+from textual.document._document import EditResult
+from textual.document._edit import Edit
+from textual.events import Paste
 from textual.geometry import Offset
 from textual.message import Message
 from textual.strip import Strip
 from textual.widgets import TextArea
 
 from text.plain import replaced
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rich.style import Style
-    from textual.document._document import EditResult
-    from textual.document._edit import Edit
-    from textual.events import Paste
 
 MARK = "✗"
 MARGIN = 2

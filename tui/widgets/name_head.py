@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from textual.content import Content
 from textual.widgets import Static
 
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 LONGEST = 300
 

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from textual.content import Content
 
-from launcher.status import HALTED, STUCK, THREAD, NodeState
+from launcher.status import HALTED, STUCK, THREAD, NodeState, NodeStatus
 from text.figures import figure, whole
 from text.i18n import N_, _, localized
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from launcher.status import NodeStatus
 
 STATES = {
     NodeState.WAITING: ("◌", N_("waiting"), "dim"),

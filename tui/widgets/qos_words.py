@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from graph.qos_compatibility import Mismatch
 from text.i18n import localized, ngettext
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 LONGEST = 400
 

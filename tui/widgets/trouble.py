@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
-from graph.data import Trouble
+from graph.data import EndpointInfo, TopicRow, Trouble
 from text.figures import elapsed
 from text.i18n import N_, _, localized
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from graph.data import EndpointInfo, TopicRow
 
 LONGEST = 400
 SHOWN_NODES = 4

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from rich.console import Console
 from rich.segment import Segment
 from rich.style import Style
 from rich.text import Text
 from textual.strip import Strip
 
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 
 def word_strips(

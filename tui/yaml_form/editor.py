@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
 
 from text.yaml_scalars import escaped, meaning
 from tui.widgets.marked_editor import MarkedEditor, Token
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 
 class YamlEditor(MarkedEditor):

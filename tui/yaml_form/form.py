@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.containers import Vertical
+from textual.events import Click
 from textual.message import Message
+from textual.timer import Timer
 from textual.widgets import Static, TextArea
+from textual.worker import Worker
 
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
@@ -20,18 +24,12 @@ from tui.actions import Acting, bindings
 from tui.widgets.working import Working
 from tui.yaml_form.actions import FORM_ACTIONS
 from tui.yaml_form.editor import YamlEditor
-from tui.yaml_form.words import place_of, wrong_words
+from tui.yaml_form.words import Wrong, place_of, wrong_words
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from textual.app import ComposeResult
-    from textual.events import Click
-    from textual.timer import Timer
-    from textual.worker import Worker
 
     from graph.data import Value
-    from tui.yaml_form.words import Wrong
 
 CHECKED_AFTER_S = 0.15
 

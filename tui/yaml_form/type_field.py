@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 from textual import on
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
+from textual.events import DescendantBlur
 from textual.message import Message
 from textual.widgets import Input, OptionList
 
@@ -14,7 +15,6 @@ from tui.widgets.field import Field
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
-    from textual.events import DescendantBlur
 
 EXAMPLES = "example_interfaces/"
 LISTED = 50
