@@ -51,7 +51,6 @@ class EchoLine:
 
 
 def echo_lines(message: Mapping[str, Value], is_open: IsOpen) -> list[EchoLine]:
-    """Return the lines of a message, at most `MAX_LINES` of them."""
     if not message:
         return [EchoLine(("",), "", _("(a message without fields)"), "note")]
     lines = list(islice(_children((), message, is_open), MAX_LINES + 1))
@@ -170,7 +169,6 @@ def is_list(value: Value) -> TypeGuard[Sequence[Value]]:
 
 
 def is_number(value: Value | np.generic) -> TypeGuard[float | bool | np.generic]:
-    """Whether the value is a number or a boolean."""
     return isinstance(value, (bool, int, float, np.generic))
 
 
@@ -218,12 +216,10 @@ def hexadecimal(value: bytes) -> str:
 
 
 def printable(value: bytes) -> str:
-    """Bytes as ASCII text, with a dot for each one that is not printable."""
     return "".join(chr(b) if FIRST_PRINTABLE <= b <= LAST_PRINTABLE else "·" for b in value)
 
 
 def array(values: Sequence[Value] | np.ndarray[tuple[int, ...], np.dtype[np.generic]]) -> str:
-    """An array as its length and its first items."""
     head = values[:SHOWN_ITEMS]
     shown = " ".join(scalar(item) for item in head)
     more = " …" if len(values) > len(head) else ""
@@ -231,7 +227,6 @@ def array(values: Sequence[Value] | np.ndarray[tuple[int, ...], np.dtype[np.gene
 
 
 def scalar(value: Value | np.generic) -> str:
-    """One value that is not a branch."""
     if isinstance(value, str):
         return quoted(value)
     if isinstance(value, bytes):
@@ -246,15 +241,12 @@ def scalar(value: Value | np.generic) -> str:
 
 
 def items(count: int) -> str:
-    """A number of items, in words."""
     return ngettext("{n} item", "{n} items", count).format(n=count)
 
 
 def characters(count: int) -> str:
-    """A number of characters, in words."""
     return ngettext("{n} character", "{n} characters", count).format(n=count)
 
 
 def byte_count(count: int) -> str:
-    """A number of bytes, in words."""
     return ngettext("{n} byte", "{n} bytes", count).format(n=count)

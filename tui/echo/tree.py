@@ -106,7 +106,6 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         self._flatten()
 
     def show_words(self, topic: str, headline: str, detail: str = "") -> None:
-        """Show why there is no message."""
         if topic != self._topic:
             self._begin(topic)
         elif (headline, detail) == self._words and self._message is None:
@@ -126,7 +125,6 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         return self._paused
 
     def pause(self, paused: bool) -> None:
-        """Pause, or resume with the newest message."""
         if paused == self._paused:
             return
         self._paused = paused
@@ -157,13 +155,11 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         self._move_to(self._cursor + pages * max(1, self.size.height - 1))
 
     def action_toggle_fold(self) -> None:
-        """Fold or unfold the branch at the cursor."""
         line = self._line_at(self._cursor)
         if line is not None and line.open is not None:
             self._set_open(line.path, not line.open)
 
     def action_unfold(self) -> None:
-        """Unfold the branch at the cursor, or enter it."""
         line = self._line_at(self._cursor)
         if line is not None and line.open is False:
             self._set_open(line.path, True)
@@ -183,7 +179,6 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
             self._move_to(parents[0])
 
     def on_click(self, event: Click) -> None:
-        """Move the cursor to the clicked line, and fold or unfold it."""
         index = event.y + self.scroll_offset.y
         if self._line_at(index) is not None:
             self._move_to(index)
@@ -236,7 +231,6 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
     # Drawing
 
     def render_line(self, y: int) -> Strip:
-        """One line of the tree, or of the words in its place."""
         width = self.scrollable_size.width
         if not self._lines:
             strips = word_strips(self._words, width, self.rich_style, self.app.console)
@@ -252,15 +246,12 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         return cut(segments, width, self.rich_style)
 
     def on_resize(self) -> None:
-        """Redraw at the new width."""
         self.refresh()
 
     def on_focus(self) -> None:
-        """Draw the cursor as focused."""
         self.refresh_line(self._cursor)
 
     def on_blur(self) -> None:
-        """Draw the cursor as unfocused."""
         self.refresh_line(self._cursor)
 
     def _refresh_difference(self, index: int, before: EchoLine, after: EchoLine) -> None:

@@ -15,7 +15,6 @@ action: Announce[FramesScreen] = Announce()
 
 
 def _has_frames(screen: FramesScreen) -> bool | None:
-    """Only with a frame at the cursor."""
     return True if screen.chosen else None
 
 
@@ -32,7 +31,6 @@ def relative_to(screen: FramesScreen) -> None:
 
 
 def _has_findings(screen: FramesScreen) -> bool | None:
-    """Only if anything is wrong."""
     return True if screen.has_findings else None
 
 

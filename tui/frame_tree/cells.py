@@ -31,7 +31,6 @@ def heard_of(line: TreeLine) -> FrameRow | None:
 
 
 def name(line: TreeLine) -> str:
-    """Return its name behind the lines that lead to it."""
     branch = line.branch
     shown = branch if len(branch) <= DEEPEST else f"…{branch[-DEEPEST:]}"
     return f"{shown}{plain(line.frame, LONGEST)}"

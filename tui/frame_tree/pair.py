@@ -53,7 +53,6 @@ class FramePairs:
         self._newest.add(type(one)(one.parent, one.child, one.stamp_s, one.transform, static=True) for one in good)
 
     def find(self, target: str, source: str) -> FramePair:
-        """Return where `source` is in `target`."""
         try:
             return FramePair(source, target, self._buffer.find(target, source))
         except NoTransformError as error:

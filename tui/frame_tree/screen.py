@@ -84,7 +84,6 @@ class FramesScreen(DeckScreen):
         self._said: dict[str, list[tuple[str, str]]] = {}
 
     def compose_body(self) -> ComposeResult:
-        """The tree, the transform and the findings, or why there is no frame."""
         yield Static(id="frames-empty", markup=False)
         with Container(id="frames-body"):
             with Vertical(id="frames-tree"):
@@ -105,7 +104,6 @@ class FramesScreen(DeckScreen):
 
     @property
     def chosen(self) -> str:
-        """The frame at the cursor, empty if there is none."""
         return frame_of(self.table.chosen) if self.is_mounted and self._lines else ""
 
     @property
@@ -118,7 +116,6 @@ class FramesScreen(DeckScreen):
 
     @property
     def pair(self) -> FramePair | None:
-        """What is shown of the frame at the cursor."""
         source = self.chosen
         if not source:
             return None
@@ -126,12 +123,10 @@ class FramesScreen(DeckScreen):
         return self._pairs.find(*((source, target) if self._turned else (target, source)))
 
     def on_mount(self) -> None:
-        """Put the keys to the tree, and say why there is nothing yet."""
         self.table.focus()
         self._show()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Begin anew with a new session."""
         del message
         if self.feed.session is not None:
             self._update, self._relative_to, self._turned = None, "", False
@@ -139,7 +134,6 @@ class FramesScreen(DeckScreen):
         self._show()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Update the words for when there is no frame yet."""
         del message
         if not self._lines:
             self._show()
@@ -154,7 +148,6 @@ class FramesScreen(DeckScreen):
         self._show()
 
     def on_resize(self) -> None:
-        """Fit the columns to the new width."""
         self.call_after_refresh(self._show)
 
     @on(FrameTable.Highlighted)
@@ -183,7 +176,6 @@ class FramesScreen(DeckScreen):
     # Actions
 
     async def ros2_command(self) -> str:
-        """Return what prints the transform that is shown."""
         pair = self.pair
         return ros2_words.tf2_echo(pair.target, pair.source) if pair else ""
 
@@ -196,7 +188,6 @@ class FramesScreen(DeckScreen):
         self._show()
 
     def turn_round(self) -> None:
-        """Show the one frame in the other, or the other way round."""
         self._turned = not self._turned
         self._show_pair()
 

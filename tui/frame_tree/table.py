@@ -20,12 +20,10 @@ BETWEEN = "\0"
 
 
 def key_of(line: TreeLine) -> str:
-    """Return the key of its row."""
     return f"{line.parent}{BETWEEN}{line.frame}"
 
 
 def frame_of(key: str) -> str:
-    """Return the frame whose row has this key."""
     return key.partition(BETWEEN)[2]
 
 

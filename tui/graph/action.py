@@ -121,7 +121,6 @@ class ActionPane(AskPane):
 
     @property
     def can_cancel(self) -> bool:
-        """Whether any goal is still active."""
         return self._to_cancel is not None
 
     @property

@@ -29,7 +29,6 @@ def fill_in(screen: GraphScreen) -> None:
 
 
 def _may_change_state(screen: GraphScreen) -> bool | None:
-    """Only for a node that can change now."""
     pane = screen.node_pane
     return pane is not None and bool(pane.transitions) and screen.shows_pane
 
@@ -63,7 +62,6 @@ def filter_names(screen: GraphScreen) -> None:
 
 
 def _shows_live_node(screen: GraphScreen) -> bool | None:
-    """Only for a node, and not in a recording."""
     if screen.feed.replay is not None:
         return False
     return screen.node_pane is not None and screen.shows_pane
@@ -153,7 +151,6 @@ def cancel_request(screen: GraphScreen) -> None:
 
 
 def _shows_own_goal(screen: GraphScreen) -> bool | None:
-    """Only for an action whose goals are visible."""
     pane = screen.ask_pane
     return pane is not None and pane.can_forget and screen.shows_pane
 

@@ -75,7 +75,6 @@ class AskPane(GraphPane):
 
     @property
     def asked_rows(self) -> Rows:
-        """The requests sent so far."""
         return self.query_one(".asked", Rows)
 
     @property
@@ -114,7 +113,6 @@ class AskPane(GraphPane):
         """Remove the chosen request from the list."""
 
     def ros2_line(self, type_name: str, value: Mapping[str, Any]) -> str:
-        """Return what sends this request, as a command line of `ros2`."""
         raise NotImplementedError
 
     def ros2_info(self) -> str:
@@ -167,7 +165,6 @@ class AskPane(GraphPane):
         return self.form.editor
 
     def on_rows_highlighted(self, event: Rows.Highlighted) -> None:
-        """Show the outcome of another request."""
         if event.rows is self.asked_rows:
             event.stop()
             self._show_answer()

@@ -98,7 +98,6 @@ class GraphIndex:
         return before != self.findings
 
     def finding(self, key: str) -> GraphFinding | None:
-        """Return the finding with this key, if it still holds."""
         return next((one for one in self.findings if one.key == key), None)
 
     async def find_installed(self) -> None:
@@ -108,7 +107,6 @@ class GraphIndex:
         self._installed = await asyncio.to_thread(interfaces)
 
     def fitting(self, kind: GraphKind, words: str = "") -> list[GraphEntry]:
-        """Return what is listed of a kind for a filter with these words."""
         return chosen_of(self.listed[kind], words, everything=self.everything)
 
     def reveal(self, place: GraphPlace, words: str) -> bool:

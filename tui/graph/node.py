@@ -91,7 +91,6 @@ class NodePane(GraphPane):
         self.redraw()
 
     def change_lifecycle(self) -> None:
-        """Ask which transition the node is to make."""
         row = lifecycle_of(self.graph_now, self.name_shown)
         if row is not None and row.transitions:
             change_lifecycle(self.app, row)
@@ -200,7 +199,6 @@ def node_rows(update: GraphUpdate, node: NodeRow, *, everything: bool) -> list[R
 
 
 def status_of(name: str, nodes: Mapping[str, NodeStatus]) -> NodeStatus | None:
-    """Return the status of the node with this full name, if Deck has started one."""
     return nodes.get(name.removeprefix("/")) or nodes.get(name.rpartition("/")[2])
 
 
@@ -232,7 +230,6 @@ MEANINGS = {
 
 
 def lifecycle_of(update: GraphUpdate | None, node: str) -> LifecycleRow | None:
-    """Return the lifecycle of the node of this full name, None if it has none."""
     rows = () if update is None else update.lifecycles
     return next((row for row in rows if row.node == node), None)
 

@@ -42,7 +42,6 @@ class EmptyNotice(Static):
         self.said = ("", "")
 
     def show(self, headline: str, way_out: str = "") -> None:
-        """Show these texts with control characters made harmless."""
         if (headline, way_out) != self.said:
             self.said = (headline, way_out)
             parts = [Content.styled(plain(headline, LONGEST), "bold")]
@@ -74,13 +73,11 @@ def heading(words: str) -> Row:
 
 
 def link(place: GraphPlace, section: str, told: str = "") -> Row:
-    """Return a row that links to a place, with a remark."""
     cells = (Cell(plain(place.name, LONGEST)), Cell(plain(told, LONGEST), "dim"))
     return Row(place.key(section), cells if told else cells[:1])
 
 
 def node_links(names: Iterable[str], section: str, told: str = "") -> list[Row]:
-    """Return rows that link to these nodes."""
     return [link(GraphPlace(GraphKind.NODE, name), section, told) for name in names]
 
 
@@ -98,7 +95,6 @@ class GraphList(Rows):
         return self.chosen.partition("|")[2]
 
     def show_entries(self, kind: GraphKind, shown: Sequence[GraphEntry], chosen: str, words: str) -> None:
-        """Show these entries; `chosen` was chosen last, and `words` are the filter."""
         listed = [(entry, True) for entry in shown]
         missing = chosen and not words and chosen not in {entry.name for entry in shown}
         # A finding that has gone was fixed.
@@ -133,7 +129,6 @@ def ended(words: str, room: int) -> str:
 
 
 def why_empty(feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str) -> tuple[str, str]:
-    """Return headline and advice for a list that shows none of `listed`."""
     update = feed.update
     if feed.link is None:
         return _("no lesson is running"), ""
@@ -184,7 +179,6 @@ class GraphPane(Vertical, Working):
         return self.deck.feed.update
 
     def ros2_command(self) -> str:
-        """Return what shows or does the same, as a command line of `ros2`."""
         return ""
 
     def show_name(self, name: str) -> None:
@@ -198,7 +192,6 @@ class GraphPane(Vertical, Working):
 
     @property
     def is_settling(self) -> bool:
-        """Whether something is still to be loaded."""
         return self._settling is not None
 
     def _settle(self) -> None:

@@ -56,7 +56,6 @@ class FieldDialog(Dialog[None]):
     typing_replaces: ClassVar[bool] = False
 
     def __init__(self, text: str, take: Take) -> None:
-        """Ask for a text, with `text` as the default."""
         super().__init__()
         self._text, self._take = text, take
         self._busy = False
@@ -115,7 +114,6 @@ class PathDialog(FieldDialog):
     """Asks for the path of a file."""
 
     def __init__(self, title: str, words: str, node: str, take: Take) -> None:
-        """Propose a file called as the node is."""
         super().__init__(f"{node.strip('/').replace('/', '__')}.yaml", take)
         self._title, self._words = title, words
 
@@ -182,7 +180,6 @@ def edit(app: App[Any], table: GraphParameters) -> None:
 
 
 def save(app: App[Any], table: GraphParameters) -> None:
-    """Ask for a file, and save all parameters to it."""
     if not table.rows:
         app.notify(_("There are no parameters to save."), severity="warning", markup=False)
         return

@@ -42,7 +42,6 @@ class GraphPlace(NamedTuple):
 
     @classmethod
     def of_key(cls, key: str) -> GraphPlace | None:
-        """Return the place that the row with this key links to, None if it is not a link."""
         _section, _bar, rest = key.partition("|")
         kind, bar, name = rest.partition("|")
         return cls(GraphKind(kind), name) if bar and name else None
@@ -70,7 +69,6 @@ class PlaceHistory:
         self.chosen[self.kind] = name
 
     def go(self, place: GraphPlace) -> None:
-        """Follow a link; `back` returns from it."""
         here = self.here
         if here is not None and here != place:
             self._been = [*self._been, here][-LONGEST:]

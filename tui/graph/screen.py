@@ -149,7 +149,6 @@ class GraphScreen(DeckScreen):
         return self.focused is self.names
 
     def watch_goals(self) -> set[str]:
-        """Return the action that is shown."""
         here = self.history.here
         return {here.name} if here is not None and here.kind is GraphKind.ACTION else set()
 
@@ -215,7 +214,6 @@ class GraphScreen(DeckScreen):
         self.redraw()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Show the current graph, and parameters that somebody has changed."""
         self.take(message.update)
         if self.node_pane is not None and self.node_pane.shows_parameters:
             self.node_pane.parameters.hear(message.update.samples.get(PARAMETER_EVENTS, ()))
@@ -228,7 +226,6 @@ class GraphScreen(DeckScreen):
             self.pane.redraw()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Forget the graph of a session that has ended."""
         del message
         self.history.forget()
         self.take(None)
@@ -280,7 +277,6 @@ class GraphScreen(DeckScreen):
     # Actions
 
     async def go(self, place: GraphPlace) -> None:
-        """Follow a link: here, or to the Topics screen."""
         if place.kind is GraphKind.TOPIC:
             await self.deck.show_screen("topics")
             cast("Any", self.app.get_screen("topics")).show_topic(place.name)

@@ -104,7 +104,6 @@ class ServiceCall:
 
     @property
     def waits(self) -> bool:
-        """Whether its answer is still pending."""
         return self.result is None and not self.given_up
 
     @property
@@ -115,7 +114,6 @@ class ServiceCall:
 
     @property
     def summary(self) -> str:
-        """The request and the answer in one line."""
         asked, result = _flat(self.request), self.result
         if result is None:
             return asked

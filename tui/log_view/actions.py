@@ -30,7 +30,6 @@ def _folder(id: str) -> str:
 
 
 def pausing(id: str, when: Condition = always) -> None:
-    """Announce the key that pauses the log."""
 
     @action(
         id,

@@ -90,14 +90,12 @@ class LogFilter:
     """Whether lines without that text are hidden."""
 
     def shows_node(self, node: str) -> bool:
-        """Whether lines of this node are shown at all."""
         if self.only is not None:
             return node == self.only
         return node not in self.muted
 
     @property
     def pattern(self) -> re.Pattern[str] | None:
-        """The pattern for the search text; None if there is none."""
         return re.compile(re.escape(self.search), re.IGNORECASE) if self.search else None
 
     def toggled(self, node: str) -> LogFilter:
@@ -121,7 +119,6 @@ class LogIndex:
     """The shown lines in order, the rows that they take, and the matches of a search."""
 
     def __init__(self, text_of: Callable[[LogEntry], str]) -> None:
-        """Pass `text_of`, which returns the text that is drawn for an entry."""
         self.text_of = text_of
         self.filter = LogFilter()
         self.fold_width: int | None = None
@@ -176,7 +173,6 @@ class LogIndex:
         self.extend(entries)
 
     def fold(self, width: int | None) -> None:
-        """Wrap the lines to this width, or not at all."""
         self.fold_width, self._ends, self.longest = width, [], 0
         self._measure(self.shown)
 
@@ -188,7 +184,6 @@ class LogIndex:
         return place, row - self.row_of(place)
 
     def row_of(self, place: int) -> int:
-        """First row of the line at this index in `shown`."""
         if self.fold_width is None or place == 0:
             return place
         return self._ends[place - 1]
@@ -243,7 +238,6 @@ class LineChoice:
 
     @property
     def node(self) -> str | None:
-        """Node of the line at the cursor, None without a cursor."""
         return next((entry.node for entry in self.entries if entry.id == self.cursor), None)
 
     @property

@@ -61,7 +61,6 @@ class LogPrompt(Horizontal):
         yield Static(id="remark", markup=False)
 
     def ask(self, kind: str, label: str, text: str) -> None:
-        """Ask, with `text` as the default answer."""
         self.kind = kind
         self.add_class("-asking")
         self.query_one("#label", Static).update(label)
@@ -73,7 +72,6 @@ class LogPrompt(Horizontal):
         self.screen.set_focus(field)
 
     def remark(self, words: str) -> None:
-        """Show a remark about the answer."""
         self.query_one("#remark", Static).update(words)
 
     def close(self) -> None:
@@ -111,7 +109,6 @@ class LogBar(Widget):
 
     @property
     def words(self) -> str:
-        """The full text, the most important parts first."""
         return " · ".join(text for text, _style in self._parts)
 
     def render(self) -> Content:

@@ -75,7 +75,6 @@ class Tail:
         self.steering = False
 
     def show(self, first: int, end: int) -> None:
-        """Scroll as little as needed to show the rows from `first` to before `end`."""
         if first < self._view.scroll_y or end - first > self.page_rows:
             self.steer(first)
         elif end > self._view.scroll_y + self.page_rows:

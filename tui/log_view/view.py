@@ -141,7 +141,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._tail.rows_came()
 
     def know_nodes(self, names: Iterable[str]) -> None:
-        """Assign colours to these nodes, in this order."""
         for name in names:
             self._node_places.setdefault(name, len(self._node_places))
         longest = max(map(len, self._node_places), default=0)
@@ -284,7 +283,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._shift(SHIFT_CELLS)
 
     def on_click(self, event: Click) -> None:
-        """Choose the clicked line; with Shift, all lines up to it."""
         row = int(self.scroll_y) + event.y
         if self.text_selection is None and row < self.index.rows:
             self._point_at(self.index.locate(row)[0], extend=event.shift)
@@ -346,7 +344,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
 
     @property
     def top_id(self) -> int | None:
-        """Id of the line at the top of the screen."""
         place = self.index.locate(int(self.scroll_y))[0]
         return self.index.shown[place].id if place < len(self.index.shown) else None
 
@@ -390,7 +387,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self.refresh()
 
     def render_line(self, y: int) -> Strip:
-        """One row, or words if there are no lines."""
         row = int(self.scroll_y) + y
         if row < self.index.rows:
             place, part = self.index.locate(row)
@@ -399,7 +395,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         return strip.adjust_cell_length(self.size.width, self.rich_style)
 
     def _row(self, entry: LogEntry, part: int) -> Strip:
-        """Row number `part` of a line."""
         selection = self.text_selection
         strip = None if selection else self._strips.get((entry.id, part))
         if strip is not None:

@@ -100,7 +100,6 @@ def hear_all_in_log(screen: LogsScreen) -> None:
 
 
 def _may_ask_node(screen: LogsScreen) -> bool | None:
-    """Only with a node that can be asked."""
     if screen.feed.replay is not None:
         return False
     return True if screen.chosen_node else None

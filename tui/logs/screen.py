@@ -41,7 +41,6 @@ class LogNodes(Rows):
     """
 
     def show_nodes(self, names: Iterable[str], counts: Mapping[str, Sequence[int]], chosen: LogFilter) -> None:
-        """Show these nodes; `counts` has the lines of each by rank of the severity."""
         columns = (
             Column("", 1),
             Column(_("node")),
@@ -150,7 +149,6 @@ class LogsScreen(DeckScreen):
         self._show_nodes()
 
     def on_log_arrived(self, message: LogArrived) -> None:
-        """Add the lines; the counts of the nodes are updated less often."""
         self.pane.view.append(message.lines, message.skipped)
         if monotonic() - self._counted_s > COUNTS_EVERY_S:
             self._counted_s = monotonic()

@@ -29,7 +29,6 @@ class BrainView(Drawing):
         self._reports: dict[str, BrainReport] = {}
 
     def hear(self, report: BrainReport) -> None:
-        """Show the newest report of a node."""
         if report.node in self._reports or len(self._reports) < MOST_NODES:
             self._reports[report.node] = report
             self.redraw()
@@ -39,7 +38,6 @@ class BrainView(Drawing):
         return bool(self._reports)
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw states first, then what the answers took, and what is left of the budget."""
         reports = [self._reports[name] for name in sorted(self._reports)]
         several = len(reports) > 1
         parts = [
@@ -74,7 +72,6 @@ class BrainPanel(Panel):
         return {BRAIN_STATE}
 
     def show(self, update: GraphUpdate) -> None:
-        """Show the newest report of each node."""
         view = self.query_one(BrainView)
         for sample in update.samples.get(BRAIN_STATE, ()):
             if sample.type_name == TYPE:

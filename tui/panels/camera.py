@@ -52,7 +52,6 @@ class CameraPanel(Panel):
         self.post_message(PicturesChanged())
 
     def on_hide(self) -> None:
-        """Ask for no more."""
         self._in_sight = False
         self.post_message(PicturesChanged())
 

@@ -40,11 +40,9 @@ class ComposerPanel(Panel):
         self._say()
 
     def followed(self) -> set[str]:
-        """The messages, and all topics that they may affect."""
         return {LLM_RAW_JSON, *FOLLOWED}
 
     def show(self, update: GraphUpdate) -> None:
-        """Start a trail with each message, and follow it."""
         for sample in update.samples.get(LLM_RAW_JSON, ()):
             row = row_of(update, LLM_RAW_JSON)
             listeners = [str(row.subscribers)] if row is not None and row.subscribers else []

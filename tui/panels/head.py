@@ -81,7 +81,6 @@ class HeadView(Drawing):
     """Shows a `HeadReading`, the last commanded pose, and the service's answer."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Start without a reading."""
         super().__init__(id=id, classes=classes)
         self._pose: HeadReading | None = None
         self._told: HeadReading | None = None
@@ -102,7 +101,6 @@ class HeadView(Drawing):
         self.redraw()
 
     def answer(self, words: str) -> None:
-        """Show the service's answer in words."""
         self._answer = plain(words, 200)
         self.redraw()
 
@@ -184,7 +182,6 @@ class Dial(NamedTuple):
     zero_deg: float
 
     def draw(self, degrees: float, told_deg: float | None, look: str) -> None:
-        """Draw the scale, the needle, and a mark where the head is commanded to look."""
         x, y = np.transpose([self._at(step, 1.0) for step in range(-90, 91, 15)])
         self.dots.dots(x, y, "muted")
         if told_deg is not None and math.isfinite(told_deg):
@@ -219,7 +216,6 @@ class HeadPanel(Panel):
         return {HEAD_STATE}
 
     def followed(self) -> set[str]:
-        """The topics with the outcome of LLM commands."""
         return {LLM_RESULT}
 
     def show(self, update: GraphUpdate) -> None:

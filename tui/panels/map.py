@@ -58,7 +58,6 @@ class LegendEntry(NamedTuple):
 
 
 def entries(scene: Scene, view: Viewport, driven_m: float, remarks: Sequence[str]) -> list[LegendEntry]:
-    """All entries in reading order; `remarks` are warnings."""
     said = [LegendEntry(0, [Ink(plain(words, 200), "alert")]) for words in remarks if words]
     said += _robot(scene.pose)
     if driven_m >= 0.05:
@@ -171,7 +170,6 @@ class RoomMap(Drawing):
 
     @property
     def has_value(self) -> bool:
-        """Whether the position of the robot is known."""
         return self._scene is not None
 
     def show_pose(self, pose: Pose, frame: str = "") -> None:
@@ -261,7 +259,6 @@ class RoomMap(Drawing):
         return known.widened(AROUND_M if self._seen is None else AROUND_M / 2).rounded()
 
     def _truth_apart(self, pose: Pose) -> Pose | None:
-        """The true pose, if it differs from the pose."""
         truth = self.truth
         if truth is None:
             return None

@@ -35,7 +35,6 @@ class Extent:
     top_m: float
 
     def holding(self, *places: Point) -> Extent:
-        """Extend it to include these points."""
         across, up = [x for x, _y in places], [y for _x, y in places]
         return Extent(
             min([self.left_m, *across]),
@@ -45,7 +44,6 @@ class Extent:
         )
 
     def joined(self, other: Extent) -> Extent:
-        """Extend it to include both."""
         return self.holding((other.left_m, other.bottom_m), (other.right_m, other.top_m))
 
     def widened(self, margin_m: float) -> Extent:
@@ -78,7 +76,6 @@ class Viewport:
     """In cells."""
 
     def place(self, x_m: float, y_m: float) -> Point:
-        """The position of a point of the floor, in dots."""
         return (x_m - self.left_m) * self.dots_per_m, (self.top_m - y_m) * self.dots_per_m
 
 
@@ -125,7 +122,6 @@ class OccupancyGrid:
         return self.origin.x_m + cos * along - sin * up, self.origin.y_m + sin * along + cos * up
 
     def occupied_at(self, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether there is an obstacle at these positions; outside there is none."""
         east, north = x_m - self.origin.x_m, y_m - self.origin.y_m
         cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
         columns = np.floor((cos * east + sin * north) / self.cell_m)
@@ -154,7 +150,6 @@ def pose_in(value: Mapping[str, Any]) -> tuple[Pose, str] | None:
 
 
 def goal_in(value: Mapping[str, Any]) -> Place | None:
-    """Read a PoseStamped with a goal; None if there is no goal any more."""
     found = pose_in(value)
     if found is None or not found[1]:
         return None
@@ -162,7 +157,6 @@ def goal_in(value: Mapping[str, Any]) -> Place | None:
 
 
 def occupancy_in(value: Mapping[str, Any]) -> OccupancyGrid | None:
-    """Read an OccupancyGrid; None for an invalid one."""
     try:
         found, frame = grid_cells(value), str(field_of(value, "header.frame_id"))
     except NotDrawnError:
@@ -211,7 +205,6 @@ class DrivenPath:
         return self._corners
 
     def add(self, x_m: float, y_m: float) -> bool:
-        """Continue to a point; return whether the path has changed."""
         way_m = math.dist(self.pieces[-1][-1], (x_m, y_m)) if self.pieces else math.inf
         if way_m < self._least_m:
             return False
@@ -293,7 +286,6 @@ def ray_origin(pose: Pose, place: str) -> tuple[Point, float]:
 
 
 def along(start: Point, heading_rad: float, metres: float) -> Point:
-    """The point at this distance in a direction."""
     return start[0] + metres * math.cos(heading_rad), start[1] + metres * math.sin(heading_rad)
 
 
@@ -319,7 +311,6 @@ def grid_step_m(view: Viewport) -> float:
 
 
 def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> None:
-    """Draw the obstacles in the room."""
     if occupancy.cell_m * view.dots_per_m <= 1.0:
         rows, columns = np.nonzero(occupancy.cells >= OCCUPIED_FROM)
         x_m, y_m = occupancy.centres(rows.astype(np.float64), columns.astype(np.float64))
@@ -331,7 +322,6 @@ def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> 
 
 
 def draw_path(canvas: Canvas, view: Viewport, piece: list[Point]) -> None:
-    """Draw a piece of the path."""
     for start, end in pairwise(piece):
         canvas.line(view.place(*start), view.place(*end), PATH)
 

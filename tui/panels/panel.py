@@ -52,7 +52,6 @@ class Panel(Vertical):
         self._entitle()
 
     def name_source(self, topic: str) -> None:
-        """Show the topic in the title if it is not the usual one."""
         if topic != self._source:
             self._source = topic
             self._entitle()
@@ -64,7 +63,6 @@ class Panel(Vertical):
             self._entitle()
 
     def on_resize(self) -> None:
-        """Show the title in the words that fit."""
         self._entitle()
 
     def _entitle(self) -> None:
@@ -136,7 +134,6 @@ class Panel(Vertical):
 
 
 def row_of(update: GraphUpdate, topic: str) -> TopicRow | None:
-    """Return the row of a topic, None if there is none."""
     return next((row for row in update.topics if row.name == topic), None)
 
 
@@ -146,7 +143,6 @@ def is_published(update: GraphUpdate, topic: str) -> bool:
 
 
 def newest(update: GraphUpdate, topic: str) -> Sample | None:
-    """Return the newest sample of a topic, None if none has come."""
     samples = update.samples.get(topic)
     return samples[-1] if samples else None
 
@@ -215,7 +211,6 @@ class Joints:
         self._other: Sample | None = None
 
     def hear(self, sample: Sample, *, read: bool) -> None:
-        """Take in a message, and whether it was readable."""
         if read:
             self._read_s, self._other = sample.received_s, None
         elif not 0.0 <= sample.received_s - self._read_s < ANOTHER_S:

@@ -89,7 +89,6 @@ _INK = {Zone.FREE: "good", Zone.CLOSE: "warn", Zone.STOP: "bad", Zone.BLIND: "ba
 
 
 def ink_of(metres: float, bounds: Bounds) -> str:
-    """The look of a bar of this length."""
     return _INK[zone_of(metres, bounds)]
 
 
@@ -116,7 +115,6 @@ def bar(metres: float, width: int, bounds: Bounds) -> Line:
 
 
 def mark_cell(metres: float, width: int) -> int:
-    """The cell of the bar for this distance."""
     return min(width - 1, int(width * metres / RANGE_M))
 
 
@@ -136,7 +134,6 @@ def scale(width: int, bounds: Bounds) -> Line:
 
 
 def big(text: str, look: str) -> list[Line]:
-    """Digits three lines high."""
     rows = ["", "", ""]
     for char in text:
         place = DIGITS.find(char)
@@ -223,7 +220,6 @@ class Sonar(Drawing):
         self._times: deque[float] = deque(maxlen=KEPT)
 
     def show(self, metres: float, time_s: float) -> None:
-        """Take a reading in metres at a time in seconds."""
         self._values.append(metres)
         self._times.append(time_s)
         self.redraw()
@@ -326,12 +322,10 @@ class SonarPanel(Panel):
         self._bounds = COURSE
 
     def compose(self) -> ComposeResult:
-        """The front sonar above, or to the left of, the rear one."""
         yield Sonar(N_("front"), id="front")
         yield Sonar(N_("rear"), id="rear")
 
     def on_resize(self) -> None:
-        """Place them side by side if that leaves more lines to each."""
         self.set_class(self.size.width >= 56 and self.size.height < 16, "-flat")
 
     def watched(self) -> set[str]:
@@ -342,7 +336,6 @@ class SonarPanel(Panel):
         return set(TOPICS.values())
 
     def show(self, update: GraphUpdate) -> None:
-        """Show every reading, for the trend."""
         if is_published(update, SONAR_REAR):
             # One that has gone silent stays, with a remark.
             self.add_class("-both")

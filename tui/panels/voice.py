@@ -170,7 +170,6 @@ class VoiceView(Drawing):
             self.redraw()
 
     def clear(self) -> None:
-        """Remove everything that was said."""
         self._sayings.clear()
         self._dbfs, self._missing = None, False
         self.refresh()
@@ -194,7 +193,6 @@ class VoiceView(Drawing):
         return self.has_talk or super().draws
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw as many of the newest messages as fit, and the level."""
         below = [level_line(self._dbfs, width)] if self._tells_level else []
         if not self._sayings:
             return [[Ink(_("nobody has said anything yet"), "muted")], *below][-height:]
@@ -267,14 +265,12 @@ class VoicePanel(Panel):
         yield VoiceView()
 
     def followed(self) -> set[str]:
-        """All messages of microphone and loudspeaker, and the words that were recognised."""
         return {*TOPICS, HEARD}
 
     def watched(self) -> set[str]:
         return {AUDIO_LEVEL}
 
     def show(self, update: GraphUpdate) -> None:
-        """Add what was said, in order of arrival."""
         talk = self.query_one(VoiceView)
         said = [sample for topic in (*TOPICS, HEARD) for sample in update.samples.get(topic, ())]
         for sample in sorted(said, key=lambda one: one.received_s):
@@ -289,7 +285,6 @@ class VoicePanel(Panel):
         talk.show_trouble(*((None,) if placeholder else trouble_of(update, MICROPHONE)))
 
     def _of_another_type(self, update: GraphUpdate) -> Placeholder | None:
-        """Return what to show for the first topic with messages of another type."""
         for topic in TOPICS:
             if topic in update.samples:
                 self._placeholder[topic] = other_type(newest(update, topic), TYPE)

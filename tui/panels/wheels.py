@@ -46,7 +46,6 @@ class WheelsReading:
 
     @property
     def words(self) -> str:
-        """Say which wheel is slower, or that they stand or turn alike."""
         left, right = abs(self.left_m_s), abs(self.right_m_s)
         if not (math.isfinite(left) and math.isfinite(right)):
             return _("not a number")
@@ -139,12 +138,10 @@ class WheelsView(Drawing):
     """Shows a `WheelsReading`: in words from one line on, drawn from above if there is room."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Start without a reading."""
         super().__init__(id=id, classes=classes)
         self._wheels: WheelsReading | None = None
 
     def show(self, wheels: WheelsReading) -> None:
-        """Show these speeds and this angle."""
         if wheels != self._wheels:
             self._wheels = wheels
             self.redraw()
@@ -288,7 +285,6 @@ class WheelsPanel(Panel):
         yield WheelsView()
 
     def watched(self) -> set[str]:
-        """The commands to the wheels, and those to the chassis."""
         return {WHEEL_COMMANDS, DRIVE}
 
     def show(self, update: GraphUpdate) -> None:

@@ -16,7 +16,6 @@ action: Announce[SpaceScreen] = Announce()
 
 
 def _is_armed(screen: SpaceScreen) -> bool | None:
-    """Only while something is aimed."""
     return screen.armed
 
 

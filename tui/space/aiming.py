@@ -50,16 +50,13 @@ class Aim:
     heading_rad: float = 0.0
 
     def shifted(self, right_m: float, up_m: float) -> Aim:
-        """Return it at another place."""
         return replace(self, x_m=self.x_m + right_m, y_m=self.y_m + up_m)
 
     def turned(self, steps: int) -> Aim:
-        """Return it with the heading this many steps to the left."""
         heading = math.remainder(self.heading_rad + steps * HEADING_STEP_RAD, math.tau)
         return replace(self, heading_rad=heading)
 
     def towards(self, x_m: float, y_m: float) -> Aim:
-        """Return it with the heading to another place."""
         return replace(self, heading_rad=math.atan2(y_m - self.y_m, x_m - self.x_m))
 
     def shapes(self, dots_per_m: float) -> list[Shape]:
@@ -87,7 +84,6 @@ class Aim:
 
 
 def armed_words(aim: Aim, frame: str, listeners: Sequence[str], keys: tuple[str, str]) -> str:
-    """Return what is armed, where it is, who would hear it, and what to do."""
     what = _("GOAL") if aim.kind is AimKind.GOAL else _("INITIAL POSE")
     where = place_words(aim, frame)
     heard = ", ".join(listeners) if listeners else _("nobody listens")
@@ -98,7 +94,6 @@ def armed_words(aim: Aim, frame: str, listeners: Sequence[str], keys: tuple[str,
 
 
 def place_words(aim: Aim, frame: str) -> str:
-    """Return place and heading."""
     return _("x {x}  y {y} m, heading {degrees}° in {frame}").format(
         x=decimal(f"{aim.x_m:.2f}"),
         y=decimal(f"{aim.y_m:.2f}"),

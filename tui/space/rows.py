@@ -41,7 +41,6 @@ class LayerRows(Rows):
         """Topic to when its rate was shown first, and what was shown."""
 
     def on_click(self, event: Click) -> None:
-        """Choose a layer; on its mark, show or hide it."""
         super().on_click(event)
         if event.x <= MARK + 2 and event.chain == 1:
             self.action_open()
@@ -97,7 +96,6 @@ def _words(words: str, width: int) -> tuple[Row, ...]:
 
 
 def _rest_of(layer: SpaceLayer) -> str:
-    """Return since when a layer rests; empty if it does not."""
     if not layer.rests or layer.row is None:
         return ""
     age_s = layer.row.age_s
@@ -105,7 +103,6 @@ def _rest_of(layer: SpaceLayer) -> str:
 
 
 def trouble_of_layer(layer: SpaceLayer) -> str:
-    """Return why a layer is not in the picture, or not all of it; empty if it is."""
     row = layer.row
     if row is not None and row.trouble is not None and not layer.rests:
         headline, detail = advice(row)

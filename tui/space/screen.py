@@ -73,7 +73,6 @@ class SpaceScreen(DeckScreen):
         self.stage = Stage()
 
     def compose_body(self) -> ComposeResult:
-        """The picture with its lines, and the layers."""
         with Horizontal(id="space-body"):
             with Vertical(id="space-picture"):
                 yield SpaceView(self._compose_picture, id="space-view")
@@ -107,7 +106,6 @@ class SpaceScreen(DeckScreen):
         return self.stage.layers.followed() if self.feed.front is self else set()
 
     def on_mount(self) -> None:
-        """Put the keys to the picture."""
         self.view.focus()
         self._show_lines()
 
@@ -132,7 +130,6 @@ class SpaceScreen(DeckScreen):
             self._show()
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
-        """Disarm once the emergency stop is engaged."""
         if message.emergency.engaged and self.armed:
             self.disarm()
             self.notify(self.refusal, severity="warning", markup=False)
@@ -173,7 +170,6 @@ class SpaceScreen(DeckScreen):
     # Actions
 
     async def ros2_command(self) -> str:
-        """Return what prints the topic of the chosen layer."""
         layer = self.stage.layers.get(self.layer_rows.chosen)
         return "" if layer is None else ros2_words.echo(layer.topic)
 
@@ -217,7 +213,6 @@ class SpaceScreen(DeckScreen):
         self.app.push_screen(ChoiceScreen(title, lambda: _("Which frame?"), choices), take)
 
     def toggle_layer(self) -> None:
-        """Show or hide the chosen layer."""
         chosen = self.layer_rows.chosen
         layer = self.stage.layers.get(chosen)
         if chosen == FRAMES:
@@ -229,7 +224,6 @@ class SpaceScreen(DeckScreen):
         self._layers_changed()
 
     def only_layer(self) -> None:
-        """Hide all layers but the chosen one."""
         chosen = self.layer_rows.chosen
         self.stage.show_frames = chosen == FRAMES
         for layer in self.stage.layers:
@@ -284,7 +278,6 @@ class SpaceScreen(DeckScreen):
         self._aim_changed()
 
     def disarm(self) -> None:
-        """Aim at nothing any more."""
         if self.armed:
             self.view.aim = None
             self._aim_changed()

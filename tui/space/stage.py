@@ -87,7 +87,6 @@ class Stage:
             self.buffer.add(newest)
 
     def place(self, now_s: float) -> None:
-        """Place all layers, and note at each what cannot be placed."""
         shown = {layer: layer.reader.shown(now_s) if layer.is_drawn else () for layer in self.layers}
         for layer, drawables in shown.items():
             layer.frame = next((one.frame for one in drawables if one.frame), layer.frame)
@@ -110,7 +109,6 @@ class Stage:
         return None if found is None else found.widened(AROUND, LEAST_M)
 
     def follow_frame(self, frame: str) -> None:
-        """Keep this frame in the middle from now on; none if it is empty."""
         self.follow, self._followed = frame, None
 
     def followed(self, camera: SpaceCamera) -> SpaceCamera:

@@ -116,7 +116,6 @@ class SpaceView(OneStyle, Widget, can_focus=True):
 
     @property
     def dots(self) -> tuple[int, int]:
-        """Width and height of the picture in dots."""
         return 2 * self.size.width, 4 * self.size.height
 
     @property
@@ -164,18 +163,15 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self.renew()
 
     def on_resize(self, event: Resize) -> None:
-        """Draw at the new size."""
         del event
         self._fitted = None
         self.post_message(self.CameraMoved())
 
     def on_language_changed(self) -> None:
-        """Draw in the current theme and language."""
         self._theme = None
         self.refresh()
 
     def render_line(self, y: int) -> Strip:
-        """One line of the picture, or of the words in place of it."""
         width, base = self.size.width, self.rich_style
         if self._words[0]:
             strips = word_strips(self._words, width, base, self.app.console, centred=True)
@@ -241,13 +237,11 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self.post_message(self.Aimed(done=False))
 
     def action_turn(self, left: int) -> None:
-        """Turn what is aimed."""
         if self.aim is not None:
             self.aim = self.aim.turned(left)
             self.post_message(self.Aimed(done=False))
 
     def action_closer(self, steps: int) -> None:
-        """Zoom about the middle."""
         self._move(self.camera.zoomed(ZOOM**steps))
 
     def action_zoom(self, steps: int) -> None:
@@ -260,12 +254,10 @@ class SpaceView(OneStyle, Widget, can_focus=True):
     # Mouse
 
     def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
-        """Zoom in about the pointer."""
         event.stop()
         self._zoom_about(ZOOM, event.x, event.y)
 
     def on_mouse_scroll_down(self, event: MouseScrollDown) -> None:
-        """Zoom out about the pointer."""
         event.stop()
         self._zoom_about(1 / ZOOM, event.x, event.y)
 
@@ -275,7 +267,6 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self._move(self.camera.zoomed(factor, spot[0] - width / 2, spot[1] - height / 2))
 
     def on_mouse_down(self, event: MouseDown) -> None:
-        """Begin to pan, or to aim."""
         self.focus()
         spot = _middle_of(event.x, event.y)
         if self.aim is not None:
@@ -286,7 +277,6 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self.capture_mouse()
 
     def on_mouse_move(self, event: MouseMove) -> None:
-        """Pan or aim while a button is held, and say where the pointer is."""
         spot = _middle_of(event.x, event.y)
         drag = self._drag
         if spot != self._pointer:

@@ -45,7 +45,6 @@ class TopicHead(Widget):
         self._texts: tuple[str, str, tuple[str, ...], str] = ("", "", (), "")
 
     def show(self, name: str, type_name: str, figures: Sequence[str], below: str) -> None:
-        """Show these texts; redraws only if one of them has changed."""
         texts = (plain(name), plain(type_name), tuple(figures), below)
         if texts != self._texts:
             before = self._count()
@@ -53,7 +52,6 @@ class TopicHead(Widget):
             self.refresh(layout=self._count() != before)
 
     def on_resize(self) -> None:
-        """Wrap the figures to the new width."""
         self.refresh(layout=True)
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
@@ -99,7 +97,6 @@ class TopicDetail(Vertical, Working):
         """The newest message, whether or not it matches the expression."""
 
     def compose(self) -> ComposeResult:
-        """The head above tree, picture and endpoints, one of which is visible."""
         yield TopicHead()
         yield EchoFilter()
         yield EchoTree()
@@ -124,7 +121,6 @@ class TopicDetail(Vertical, Working):
 
     @property
     def front(self) -> Widget:
-        """The widget that is visible below the head."""
         if self.as_endpoints:
             return self.endpoints
         return self.picture if self.as_picture else self.echo
@@ -179,7 +175,6 @@ class TopicDetail(Vertical, Working):
 
     @property
     def as_picture(self) -> bool:
-        """Whether the picture is shown rather than the tree."""
         return self.has_class("-picture")
 
     def show_as_picture(self, picture: bool) -> None:

@@ -73,17 +73,14 @@ class EchoFilter(Horizontal):
         return self.in_force and self._condition is None
 
     def open(self) -> None:
-        """Show the field and focus it."""
         self.add_class("-open")
         self.field.focus()
 
     def close(self) -> None:
-        """Stop filtering and hide the field."""
         self.field.value = ""
         self.remove_class("-open")
 
     def show_topic(self, topic: str) -> None:
-        """Use the expression of another topic."""
         if topic == self._topic:
             return
         self._topic = topic

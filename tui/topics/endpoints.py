@@ -48,7 +48,6 @@ class TopicEndpoints(VerticalScroll, can_focus=True):
         yield Static(markup=False)
 
     def show(self, row: TopicRow | None) -> None:
-        """Show the endpoints of this topic; another one is shown from its beginning."""
         other = row is None or self._row is None or row.name != self._row.name
         self._row = row
         self._fold()
@@ -59,7 +58,6 @@ class TopicEndpoints(VerticalScroll, can_focus=True):
         self._fold()
 
     def on_resize(self) -> None:
-        """Wrap to the new width."""
         self._fold()
 
     def watch_show_vertical_scrollbar(self) -> None:
@@ -67,7 +65,6 @@ class TopicEndpoints(VerticalScroll, can_focus=True):
         self._fold()
 
     def on_show(self) -> None:
-        """Wrap what was set while the widget was hidden."""
         self._fold()
 
     def _fold(self) -> None:
@@ -235,7 +232,6 @@ def history_text(end: EndpointInfo) -> str:
 
 
 def time_text(seconds: float | None) -> str:
-    """Return a time that was requested or offered, or say that there is none."""
     return _("none") if seconds is None else seconds_text(seconds)
 
 
@@ -269,5 +265,4 @@ def columns_for(width: int) -> tuple[EndpointColumn, ...]:
 
 
 def left_over(columns: Sequence[EndpointColumn]) -> tuple[EndpointColumn, ...]:
-    """Return the policies without a column."""
     return POLICIES[len(columns) - 1 :]

@@ -21,12 +21,10 @@ LONGEST = 80
 
 
 def carries_images(row: TopicRow | None) -> bool:
-    """Whether the messages of this topic are images."""
     return row is not None and not {IMAGE, COMPRESSED_IMAGE}.isdisjoint(row.type_names)
 
 
 def is_image(sample: Sample) -> bool:
-    """Whether this message is an image."""
     return sample.type_name in {IMAGE, COMPRESSED_IMAGE}
 
 
@@ -46,7 +44,6 @@ class TopicPictures:
         self._newest = NewestPicture(detail, self._fit, self._show, self._refuse_wanted)
 
     def show(self, sample: Sample) -> None:
-        """Show this image; a compressed one after decoding it."""
         self._newest.take(sample)
 
     def _fit(self, width: int, height: int) -> tuple[int, int]:

@@ -68,7 +68,6 @@ class TopicPlot(Drawing):
 
     @property
     def topics(self) -> set[str]:
-        """The topics of which every message is needed."""
         return {series.field.topic for series in self._series}
 
     @property
@@ -117,7 +116,6 @@ class TopicPlot(Drawing):
         self.post_message(self.PlotChanged())
 
     def take(self, update: GraphUpdate) -> None:
-        """Add the messages of an update and redraw what has changed."""
         self._now_s = update.time_s
         for series in self._series:
             for sample in update.samples.get(series.field.topic, ()):
@@ -140,7 +138,6 @@ class TopicPlot(Drawing):
             self.post_message(self.PlotChanged())
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw a title, the legend, and the curves between their axes."""
         end_s = self._now_s if self._paused_s is None else self._paused_s
         title = f"{_('Plot')} · {window_text(self._window_s)}"
         if self.paused:
@@ -260,7 +257,6 @@ class ValueAxis:
 
 
 def decimals(step: float) -> int:
-    """Return the number of decimals for a number with this step."""
     return max(0, -math.floor(math.log10(step) + 1e-9))
 
 
@@ -309,7 +305,6 @@ def heights(values: Numbers, axis: ValueAxis, dots: int) -> Numbers:
 
 
 def curve(columns: HistoryDots, axis: ValueAxis, rows: int) -> NDArray[np.bool_]:
-    """Which dots are on in this many rows of cells."""
     dots = rows * DOTS_DOWN
     top, bottom = _reach(columns, axis, dots)
     at = np.arange(dots)[:, None]

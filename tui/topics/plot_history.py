@@ -121,7 +121,6 @@ class History:
         return np.where(known, part, blank)
 
     def _go_to(self, slot: int) -> None:
-        """Clear the slots between the newest and this one."""
         if self._newest < 0:
             self._newest = slot
         steps = min(SLOTS, slot - self._newest)
@@ -187,14 +186,12 @@ class Series:
     """Whether the newest message had a number in this field."""
 
     def take(self, sample: Sample) -> None:
-        """Add the number from one message."""
         number = self.field.number(sample.value)
         self.is_number = number is not None
         self.history.add(sample.received_s - sample.age_s, number)
 
 
 def as_number(value: object) -> float | None:
-    """A number or a boolean as a float; None for anything else."""
     if not isinstance(value, SupportsFloat) or hasattr(value, "__len__"):
         return None
     try:

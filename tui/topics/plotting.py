@@ -51,7 +51,6 @@ class Plotting:
         return self.place is PlotPlace.ALONE
 
     def show(self, place: PlotPlace) -> None:
-        """Show the plot beside the rest, alone, or not at all."""
         self._screen.set_class(place is not PlotPlace.NONE, "-plot")
         self._screen.set_class(place is PlotPlace.ALONE, "-plot-alone")
         if place is not PlotPlace.ALONE and self._screen.focused is None:
@@ -60,7 +59,6 @@ class Plotting:
 
     @property
     def field_at_cursor(self) -> PlotField | None:
-        """The number at the cursor, None if it is not one."""
         echo = self._detail.echo
         topic, path, message = self._table.chosen, echo.at_cursor, echo.message
         if not topic or path is None or message is None:
@@ -91,7 +89,6 @@ class Plotting:
         self.plot.pause(paused and self.place is not PlotPlace.NONE)
 
     def mark_fields(self) -> None:
-        """Show the letters of the plot in the message."""
         self._detail.echo.mark(self.plot.marks(self._table.chosen))
 
     def _warn(self, words: str) -> None:

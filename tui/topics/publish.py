@@ -57,7 +57,6 @@ class PublishTarget(Vertical, Working):
     """
 
     def compose(self) -> ComposeResult:
-        """The topic above its type."""
         with Horizontal(classes="target-row"):
             yield Static(id="target-topic-label", classes="target-label", markup=False)
             yield Field(id="target-topic", compact=True, select_on_focus=False)
@@ -66,7 +65,6 @@ class PublishTarget(Vertical, Working):
             yield TypeField()
 
     def on_mount(self) -> None:
-        """Read the installed types."""
         self.on_language_changed()
         self.run_worker(self._learn_types(), group="types")
 
@@ -137,11 +135,9 @@ class PublishRate(Horizontal):
 
     @property
     def says_bad(self) -> bool:
-        """Whether the remark reports a failure."""
         return self._look == "bad"
 
     def rate_hz(self) -> float | None:
-        """Return the rate; if it is invalid, say what is allowed and return None."""
         try:
             hz = float(self.field.value.replace(",", "."))
         except ValueError:
@@ -244,11 +240,9 @@ class PublishDialog(Dialog[None]):
         return _("Publish a message")
 
     def words(self) -> Content:
-        """Return nothing: there is no text."""
         return Content("")
 
     def compose(self) -> ComposeResult:
-        """Topic and type, the form, the rate, and what is being published."""
         yield TitleBar()
         with Vertical(id="dialog"):
             yield PublishTarget()
@@ -258,7 +252,6 @@ class PublishDialog(Dialog[None]):
             yield KeyBar()
 
     def on_mount(self) -> None:
-        """Show the chosen topic, and update the list of publications regularly."""
         # A tab would replace this screen and put its own above the topics.
         self.query_one(TitleBar).disabled = True
         self.redraw()
@@ -303,7 +296,6 @@ class PublishDialog(Dialog[None]):
         self._look()
 
     async def ros2_command(self) -> str:
-        """Return what publishes the message, at a rate if one is going on for this topic."""
         value = self.form.value
         if value is None or not self.target.is_name:
             return ""
@@ -340,7 +332,6 @@ class PublishDialog(Dialog[None]):
         self.rate.tell(lambda: _("Stopped: {topic}").format(topic=stopped))
 
     def take_message(self) -> None:
-        """Fill the form with the newest message."""
         sample = self.newest
         if sample is None:
             return

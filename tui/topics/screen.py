@@ -110,7 +110,6 @@ class TopicsScreen(DeckScreen):
         """What would have been shown while another screen was in front."""
 
     def compose_body(self) -> ComposeResult:
-        """The filter above table and message."""
         with Horizontal(id="topics-bar"):
             yield Field(id="topics-filter", compact=True, select_on_focus=False)
             yield Static(id="topics-count", markup=False)
@@ -152,7 +151,6 @@ class TopicsScreen(DeckScreen):
         self._label()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Show rates, and the newest message of the chosen topic."""
         update = message.update
         self.plot.take(update)
         samples = update.samples.get(self.table.chosen, ())
@@ -174,7 +172,6 @@ class TopicsScreen(DeckScreen):
             self.refresh_bindings()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Forget the topics of a session that has ended."""
         del message
         if self.feed.link is None:
             self._listed = ()
@@ -273,7 +270,6 @@ class TopicsScreen(DeckScreen):
         self.detail.filter.open()
 
     def toggle_housekeeping(self) -> None:
-        """Show or hide topics of ROS itself."""
         order = self.table.order
         self.table.reorder(replace(order, housekeeping=not order.housekeeping))
 
@@ -289,7 +285,6 @@ class TopicsScreen(DeckScreen):
         return carries_images(self.table.chosen_row)
 
     def toggle_picture(self) -> None:
-        """Show an image as a picture, or as a tree."""
         if self.detail.as_endpoints:
             self.detail.show_as_endpoints(False)
         else:
@@ -298,12 +293,10 @@ class TopicsScreen(DeckScreen):
         self.topics_changed()
 
     def show_plot(self, place: PlotPlace) -> None:
-        """Show the plot in this place, possibly over a picture."""
         self.plotting.show(place)
         self._keep_pace()
 
     def show_plot_next(self) -> None:
-        """Show the plot in the next of its places."""
         places = list(PlotPlace)
         self.show_plot(places[(places.index(self.plotting.place) + 1) % len(places)])
 
@@ -318,14 +311,12 @@ class TopicsScreen(DeckScreen):
         return self.feed.graph is not None and self.feed.replay is None
 
     def open_publish(self) -> None:
-        """Open the dialog that publishes, for the chosen topic."""
         from tui.topics.publish import PublishDialog
 
         row = self.table.chosen_row
         self.app.push_screen(PublishDialog(row, lambda: self.detail.sample))
 
     async def ros2_command(self) -> str:
-        """Return what prints the chosen topic, or the value at the cursor of the message."""
         row = self.table.chosen_row
         if row is None:
             return ros2_words.echo(self.table.chosen) if self.table.chosen else ""

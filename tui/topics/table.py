@@ -246,7 +246,6 @@ class TopicsOrder:
         return replace(self, column_id=column_id, reverse=False)
 
     def next_column(self, column_ids: list[str]) -> TopicsOrder:
-        """The order by the next one of the columns that are shown."""
         at = column_ids.index(self.column_id) if self.column_id in column_ids else -1
         return replace(self, column_id=column_ids[(at + 1) % len(column_ids)], reverse=False)
 
@@ -306,7 +305,6 @@ class TopicsTable(Rows):
         self.reorder(replace(self._order, words=words))
 
     def sort_by_next(self) -> None:
-        """Sort by the next one of the columns that are shown."""
         self.reorder(self._order.next_column([place.column.id for place in self._places]))
 
     @property
@@ -318,7 +316,6 @@ class TopicsTable(Rows):
         return self._shown
 
     def on_click(self, event: Click) -> None:
-        """Choose a column to sort by."""
         for place in self._places if event.y == 0 else ():
             if place.x <= event.x - MARK <= place.x + place.width:
                 self.reorder(self._order.by(place.column.id))
@@ -327,7 +324,6 @@ class TopicsTable(Rows):
         self._place()
 
     def render_line(self, y: int) -> Strip:
-        """A header, a topic, or words if there are none."""
         if y and not self._shown:
             words = self._words
             if self._topics and self._order.words:
@@ -357,7 +353,6 @@ class TopicsTable(Rows):
         super()._place()
 
     def _laid_out(self) -> tuple[tuple[Column, ...], tuple[Row, ...]]:
-        """The columns that there is room for, and every row in them."""
         longest = max((len(row.name) for row in self._shown), default=0)
         self._places = placed(max(1, self.scrollable_size.width - MARK), longest)
         ends = [*(place.x for place in self._places[1:]), self._places[-1].x + self._places[-1].width + 1]

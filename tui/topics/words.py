@@ -84,7 +84,6 @@ def ends(row: TopicRow) -> str:
 
 
 def why_empty(deck: Host, listed: Sequence[TopicRow]) -> tuple[str, str]:
-    """Return headline and detail for a table that shows none of the topics that are `listed`."""
     feed = deck.feed
     if feed.link is None:
         return _("no lesson is running"), ""

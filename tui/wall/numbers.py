@@ -98,7 +98,6 @@ def _battery(value: Mapping[str, Any]) -> WallNumber:
 
 
 def _current(update: GraphUpdate, topic: str, shown: WallNumber) -> WallNumber:
-    """Return the number, greyed out with the reason if it is not current."""
     trouble, _detail, age_s = trouble_of(update, topic)
     if trouble is None:
         return shown
@@ -150,7 +149,6 @@ class BigNumber(Widget):
         self.shown: WallNumber | None = None
 
     def show(self, number: WallNumber) -> None:
-        """Show this number; redraws only if it is another."""
         if number != self.shown:
             self.shown = number
             self.refresh()
@@ -165,7 +163,6 @@ class BigNumber(Widget):
         return min(size.width for size in sizes), min(size.height for size in sizes) - 2
 
     def render(self) -> Content:
-        """Draw the three below each other."""
         if self.shown is None:
             return Content("")
         value, (of_value, of_note) = plain(self.shown.value, LONGEST), LOOKS[self.shown.look]
@@ -233,7 +230,6 @@ def size_for(texts: tuple[str, ...], columns: int, rows: int) -> DigitSize | Non
 
 
 def digit_lines(text: str, size: DigitSize) -> list[str]:
-    """Return a text in this size as rows of cells."""
     pixels = [[0] * _width(text, size) for _row in range(size.high + size.high % 2)]
     x = 0
     for sign in text:

@@ -92,7 +92,6 @@ class WallScreen(DeckScreen):
         """Panels of the session, from which the wall takes what it shows."""
 
     def compose_body(self) -> ComposeResult:
-        """Numbers, picture, state, words."""
         with Container(id="wall"):
             yield Static(id="wall-none", markup=False)
             yield CameraPanel()
@@ -111,7 +110,6 @@ class WallScreen(DeckScreen):
         return self.query_one(CameraPanel).pictures() if self._sees and self.is_mounted else set()
 
     def follow_topics(self) -> set[str]:
-        """What is said, as long as the wall is in front."""
         front = self.feed.front is self and self.is_mounted
         return self.query_one(VoicePanel).followed() if front and self._hears else set()
 
@@ -124,7 +122,6 @@ class WallScreen(DeckScreen):
         return "voice" in self._names
 
     def on_mount(self) -> None:
-        """Nothing is known yet."""
         self.add_class("-no-numbers")
         self._choose(None)
         self._show_state(None)
@@ -148,7 +145,6 @@ class WallScreen(DeckScreen):
             self.query_one(VoicePanel).take(update)
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
-        """Show the stop at once."""
         del message
         self._show_state(self.feed.update)
 

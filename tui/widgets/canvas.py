@@ -45,7 +45,6 @@ class Canvas:
         self._looks[row // 4, column // 2] = _NUMBER[look]
 
     def mask(self, on: NDArray[np.bool_], look: str = "") -> None:
-        """Set the dots that are on in an array of this size."""
         self._on |= on
         touched = on.reshape(self.rows, 4, self.columns, 2).any(axis=(1, 3))
         self._looks[touched] = _NUMBER[look]
@@ -68,7 +67,6 @@ class Canvas:
         self.dots(x0 + (x1 - x0) * shares, y0 + (y1 - y0) * shares, look)
 
     def outline(self, corners: list[Point], look: str = "") -> None:
-        """Draw a closed figure."""
         for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
             self.line(start, end, look)
 

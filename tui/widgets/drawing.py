@@ -152,7 +152,6 @@ class Drawing(OneStyle, Widget):
         return [_greyed(line) for line in lines] if self.stale else lines
 
     def on_resize(self) -> None:
-        """Redraw at the new size."""
         width, height = self.size
         self._lines = self._drawn(width, height) if width and height else []
         self.refresh()
@@ -171,7 +170,6 @@ class Drawing(OneStyle, Widget):
         return super().render_lines(crop)
 
     def render_line(self, y: int) -> Strip:
-        """One line of the drawing, or of the words in place of it."""
         width = self.size.width
         if self._fault or not self.draws:
             return self._words(y, width)
@@ -235,7 +233,6 @@ def _cells(line: Line, width: int) -> list[tuple[str, str]]:
 
 
 def cells_of(line: Line) -> int:
-    """Width of a line in cells."""
     return sum(cell_len(ink.text) for ink in line)
 
 

@@ -25,7 +25,6 @@ def seconds_text(seconds: float | None) -> str:
 
 
 def count_text(count: int | None) -> str:
-    """A count in at most five cells."""
     if count is None:
         return UNKNOWN
     if count < 100_000:

@@ -113,7 +113,6 @@ class ImageView(OneStyle, Widget):
             self._take(self._newest)
 
     def show_words(self, headline: str, detail: str = "") -> None:
-        """Show why there is no picture, in its place."""
         if self._newest is None and (headline, detail) == (self._headline, self._detail):
             return
         self._newest = self._shown = None
@@ -147,16 +146,13 @@ class ImageView(OneStyle, Widget):
 
     @property
     def caption(self) -> str:
-        """The line below the picture."""
         return self._caption
 
     @property
     def words(self) -> tuple[str, str]:
-        """Headline and detail shown in place of a picture, both empty if there is one."""
         return self._headline, self._detail
 
     def render_line(self, y: int) -> Strip:
-        """One line of the picture, the caption, or the words in their place."""
         width, height = self.size
         if self._shown is None:
             return self._words_strip(y, width, height)

@@ -110,7 +110,6 @@ class MarkedEditor(TextArea):
         return replaced(lines, lambda one: one if one in "\n\t" else self.escaped(one))
 
     def load_text(self, text: str) -> None:
-        """Replace the text and discard the history."""
         super().load_text(self.shown(text))
 
     def edit(self, edit: Edit) -> EditResult:
@@ -139,13 +138,11 @@ class MarkedEditor(TextArea):
         self.move_cursor((0, 0))
 
     def on_paste(self, event: Paste) -> None:
-        """Reject text that is too long."""
         if len(self.shown(event.text)) + len(self.text) > self.longest:
             event.prevent_default().stop()
             self.post_message(self.TooLong())
 
     def get_line(self, line_index: int) -> Text:
-        """Return the line with its tokens coloured."""
         source = self.document.get_line(line_index)
         line = Text(source, no_wrap=True)
         line.end = ""
@@ -157,7 +154,6 @@ class MarkedEditor(TextArea):
         return line
 
     def render_line(self, y: int) -> Strip:
-        """The line, with a mark between its number and its text if it contains an error."""
         strip = super().render_line(y)
         if not self._places:
             return strip

@@ -24,7 +24,6 @@ class NameHead(Static):
         self._said: tuple[str, ...] = ()
 
     def show(self, name: str, *facts: str) -> None:
-        """Show the name and the facts, made harmless, each fact on its own line."""
         said: tuple[str, ...] = (name, *(fact for fact in facts if fact))
         if said != self._said:
             self._said = said

@@ -130,7 +130,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
 
     @property
     def chosen(self) -> str:
-        """Key of the chosen row, empty if there is none."""
         return self._chosen
 
     @property
@@ -146,7 +145,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         return any(cell_len(cell.text) > room for cell, room in zip(cells, rooms))  # noqa: B905
 
     def choose(self, key: str) -> None:
-        """Choose a row by its key, if there is one."""
         index = self._index(key)
         if index is not None:
             self._choose(index)
@@ -172,7 +170,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         return self._strip(row.cells, "▶ " if chosen else "  ", base, width, plain=chosen)
 
     def action_move(self, by: int) -> None:
-        """Choose the row this many below."""
         self._moved = True
         at = self._index(self._chosen)
         self._choose_near(max(0, min((at or 0) + by, len(self._rows) - 1)), -1 if by < 0 else 1)
@@ -185,7 +182,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
             self.post_message(self.Opened(self, self._chosen))
 
     def on_click(self, event: Click) -> None:
-        """Choose a row; a second click opens it."""
         index = event.y - self._top + self.scroll_offset.y
         if event.y >= self._top and index < len(self._rows) and self._rows[index].key:
             self._moved = True
@@ -195,7 +191,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
                 self.action_open()
 
     def on_resize(self) -> None:
-        """Lay out the columns again, and keep the chosen row in sight."""
         self._place()
         index = self._index(self._chosen)
         if index is not None:
@@ -207,11 +202,9 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._place()
 
     def on_focus(self) -> None:
-        """Draw the cursor as focused."""
         self._refresh_row(self._index(self._chosen))
 
     def on_blur(self) -> None:
-        """Draw the cursor as unfocused."""
         self._refresh_row(self._index(self._chosen))
 
     def _place(self) -> None:
@@ -273,7 +266,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
                 x += width + 1
 
     def _room_for(self, cells: int) -> tuple[int, ...]:
-        """Return the widths of a row with this many cells."""
         if not cells or cells >= len(self._widths):
             return self._widths
         kept = self._widths[: cells - 1]

@@ -52,7 +52,6 @@ class TabLine(Widget):
         self._entries: tuple[TabEntry, ...] = ()
 
     def show_tabs(self, front: str, entries: Sequence[TabEntry]) -> None:
-        """Show these tabs, the one with the key `front` in front."""
         if (front, tuple(entries)) != (self._front, self._entries):
             self._front, self._entries = front, tuple(entries)
             self.refresh(layout=True)

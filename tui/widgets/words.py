@@ -25,7 +25,6 @@ def word_strips(
 
 
 def in_row(strip: Strip, left: int, width: int, base: Style) -> Strip:
-    """The strip, this many cells from the left, in a row of `width` cells."""
     margin = [Segment(" " * left, base)] if left else []
     return Strip([*margin, *strip]).adjust_cell_length(width, base)
 

@@ -100,7 +100,6 @@ class YamlForm(Vertical, Acting, Working):
         self._loading = False
 
     def compose(self) -> ComposeResult:
-        """The editor above the verdict."""
         yield YamlEditor()
         yield Static(markup=False)
 
@@ -126,7 +125,6 @@ class YamlForm(Vertical, Acting, Working):
 
     @property
     def verdict(self) -> str:
-        """The text below the editor."""
         return str(self.query_one(Static).content)
 
     def load(self, type_name: str, text: str | None = None) -> Worker[None]:
@@ -146,7 +144,6 @@ class YamlForm(Vertical, Acting, Working):
             self.post_message(self.Submitted(self, value))
 
     def go_to_problem(self) -> None:
-        """Move the cursor to what is wrong."""
         place = None if self.error is None else place_of(self.error)
         if place is not None:
             self.editor.go_to(place)
@@ -157,7 +154,6 @@ class YamlForm(Vertical, Acting, Working):
             self._take(self.text, _checked(self.type_name, self.text))
 
     def on_language_changed(self) -> None:
-        """Show the verdict in the current language."""
         words = "✓ " + _("valid {type}").format(type=plain(self.type_name, 100))
         if self._loading or (self.type_is_given and not self.type_name):
             words = _("the form is being loaded…")
@@ -185,7 +181,6 @@ class YamlForm(Vertical, Acting, Working):
         await self._check()
 
     def on_click(self, event: Click) -> None:
-        """Go to what is wrong when the verdict is clicked."""
         if isinstance(event.widget, Static):
             self.go_to_problem()
 

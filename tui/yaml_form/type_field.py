@@ -69,13 +69,11 @@ class TypeField(Vertical):
         return self.has_class("-listing")
 
     def know(self, types: tuple[str, ...]) -> None:
-        """Use these types for completion."""
         self._types = types
         if self.field.has_focus:
             self._list()
 
     def set(self, type_name: str) -> None:
-        """Show a type that was chosen elsewhere."""
         self._chosen = type_name
         self.field.value = type_name
         self.close()
@@ -131,7 +129,6 @@ class TypeField(Vertical):
         self._choose(str(event.option.prompt))
 
     def on_descendant_blur(self, event: DescendantBlur) -> None:
-        """Close the list and accept the text when the focus leaves."""
         del event
         self.close()
         if self.value and self.value != self._chosen:
