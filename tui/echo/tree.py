@@ -79,8 +79,8 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         Binding("left,h", "fold", show=False),
     ]
 
-    def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._topic = ""
         self._message: Mapping[str, Value] | None = None
         self._waiting: Mapping[str, Value] | None = None

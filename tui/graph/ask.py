@@ -15,8 +15,7 @@ from tui.graph.pane import GraphLinks, GraphPane, heading, link, node_links
 from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Column, Row, Rows
-from tui.yaml_form.actions import submit_form
-from tui.yaml_form.form import YamlForm
+from tui.yaml_form.form import YamlForm, submit_form
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult

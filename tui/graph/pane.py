@@ -6,10 +6,8 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from textual.containers import Vertical
-from textual.content import Content
 from textual.timer import Timer
 from textual.widget import Widget
-from textual.widgets import Static
 
 from graph.data import GraphUpdate
 from text.i18n import _, localized
@@ -17,6 +15,7 @@ from text.plain import plain
 from tui.frame.host import Host, host_of
 from tui.graph.index import GraphEntry
 from tui.graph.places import GraphKind, GraphPlace
+from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 
@@ -30,23 +29,10 @@ SETTLED_S = 0.12
 """How long a choice must stand before what it needs is loaded: that imports its package."""
 
 
-class EmptyNotice(Static):
+class EmptyNotice(NameHead):
     """A headline and advice, where nothing can be shown."""
 
-    DEFAULT_CSS = """
-    EmptyNotice { width: 1fr; height: auto; padding: 0 1; }
-    """
-
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id, markup=False)
-        self.said = ("", "")
-
-    def show(self, headline: str, way_out: str = "") -> None:
-        if (headline, way_out) != self.said:
-            self.said = (headline, way_out)
-            parts = [Content.styled(plain(headline, LONGEST), "bold")]
-            parts += [Content.styled(plain(way_out, LONGEST), "$text-muted")] if way_out else []
-            self.update(Content("\n").join(parts))
+    DEFAULT_CSS = "EmptyNotice { max-height: 100%; background: transparent; }"
 
 
 class GraphLinks(Rows):

@@ -97,8 +97,8 @@ class LogBar(Widget):
     }
     """
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._parts: tuple[tuple[str, str], ...] = ()
 
     def show(self, view: LogView) -> None:

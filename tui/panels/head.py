@@ -80,8 +80,8 @@ DRAWN_FROM = (22, 6)
 class HeadView(Drawing):
     """Shows a `HeadReading`, the last commanded pose, and the service's answer."""
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._pose: HeadReading | None = None
         self._told: HeadReading | None = None
         self._answer = ""

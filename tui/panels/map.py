@@ -41,8 +41,8 @@ from tui.panels.map_scene import (
 )
 from tui.panels.panel import Panel, is_published, newest, other_type, row_of, trouble_of
 from tui.panels.sonar import COURSE, Bounds, bounds_of, ink_of, remark
+from tui.widgets.canvas import scale_bar
 from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, beside, cells_of, fit
-from tui.widgets.scale_bar import scale_bar
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -150,8 +150,8 @@ APART_M, APART_RAD = 0.05, math.radians(5)
 class RoomMap(Drawing):
     """Takes values by its fields and `show_...`; `settle` draws them if the change is visible."""
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._scene: Scene | None = None
         self.truth: Pose | None = None
         """The true pose of the simulated robot; None if it is not published."""

@@ -211,9 +211,9 @@ ENLARGED_FROM = 18
 class Sonar(Drawing):
     """One sonar: from one line on name, metres and word; then bar, trend, big number and scale."""
 
-    def __init__(self, name: str = "", *, id: str | None = None, classes: str | None = None) -> None:
+    def __init__(self, name: str = "", *, id: str | None = None) -> None:
         """`name` is marked by `N_`: "front", "rear"."""
-        super().__init__(id=id, classes=classes)
+        super().__init__(id=id)
         self._label = name
         self._bounds = COURSE
         self._values: deque[float] = deque(maxlen=KEPT)

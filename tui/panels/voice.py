@@ -147,8 +147,8 @@ class Saying:
 class VoiceView(Drawing):
     """Shows messages from the microphone (`human`) and to the loudspeaker (`robot`)."""
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._sayings: deque[Saying] = deque(maxlen=KEPT)
         self._dbfs: float | None = None
         self._missing = False

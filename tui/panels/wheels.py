@@ -137,8 +137,8 @@ SIDE = 9
 class WheelsView(Drawing):
     """Shows a `WheelsReading`: in words from one line on, drawn from above if there is room."""
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._wheels: WheelsReading | None = None
 
     def show(self, wheels: WheelsReading) -> None:

@@ -31,7 +31,7 @@ from tui.space.layers import CLOUD
 from tui.space.rows import FRAMES, LayerRows
 from tui.space.stage import Stage
 from tui.space.view import SpaceView
-from tui.widgets.scale_bar import scale_bar
+from tui.widgets.canvas import scale_bar
 from tui.widgets.trouble import listeners
 from tui.yaml_form.words import reason_words
 

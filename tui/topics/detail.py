@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from rich.cells import chop_cells
+from rich.cells import cell_len, chop_cells
 from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.content import Content
@@ -12,15 +12,19 @@ from textual.geometry import Size
 from textual.widget import Widget
 
 from graph.data import Sample, TopicRow, Trouble
+from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.messages.yaml_text import is_cut, to_yaml
-from text.i18n import _
+from graph.pictures.picture import Picture, ramp_colours
+from graph.pictures.pixels import ImageError, UnknownEncodingError
+from text.i18n import _, decimal, localized, ngettext
 from text.plain import plain
 from tui.echo.tree import EchoTree
 from tui.topics.echo_filter import EchoFilter
 from tui.topics.endpoints import TopicEndpoints
-from tui.topics.words import ends, figures, packed, size_text
-from tui.widgets.image_view import ImageView
-from tui.widgets.trouble import advice
+from tui.topics.table import age_text, bandwidth_text, hz_text
+from tui.widgets.figures import count_text, seconds_text
+from tui.widgets.image_view import ImageScale, ImageView
+from tui.widgets.trouble import advice, names, no_data_words
 from tui.widgets.working import Working
 
 LONGEST_ARRAY = 2000
@@ -89,10 +93,11 @@ class TopicDetail(Vertical, Working):
     TopicDetail.-endpoints > EchoTree, TopicDetail.-endpoints > ImageView { display: none; }
     """
 
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
+    def __init__(self) -> None:
+        super().__init__()
         self._row: TopicRow | None = None
-        self._sample: Sample | None = None
+        self.sample: Sample | None = None
+        """The message that is shown."""
         self._newest: Sample | None = None
         """The newest message, whether or not it matches the expression."""
 
@@ -125,10 +130,6 @@ class TopicDetail(Vertical, Working):
             return self.endpoints
         return self.picture if self.as_picture else self.echo
 
-    @property
-    def sample(self) -> Sample | None:
-        return self._sample
-
     def fitting(self, samples: Sequence[Sample]) -> Sample | None:
         """Return the newest of these to be shown, if there is one; all of them are counted."""
         if samples:
@@ -139,14 +140,14 @@ class TopicDetail(Vertical, Working):
         """Return the newest message if it is to be shown; otherwise hide it."""
         found = self.filter.fitting(() if self._newest is None else (self._newest,))
         if found is None and not self.filter.is_wrong:
-            self._sample = None
+            self.sample = None
             self.say()
         return found
 
     def show_topic(self, row: TopicRow | None) -> None:
         """Show the current state of the topic; another topic starts without a message."""
         if row is None or self._row is None or row.name != self._row.name:
-            self._sample = self._newest = None
+            self.sample = self._newest = None
             self.show_as_picture(False)
             # The picture of another topic must not stay there until a new one arrives.
             self.picture.show_words("")
@@ -155,11 +156,44 @@ class TopicDetail(Vertical, Working):
         self.say()
 
     def show_message(self, sample: Sample) -> None:
-        resized = self._sample is None or self._sample.size_bytes != sample.size_bytes
-        self._sample = sample
+        resized = self.sample is None or self.sample.size_bytes != sample.size_bytes
+        self.sample = sample
         if resized:
             self.say()
         self.echo.show(sample.topic, sample.value)
+
+    def show_picture(self, sample: Sample, is_wanted: Callable[[], bool]) -> None:
+        """Show this image once it is decoded, if it is still wanted then, or why it cannot be shown."""
+
+        def show(picture: Picture) -> None:
+            if is_wanted():
+                self._put(picture)
+
+        def refuse(error: ImageError) -> None:
+            if is_wanted():
+                self._refuse(sample, error)
+
+        self.picture.read(sample, show, refuse)
+
+    def _put(self, picture: Picture) -> None:
+        if picture.is_empty_depth:
+            words = _("no reading is a distance: each is NaN, infinite or 0")
+            self.picture.show_words(_("no valid depth"), words)
+            return
+        size = f"{plain(picture.encoding, LONGEST)} {picture.width}×{picture.height}"
+        scale = None
+        if picture.range_m is not None:
+            near, far = (_("{n} m").format(n=decimal(f"{metres:g}")) for metres in picture.range_m)
+            first = _("near {distance}").format(distance=near)
+            scale = ImageScale(first, _("{distance} far").format(distance=far), ramp_colours())
+        self.picture.show(picture.rgb, size, scale, hz_text(self._row.hz if self._row else None))
+
+    def _refuse(self, sample: Sample, error: ImageError) -> None:
+        headline = _("this picture cannot be shown")
+        if isinstance(error, UnknownEncodingError):
+            words = _("pictures of the encoding {encoding} cannot be shown")
+            headline = words.format(encoding=plain(str(sample.value.get("encoding")), LONGEST))
+        self.picture.show_words(headline, localized(error.words))
 
     def copy_message(self) -> None:
         message = self.echo.message
@@ -208,12 +242,12 @@ class TopicDetail(Vertical, Working):
             self.echo.show_words("", "")
             return
         headline, way_out = advice(row)
-        size = None if self._sample is None else self._sample.size_bytes
+        size = None if self.sample is None else self.sample.size_bytes
         state = figures(row, size)
         if self.echo.paused:
             state = [_("PAUSED"), *state]
         types = " | ".join(row.type_names)
-        if self._sample is not None:
+        if self.sample is not None:
             # Silence is shown in the figures, and is normal for most topics.
             quiet = row.trouble is Trouble.QUIET
             trouble = "" if quiet else " ".join(filter(None, (headline, way_out)))
@@ -230,3 +264,74 @@ class TopicDetail(Vertical, Working):
         self.echo.show_words(topic, *words)
         if self.as_picture:
             self.picture.show_words(*words)
+
+
+KILO = 1000
+BETWEEN = " · "
+LONGEST = 200
+OURSELVES = "Deck"
+
+
+def figures(row: TopicRow, size_bytes: int | None) -> list[str]:
+    """Rate, bandwidth, age, jitter, latency, losses and size, or why there are none."""
+    if row.pictures_from:
+        parts = [_("pictures from {topic}").format(topic=plain(row.pictures_from, LONGEST))]
+    elif not row.measured:
+        parts = [_("not measured: Deck is not subscribed")]
+    elif row.trouble is Trouble.QUIET and row.age_s is not None:
+        parts = [no_data_words(row.age_s)]
+    elif row.hz is None:
+        parts = [_("no rate yet: it takes two messages")] if row.trouble is None else []
+    else:
+        parts = [
+            f"{hz_text(row.hz)} {_('Hz')}",
+            bandwidth_text(row.bytes_per_s),
+            _("age {time}").format(time=age_text(row.age_s)),
+            _("jitter {time}").format(time=seconds_text(row.jitter_s)),
+            _("latency {time}").format(time=seconds_text(row.latency_s)),
+            _("lost {n}").format(n=count_text(row.lost)),
+        ]
+    if size_bytes is not None:
+        parts.append(_("{size} a message").format(size=size_text(size_bytes)))
+    return parts
+
+
+def packed(parts: Sequence[str], width: int) -> list[str]:
+    """The parts in lines of at most `width` cells, each line as full as possible."""
+    lines: list[str] = []
+    for part in parts:
+        if lines and cell_len(lines[-1]) + len(BETWEEN) + cell_len(part) <= width:
+            lines[-1] += BETWEEN + part
+        else:
+            lines.append(part)
+    return lines
+
+
+def size_text(size_bytes: int) -> str:
+    """A size with three significant digits and its unit."""
+    if size_bytes < KILO:
+        return _("{n} B").format(n=size_bytes)
+    if size_bytes < KILO * KILO:
+        return _("{n} kB").format(n=decimal(f"{size_bytes / KILO:.1f}"))
+    return _("{n} MB").format(n=decimal(f"{size_bytes / KILO / KILO:.1f}"))
+
+
+def ends(row: TopicRow) -> str:
+    """Who publishes and who subscribes, by name where known."""
+    publishers = names(row.published_by, counted=True)
+    if not publishers and (row.publishers or not row.own_publishers):
+        publishers = ngettext("{n} publisher", "{n} publishers", row.publishers).format(n=row.publishers)
+    if row.own_publishers:
+        publishers = f"{publishers}, {OURSELVES}" if publishers else OURSELVES
+    subscribers = names(row.subscribed_by, counted=True) or ngettext(
+        "{n} subscriber", "{n} subscribers", row.subscribers
+    ).format(n=row.subscribers)
+    return f"{publishers} → {subscribers}"
+
+
+def carries_images(row: TopicRow | None) -> bool:
+    return row is not None and not {IMAGE, COMPRESSED_IMAGE}.isdisjoint(row.type_names)
+
+
+def is_image(sample: Sample) -> bool:
+    return sample.type_name in {IMAGE, COMPRESSED_IMAGE}

@@ -8,6 +8,7 @@ the axis keeps its numbers while they suit, and what has not changed is not sent
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -16,20 +17,18 @@ import numpy as np
 from rich.cells import cell_len
 from textual.message import Message
 
+from graph.data import GraphUpdate, Sample
 from text.i18n import _, decimal
 from text.plain import plain
-from tui.topics.plot_history import History, PlotField, Series
+from tui.topics.plot_history import History, HistoryDots, PlotField, Series
 from tui.widgets.canvas import Canvas
 from tui.widgets.drawing import Drawing, Ink, Line, fit
 from tui.widgets.figures import UNKNOWN
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from numpy.typing import NDArray
 
-    from graph.data import GraphUpdate, Sample
-    from tui.topics.plot_history import HistoryDots, Numbers
+    from tui.topics.plot_history import Numbers
 
 WINDOWS_S = (10.0, 30.0, 60.0, 300.0)
 LOOKS = ("accent", "second", "good", "warn", "bad", "strong")
@@ -54,8 +53,8 @@ class TopicPlot(Drawing):
     TopicPlot { height: 1fr; }
     """
 
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
+    def __init__(self) -> None:
+        super().__init__()
         self._series: list[Series] = []
         self._window_s = WINDOWS_S[1]
         self._now_s = 0.0

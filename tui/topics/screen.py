@@ -21,13 +21,11 @@ from tui.echo.tree import EchoTree
 from tui.frame.screen import DeckScreen
 from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 from tui.topics.actions import TOPICS_ACTIONS
-from tui.topics.detail import TopicDetail
+from tui.topics.detail import TopicDetail, carries_images, is_image
 from tui.topics.echo_filter import EchoFilter
-from tui.topics.pictures import TopicPictures, carries_images, is_image
 from tui.topics.plot import TopicPlot
-from tui.topics.plotting import PlotPlace, Plotting
-from tui.topics.table import TopicsTable
-from tui.topics.words import why_empty
+from tui.topics.plot_history import PlotField
+from tui.topics.table import TopicsTable, why_empty
 from tui.widgets.field import Field
 
 SETTLED_S = 0.12
@@ -98,8 +96,6 @@ class TopicsScreen(DeckScreen):
         self.table: TopicsTable = TopicsTable()
         self.detail: TopicDetail = TopicDetail()
         self.plot = TopicPlot()
-        self.plotting: Plotting = Plotting(self, self.table, self.detail, self.plot)
-        self._pictures = TopicPictures(self.detail, self._is_wanted, lambda: self.table.chosen_row)
         self._rates_s = 0.0
         """When the rates were last shown."""
         self._settling: Timer | None = None
@@ -186,7 +182,7 @@ class TopicsScreen(DeckScreen):
     @on(TopicsTable.Highlighted)
     def _chosen(self) -> None:
         self.detail.show_topic(self.table.chosen_row)
-        self.plotting.mark_fields()
+        self.detail.echo.mark(self.plot.marks(self.table.chosen))
         self._keep_pace()
         self._offered_with_message = self.has_message
         self.refresh_bindings()
@@ -228,8 +224,8 @@ class TopicsScreen(DeckScreen):
     @on(TopicPlot.PlotChanged)
     def _plot_changed(self) -> None:
         if not self.plot.has_value:
-            self.show_plot(PlotPlace.NONE)
-        self.plotting.mark_fields()
+            self.show_plot("none")
+        self.detail.echo.mark(self.plot.marks(self.table.chosen))
         self.refresh_bindings()
         self.topics_changed()
 
@@ -243,8 +239,8 @@ class TopicsScreen(DeckScreen):
 
     def key_escape(self) -> None:
         """Leave the filter and show every topic again, or leave the message or the plot."""
-        if self.plotting.covers_all:
-            self.show_plot(PlotPlace.BESIDE)
+        if self.plot_covers_all:
+            self.show_plot("beside")
         if self.focused in (self.filter, self.table):
             self.filter.value = ""
         if self.focused is self.detail.filter.field:
@@ -261,13 +257,6 @@ class TopicsScreen(DeckScreen):
             self.toggle_housekeeping()
         # A screen that was just created has to receive its topics first.
         self.call_later(self.table.choose, topic)
-
-    def focus_filter(self) -> None:
-        self.set_focus(self.filter)
-
-    def filter_messages(self) -> None:
-        self.detail.show_as_endpoints(False)
-        self.detail.filter.open()
 
     def toggle_housekeeping(self) -> None:
         order = self.table.order
@@ -292,29 +281,48 @@ class TopicsScreen(DeckScreen):
         self._keep_pace()
         self.topics_changed()
 
-    def show_plot(self, place: PlotPlace) -> None:
-        self.plotting.show(place)
-        self._keep_pace()
+    @property
+    def plot_place(self) -> str:
+        """`none`, `beside` (below the message or the table) or `alone`; the style sheet goes by the classes."""
+        if not self.has_class("-plot"):
+            return "none"
+        return "alone" if self.has_class("-plot-alone") else "beside"
 
-    def show_plot_next(self) -> None:
-        places = list(PlotPlace)
-        self.show_plot(places[(places.index(self.plotting.place) + 1) % len(places)])
+    @property
+    def plot_covers_all(self) -> bool:
+        return self.plot_place == "alone"
+
+    def show_plot(self, place: str) -> None:
+        self.set_class(place != "none", "-plot")
+        self.set_class(place == "alone", "-plot-alone")
+        if place != "alone" and self.focused is None:
+            self.table.focus()
+        self.refresh_bindings()
+        self._keep_pace()
 
     def toggle_field(self) -> None:
         """Add the number at the cursor to the plot, or remove it."""
-        if self.plotting.toggle_field() and self.plotting.place is PlotPlace.NONE:
-            self.show_plot(PlotPlace.BESIDE)
+        echo = self.detail.echo
+        field = PlotField(self.table.chosen, echo.at_cursor or ())
+        refusal = ""
+        if not field.topic or not field.path or echo.message is None or field.number(echo.message) is None:
+            refusal = _("Put the cursor on a number first: Tab goes to the message.")
+        elif self.plot.is_full and field not in self.plot.fields:
+            refusal = _("There is no room for more fields: remove one first.")
+        if refusal:
+            self.notify(refusal, severity="warning", markup=False)
+        elif self.plot.toggle(field, self.detail.sample) and self.plot_place == "none":
+            self.show_plot("beside")
 
     @property
-    def can_publish(self) -> bool:
-        """Whether there is a graph to publish to; a recording accepts nothing."""
-        return self.feed.graph is not None and self.feed.replay is None
+    def paused(self) -> bool:
+        return self.detail.echo.paused or (self.plot.paused and self.plot_place != "none")
 
-    def open_publish(self) -> None:
-        from tui.topics.publish import PublishDialog
-
-        row = self.table.chosen_row
-        self.app.push_screen(PublishDialog(row, lambda: self.detail.sample))
+    def toggle_pause(self) -> None:
+        """Pause message and plot, or resume both."""
+        paused = not self.paused
+        self.detail.echo.pause(paused)
+        self.plot.pause(paused and self.plot_place != "none")
 
     async def ros2_command(self) -> str:
         row = self.table.chosen_row
@@ -335,13 +343,13 @@ class TopicsScreen(DeckScreen):
             if first:
                 self.detail.show_as_picture(True)
             if self._shows_picture:
-                self._pictures.show(sample)
+                self.detail.show_picture(sample, lambda: self._is_wanted(sample))
         if first:
             self._keep_pace()
 
     @property
     def _shows_picture(self) -> bool:
-        in_front = self.detail.front is self.detail.picture and not self.plotting.covers_all
+        in_front = self.detail.front is self.detail.picture and not self.plot_covers_all
         return in_front and not self.detail.echo.paused
 
     def _is_wanted(self, sample: Sample) -> bool:

@@ -68,8 +68,8 @@ class Drawing(OneStyle, Widget):
     }
     """
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id=id)
         self._lines: list[Line] = []
         self._trouble: Trouble | None = None
         self._detail = ""

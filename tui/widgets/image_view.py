@@ -19,7 +19,7 @@ from textual.timer import Timer
 from textual.widget import Widget
 
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
-from graph.pictures.picture import Fit, Picture
+from graph.pictures.picture import Picture
 from graph.pictures.pixels import ImageError, shrink
 from graph.pictures.reading import read_picture
 from text.figures import figure
@@ -42,6 +42,10 @@ SCALE_FROM = 8
 WIDEST_SCALE = 48
 UNPLACED = (200, 60)
 """Columns and rows to assume before the widget has a size."""
+
+
+Showing = Callable[[Picture], None]
+Refusing = Callable[[ImageError], None]
 
 
 class ImageScale(NamedTuple):
@@ -76,8 +80,8 @@ class ImageView(OneStyle, Widget):
     ImageView { width: 1fr; height: 1fr; min-height: 3; }
     """
 
-    def __init__(self, *, bits: int = 5, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self, *, bits: int = 5) -> None:
+        super().__init__()
         self._bits = bits
         self._newest: ShownPicture | None = None
         self._waits = False
@@ -85,10 +89,40 @@ class ImageView(OneStyle, Widget):
         self._timer: Timer | None = None
         self._pace = PicturePace()
         self._shown: Pixels | None = None
-        self._caption = ""
+        self.caption = ""
         self._scale: ImageScale | None = None
-        self._headline = ""
-        self._detail = ""
+        self.words = ("", "")
+        """Headline and detail shown in place of a picture, both empty if there is one."""
+        self._unread: tuple[Sample, Showing, Refusing] | None = None
+        """The newest message that came while another was being decoded."""
+        self._decoding = False
+
+    def read(self, sample: Sample, show: Showing, refuse: Refusing) -> None:
+        """Read the picture of a message, then `show` or `refuse` it; compressed ones that are late are left out."""
+        if sample.type_name == IMAGE:
+            # It takes a millisecond: less than switching to another thread and back.
+            try:
+                show(read_picture(IMAGE, sample.value, self.wanted))
+            except ImageError as error:
+                refuse(error)
+            return
+        self._unread = sample, show, refuse
+        if not self._decoding:
+            self._decoding = True
+            self.run_worker(self._decode(), group="pictures")
+
+    async def _decode(self) -> None:
+        try:
+            while self._unread is not None:
+                (sample, show, refuse), self._unread = self._unread, None
+                try:
+                    found = await asyncio.to_thread(read_picture, COMPRESSED_IMAGE, sample.value, self.wanted)
+                except ImageError as error:
+                    refuse(error)
+                else:
+                    show(found)
+        finally:
+            self._decoding = False
 
     def show(self, rgb: Pixels, caption: str = "", scale: ImageScale | None = None, hz: str = "") -> None:
         """Show a picture of shape (height, width, 3) at any size, with a line of text below it.
@@ -99,7 +133,7 @@ class ImageView(OneStyle, Widget):
         if rgb.shape[2:] != (3,) or not rgb.size:
             raise ValueError(f"a picture has the shape (height, width, 3), not {rgb.shape}")
         self._newest = ShownPicture(rgb, caption, scale, hz)
-        self._headline = self._detail = ""
+        self.words = ("", "")
         if self._waits:
             self._pace.left_out(clock.steady())
         elif self._shown is None or not (wait_s := self._bandwidth.wait_s()):
@@ -113,11 +147,11 @@ class ImageView(OneStyle, Widget):
             self._take(self._newest)
 
     def show_words(self, headline: str, detail: str = "") -> None:
-        if self._newest is None and (headline, detail) == (self._headline, self._detail):
+        if self._newest is None and (headline, detail) == self.words:
             return
         self._newest = self._shown = None
         self._waits = False
-        self._headline, self._detail, self._caption = headline, detail, ""
+        self.words, self.caption = (headline, detail), ""
         self._scale = None
         self.refresh()
 
@@ -143,14 +177,6 @@ class ImageView(OneStyle, Widget):
             columns, rows = UNPLACED
         wide, high = fitting_size(width, height, columns, rows)
         return 2 * wide, 2 * high
-
-    @property
-    def caption(self) -> str:
-        return self._caption
-
-    @property
-    def words(self) -> tuple[str, str]:
-        return self._headline, self._detail
 
     def render_line(self, y: int) -> Strip:
         width, height = self.size
@@ -229,8 +255,8 @@ class ImageView(OneStyle, Widget):
             self.refresh(*regions)
 
     def _set_caption(self, caption: str) -> None:
-        if caption != self._caption:
-            self._caption = caption
+        if caption != self.caption:
+            self.caption = caption
             self.refresh(Region(0, self.size.height - 1, self.size.width, 1))
 
     def _set_scale(self, scale: ImageScale | None) -> None:
@@ -253,7 +279,7 @@ class ImageView(OneStyle, Widget):
 
     def _caption_strip(self, width: int) -> Strip:
         style = self.rich_style + Style(dim=True)
-        strip = cut([Segment(plain(self._caption), style)], width, style)
+        strip = cut([Segment(plain(self.caption), style)], width, style)
         text = strip.text.strip()
         left = (width - cell_len(text)) // 2
         return in_row(Strip([Segment(text, style)]), left, width, style)
@@ -269,8 +295,7 @@ class ImageView(OneStyle, Widget):
         return in_row(strip, (width - strip.cell_length) // 2, width, base)
 
     def _words_strip(self, y: int, width: int, height: int) -> Strip:
-        words = (self._headline, self._detail)
-        strips = word_strips(words, width, self.rich_style, self.app.console, centred=True)
+        strips = word_strips(self.words, width, self.rich_style, self.app.console, centred=True)
         line = y - max(0, (height - len(strips)) // 2)
         if 0 <= line < len(strips):
             return strips[line]
@@ -363,49 +388,3 @@ def _style(upper: int | None, lower: int) -> Style:
 @lru_cache(maxsize=MOST_COLOURS)
 def _color(packed: int) -> Color:
     return Color.from_rgb(packed >> 16, packed >> 8 & 255, packed & 255)
-
-
-class NewestPicture:
-    """Reads one picture after the other; those compressed ones that are outdated by then are left out."""
-
-    def __init__(
-        self,
-        widget: Widget,
-        fit: Fit,
-        show: Callable[[Sample, Picture], None],
-        refuse: Callable[[Sample, ImageError], None],
-    ) -> None:
-        """`fit` as for `read_picture`; `show` or `refuse` is called with each that is read."""
-        self._widget = widget
-        self._fit = fit
-        self._show = show
-        self._refuse = refuse
-        self._waiting: Sample | None = None
-        """The newest one that came while another was being decoded."""
-        self._decoding = False
-
-    def take(self, sample: Sample) -> None:
-        if sample.type_name == IMAGE:
-            # It takes a millisecond: less than switching to another thread and back.
-            try:
-                self._show(sample, read_picture(IMAGE, sample.value, self._fit))
-            except ImageError as error:
-                self._refuse(sample, error)
-            return
-        self._waiting = sample
-        if not self._decoding:
-            self._decoding = True
-            self._widget.run_worker(self._decode(), group="pictures")
-
-    async def _decode(self) -> None:
-        try:
-            while self._waiting is not None:
-                sample, self._waiting = self._waiting, None
-                try:
-                    found = await asyncio.to_thread(read_picture, COMPRESSED_IMAGE, sample.value, self._fit)
-                except ImageError as error:
-                    self._refuse(sample, error)
-                else:
-                    self._show(sample, found)
-        finally:
-            self._decoding = False

@@ -144,6 +144,15 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         rooms = self._room_for(len(cells))
         return any(cell_len(cell.text) > room for cell, room in zip(cells, rooms))  # noqa: B905
 
+    def column_at(self, x: int) -> int | None:
+        """Return the number of the column at this cell."""
+        right = MARK
+        for at, width in enumerate(self._widths):
+            right += width + 1
+            if MARK <= x < right:
+                return at
+        return None
+
     def choose(self, key: str) -> None:
         index = self._index(key)
         if index is not None:

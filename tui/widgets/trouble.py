@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from graph.data import EndpointInfo, TopicRow, Trouble
 from text.figures import elapsed
-from text.i18n import N_, _, localized
+from text.i18n import N_, _, localized, ngettext
 from text.plain import plain
+
+if TYPE_CHECKING:
+    from graph.qos_compatibility import Mismatch
 
 LONGEST = 400
 SHOWN_NODES = 4
@@ -72,11 +76,25 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
     if trouble is Trouble.UNKNOWN_TYPE and "package" in facts:
         return _how_to_install(facts).format(**facts)
     if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
-        # Not needed for the first frame.
-        from tui.widgets.qos_words import misfit_words
-
         return misfit_words(facts)
     return localized(row.detail)
+
+
+def pair_words(pair: Mismatch) -> str:
+    """Who does not hear whom, and the two fixes."""
+    return plain(f"{localized(pair.what)} {localized(pair.mend)}", LONGEST)
+
+
+def misfit_words(facts: Mapping[str, str]) -> str:
+    """The first pair in a sentence and the number of further ones, from a trouble's facts."""
+    # Not needed for the first frame.
+    from graph.qos_compatibility import Mismatch
+
+    words = pair_words(Mismatch(**{name: facts[name] for name in Mismatch.__match_args__}))
+    more = int(facts.get("more", "0"))
+    if not more:
+        return words
+    return f"{words} {ngettext('… and {n} more pair', '… and {n} more pairs', more).format(n=more)}"
 
 
 def _how_to_install(facts: Mapping[str, str]) -> str:

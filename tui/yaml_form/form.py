@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
@@ -17,13 +18,13 @@ from textual.worker import Worker
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.messages.yaml_form import check, prefilled
-from text.i18n import _
+from text.i18n import N_, _
 from text.plain import plain
 from text.yaml_faults import YamlError
-from tui.actions import Acting, bindings
+from text.yaml_scalars import escaped, meaning
+from tui.actions import Acting, Announce, bindings
+from tui.widgets.marked_editor import MarkedEditor, Token
 from tui.widgets.working import Working
-from tui.yaml_form.actions import FORM_ACTIONS
-from tui.yaml_form.editor import YamlEditor
 from tui.yaml_form.words import Wrong, place_of, wrong_words
 
 if TYPE_CHECKING:
@@ -32,6 +33,65 @@ if TYPE_CHECKING:
     from graph.data import Value
 
 CHECKED_AFTER_S = 0.15
+
+action: Announce[YamlForm] = Announce()
+
+
+@action(
+    "form.submit",
+    "ctrl+s",
+    N_("Submit"),
+    N_("Take the message as it is filled in, if nothing is wrong with it."),
+    means="submit",
+    footer=True,
+    priority=True,
+    when=lambda form: form.submits,
+    label=lambda form: form.submit_title or N_("Submit"),
+)
+def submit_form(form: YamlForm) -> None:
+    form.submit()
+
+
+_TOKEN = re.compile(
+    r"""
+    (?P<comment>(?:^|(?<=\s))\#.*)
+    | (?P<string>"(?:[^"\\]|\\.)*"? | '(?:[^']|'')*'?)
+    | (?P<mark>[\[\]{},] | [-:](?=\s|$))
+    | (?P<plain>(?:[^\s\[\]{},:] | :(?!\s|$))+)
+    """,
+    re.VERBOSE,
+)
+_KEY_FOLLOWS = re.compile(r"\s*:(?=\s|$)")
+
+
+def tokens(line: str) -> Iterator[Token]:
+    """Yield the tokens of a line in order; accepts any text."""
+    for match in _TOKEN.finditer(line):
+        yield Token(match.start(), match.end(), _kind(match, line))
+
+
+def _kind(match: re.Match[str], line: str) -> str:
+    kind = match.lastgroup or "plain"
+    if kind in {"comment", "mark"}:
+        return kind
+    if _KEY_FOLLOWS.match(line, match.end()):
+        return "key"
+    if kind == "string":
+        return kind
+    value = meaning(match.group())
+    if isinstance(value, str):
+        return "string"
+    return "word" if value is None or isinstance(value, bool) else "number"
+
+
+class YamlEditor(MarkedEditor):
+    """Edits YAML; Enter starts a new line with the indentation of the current one."""
+
+    def escaped(self, character: str) -> str:
+        return escaped(character)
+
+    def tokens_of(self, line: str) -> Iterable[Token]:
+        return tokens(line)
 
 
 class YamlForm(Vertical, Acting, Working):
@@ -60,7 +120,7 @@ class YamlForm(Vertical, Acting, Working):
         def control(self) -> YamlForm:
             return self.form
 
-    BINDINGS: ClassVar = bindings(*FORM_ACTIONS)
+    BINDINGS: ClassVar = bindings(submit_form)
     DEFAULT_CSS = """
     YamlForm {
         height: 1fr;

@@ -6,7 +6,7 @@ import pytest
 
 from tests.tui.panel_stage import Bare
 from tests.waiting import until
-from tui.widgets.qos_words import misfit_words
+from tui.widgets.trouble import misfit_words
 from tui.yaml_form.form import YamlForm
 
 
