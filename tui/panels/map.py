@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from graph.data import GraphUpdate, Trouble
@@ -25,11 +25,12 @@ from tui.panels.map_scene import (
     TRUTH,
     DrivenPath,
     Extent,
-    Layers,
     OccupancyGrid,
     Scene,
     Viewport,
     along,
+    draw_grid,
+    draw_occupancy,
     draw_scene,
     fitted,
     goal_in,
@@ -37,11 +38,10 @@ from tui.panels.map_scene import (
     occupancy_in,
     pose_in,
     ray_origin,
-    robot_corners,
 )
 from tui.panels.panel import Panel, is_published, newest, other_type, row_of, trouble_of
 from tui.panels.sonar import COURSE, Bounds, bounds_of, ink_of, remark
-from tui.widgets.canvas import scale_bar
+from tui.widgets.canvas import Canvas, scale_bar
 from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, beside, cells_of, fit
 
 if TYPE_CHECKING:
@@ -148,7 +148,7 @@ APART_M, APART_RAD = 0.05, math.radians(5)
 
 
 class RoomMap(Drawing):
-    """Takes values by its fields and `show_...`; `settle` draws them if the change is visible."""
+    """Takes values by its fields and `show_...`; `settle` draws them."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -164,9 +164,7 @@ class RoomMap(Drawing):
         self._seen: Extent | None = None
         """What the rays have reached while there is no room."""
         self._trail = DrivenPath()
-        self._layers = Layers()
         self._view: Viewport | None = None
-        self._last: object = None
 
     @property
     def has_value(self) -> bool:
@@ -192,16 +190,13 @@ class RoomMap(Drawing):
         self._seen = None
 
     def settle(self) -> None:
-        """Draw the new values if any cell changes."""
+        """Draw the new values."""
         if self._scene is None:
             return
         self._scene = Scene(
             self._scene.pose, self._truth_apart(self._scene.pose), self.goal, dict(self._rays), self.bounds
         )
-        look = self._look(self._scene)
-        if look != self._last or not self._lines:
-            self._last = look
-            self.redraw()
+        self.redraw()
 
     def draw(self, width: int, height: int) -> list[Line]:
         """Draw the map with its legend beside or below it, whichever leaves the map larger."""
@@ -224,7 +219,11 @@ class RoomMap(Drawing):
         return [*self._field(scene, under), *rows(self._entries(scene, under), width, below)]
 
     def _field(self, scene: Scene, view: Viewport) -> list[Line]:
-        canvas = self._layers.canvas(view, self.occupancy, self._trail)
+        canvas = Canvas(view.columns, view.rows)
+        draw_grid(canvas, view, grid_step_m(view))
+        if self.occupancy is not None:
+            draw_occupancy(canvas, view, self.occupancy)
+        self._trail.draw(canvas, view)
         draw_scene(canvas, view, scene)
         return canvas.lines()
 
@@ -264,18 +263,6 @@ class RoomMap(Drawing):
             return None
         turned = abs(math.remainder(truth.heading_rad - pose.heading_rad, math.tau))
         return truth if pose.distance_to(truth) >= APART_M or turned >= APART_RAD else None
-
-    def _look(self, scene: Scene) -> object:
-        """A value that differs between frames that look different."""
-        view = self._view
-        if view is None:
-            return scene
-        shapes = [robot_corners(view, scene.pose)]
-        if scene.truth is not None:
-            shapes.append(robot_corners(view, scene.truth))
-        said: Mapping[int, object] = dict(enumerate(self._entries(scene, view)))
-        dots = [[(round(x), round(y)) for x, y in shape] for shape in shapes]
-        return (dots, dict(scene.rays), scene.bounds, scene.goal, self.occupancy, said, self._trail.revision)
 
 
 def _legend_rows(extent: Extent, width: int, height: int) -> int:

@@ -191,51 +191,40 @@ class DrivenPath:
     """The points of the path in order, in pieces."""
 
     def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
         self.pieces: list[list[Point]] = []
         self.length_m = 0.0
-        self.revision = 0
-        """Changes when older points have been changed."""
-        self._least_m = LEAST_M
-        self._points = 0
-        self._corners: list[Point] = []
-
-    @property
-    def bounds(self) -> list[Point]:
+        self.bounds: list[Point] = []
         """Opposite corners of the bounding box of the whole path; none at first."""
-        return self._corners
+        self._least_m = LEAST_M
 
-    def add(self, x_m: float, y_m: float) -> bool:
+    def add(self, x_m: float, y_m: float) -> None:
         way_m = math.dist(self.pieces[-1][-1], (x_m, y_m)) if self.pieces else math.inf
         if way_m < self._least_m:
-            return False
+            return
         if way_m > max(TORN_M, 2 * self._least_m):
             self.pieces.append([(x_m, y_m)])
         else:
             self.length_m += way_m
             self.pieces[-1].append((x_m, y_m))
-        self._points += 1
-        across, up = zip(*self._corners, (x_m, y_m), strict=True)
-        self._corners = [(min(across), min(up)), (max(across), max(up))]
-        if self._points > MOST:
-            self._thin()
-        return True
+        across, up = zip(*self.bounds, (x_m, y_m), strict=True)
+        self.bounds = [(min(across), min(up)), (max(across), max(up))]
+        if sum(map(len, self.pieces)) > MOST:
+            # Without every second point, and the oldest pieces.
+            self.pieces = [[*piece[:-1:2], piece[-1]] for piece in self.pieces[-MOST // 4 :]]
+            self._least_m *= 2
 
-    def clear(self) -> None:
-        self.pieces, self.length_m, self._points = [], 0.0, 0
-        self._least_m, self._corners = LEAST_M, []
-        self.revision += 1
-
-    def _thin(self) -> None:
-        """Drop every second point, and the oldest pieces."""
-        self.pieces = [_halved(piece) for piece in self.pieces[-MOST // 4 :]]
-        self._points = sum(map(len, self.pieces))
-        self._least_m *= 2
-        self.revision += 1
-
-
-def _halved(piece: list[Point]) -> list[Point]:
-    kept = piece[::2]
-    return kept if kept[-1] == piece[-1] else [*kept, piece[-1]]
+    def draw(self, canvas: Canvas, view: Viewport) -> None:
+        for piece in self.pieces:
+            x, y = np.transpose([view.place(*point) for point in piece])
+            across, down = np.diff(x), np.diff(y)
+            # Of each way as many dots as it takes to have no gap.
+            dots = np.maximum(1, np.ceil(np.maximum(abs(across), abs(down)))).astype(int) + 1
+            at = np.repeat(np.arange(len(dots)), dots)
+            share = (np.arange(len(at)) - np.repeat(np.cumsum(dots) - dots, dots)) / (dots[at] - 1)
+            canvas.dots(x[at] + across[at] * share, y[at] + down[at] * share, PATH)
 
 
 FRONT, REAR = "front", "rear"
@@ -321,11 +310,6 @@ def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> 
     canvas.dots(x[stands], y[stands], WALL)
 
 
-def draw_path(canvas: Canvas, view: Viewport, piece: list[Point]) -> None:
-    for start, end in pairwise(piece):
-        canvas.line(view.place(*start), view.place(*end), PATH)
-
-
 def draw_scene(canvas: Canvas, view: Viewport, scene: Scene) -> None:
     """Draw everything that moves, the robot last."""
     for place, metres in scene.rays.items():
@@ -390,34 +374,3 @@ def _placed(view: Viewport, pose: Pose, shape: tuple[Point, ...], longer: float,
         y = left * wider * BODY.width_m / 2
         corners.append(view.place(pose.x_m + x * cos - y * sin, pose.y_m + x * sin + y * cos))
     return corners
-
-
-class Layers:
-    """The canvas below everything that moves."""
-
-    def __init__(self) -> None:
-        self._canvas = Canvas(1, 1)
-        self._drawn: tuple[Viewport, OccupancyGrid | None, DrivenPath, int] | None = None
-        self._done = (0, 0)
-        """Number of pieces of the path that have been drawn, and of points in the last of them."""
-
-    def canvas(self, view: Viewport, occupancy: OccupancyGrid | None, trail: DrivenPath) -> Canvas:
-        """Return a copy with grid, room and path, to draw the rest on."""
-        wanted = (view, occupancy, trail, trail.revision)
-        if wanted != self._drawn:
-            self._drawn, self._done = wanted, (0, 0)
-            self._canvas = Canvas(view.columns, view.rows)
-            draw_grid(self._canvas, view, grid_step_m(view))
-            if occupancy is not None:
-                draw_occupancy(self._canvas, view, occupancy)
-        self._go_on(view, trail)
-        return self._canvas.copy()
-
-    def _go_on(self, view: Viewport, trail: DrivenPath) -> None:
-        pieces, points = self._done
-        for number in range(max(0, pieces - 1), len(trail.pieces)):
-            piece = trail.pieces[number]
-            # The next line begins at the last point drawn.
-            first = max(0, points - 1) if number == pieces - 1 else 0
-            draw_path(self._canvas, view, piece[first:])
-        self._done = len(trail.pieces), len(trail.pieces[-1]) if trail.pieces else 0

@@ -32,12 +32,6 @@ class Canvas:
         self._looks = np.zeros((rows, columns), dtype=np.uint8)
         self._signs: dict[tuple[int, int], str] = {}
 
-    def copy(self) -> Canvas:
-        other = Canvas(self.columns, self.rows)
-        other._on, other._looks = self._on.copy(), self._looks.copy()
-        other._signs = dict(self._signs)
-        return other
-
     def dots(self, x: NDArray[np.float64], y: NDArray[np.float64], look: str = "") -> None:
         """Set dots, x to the right and y downwards; those outside are ignored."""
         inside = (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
