@@ -92,10 +92,6 @@ class SpaceScreen(DeckScreen):
     def armed(self) -> bool:
         return self.is_mounted and self.view.aim is not None
 
-    @property
-    def has_layers(self) -> bool:
-        return self.is_mounted
-
     # What is watched
 
     def watch_topics(self) -> set[str]:
@@ -107,7 +103,8 @@ class SpaceScreen(DeckScreen):
 
     def on_mount(self) -> None:
         self.view.focus()
-        self._show_lines()
+        self._show_armed()
+        self._show_status()
 
     def on_screen_resume(self) -> None:
         """Forget what was not heard of while another screen was in front."""
@@ -127,7 +124,7 @@ class SpaceScreen(DeckScreen):
             self.stage = Stage()
             self.view.recorded = self.feed.replay is not None
             self.view.fit(None, anew=True)
-            self._show()
+            self.show()
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
         if message.emergency.engaged and self.armed:
@@ -142,15 +139,15 @@ class SpaceScreen(DeckScreen):
         if came:
             self.topics_changed()
         if self.feed.front is self:
-            self._show()
+            self.show()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        self._show()
+        self.show()
 
     @on(SpaceView.CameraMoved)
     def _camera_moved(self) -> None:
-        self._show(by_user=True)
+        self.show(by_user=True)
 
     @on(SpaceView.PointerMoved)
     def _pointer_moved(self) -> None:
@@ -177,31 +174,9 @@ class SpaceScreen(DeckScreen):
         self.stage.follow_frame("")
         self.stage.place(clock.now())
         self.view.fit(self.stage.extent(), anew=True)
-        self._show(by_user=True)
+        self.show(by_user=True)
 
-    def choose_follow(self) -> None:
-        """Ask which frame stays in the middle."""
-
-        def take(answer: str | None) -> None:
-            if answer:
-                self.stage.follow_frame(answer.strip())
-                self.view.fits = not self.stage.follow
-                self._show(by_user=True)
-
-        self._ask_frame(lambda: _("Follow a frame"), lambda: _("no frame"), take)
-
-    def choose_fixed(self) -> None:
-        """Ask in which frame everything is drawn."""
-
-        def take(answer: str | None) -> None:
-            if answer:
-                self.disarm()
-                self.stage.wanted_fixed = answer.strip()
-                self.fit()
-
-        self._ask_frame(lambda: _("Fixed frame"), lambda: _("the robot's root"), take)
-
-    def _ask_frame(
+    def ask_frame(
         self, title: Callable[[], str], none: Callable[[], str], take: Callable[[str | None], None]
     ) -> None:
         frames = sorted(self.stage.buffer.frames)
@@ -221,22 +196,7 @@ class SpaceScreen(DeckScreen):
             layer.on = not layer.on
             if not layer.on:
                 layer.forget()
-        self._layers_changed()
-
-    def only_layer(self) -> None:
-        chosen = self.layer_rows.chosen
-        self.stage.show_frames = chosen == FRAMES
-        for layer in self.stage.layers:
-            layer.on = layer.topic == chosen
-            if not layer.on:
-                layer.forget()
-        self._layers_changed()
-
-    def all_layers(self) -> None:
-        self.stage.show_frames = True
-        for layer in self.stage.layers:
-            layer.on = True
-        self._layers_changed()
+        self.layers_changed()
 
     def topics_changed(self) -> None:
         """Ask for the topics of the layers, and look more often if there is a cloud."""
@@ -244,9 +204,9 @@ class SpaceScreen(DeckScreen):
         self.period_s = CLOUD_PERIOD_S if clouds else PERIOD_S
         super().topics_changed()
 
-    def _layers_changed(self) -> None:
+    def layers_changed(self) -> None:
         self.topics_changed()
-        self._show(by_user=True)
+        self.show(by_user=True)
 
     # Goals. One may move a robot: nothing is published that was not armed, nothing while the emergency stop
     # is engaged or a recording is played, and nothing that the user does not see. Whatever happens, it is
@@ -316,7 +276,7 @@ class SpaceScreen(DeckScreen):
         return listeners(None if update is None else row_of(update, kind.topic))
 
     def _aim_changed(self) -> None:
-        self._show(by_user=True)
+        self.show(by_user=True)
         self.refresh_bindings()
 
     # Display
@@ -324,7 +284,7 @@ class SpaceScreen(DeckScreen):
     def _compose_picture(self, camera: SpaceCamera, columns: int, rows: int) -> CellPicture:
         return self.stage.picture(camera, columns, rows, self.view.aim)
 
-    def _show(self, *, by_user: bool = False) -> None:
+    def show(self, *, by_user: bool = False) -> None:
         if not self.is_mounted:
             return
         view = self.view
@@ -336,7 +296,8 @@ class SpaceScreen(DeckScreen):
         view.renew(by_user=by_user)
         view.show_words(*self._why_empty())
         self.layer_rows.show_stage(self.stage)
-        self._show_lines()
+        self._show_armed()
+        self._show_status()
 
     def _why_empty(self) -> tuple[str, str]:
         if self.stage.buffer.frames or any(layer.heard for layer in self.stage.layers):
@@ -348,10 +309,6 @@ class SpaceScreen(DeckScreen):
             "Nobody publishes frames (/tf), a map, a scan, a cloud, a path or markers. Lesson 6 "
             "and the profile robot do."
         )
-
-    def _show_lines(self) -> None:
-        self._show_armed()
-        self._show_status()
 
     def _show_armed(self) -> None:
         line, aim = self.query_one("#space-armed", Static), self.view.aim
