@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from textual import getters
 from textual.containers import Container, Vertical
 from textual.widget import Widget
 from textual.widgets import Static
 
 from text.i18n import _
 from tui.echo.tree import EchoTree
+from tui.graph.index import GraphKind, GraphPlace
 from tui.graph.pane import GraphLinks, GraphPane, heading, link, node_links
-from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Column, Row, Rows
 from tui.yaml_form.form import YamlForm, submit_form
@@ -68,13 +69,8 @@ class AskPane(GraphPane):
         """Yield further widgets below the form."""
         yield from ()
 
-    @property
-    def form(self) -> YamlForm:
-        return self.query_one(YamlForm)
-
-    @property
-    def asked_rows(self) -> Rows:
-        return self.query_one(".asked", Rows)
+    form = getters.query_one(YamlForm)
+    asked_rows = getters.query_one(".asked", Rows)
 
     @property
     def submit_key(self) -> str:
@@ -188,4 +184,4 @@ class AskPane(GraphPane):
         if isinstance(tree, tuple):
             echo.show_words(name, *tree)
         else:
-            echo.show(name, tree)
+            echo.show_message(name, tree)

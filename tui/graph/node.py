@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from textual import on
+from textual import getters, on
 from textual.widget import Widget
 
 from graph.data import GraphUpdate, NodeRow
@@ -20,9 +20,9 @@ from text.plain import plain
 from tui.dialogs.choice import ChoiceScreen
 from tui.frame.host import host_of
 from tui.graph import parameter_changes
+from tui.graph.index import GraphKind, GraphPlace
 from tui.graph.pane import LONGEST, EmptyNotice, GraphLinks, GraphPane, heading, link
 from tui.graph.parameters import GraphParameters
-from tui.graph.places import GraphKind, GraphPlace
 from tui.log_level import change_log_level
 from tui.widgets.name_head import NameHead
 from tui.widgets.node_words import memory, percent, state_words, why
@@ -55,13 +55,8 @@ class NodePane(GraphPane):
         yield GraphLinks()
         yield GraphParameters()
 
-    @property
-    def links(self) -> GraphLinks:
-        return self.query_one(GraphLinks)
-
-    @property
-    def parameters(self) -> GraphParameters:
-        return self.query_one(GraphParameters)
+    links = getters.query_one(GraphLinks)
+    parameters = getters.query_one(GraphParameters)
 
     @property
     def shows_parameters(self) -> bool:

@@ -13,8 +13,7 @@ from graph.data import GraphUpdate
 from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import Host, host_of
-from tui.graph.index import GraphEntry
-from tui.graph.places import GraphKind, GraphPlace
+from tui.graph.index import GraphEntry, GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from textual import getters
 from textual.containers import Vertical
 from textual.widgets import Static
 
@@ -120,9 +121,7 @@ class GraphParameters(Vertical, Working):
     def on_mount(self) -> None:
         self.set_interval(TICK_S, self._label)
 
-    @property
-    def table(self) -> Rows:
-        return self.query_one(Rows)
+    table = getters.query_one(Rows)
 
     @property
     def rows(self) -> tuple[ParameterRow, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, cast
 
-from textual import on
+from textual import getters, on
 from textual.app import ComposeResult
 from textual.binding import Binding
 from textual.containers import Horizontal
@@ -18,11 +18,10 @@ from tui.graph.action import ActionPane
 from tui.graph.actions import GRAPH_ACTIONS, show_everything
 from tui.graph.ask import AskPane
 from tui.graph.finding import FindingPane, goal_of
-from tui.graph.index import LOOKS, GraphIndex, failures_of
+from tui.graph.index import LISTED, LOOKS, TITLES, GraphIndex, GraphKind, GraphPlace, PlaceHistory, failures_of
 from tui.graph.node import NodePane
 from tui.graph.pane import EmptyNotice, GraphList, GraphPane, why_empty
 from tui.graph.parameters import PARAMETER_EVENTS
-from tui.graph.places import LISTED, TITLES, GraphKind, GraphPlace, PlaceHistory
 from tui.graph.service import ServicePane
 from tui.graph.type import TypePane
 from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
@@ -104,17 +103,13 @@ class GraphScreen(DeckScreen):
 
     # State
 
-    @property
-    def names(self) -> GraphList:
-        return self.query_one(GraphList)
+    names = getters.query_one(GraphList)
 
     @property
     def is_typing(self) -> bool:
         return isinstance(self.focused, (Input, TextArea))
 
-    @property
-    def filter(self) -> Input:
-        return self.query_one("#graph-filter", Input)
+    filter = getters.query_one("#graph-filter", Input)
 
     @property
     def pane(self) -> GraphPane | None:

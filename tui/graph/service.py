@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from textual import on
+from textual import getters, on
 from textual.containers import Horizontal
 from textual.widgets import Input, Static
 
@@ -60,9 +60,7 @@ class CallTimeout(Horizontal):
         yield Static(classes="timeout-unit", markup=False)
         yield Static(classes="timeout-bad", markup=False)
 
-    @property
-    def field(self) -> Field:
-        return self.query_one(Field)
+    field = getters.query_one(Field)
 
     @property
     def seconds(self) -> float | None:
@@ -151,9 +149,7 @@ class ServicePane(AskPane):
         if self.can_cancel:
             self.redraw()
 
-    @property
-    def timeout(self) -> CallTimeout:
-        return self.query_one(CallTimeout)
+    timeout = getters.query_one(CallTimeout)
 
     @property
     def calls(self) -> list[ServiceCall]:

@@ -11,9 +11,9 @@ from graph.messages.types import UnknownTypeError
 from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
+from tui.graph.index import GraphKind, GraphPlace
 from tui.graph.pane import LONGEST, EmptyNotice, GraphLinks, GraphPane, heading, link
 from tui.graph.parameters import typed
-from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Row
 

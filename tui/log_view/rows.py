@@ -22,8 +22,7 @@ from textual.strip import Strip
 from launcher.status import Severity
 from text.i18n import ngettext
 from text.plain import plain
-from tui.log_view.index import LogIndex, folded
-from tui.log_view.ring import LogEntry
+from tui.log_view.index import LogEntry, LogIndex, folded
 
 if TYPE_CHECKING:
     from textual.selection import Selection

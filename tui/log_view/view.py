@@ -24,8 +24,7 @@ from textual.widget import Widget
 from launcher.status import LogLine
 from text.i18n import _
 from text.plain import plain
-from tui.log_view.index import LineChoice, LogFilter, LogIndex
-from tui.log_view.ring import LineRing, LogEntry
+from tui.log_view.index import LineChoice, LineRing, LogEntry, LogFilter, LogIndex
 from tui.log_view.rows import (
     PALETTE_CLASSES,
     PALETTE_CSS,
@@ -38,7 +37,7 @@ from tui.log_view.rows import (
 )
 from tui.log_view.tail import Tail
 from tui.session.past import KEPT_LINES
-from tui.widgets.one_style import OneStyle
+from tui.widgets.words import OneStyle
 
 ColumnsFor: TypeAlias = "Callable[[int, int], LogColumns]"
 """Returns the columns in front of the text, for the given widths of a row and the longest node."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from time import monotonic
 from typing import ClassVar
 
-from textual import on
+from textual import getters, on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
@@ -116,13 +116,8 @@ class LogsScreen(DeckScreen):
             yield LogNodes()
             yield LogPane(LogView(file_of=self.feed.log_file))
 
-    @property
-    def pane(self) -> LogPane:
-        return self.query_one(LogPane)
-
-    @property
-    def node_list(self) -> LogNodes:
-        return self.query_one(LogNodes)
+    pane = getters.query_one(LogPane)
+    node_list = getters.query_one(LogNodes)
 
     @property
     def chosen_node(self) -> str | None:

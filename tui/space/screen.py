@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from typing import ClassVar
 
-from textual import on
+from textual import getters, on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
@@ -80,13 +80,8 @@ class SpaceScreen(DeckScreen):
             yield LayerRows()
         yield Static(id="space-armed", markup=False)
 
-    @property
-    def view(self) -> SpaceView:
-        return self.query_one(SpaceView)
-
-    @property
-    def layer_rows(self) -> LayerRows:
-        return self.query_one(LayerRows)
+    view = getters.query_one(SpaceView)
+    layer_rows = getters.query_one(LayerRows)
 
     @property
     def armed(self) -> bool:

@@ -20,8 +20,7 @@ from textual.widget import Widget
 
 from space.drawing.paints import Tint, rgb_of
 from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera
-from tui.widgets.one_style import OneStyle
-from tui.widgets.words import word_strips
+from tui.widgets.words import OneStyle, word_strips
 
 if TYPE_CHECKING:
     from tui.space.aiming import Aim

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from rich.cells import cell_len, chop_cells
+from textual import getters
 from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.content import Content
@@ -108,21 +109,10 @@ class TopicDetail(Vertical, Working):
         yield ImageView()
         yield TopicEndpoints()
 
-    @property
-    def echo(self) -> EchoTree:
-        return self.query_one(EchoTree)
-
-    @property
-    def filter(self) -> EchoFilter:
-        return self.query_one(EchoFilter)
-
-    @property
-    def picture(self) -> ImageView:
-        return self.query_one(ImageView)
-
-    @property
-    def endpoints(self) -> TopicEndpoints:
-        return self.query_one(TopicEndpoints)
+    echo = getters.query_one(EchoTree)
+    filter = getters.query_one(EchoFilter)
+    picture = getters.query_one(ImageView)
+    endpoints = getters.query_one(TopicEndpoints)
 
     @property
     def front(self) -> Widget:
@@ -160,7 +150,7 @@ class TopicDetail(Vertical, Working):
         self.sample = sample
         if resized:
             self.say()
-        self.echo.show(sample.topic, sample.value)
+        self.echo.show_message(sample.topic, sample.value)
 
     def show_picture(self, sample: Sample, is_wanted: Callable[[], bool]) -> None:
         """Show this image once it is decoded, if it is still wanted then, or why it cannot be shown."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from textual import on
+from textual import getters, on
 from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Static
@@ -60,9 +60,7 @@ class EchoFilter(Horizontal):
     def on_mount(self) -> None:
         self.on_language_changed()
 
-    @property
-    def field(self) -> Field:
-        return self.query_one(Field)
+    field = getters.query_one(Field)
 
     @property
     def in_force(self) -> bool:

@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from typing import TYPE_CHECKING, ClassVar
 
 from rich.cells import cell_len
-from textual import on
+from textual import getters, on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
@@ -125,9 +125,7 @@ class PublishDialog(Dialog[None]):
         names = await asyncio.to_thread(interfaces)
         self.type.know(tuple(name for name in names if "/msg/" in name))
 
-    @property
-    def topic_field(self) -> Input:
-        return self.query_one("#target-topic", Input)
+    topic_field = getters.query_one("#target-topic", Input)
 
     @property
     def topic(self) -> str:
@@ -135,17 +133,9 @@ class PublishDialog(Dialog[None]):
         name = self.topic_field.value.strip()
         return name if not name or name.startswith(("/", "~")) else f"/{name}"
 
-    @property
-    def type(self) -> TypeField:
-        return self.query_one(TypeField)
-
-    @property
-    def rate_field(self) -> Input:
-        return self.query_one("#rate-hz", Input)
-
-    @property
-    def form(self) -> YamlForm:
-        return self.query_one(YamlForm)
+    type = getters.query_one(TypeField)
+    rate_field = getters.query_one("#rate-hz", Input)
+    form = getters.query_one(YamlForm)
 
     @property
     def chosen_number(self) -> int | None:

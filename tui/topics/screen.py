@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import ClassVar
 
-from textual import on
+from textual import getters, on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.timer import Timer
@@ -114,9 +114,7 @@ class TopicsScreen(DeckScreen):
             yield self.detail
             yield self.plot
 
-    @property
-    def filter(self) -> Input:
-        return self.query_one("#topics-filter", Input)
+    filter = getters.query_one("#topics-filter", Input)
 
     def watch_topics(self) -> set[str]:
         """The chosen topic; of one with images only its messages as a tree."""

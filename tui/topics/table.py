@@ -306,15 +306,12 @@ class TopicsTable(Rows):
         had, at = self._chosen, self._index(self._chosen)
         in_sight = at is not None and 0 <= at - self.scroll_offset.y < self.size.height - 1
         self.shown = self.order.arranged(self._topics)
-        names = [row.name for row in self.shown]
-        if had not in names:
-            # The one that has taken its place; without any, the table has no chosen one.
-            self._chosen = names[min(at or 0, len(names) - 1)] if names else ""
-        self.show(*self._laid_out())
-        if self._chosen != had:
-            self.post_message(self.Highlighted(self, self._chosen))
+        columns, rows = self._laid_out()
+        self.show(columns, rows, near=at or 0)
         now = self._index(self._chosen)
-        if in_sight and now is not None and now != at:
+        if now is None and had:
+            self.post_message(self.Highlighted(self, ""))
+        elif in_sight and now is not None and now != at:
             self._bring_into_view(now, self.scroll_offset.y)
 
     def _place(self) -> None:

@@ -20,9 +20,8 @@ from graph.data import Trouble
 from text.i18n import _
 from text.plain import plain
 from tui.faults import report_fault
-from tui.widgets.one_style import OneStyle
 from tui.widgets.trouble import no_data_words, trouble_words
-from tui.widgets.words import cut, word_strips
+from tui.widgets.words import OneStyle, cut, word_strips
 
 _ONE_CELL_EACH = re.compile("[ -~\u0400-\u0482\u2500-\u25ff\u2800-\u28ff]*")
 """Text whose characters need not be measured individually."""

@@ -27,8 +27,7 @@ from text.i18n import _, decimal
 from text.plain import plain
 from tui import clock
 from tui.terminal.bandwidth import Bandwidth, HasBandwidth, PicturePace
-from tui.widgets.one_style import OneStyle
-from tui.widgets.words import cut, in_row, word_strips
+from tui.widgets.words import OneStyle, cut, in_row, word_strips
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -57,15 +57,8 @@ class MarkedEditor(TextArea):
         """A paste was rejected because the text would become too long."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "marked-editor--key",
-        "marked-editor--string",
-        "marked-editor--number",
-        "marked-editor--word",
-        "marked-editor--mark",
-        "marked-editor--comment",
-        "marked-editor--bad",
-        "marked-editor--problem",
-        "marked-editor--gutter",
+        f"marked-editor--{part}"
+        for part in ["key", "string", "number", "word", "mark", "comment", "bad", "problem", "gutter"]
     }
     DEFAULT_CSS = """
     MarkedEditor {

@@ -15,7 +15,7 @@ from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tui.widgets.one_style import OneStyle
+from tui.widgets.words import OneStyle
 
 MARK = 2
 """Cells left of the first column, for the mark of the chosen row."""
@@ -69,13 +69,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
 
     ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "rows--header",
-        "rows--cursor",
-        "rows--good",
-        "rows--warn",
-        "rows--bad",
-        "rows--dim",
-        "rows--sorted",
+        f"rows--{part}" for part in ["header", "cursor", "good", "warn", "bad", "dim", "sorted"]
     }
     DEFAULT_CSS = """
     Rows {
@@ -114,8 +108,11 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._moved = False
         """Whether the user has chosen a row."""
 
-    def show(self, columns: Sequence[Column], rows: Sequence[Row]) -> None:
-        """Show these rows in these columns; texts must be harmless and have no line breaks."""
+    def show(self, columns: Sequence[Column], rows: Sequence[Row], *, near: int = 0) -> None:
+        """Show these rows in these columns; texts must be harmless and have no line breaks.
+
+        If the chosen row has gone, the one at the place `near` is chosen.
+        """
         before, self._rows = self._rows, tuple(rows)
         if tuple(columns) != self._columns:
             self._columns = tuple(columns)
@@ -124,7 +121,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
             self.virtual_size = Size(0, self._top + len(self._rows))
             self.refresh()
         if self._index(self._chosen) is None:
-            self._choose_near(0)
+            self._choose_near(max(0, min(near, len(self._rows) - 1)))
         if self._widths:
             self._refresh_changed(before)
 

@@ -30,10 +30,7 @@ class TabLine(Widget):
             super().__init__()
             self.key = key
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {
-        *("tab-line--tab", "tab-line--front"),
-        *("tab-line--bad", "tab-line--warn"),
-    }
+    COMPONENT_CLASSES: ClassVar[set[str]] = {f"tab-line--{part}" for part in ("tab", "front", "bad", "warn")}
     DEFAULT_CSS = """
     TabLine {
         width: auto; height: 1; background: $panel;

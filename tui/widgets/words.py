@@ -1,6 +1,8 @@
-"""Words in place of something that cannot be shown: a headline and a detail, wrapped."""
+"""Lines that a widget draws itself: words in place of what cannot be shown, and its style computed once."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.segment import Segment
@@ -9,6 +11,37 @@ from rich.text import Text
 from textual.strip import Strip
 
 from text.plain import plain
+
+if TYPE_CHECKING:
+    from rich.style import Style
+    from textual.geometry import Region
+    from textual.strip import Strip
+    from textual.widget import Widget as Base
+else:
+    # Textual looks for a widget's CSS along the first base class that is a widget.
+    Base = object
+
+
+class OneStyle(Base):
+    """Mixin for a widget that draws line by line: computing `rich_style` takes Textual 0.2 ms."""
+
+    __drawing = False
+    __style: Style | None = None
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        self.__drawing = True
+        try:
+            return super().render_lines(crop)
+        finally:
+            self.__drawing, self.__style = False, None
+
+    @property
+    def rich_style(self) -> Style:
+        if not self.__drawing:
+            return super().rich_style
+        if self.__style is None:
+            self.__style = super().rich_style
+        return self.__style
 
 
 def word_strips(

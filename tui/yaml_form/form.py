@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, ClassVar
 
-from textual import on
+from textual import getters, on
 from textual.containers import Vertical
 from textual.events import Click
 from textual.message import Message
@@ -169,9 +169,7 @@ class YamlForm(Vertical, Acting, Working):
         else:
             self.on_language_changed()
 
-    @property
-    def editor(self) -> YamlEditor:
-        return self.query_one(YamlEditor)
+    editor = getters.query_one(YamlEditor)
 
     @property
     def text(self) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from textual import on
+from textual import getters, on
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.events import DescendantBlur
@@ -56,9 +56,7 @@ class TypeField(Vertical):
         listed.can_focus = False
         yield listed
 
-    @property
-    def field(self) -> Input:
-        return self.query_one(Input)
+    field = getters.query_one(Input)
 
     @property
     def value(self) -> str:
